@@ -1,0 +1,103 @@
+//! The one error type of the crate: the caller's input cannot be processed, and why.
+//!
+//! What is *not* an error: data that cannot tell (an answer that says so, with its evidence) and a solver that stopped
+//! early (a report). See ARCHITECTURE.md, "Three answers".
+
+/// Why an input cannot be processed. Every variant has a stable [`code`](Error::code).
+#[non_exhaustive]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Error {
+    /// The two (or three) frames differ in size.
+    #[error("the frames differ in size: {}×{} and {}×{} pixels", first.0, first.1, second.0, second.1)]
+    FrameSizeMismatch {
+        /// Width and height of the first frame.
+        first: (usize, usize),
+        /// Width and height of the frame that differs.
+        second: (usize, usize),
+    },
+    /// A frame is smaller or larger than what can be processed.
+    #[error(
+        "a frame of {width}×{height} pixels cannot be processed: both sides must be between {min} and {max} pixels"
+    )]
+    FrameSizeUnsupported {
+        /// Width in pixels.
+        width: usize,
+        /// Height in pixels.
+        height: usize,
+        /// Smallest side.
+        min: usize,
+        /// Largest side.
+        max: usize,
+    },
+    /// The bytes of a frame do not fill width × height RGBA pixels.
+    #[error("a frame of {width}×{height} pixels needs {needed} RGBA bytes, found {found}")]
+    PixelCountMismatch {
+        /// Width in pixels.
+        width: usize,
+        /// Height in pixels.
+        height: usize,
+        /// Bytes needed.
+        needed: usize,
+        /// Bytes found.
+        found: usize,
+    },
+    /// Positions and derivatives differ in number.
+    #[error("there are {positions} positions but {derivatives} derivatives")]
+    MeasurementCountMismatch {
+        /// Number of positions.
+        positions: usize,
+        /// Number of derivatives.
+        derivatives: usize,
+    },
+    /// There are fewer measurements than the method needs.
+    #[error("{motions} motion(s) need at least {needed} measurements, found {found}")]
+    TooFewMeasurements {
+        /// Number of motions asked for (or tried first).
+        motions: usize,
+        /// Measurements needed.
+        needed: usize,
+        /// Measurements found.
+        found: usize,
+    },
+    /// A number is NaN, infinite or too large to compute with.
+    #[error("{what} number {index} is not a finite number of usable size")]
+    NotFinite {
+        /// "position" or "derivative".
+        what: &'static str,
+        /// Index in the input.
+        index: usize,
+    },
+    /// An option has a value that it cannot have.
+    #[error("option '{name}': {reason}")]
+    InvalidOption {
+        /// The option's name.
+        name: &'static str,
+        /// What is wrong and what would be right.
+        reason: String,
+    },
+    /// A file is no image, or a damaged one.
+    #[error("the image cannot be read: {reason}")]
+    UnreadableImage {
+        /// What the decoder said.
+        reason: String,
+    },
+}
+
+impl Error {
+    /// A stable kebab-case code: the same on the command line, in JavaScript and here.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Error::FrameSizeMismatch { .. } => "frame-size-mismatch",
+            Error::FrameSizeUnsupported { .. } => "frame-size-unsupported",
+            Error::PixelCountMismatch { .. } => "pixel-count-mismatch",
+            Error::MeasurementCountMismatch { .. } => "measurement-count-mismatch",
+            Error::TooFewMeasurements { .. } => "too-few-measurements",
+            Error::NotFinite { .. } => "not-finite",
+            Error::InvalidOption { .. } => "invalid-option",
+            Error::UnreadableImage { .. } => "unreadable-image",
+        }
+    }
+}
+
+/// The crate's result.
+pub type Result<T, E = Error> = std::result::Result<T, E>;

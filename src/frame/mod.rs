@@ -1,0 +1,56 @@
+//! Pixels in, planes and measurements out. Knows no algebra.
+
+mod plane;
+
+pub use plane::Plane;
+
+use crate::error::{Error, Result};
+
+/// Smallest side of a frame, pixels.
+pub const MIN_SIDE: usize = 16;
+/// Largest side of a frame, pixels.
+pub const MAX_SIDE: usize = 4096;
+
+/// One video frame: its luminance, 0…255.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    luminance: Plane,
+}
+
+impl Frame {
+    /// A frame from RGBA bytes, row by row, as `ImageData` has them. Alpha is ignored.
+    ///
+    /// Luminance is Rec. 601, `0.299 R + 0.587 G + 0.114 B`, in grey levels.
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeUnsupported`], [`Error::PixelCountMismatch`].
+    pub fn from_rgba(width: usize, height: usize, rgba: &[u8]) -> Result<Frame> {
+        if !(MIN_SIDE..=MAX_SIDE).contains(&width) || !(MIN_SIDE..=MAX_SIDE).contains(&height) {
+            return Err(Error::FrameSizeUnsupported { width, height, min: MIN_SIDE, max: MAX_SIDE });
+        }
+        let needed = width * height * 4;
+        if rgba.len() != needed {
+            return Err(Error::PixelCountMismatch { width, height, needed, found: rgba.len() });
+        }
+        let luminance = rgba
+            .chunks_exact(4)
+            .map(|p| 0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2]))
+            .collect();
+        Ok(Frame { luminance: Plane::from_vec(width, height, luminance) })
+    }
+
+    /// Width in pixels.
+    pub fn width(&self) -> usize {
+        self.luminance.width()
+    }
+
+    /// Height in pixels.
+    pub fn height(&self) -> usize {
+        self.luminance.height()
+    }
+
+    /// Luminance in grey levels, 0…255.
+    pub fn luminance(&self) -> &Plane {
+        &self.luminance
+    }
+}

@@ -1,0 +1,76 @@
+//! A rectangle of `f32` values, row by row: every image quantity of the pipeline.
+
+/// Width × height values, row-major; (0, 0) is the top-left pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plane {
+    width: usize,
+    height: usize,
+    values: Vec<f32>,
+}
+
+impl Plane {
+    /// A plane of one value.
+    pub fn filled(width: usize, height: usize, value: f32) -> Plane {
+        Plane { width, height, values: vec![value; width * height] }
+    }
+
+    /// A plane from its values, row by row; cut or filled with zeros where their number is not width × height.
+    pub fn from_vec(width: usize, height: usize, mut values: Vec<f32>) -> Plane {
+        debug_assert_eq!(values.len(), width * height);
+        values.resize(width * height, 0.0);
+        Plane { width, height, values }
+    }
+
+    /// A plane computed pixel by pixel from (x, y).
+    pub fn from_fn(width: usize, height: usize, mut f: impl FnMut(usize, usize) -> f32) -> Plane {
+        let mut values = Vec::with_capacity(width * height);
+        for y in 0..height {
+            for x in 0..width {
+                values.push(f(x, y));
+            }
+        }
+        Plane { width, height, values }
+    }
+
+    /// Width in pixels.
+    #[inline]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[inline]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// All values, row by row.
+    #[inline]
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// All values, row by row.
+    #[inline]
+    pub fn values_mut(&mut self) -> &mut [f32] {
+        &mut self.values
+    }
+
+    /// Row y.
+    #[inline]
+    pub fn row(&self, y: usize) -> &[f32] {
+        &self.values[y * self.width..(y + 1) * self.width]
+    }
+
+    /// Row y.
+    #[inline]
+    pub fn row_mut(&mut self, y: usize) -> &mut [f32] {
+        &mut self.values[y * self.width..(y + 1) * self.width]
+    }
+
+    /// The value of pixel (x, y).
+    #[inline]
+    pub fn at(&self, x: usize, y: usize) -> f32 {
+        self.values[y * self.width + x]
+    }
+}
