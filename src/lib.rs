@@ -1,5 +1,6 @@
 //! How many things move between two video frames, how each moves, and which pixels belong to it.
 
+mod alignment;
 mod error;
 mod frame;
 mod measurements;

@@ -1,64 +1,29 @@
 //! Two frames in, masks out: the image pipeline as its stages in order, and nothing else.
 
-use serde::Serialize;
+mod hypothesis;
+mod masks;
+mod report;
+mod settings;
 
+pub use report::{PairEvidence, Segmentation, SegmentedMotion};
+
+use crate::alignment::cost::noise;
+use crate::alignment::dominant::dominant_motion;
+use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
+use crate::frame::Plane;
+use crate::frame::filter::{gaussian, halve};
+use crate::frame::pyramid::{Level, PRE_BLUR, build};
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
-use crate::points::Candidate;
 use crate::progress::{Progress, Stages};
+use crate::random::Random;
+use settings::Settings;
 
-/// What [`segment_pair`] found.
-#[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct Segmentation {
-    /// Width of the frames, pixels.
-    pub width: usize,
-    /// Height of the frames, pixels.
-    pub height: usize,
-    /// Number of motions.
-    pub count: usize,
-    /// The motions by decreasing number of pixels; `motions[i].label == i`.
-    pub motions: Vec<SegmentedMotion>,
-    /// One label per pixel, row by row; [`UNLABELLED`](crate::UNLABELLED) where nothing can be said (only on request).
-    #[serde(skip)]
-    pub labels: Vec<u8>,
-    /// What the number of motions rests on.
-    pub evidence: PairEvidence,
-    /// Number of unlabelled pixels.
-    pub unlabelled: usize,
-}
-
-/// One motion of a [`Segmentation`].
-#[derive(Clone, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct SegmentedMotion {
-    /// Its label.
-    pub label: u8,
-    /// Its six entries, pixels of the full-size frame.
-    pub matrix: AffineMotion,
-    /// Number of its pixels.
-    pub pixels: usize,
-    /// Their share of all pixels, 0…1.
-    pub share: f64,
-    /// Root mean square of the motion-compensated intensity difference over its pixels, grey levels.
-    pub residual: f64,
-    /// Bounding box of its pixels: x, y, width, height.
-    pub bbox: [usize; 4],
-    /// Group: motions of one rigid background share a number; numbered like labels, 0 is the largest group.
-    pub group: u8,
-}
-
-/// Evidence for the number of motions of a pair.
-#[derive(Clone, Debug, Default, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub struct PairEvidence {
-    /// The numbers of motions that were tried; a smaller score is better.
-    pub candidates: Vec<Candidate>,
-}
-
-const STAGES: &[&str] = &["frames"];
+/// The stages of [`segment_pair`], in order.
+const STAGES: &[&str] =
+    &["frames", "dominant", "measurements", "algebra", "selection", "refinement", "labels", "masks"];
 
 /// Segments two frames: how many things move, how each moves, which pixels belong to it.
 ///
@@ -80,23 +45,74 @@ pub fn segment_pair(
             return Err(Error::FrameSizeMismatch { first: size, second: (other.width(), other.height()) });
         }
     }
+    let settings = Settings::of(options);
     let mut stages = Stages::new(STAGES, progress);
+    let mut random = Random::from_seed(options.seed);
+
     stages.begin("frames");
-    Ok(Segmentation {
-        width: size.0,
-        height: size.1,
-        count: 1,
-        motions: vec![SegmentedMotion {
-            label: 0,
-            matrix: AffineMotion::STATIC,
-            pixels: size.0 * size.1,
-            share: 1.0,
-            residual: 0.0,
-            bbox: [0, 0, size.0, size.1],
-            group: 0,
-        }],
-        labels: vec![0; size.0 * size.1],
-        evidence: PairEvidence::default(),
-        unlabelled: 0,
-    })
+    let mut work = Work::new(first, second, before, &settings);
+    stages.begin("dominant");
+    let dominant = work.find_dominant();
+    let found = hypothesis::best(&work, dominant, &settings, &mut random, &mut stages);
+    stages.begin("refinement");
+    let (motions, left_over) = hypothesis::refine(&work, found, &settings);
+    stages.begin("labels");
+    let labelled = masks::label(&work, motions, &settings);
+    stages.begin("masks");
+    Ok(report::report(&work, labelled, left_over, first, second, options))
+}
+
+/// The frames at working size and below.
+pub(crate) struct Work {
+    /// Level 0 is the working size.
+    levels: Vec<Level>,
+    /// Index of the level on which motions are first looked for.
+    base: usize,
+    /// Luminance of the first frame at working size, unblurred: its edges are where labels may change.
+    edges: Plane,
+    /// Full-size pixels per working pixel.
+    reduction: f64,
+}
+
+impl Work {
+    fn new(first: &Frame, second: &Frame, before: Option<&Frame>, settings: &Settings) -> Work {
+        let mut reduction = 1.0;
+        let mut planes: Vec<Plane> =
+            [Some(first), Some(second), before].into_iter().flatten().map(|f| f.luminance().clone()).collect();
+        while planes[0].width().max(planes[0].height()) > settings.work_side {
+            planes.iter_mut().for_each(|p| *p = halve(p));
+            reduction *= 2.0;
+        }
+        let edges = planes[0].clone();
+        let mut blurred = planes.iter().map(|p| gaussian(p, PRE_BLUR));
+        let empty = || Plane::filled(1, 1, 0.0);
+        let (one, two) = (blurred.next().unwrap_or_else(empty), blurred.next().unwrap_or_else(empty));
+        let levels = build(one, two, blurred.next(), settings.smallest_side);
+        let base =
+            levels.iter().position(|l| l.width().max(l.height()) <= settings.base_side).unwrap_or(levels.len() - 1);
+        Work { levels, base, edges, reduction }
+    }
+
+    /// Finds the dominant motion, takes the change of brightness out of the second frame, measures the noise.
+    fn find_dominant(&mut self) -> AffineMotion {
+        let (mut motion, photometric) = dominant_motion(&self.levels, self.base);
+        for level in &mut self.levels {
+            level.compensate(photometric.bias, photometric.gain);
+            level.noise = noise(level, &motion);
+        }
+        if motion != AffineMotion::STATIC {
+            let base = &self.levels[self.base];
+            let how =
+                Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: 1e-3, photometric: false };
+            motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
+            for level in &mut self.levels {
+                level.noise = noise(level, &motion);
+            }
+        }
+        motion
+    }
+
+    fn finest(&self) -> &Level {
+        &self.levels[0]
+    }
 }

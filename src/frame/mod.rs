@@ -1,6 +1,9 @@
 //! Pixels in, planes and measurements out. Knows no algebra.
 
+pub(crate) mod filter;
 mod plane;
+pub(crate) mod pyramid;
+pub(crate) mod warp;
 
 pub use plane::Plane;
 

@@ -1,0 +1,125 @@
+//! The dominant motion: the one affine motion that explains most of the frame, with the change of brightness between the frames.
+
+use super::cost::{CostModel, Photometric, cost_with, total};
+use super::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::frame::Plane;
+use crate::frame::pyramid::Level;
+use crate::motion::AffineMotion;
+
+/// Reach of the search for a start at the coarsest level, pixels of that level.
+const REACH: i32 = 3;
+/// How much cheaper (in costs summed over pixels) another motion must be than no motion at all: cameras that stand still are common,
+/// and a small wrong motion of the background costs more later than a small true one that is missed here.
+const STATIC_BONUS: f64 = 20.0;
+/// Gain between the frames is looked for between these factors.
+const GAINS: (f64, f64) = (0.7, 1.4);
+
+/// The dominant motion of the working frame and the change of brightness, from the levels `base` and coarser.
+pub(crate) fn dominant_motion(levels: &[Level], base: usize) -> (AffineMotion, Photometric) {
+    let start = brightness_start(levels);
+    let coarsest = &levels[levels.len() - 1];
+    let mut candidates = vec![AffineMotion::STATIC];
+    let shift = best_shift(coarsest, start);
+    if shift != AffineMotion::STATIC {
+        candidates.push(shift);
+    }
+    let mut best = static_candidate(&levels[base], start);
+    for candidate in candidates {
+        let (motion, photometric) = descend(levels, base, candidate, start);
+        let sum = total(&cost_with(&levels[base], &motion, photometric, CostModel::ESTIMATION));
+        if sum < best.0 {
+            best = (sum, motion, photometric);
+        }
+    }
+    (best.1, best.2)
+}
+
+/// Mean and standard deviation of both frames give a first gain and bias.
+fn brightness_start(levels: &[Level]) -> Photometric {
+    let level = &levels[levels.len() - 1];
+    let (first_mean, first_deviation) = mean_and_deviation(&level.first);
+    let (second_mean, second_deviation) = mean_and_deviation(&level.second);
+    let gain = (second_deviation / first_deviation.max(1e-3)).clamp(GAINS.0, GAINS.1);
+    Photometric { bias: second_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
+}
+
+fn mean_and_deviation(plane: &Plane) -> (f64, f64) {
+    let n = plane.values().len() as f64;
+    let mean = total(plane) / n;
+    let variance = plane.values().iter().map(|&v| (f64::from(v) - mean) * (f64::from(v) - mean)).sum::<f64>() / n;
+    (mean, variance.sqrt())
+}
+
+/// The whole-pixel shift at the coarsest level with the smallest cost.
+fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
+    let mut best = (f64::INFINITY, AffineMotion::STATIC);
+    for dx in -REACH..=REACH {
+        for dy in -REACH..=REACH {
+            let (dx, dy) = (f64::from(dx), f64::from(dy));
+            let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
+            let plane = cost_with(level, &shift, photometric, CostModel::ESTIMATION);
+            // The small term decides ties for the shorter shift.
+            let cost = total(&plane) / plane.values().len() as f64 + 1e-3 * (dx * dx + dy * dy).sqrt();
+            if cost < best.0 {
+                best = (cost, shift);
+            }
+        }
+    }
+    best.1
+}
+
+/// Coarse to fine from one start: translation first, then affine, the weights sharpened at the end.
+fn descend(
+    levels: &[Level],
+    base: usize,
+    mut motion: AffineMotion,
+    mut photometric: Photometric,
+) -> (AffineMotion, Photometric) {
+    let affine = Alignment { freedom: Freedom::Affine, iterations: 5, robustness: 6.0, ridge: 1e-3, photometric: true };
+    let translation = Alignment { freedom: Freedom::Translation, iterations: 6, robustness: 9.0, ..affine };
+    for (index, level) in levels.iter().enumerate().skip(base).rev() {
+        let support = Support::everything(level);
+        if index + 1 == levels.len() {
+            motion = align(level, &motion, &support, &mut photometric, translation);
+        }
+        motion = align(level, &motion, &support, &mut photometric, affine);
+        if index == base {
+            motion = align(level, &motion, &support, &mut photometric, Alignment { robustness: 2.0, ..affine });
+        }
+    }
+    (motion, photometric)
+}
+
+/// No motion: only the brightness is fitted.
+fn static_candidate(level: &Level, mut photometric: Photometric) -> (f64, AffineMotion, Photometric) {
+    for _ in 0..3 {
+        photometric = refit_brightness(level, photometric);
+    }
+    let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::ESTIMATION));
+    (cost - STATIC_BONUS, AffineMotion::STATIC, photometric)
+}
+
+/// One reweighted least squares step of bias and gain between frames that are already aligned.
+fn refit_brightness(level: &Level, photometric: Photometric) -> Photometric {
+    let variance = f64::from(level.noise * level.noise);
+    let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (&first, &second) in level.first.values().iter().zip(level.second.values()) {
+        let i = f64::from(first) / 128.0;
+        let r = f64::from(second) - f64::from(first) - photometric.bias - photometric.gain * i;
+        let robust = 4.0 / (4.0 + r * r / variance);
+        let w = robust * robust;
+        q += w;
+        qi += w * i;
+        qii += w * i * i;
+        qr += w * r;
+        qir += w * i * r;
+    }
+    let determinant = q * qii - qi * qi;
+    if determinant <= 1e-9 * q * qii {
+        return Photometric { bias: photometric.bias + qr / q.max(1e-9), gain: photometric.gain };
+    }
+    Photometric {
+        bias: photometric.bias + (qii * qr - qi * qir) / determinant,
+        gain: photometric.gain + (q * qir - qi * qr) / determinant,
+    }
+}

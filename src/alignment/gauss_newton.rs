@@ -1,0 +1,353 @@
+//! One motion refined on the intensities of its pixels: iteratively reweighted Gauss-Newton (the direct method).
+//!
+//! Each iteration linearises `r(A + dA) ≈ r + gᵀ dA x` with the mean of both frames' gradients along the motion (it makes
+//! the step second-order accurate) and solves the weighted normal equations in coordinates centred on the support. The
+//! sums are gathered per row as moments `Σ w, Σ w x, Σ w x²` of five products, since y is constant along a row.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::cost::{CostModel, Photometric, lane_sum};
+use crate::frame::Plane;
+use crate::frame::pyramid::Level;
+use crate::frame::warp::{Footprint, RowPath};
+use crate::motion::AffineMotion;
+
+/// Which entries of the motion are free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Freedom {
+    Translation,
+    Affine,
+}
+
+/// How to align.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Alignment {
+    pub(crate) freedom: Freedom,
+    pub(crate) iterations: usize,
+    /// Squared residual, in variances, at which a pixel's weight has fallen to a quarter.
+    pub(crate) robustness: f32,
+    /// Prior against linear terms, as a share of the translation's information.
+    pub(crate) ridge: f64,
+    /// Whether gain and bias are estimated with the motion.
+    pub(crate) photometric: bool,
+}
+
+/// A step shorter than this, pixels of the level, ends the iteration.
+const SMALL_STEP: f64 = 0.003;
+/// Below this sum of support weights a motion is left as it is.
+const SMALLEST_SUPPORT: f64 = 12.0;
+/// Entries beyond this are no motion of an image.
+const LARGEST_ENTRY: f64 = 1e3;
+
+/// Unknowns: the six entries of A (in centred coordinates), bias, gain.
+const UNKNOWNS: usize = 8;
+type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
+type Right = SVector<f64, UNKNOWNS>;
+
+/// Pixels that vote, with their weights and their extent.
+pub(crate) struct Support<'a> {
+    weights: Option<&'a Plane>,
+    columns: std::ops::Range<usize>,
+    rows: std::ops::Range<usize>,
+    centre: [f64; 2],
+    sum: f64,
+}
+
+impl<'a> Support<'a> {
+    /// Every pixel of a level.
+    pub(crate) fn everything(level: &Level) -> Support<'static> {
+        let (w, h) = (level.width(), level.height());
+        Support {
+            weights: None,
+            columns: 0..w,
+            rows: 0..h,
+            centre: [0.5 * (w - 1) as f64, 0.5 * (h - 1) as f64],
+            sum: (w * h) as f64,
+        }
+    }
+
+    /// The pixels of positive weight.
+    pub(crate) fn weighted(weights: &'a Plane) -> Support<'a> {
+        let (mut columns, mut rows) = (usize::MAX..0, usize::MAX..0);
+        let (mut sum, mut sx, mut sy) = (0.0, 0.0, 0.0);
+        for y in 0..weights.height() {
+            for (x, &w) in weights.row(y).iter().enumerate() {
+                if w > 1e-3 {
+                    columns = columns.start.min(x)..columns.end.max(x + 1);
+                    rows = rows.start.min(y)..y + 1;
+                    let w = f64::from(w);
+                    sum += w;
+                    sx += w * x as f64;
+                    sy += w * y as f64;
+                }
+            }
+        }
+        if sum == 0.0 {
+            (columns, rows) = (0..0, 0..0);
+        }
+        let n = sum.max(1e-9);
+        Support { weights: Some(weights), columns, rows, centre: [sx / n, sy / n], sum }
+    }
+}
+
+/// Aligns a motion (of the working frame) on a level. The motion comes back unchanged where its pixels do not determine it.
+pub(crate) fn align(
+    level: &Level,
+    motion: &AffineMotion,
+    support: &Support<'_>,
+    photometric: &mut Photometric,
+    how: Alignment,
+) -> AffineMotion {
+    if support.sum < SMALLEST_SUPPORT {
+        return *motion;
+    }
+    let scale = 0.5 * level.width().max(level.height()) as f64;
+    let mut scaled = level.scaled(motion);
+    let mut rows = RowBuffers::new(support.columns.len());
+    for _ in 0..how.iterations {
+        let (mut normal, right) = rows.normal_equations(level, &scaled, support, *photometric, how, scale);
+        constrain(&mut normal, how);
+        let Some(cholesky) = normal.cholesky() else { return *motion };
+        let step = cholesky.solve(&-right);
+        if !step.iter().all(|s| s.is_finite()) {
+            return *motion;
+        }
+        photometric.bias -= step[6];
+        photometric.gain -= step[7];
+        apply(&mut scaled, &step, support.centre, scale);
+        if scaled.matrix.iter().any(|a| a.abs() > LARGEST_ENTRY) {
+            return *motion;
+        }
+        if (step[2] * step[2] + step[5] * step[5]).sqrt() < SMALL_STEP {
+            break;
+        }
+    }
+    level.unscaled(&scaled)
+}
+
+/// Adds the prior, and replaces the equations of unknowns that are not free by "the step is zero".
+fn constrain(normal: &mut Normal, how: Alignment) {
+    let linear = [0, 1, 3, 4];
+    for (i, of) in linear.into_iter().zip([2, 2, 5, 5]) {
+        normal[(i, i)] += how.ridge * normal[(of, of)];
+    }
+    let floor = 1e-9 * normal.trace() + 1e-12;
+    for i in 0..UNKNOWNS {
+        normal[(i, i)] += floor;
+    }
+    let mut fix = |i: usize| {
+        normal.row_mut(i).fill(0.0);
+        normal.column_mut(i).fill(0.0);
+        normal[(i, i)] = 1.0;
+    };
+    if how.freedom == Freedom::Translation {
+        linear.into_iter().for_each(&mut fix);
+    }
+    if !how.photometric {
+        fix(6);
+        fix(7);
+    }
+}
+
+/// Adds a step in centred coordinates to a motion.
+fn apply(motion: &mut AffineMotion, step: &Right, centre: [f64; 2], scale: f64) {
+    for row in 0..2 {
+        let (a, b, c) = (step[3 * row] / scale, step[3 * row + 1] / scale, step[3 * row + 2]);
+        motion.matrix[3 * row] += a;
+        motion.matrix[3 * row + 1] += b;
+        motion.matrix[3 * row + 2] += c - a * centre[0] - b * centre[1];
+    }
+}
+
+/// One row of everything, reused from row to row.
+struct RowBuffers {
+    x: Vec<f32>,
+    gx: Vec<f32>,
+    gy: Vec<f32>,
+    residual: Vec<f32>,
+    weight: Vec<f32>,
+    product: Vec<f32>,
+}
+
+impl RowBuffers {
+    fn new(length: usize) -> RowBuffers {
+        let row = || vec![0.0; length];
+        RowBuffers { x: row(), gx: row(), gy: row(), residual: row(), weight: row(), product: row() }
+    }
+
+    fn normal_equations(
+        &mut self,
+        level: &Level,
+        motion: &AffineMotion,
+        support: &Support<'_>,
+        photometric: Photometric,
+        how: Alignment,
+        scale: f64,
+    ) -> (Normal, Right) {
+        let (mut normal, mut right) = (Normal::zeros(), Right::zeros());
+        for (k, x) in support.columns.clone().enumerate() {
+            self.x[k] = ((x as f64 - support.centre[0]) / scale) as f32;
+        }
+        for y in support.rows.clone() {
+            self.measure(level, motion, support, photometric, how, y);
+            let ny = (y as f64 - support.centre[1]) / scale;
+            self.accumulate(&mut normal, &mut right, ny);
+            if how.photometric {
+                let first = &level.first.row(y)[support.columns.clone()];
+                self.accumulate_photometric(&mut normal, &mut right, ny, first);
+            }
+        }
+        normal.fill_upper_triangle_with_lower_triangle();
+        (normal, right)
+    }
+
+    /// Residuals, gradients and robust weights of a row.
+    fn measure(
+        &mut self,
+        level: &Level,
+        motion: &AffineMotion,
+        support: &Support<'_>,
+        photometric: Photometric,
+        how: Alignment,
+        y: usize,
+    ) {
+        let (width, height) = (level.width(), level.height());
+        let noise = level.noise * level.noise;
+        let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
+        let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
+        let columns = support.columns.clone();
+        let path = RowPath::new(motion, columns.start, y);
+        let first = &level.first.row(y)[columns.clone()];
+        let energy = &level.energy.row(y)[columns.clone()];
+        let (dx, dy) = (&level.first_dx.row(y)[columns.clone()], &level.first_dy.row(y)[columns.clone()]);
+        let weights = support.weights.map(|w| &w.row(y)[columns]);
+        for k in 0..first.len() {
+            let given = weights.map_or(1.0, |w| w[k]);
+            let (px, py) = path.at(k);
+            let at = Footprint::new(px, py, width, height);
+            if given <= 1e-3 || !at.inside {
+                (self.weight[k], self.gx[k], self.gy[k], self.residual[k]) = (0.0, 0.0, 0.0, 0.0);
+                continue;
+            }
+            let residual = at.sample(level.second.values()) - first[k] * (1.0 + gain) - bias;
+            let variance = noise + looseness * energy[k];
+            let robust = how.robustness / (how.robustness + residual * residual / variance);
+            self.weight[k] = given / variance * robust * robust;
+            self.gx[k] = 0.5 * (dx[k] + at.sample(level.second_dx.values()));
+            self.gy[k] = 0.5 * (dy[k] + at.sample(level.second_dy.values()));
+            self.residual[k] = residual;
+        }
+    }
+
+    /// The blocks `Σ w g gᵀ ⊗ (x, y, 1)(x, y, 1)ᵀ` and the right side of a row at height `y`.
+    fn accumulate(&mut self, normal: &mut Normal, right: &mut Right, y: f64) {
+        let RowBuffers { x, gx, gy, residual, weight, product } = self;
+        for (row, column, a, b) in [(0, 0, &*gx, &*gx), (3, 0, gy, gx), (3, 3, gy, gy)] {
+            let [s0, s1, s2] = moments(product, weight, a, b, x);
+            let block = [[s2, s1 * y, s1], [s1 * y, s0 * y * y, s0 * y], [s1, s0 * y, s0]];
+            for i in 0..3 {
+                for j in 0..3 {
+                    normal[(row + i, column + j)] += block[i][j];
+                }
+            }
+        }
+        for (row, g) in [(0, &*gx), (3, gy)] {
+            let [s0, s1, _] = moments(product, weight, g, residual, x);
+            right[row] += s1;
+            right[row + 1] += s0 * y;
+            right[row + 2] += s0;
+        }
+    }
+
+    /// Columns of bias and gain: derivative of the residual's model with respect to them is (1, I1/128).
+    fn accumulate_photometric(&mut self, normal: &mut Normal, right: &mut Right, y: f64, first: &[f32]) {
+        let mut sums = [[0.0f64; 2]; 4];
+        let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0f64, 0.0, 0.0, 0.0, 0.0);
+        for k in 0..first.len() {
+            let (w, i) = (f64::from(self.weight[k]), f64::from(first[k]) / 128.0);
+            let (gx, gy, r, x) =
+                (f64::from(self.gx[k]), f64::from(self.gy[k]), f64::from(self.residual[k]), f64::from(self.x[k]));
+            for (sum, p) in sums.iter_mut().zip([w * gx, w * gx * i, w * gy, w * gy * i]) {
+                sum[0] += p;
+                sum[1] += p * x;
+            }
+            q += w;
+            qi += w * i;
+            qii += w * i * i;
+            qr += w * r;
+            qir += w * i * r;
+        }
+        for (k, [s0, s1]) in sums.into_iter().enumerate() {
+            let (row, column) = (6 + k % 2, 3 * (k / 2));
+            normal[(row, column)] += s1;
+            normal[(row, column + 1)] += s0 * y;
+            normal[(row, column + 2)] += s0;
+        }
+        normal[(6, 6)] += q;
+        normal[(7, 6)] += qi;
+        normal[(7, 7)] += qii;
+        right[6] += qr;
+        right[7] += qir;
+    }
+}
+
+/// Moments `Σ p, Σ p x, Σ p x²` of the products `p = weight · a · b`.
+fn moments(product: &mut [f32], weight: &[f32], a: &[f32], b: &[f32], x: &[f32]) -> [f64; 3] {
+    for (((p, w), a), b) in product.iter_mut().zip(weight).zip(a).zip(b) {
+        *p = w * a * b;
+    }
+    let mut sums = [0.0; 3];
+    for sum in &mut sums {
+        *sum = f64::from(lane_sum(product));
+        for (p, x) in product.iter_mut().zip(x) {
+            *p *= x;
+        }
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::pyramid::build;
+
+    fn texture(x: f64, y: f64) -> f32 {
+        (128.0
+            + 40.0 * libm::sin(0.31 * x + 0.12 * y)
+            + 30.0 * libm::sin(0.17 * x - 0.29 * y)
+            + 15.0 * libm::cos(0.5 * y)) as f32
+    }
+
+    #[test]
+    fn an_affine_motion_with_a_change_of_brightness_is_recovered() {
+        let truth = AffineMotion::new([0.01, -0.004, 1.3, 0.006, -0.008, -0.9]);
+        let back = crate::alignment::cost::inverse(&truth).unwrap();
+        let first = Plane::from_fn(96, 80, |x, y| texture(x as f64, y as f64));
+        let second = Plane::from_fn(96, 80, |x, y| {
+            let [u, v] = back.flow(x as f64, y as f64);
+            1.03 * texture(x as f64 + u, y as f64 + v) - 2.0
+        });
+        let levels = build(first, second, None, 64);
+        let level = &levels[0];
+        let mut photometric = Photometric::default();
+        let how =
+            Alignment { freedom: Freedom::Affine, iterations: 30, robustness: 9.0, ridge: 0.0, photometric: true };
+        let found = align(level, &AffineMotion::STATIC, &Support::everything(level), &mut photometric, how);
+        for (x, y) in [(5.0, 5.0), (90.0, 10.0), (40.0, 75.0)] {
+            let ([u, v], [p, q]) = (truth.flow(x, y), found.flow(x, y));
+            assert!((u - p).abs() < 0.03 && (v - q).abs() < 0.03, "({u}, {v}) against ({p}, {q})");
+        }
+        assert!((photometric.gain / 128.0 - 0.03).abs() < 0.005 && (photometric.bias + 2.0).abs() < 0.6);
+    }
+
+    #[test]
+    fn flat_frames_leave_the_motion_as_it_was() {
+        let level = &build(Plane::filled(40, 40, 9.0), Plane::filled(40, 40, 9.0), None, 32)[0];
+        let start = AffineMotion::translation(0.5, 0.0);
+        let how =
+            Alignment { freedom: Freedom::Affine, iterations: 5, robustness: 9.0, ridge: 1e-3, photometric: false };
+        let found = align(level, &start, &Support::everything(level), &mut Photometric::default(), how);
+        assert!(found.is_finite());
+        assert!(start.relative_error(&found) < 1e-9);
+    }
+}

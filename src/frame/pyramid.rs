@@ -1,0 +1,102 @@
+//! The frames at several sizes, with their gradients: what alignment and labelling look at.
+
+use super::Plane;
+use super::filter::{gradients, halve};
+use crate::motion::AffineMotion;
+
+/// Standard deviation of the blur put on both frames before anything else, pixels: without it bilinear warping, which
+/// averages noise at half-pixel shifts, makes such shifts win in flat areas.
+pub(crate) const PRE_BLUR: f32 = 0.5;
+
+/// Correlation of neighbouring pixels' noise after the pre-blur, exp(−1/(4σ²)).
+const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
+/// The same on coarser levels, after the 5-tap filter and halving (measured).
+const NOISE_CORRELATION_HALVED: f32 = 0.4;
+
+/// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Level {
+    /// 0 for the working size.
+    pub(crate) index: u32,
+    pub(crate) first: Plane,
+    pub(crate) second: Plane,
+    pub(crate) before: Option<Plane>,
+    /// Gradients of the first frame.
+    pub(crate) first_dx: Plane,
+    pub(crate) first_dy: Plane,
+    /// Gradients of the second frame.
+    pub(crate) second_dx: Plane,
+    pub(crate) second_dy: Plane,
+    /// Squared gradient length of the first frame.
+    pub(crate) energy: Plane,
+    /// Standard deviation of the residual of a right motion in flat areas, grey levels (set by `noise`).
+    pub(crate) noise: f32,
+}
+
+impl Level {
+    fn new(index: u32, first: Plane, second: Plane, before: Option<Plane>) -> Level {
+        let (first_dx, first_dy) = gradients(&first);
+        let (second_dx, second_dy) = gradients(&second);
+        let mut energy = first_dx.clone();
+        for (e, dy) in energy.values_mut().iter_mut().zip(first_dy.values()) {
+            *e = *e * *e + dy * dy;
+        }
+        Level { index, first, second, before, first_dx, first_dy, second_dx, second_dy, energy, noise: 4.0 }
+    }
+
+    pub(crate) fn width(&self) -> usize {
+        self.first.width()
+    }
+
+    pub(crate) fn height(&self) -> usize {
+        self.first.height()
+    }
+
+    /// Size of a pixel in pixels of the working frame.
+    pub(crate) fn pixel(&self) -> f64 {
+        f64::from(1u32 << self.index)
+    }
+
+    /// A motion of the working frame in pixels of this level.
+    pub(crate) fn scaled(&self, motion: &AffineMotion) -> AffineMotion {
+        let mut a = motion.matrix;
+        a[2] /= self.pixel();
+        a[5] /= self.pixel();
+        AffineMotion::new(a)
+    }
+
+    /// Inverse of [`scaled`](Self::scaled).
+    pub(crate) fn unscaled(&self, motion: &AffineMotion) -> AffineMotion {
+        let mut a = motion.matrix;
+        a[2] *= self.pixel();
+        a[5] *= self.pixel();
+        AffineMotion::new(a)
+    }
+
+    /// Correlation of the noise of neighbouring pixels.
+    pub(crate) fn noise_correlation(&self) -> f32 {
+        if self.index == 0 { NOISE_CORRELATION_FULL } else { NOISE_CORRELATION_HALVED }
+    }
+
+    /// Takes gain and bias out of the second frame: `(I − bias) / (1 + gain/128)`.
+    pub(crate) fn compensate(&mut self, bias: f64, gain: f64) {
+        let (scale, bias) = ((1.0 / (1.0 + gain / 128.0)) as f32, bias as f32);
+        self.second.values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
+        for plane in [&mut self.second_dx, &mut self.second_dy] {
+            plane.values_mut().iter_mut().for_each(|v| *v *= scale);
+        }
+    }
+}
+
+/// The levels from the working size down to a shorter side of at least `smallest` pixels; at least one.
+pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest: usize) -> Vec<Level> {
+    let mut levels = vec![Level::new(0, first, second, before)];
+    while let Some(last) = levels.last() {
+        if last.width().min(last.height()) < 2 * smallest {
+            break;
+        }
+        let next = Level::new(last.index + 1, halve(&last.first), halve(&last.second), last.before.as_ref().map(halve));
+        levels.push(next);
+    }
+    levels
+}

@@ -1,0 +1,72 @@
+//! Is a motion worth its description? An object stays when what it explains better than any other motion pays for six numbers
+//! and a border (minimum description length).
+
+use crate::frame::Plane;
+
+/// Nats per pixel of border.
+const PER_BORDER_PIXEL: f64 = 0.5;
+/// A region smaller than this share of the frame is no object.
+pub(crate) const SMALLEST_SHARE: f64 = 0.004;
+
+/// Nats for the six entries of a motion seen on `pixels` pixels: (6/2) ln N.
+pub(crate) fn price_of_motion(pixels: usize) -> f64 {
+    3.0 * libm::log(pixels as f64)
+}
+
+/// Nats that each object's mask is worth, beyond its price; element 0 (the dominant motion) is infinite.
+///
+/// `raw[k]` are the estimation costs of motion k, half of which are nats.
+pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
+    let pixels = labels.len();
+    let counts = counts(labels, raw.len());
+    let borders = border_lengths(labels, raw.len(), width);
+    let mut sums = vec![vec![0.0f64; raw.len()]; raw.len()];
+    for (p, &label) in labels.iter().enumerate() {
+        for (sum, plane) in sums[usize::from(label)].iter_mut().zip(raw) {
+            *sum += f64::from(plane.values()[p]);
+        }
+    }
+    (0..raw.len())
+        .map(|k| {
+            if k == 0 {
+                return f64::INFINITY;
+            }
+            if (counts[k] as f64) < SMALLEST_SHARE * pixels as f64 {
+                return -1e9 + counts[k] as f64;
+            }
+            let other = (0..raw.len()).filter(|&m| m != k).map(|m| sums[k][m]).fold(f64::INFINITY, f64::min);
+            0.5 * (other - sums[k][k]) - price_of_motion(pixels) - PER_BORDER_PIXEL * borders[k] as f64
+        })
+        .collect()
+}
+
+/// Number of pixels of each label.
+pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
+    let mut counts = vec![0; of];
+    for &label in labels {
+        if let Some(count) = counts.get_mut(usize::from(label)) {
+            *count += 1;
+        }
+    }
+    counts
+}
+
+/// Number of neighbouring pairs of which exactly one has the label.
+fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
+    let mut lengths = vec![0; of];
+    let mut pair = |a: u8, b: u8| {
+        if a != b {
+            lengths[usize::from(a)] += 1;
+            lengths[usize::from(b)] += 1;
+        }
+    };
+    for (p, &label) in labels.iter().enumerate() {
+        if (p + 1) % width != 0 {
+            pair(label, labels[p + 1]);
+        }
+        if p + width < labels.len() {
+            pair(label, labels[p + width]);
+        }
+    }
+    lengths
+}

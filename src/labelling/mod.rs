@@ -1,0 +1,17 @@
+//! From motions to masks: costs and coherence, visibility, splitting and describing regions, groups, full size.
+
+pub(crate) mod components;
+pub(crate) mod description;
+pub(crate) mod energy;
+pub(crate) mod groups;
+pub(crate) mod potts;
+pub(crate) mod splitting;
+pub(crate) mod upsampling;
+pub(crate) mod visibility;
+
+use crate::frame::Plane;
+
+/// One label's pixels as a plane of ones on zeros.
+pub(crate) fn mask_of(labels: &[u8], label: u8, width: usize, height: usize) -> Plane {
+    Plane::from_vec(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())
+}

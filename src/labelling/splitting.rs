@@ -1,0 +1,180 @@
+//! Components that do not belong together: an affine motion bends to fit two bodies at once, so every region is tried in parts.
+
+use super::components::{Connectivity, components};
+use super::description::{SMALLEST_SHARE, price_of_motion};
+use crate::alignment::cost::{CostModel, Photometric, cost};
+use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::frame::pyramid::Level;
+use crate::motion::AffineMotion;
+use crate::selection::eroded;
+
+/// Smallest number of pixels of a part.
+const SMALLEST_PART: usize = 30;
+/// Softening of a part's border, pixels.
+const SOFTNESS: f32 = 0.7;
+/// Window over which the two halves compete, pixels.
+const WINDOW: f32 = 2.5;
+/// Rounds of the two-body split.
+const ROUNDS: usize = 3;
+/// A half with a smaller share than this is none.
+const SMALLEST_HALF: f64 = 0.1;
+/// Nats per pixel of the border between two halves.
+const PER_BORDER_PIXEL: f64 = 0.5;
+
+fn smallest_part(pixels: usize) -> usize {
+    SMALLEST_PART.max((SMALLEST_SHARE * pixels as f64) as usize)
+}
+
+fn aligned_on(level: &Level, motion: &AffineMotion, mask: &Plane, iterations: usize, ridge: f64) -> AffineMotion {
+    let how = Alignment { freedom: Freedom::Affine, iterations, robustness: 4.0, ridge, photometric: false };
+    align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
+}
+
+/// Splits objects into their connected components where own motions pay for themselves. Returns whether anything changed.
+pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
+    let (width, height) = (level.width(), level.height());
+    let found = components(width, height, labels, Connectivity::Eight);
+    let mut changed = false;
+    for label in 1..motions.len() {
+        let mut parts: Vec<usize> = (0..found.regions.len())
+            .filter(|&k| {
+                usize::from(found.regions[k].label) == label
+                    && found.regions[k].pixels >= smallest_part(labels.len())
+            })
+            .collect();
+        if parts.len() < 2 {
+            continue;
+        }
+        parts.sort_by_key(|&k| (usize::MAX - found.regions[k].pixels, k));
+        let together = cost(level, &motions[label], CostModel::ESTIMATION);
+        let mut fits = Vec::new();
+        for &part in &parts {
+            let mask: Vec<f32> = found.ids.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
+            let inner = gaussian(&eroded(&Plane::from_vec(width, height, mask)), SOFTNESS);
+            let motion = aligned_on(level, &motions[label], &inner, 4, 1e-2);
+            let alone = cost(level, &motion, CostModel::ESTIMATION);
+            let mut gain = 0.0;
+            for (p, &id) in found.ids.iter().enumerate() {
+                if id as usize == part {
+                    gain += 0.5 * f64::from(together.values()[p] - alone.values()[p]);
+                }
+            }
+            fits.push((gain, motion, part));
+        }
+        if fits.iter().map(|f| f.0).sum::<f64>() < price_of_motion(labels.len()) {
+            continue;
+        }
+        if fits[0].0 > 0.0 {
+            motions[label] = fits[0].1;
+        }
+        for (_, motion, part) in fits.into_iter().skip(1) {
+            if motions.len() >= most {
+                break;
+            }
+            let new = motions.len() as u8;
+            motions.push(motion);
+            for (slot, &id) in labels.iter_mut().zip(&found.ids) {
+                if id as usize == part {
+                    *slot = new;
+                }
+            }
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// Splits objects into two bodies where that pays: from the halves along the long axis, each fitted, pixels going to the better.
+pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
+    let mut changed = false;
+    for label in 1..motions.len() {
+        if motions.len() >= most {
+            break;
+        }
+        let region: Vec<usize> = (0..labels.len()).filter(|&p| usize::from(labels[p]) == label).collect();
+        if region.len() < 2 * smallest_part(labels.len()) {
+            continue;
+        }
+        if let Some((pair, second)) = two_bodies(level, &motions[label], &region) {
+            motions[label] = pair[0];
+            motions.push(pair[1]);
+            let new = (motions.len() - 1) as u8;
+            region.iter().zip(&second).filter(|(_, s)| **s).for_each(|(&p, _)| labels[p] = new);
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// Two motions that explain a region better than one, by more than their price, and which of its pixels go with the second.
+fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Vec<bool>)> {
+    let (width, height) = (level.width(), level.height());
+    let mut second = far_half(region, width);
+    let mut pair = [*motion; 2];
+    for _ in 0..ROUNDS {
+        let mut costs = Vec::with_capacity(2);
+        for (side, motion) in pair.iter_mut().enumerate() {
+            let mut mask = Plane::filled(width, height, 0.0);
+            for (&p, &s) in region.iter().zip(&second) {
+                mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
+            }
+            *motion = aligned_on(level, motion, &mask, 3, 3e-2);
+            costs.push(gaussian(&cost(level, motion, CostModel::ESTIMATION), WINDOW));
+        }
+        for (&p, s) in region.iter().zip(&mut second) {
+            *s = costs[1].values()[p] < costs[0].values()[p];
+        }
+        let share = second.iter().filter(|s| **s).count() as f64 / region.len() as f64;
+        if !(SMALLEST_HALF..=1.0 - SMALLEST_HALF).contains(&share) {
+            return None;
+        }
+    }
+    let one = cost(level, motion, CostModel::ESTIMATION);
+    let two = pair.map(|m| cost(level, &m, CostModel::ESTIMATION));
+    let mut gain = 0.0;
+    for (&p, &s) in region.iter().zip(&second) {
+        gain += 0.5 * f64::from(one.values()[p] - two[usize::from(s)].values()[p]);
+    }
+    let price = price_of_motion(width * height) + PER_BORDER_PIXEL * inner_border(region, &second, width, height) as f64;
+    (gain > price).then_some((pair, second))
+}
+
+/// Which pixels of a region lie beyond its centre along its long axis.
+fn far_half(region: &[usize], width: usize) -> Vec<bool> {
+    let n = region.len() as f64;
+    let place = |p: usize| ((p % width) as f64, (p / width) as f64);
+    let (mut cx, mut cy) = (0.0, 0.0);
+    for &p in region {
+        cx += place(p).0 / n;
+        cy += place(p).1 / n;
+    }
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for &p in region {
+        let (x, y) = (place(p).0 - cx, place(p).1 - cy);
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    let largest = 0.5 * (xx + yy + ((xx - yy) * (xx - yy) + 4.0 * xy * xy).sqrt());
+    let (ax, ay) = if xx >= yy { (largest - yy, xy) } else { (xy, largest - xx) };
+    region.iter().map(|&p| (place(p).0 - cx) * ax + (place(p).1 - cy) * ay > 0.0).collect()
+}
+
+/// Number of neighbouring pairs of the region that the split separates.
+fn inner_border(region: &[usize], second: &[bool], width: usize, height: usize) -> usize {
+    let mut side = vec![0u8; width * height];
+    for (&p, &s) in region.iter().zip(second) {
+        side[p] = 1 + u8::from(s);
+    }
+    let apart = |a: u8, b: u8| usize::from(a != 0 && b != 0 && a != b);
+    region
+        .iter()
+        .map(|&p| {
+            let right = if (p + 1) % width != 0 { apart(side[p], side[p + 1]) } else { 0 };
+            let below = if p + width < side.len() { apart(side[p], side[p + width]) } else { 0 };
+            right + below
+        })
+        .sum()
+}

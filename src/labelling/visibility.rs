@@ -1,0 +1,53 @@
+//! Occlusion: a pixel whose place in the second frame is covered by another object cannot look the same there.
+
+use super::mask_of;
+use crate::alignment::cost::inverse;
+use crate::frame::Plane;
+use crate::frame::pyramid::Level;
+use crate::frame::warp::warp;
+use crate::motion::AffineMotion;
+use crate::selection::eroded;
+
+/// Cost of a pixel that is hidden under the motion in question: neither for nor against it.
+const HIDDEN: f32 = 1.5;
+
+/// Costs in which a motion does not pay for pixels that it moves behind another object.
+///
+/// The dominant motion may be hidden by any object; an object only where the pixel was not dominant before, so that objects
+/// do not grow into the background around others.
+pub(crate) fn with_visibility(
+    level: &Level,
+    motions: &[AffineMotion],
+    costs: &[Plane],
+    labels: &[u8],
+    departure: f32,
+) -> Vec<Plane> {
+    let landed: Vec<Plane> = (0..motions.len()).map(|k| moved_mask(level, &motions[k], labels, k)).collect();
+    let hide = |k: usize| {
+        let mut cover = Plane::filled(level.width(), level.height(), 0.0);
+        for (_, mask) in landed.iter().enumerate().skip(1).filter(|&(other, _)| other != k) {
+            for (c, m) in cover.values_mut().iter_mut().zip(mask.values()) {
+                *c = c.max(*m);
+            }
+        }
+        let covered = warp(&cover, &level.scaled(&motions[k]));
+        let hidden = HIDDEN + if k == 0 { 0.0 } else { departure };
+        let mut out = costs[k].clone();
+        for ((c, covered), label) in out.values_mut().iter_mut().zip(covered.values()).zip(labels) {
+            if *covered > 0.5 && (k == 0 || *label != 0) {
+                *c = c.min(hidden);
+            }
+        }
+        out
+    };
+    (0..motions.len()).map(hide).collect()
+}
+
+/// The inner part of an object's mask, moved to where it is in the second frame.
+fn moved_mask(level: &Level, motion: &AffineMotion, labels: &[u8], label: usize) -> Plane {
+    let mask = eroded(&mask_of(labels, label as u8, level.width(), level.height()));
+    match inverse(&level.scaled(motion)) {
+        Some(back) => warp(&mask, &back),
+        None => mask,
+    }
+}

@@ -1,0 +1,73 @@
+//! Every number of the pipeline that a quality or an option changes. The values come from the measurements on generated scenes
+//! that docs describe; those that no option touches stand as constants beside the code that uses them.
+
+use crate::labelling::energy::Coherence;
+use crate::labelling::potts::Solver;
+use crate::options::{MotionCount, Quality, SegmentOptions};
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Settings {
+    /// Longer side of the working size at most, pixels: frames are halved until it holds.
+    pub(crate) work_side: usize,
+    /// Longer side of the base level at most, pixels.
+    pub(crate) base_side: usize,
+    /// The coarsest level keeps the shorter side at least this long, pixels.
+    pub(crate) smallest_side: usize,
+    /// Highest degree of the multibody polynomial.
+    pub(crate) degrees: usize,
+    /// Measurements that the polynomial is fitted to, at most.
+    pub(crate) measurements: usize,
+    /// Proposals from single windows, at most.
+    pub(crate) tiles: usize,
+    /// Proposals tried in earnest per round of the selection.
+    pub(crate) tries: usize,
+    /// Gain that pays for a motion at the base level and at finer ones (costs summed over pixels).
+    pub(crate) price: [f64; 2],
+    /// Price of a motion when two hypotheses about the dominant one are compared.
+    pub(crate) hypothesis_price: f64,
+    /// Largest number of motions.
+    pub(crate) most: usize,
+    /// Number of motions below which none is taken away again.
+    pub(crate) least: usize,
+    /// How labels hold together.
+    pub(crate) coherence: Coherence,
+}
+
+impl Settings {
+    pub(crate) fn of(options: &SegmentOptions) -> Settings {
+        let best = Settings {
+            work_side: 448,
+            base_side: 256,
+            smallest_side: 24,
+            degrees: 3,
+            measurements: 2000,
+            tiles: 48,
+            tries: 4,
+            price: [60.0, 120.0],
+            hypothesis_price: 300.0,
+            most: 7,
+            least: 1,
+            coherence: Coherence { smoothness: 6.0, departure: 0.05, solver: Solver::BEST },
+        };
+        let mut settings = match options.quality {
+            Quality::Best => best,
+            Quality::Fast => Settings {
+                work_side: 256,
+                base_side: 160,
+                degrees: 2,
+                measurements: 1000,
+                tiles: 24,
+                tries: 2,
+                coherence: Coherence { solver: Solver::FAST, ..best.coherence },
+                ..best
+            },
+        };
+        if let MotionCount::Given(n) = options.motions {
+            // The caller knows better than the price: anything that helps is added, nothing needed is taken away.
+            settings.most = n;
+            settings.least = n;
+            settings.price = [1.0, 1.0];
+        }
+        settings
+    }
+}

@@ -1,0 +1,194 @@
+//! Proposals from the multibody affine constraint (eq. 6-9) on the pixels that the dominant motion does not explain.
+//!
+//! The dominant motion is a known factor of the polynomial, so it is divided out by weights: a pixel counts by how badly the
+//! dominant motion explains it (the paper leaves out pixels with a small |I_t| to the same end). The measurements are
+//! recentred: derivatives are taken where the local flow d lands, `y = (g, r − gᵀd)`, so that they stay linear for motions of
+//! many pixels. For every degree the flow of each pixel is read off the polynomial by differentiation, `u = ∂p/∂I_x / ∂p/∂I_t`,
+//! which needs no factorisation, and the flows are gathered into translations relative to the dominant motion.
+
+use super::clustering::{Point, k_means};
+use super::local_flow::{LocalFlow, samples};
+use super::translated;
+use crate::alignment::cost::CostModel;
+use crate::embedding::{MultibodyMotion, monomials};
+use crate::frame::Plane;
+use crate::frame::pyramid::Level;
+use crate::frame::warp::{Footprint, RowPath};
+use crate::measurements::Measurements;
+use crate::motion::AffineMotion;
+use crate::random::Random;
+
+/// Gradients shorter than this (grey levels per pixel) say nothing.
+const SMALLEST_GRADIENT: f32 = 1.0;
+/// A pixel takes part when its weight e/(e + [`HALF_WEIGHT`]) exceeds this; e is its squared residual in variances.
+const SMALLEST_WEIGHT: f32 = 0.45;
+const HALF_WEIGHT: f32 = 6.0;
+/// Flow, in pixels of the base level, that is 1 in the coordinates of the polynomial.
+const FLOW_UNIT: f64 = 2.0;
+/// Flows beyond this are no answer, pixels of the base level.
+const LARGEST_FLOW: f64 = 8.0;
+/// Rounds of reweighting of the polynomial.
+const ROUNDS: usize = 5;
+/// Fewer pixels than this per unknown determine no polynomial.
+const PER_UNKNOWN: usize = 2;
+/// Fewer pixels than this make no proposal.
+const SMALLEST_GROUP: usize = 6;
+
+/// The measurements that the dominant motion leaves over, with their weights.
+struct Unexplained {
+    measurements: Measurements,
+    weights: Vec<f64>,
+}
+
+/// Motions found by polynomials of degree 1 to `degrees` on at most `most` unexplained pixels.
+pub(crate) fn from_algebra(
+    level: &Level,
+    dominant: &AffineMotion,
+    flow: &LocalFlow,
+    degrees: usize,
+    most: usize,
+    random: &mut Random,
+) -> Vec<AffineMotion> {
+    let Some(data) = unexplained(level, dominant, flow, most, random) else { return Vec::new() };
+    let mut motions = Vec::new();
+    for degree in 1..=degrees {
+        if data.measurements.len() < PER_UNKNOWN * monomials::unknowns(degree) {
+            break;
+        }
+        for [u, v] in flows_of_degree(&data, degree) {
+            motions.push(translated(dominant, u * level.pixel(), v * level.pixel()));
+        }
+    }
+    motions
+}
+
+fn unexplained(
+    level: &Level,
+    dominant: &AffineMotion,
+    flow: &LocalFlow,
+    most: usize,
+    random: &mut Random,
+) -> Option<Unexplained> {
+    let (width, height) = (level.width(), level.height());
+    let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
+    let local = samples(level, dominant, &flow.u, &flow.v);
+    let scaled = level.scaled(dominant);
+    let mut found = Vec::new();
+    for y in 0..height {
+        let path = RowPath::new(&scaled, 0, y);
+        for x in 0..width {
+            let (px, py) = path.at(x);
+            let at = Footprint::new(px, py, width, height);
+            let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));
+            if !at.inside || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
+                continue;
+            }
+            let r = at.sample(level.second.values()) - level.first.at(x, y);
+            let e = r * r / (level.noise * level.noise + looseness * level.energy.at(x, y));
+            let weight = e / (e + HALF_WEIGHT);
+            if weight > SMALLEST_WEIGHT {
+                found.push((x, y, weight));
+            }
+        }
+    }
+    if found.len() < PER_UNKNOWN * monomials::unknowns(1) {
+        return None;
+    }
+    let mut chosen = random.choose(found.len(), most);
+    chosen.sort_unstable();
+    let half = 0.5 * width as f64;
+    let position = |x: usize, y: usize| [x as f64 / half - 1.0, (y as f64 - 0.5 * height as f64) / half];
+    let derivatives = |x: usize, y: usize| {
+        let at = |plane: &Plane| f64::from(plane.at(x, y));
+        let (gx, gy) = (at(&local.gx), at(&local.gy));
+        let temporal = at(&local.residual) - gx * at(&flow.u) - gy * at(&flow.v);
+        let length = (gx * gx + gy * gy + 4.0).sqrt();
+        [gx / length, gy / length, temporal / (length * FLOW_UNIT)]
+    };
+    let points = || chosen.iter().map(|&k| found[k]);
+    let measurements = Measurements::new(
+        points().map(|(x, y, _)| position(x, y)).collect(),
+        points().map(|(x, y, _)| derivatives(x, y)).collect(),
+    );
+    Some(Unexplained { measurements: measurements.ok()?, weights: points().map(|p| f64::from(p.2)).collect() })
+}
+
+/// The flows (pixels of the level) that a polynomial of one degree gives, one per group of pixels.
+fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
+    let mut weights = data.weights.clone();
+    let mut readings = Vec::new();
+    let mut close = 0.0;
+    for _ in 0..ROUNDS {
+        let Ok(polynomial) = MultibodyMotion::estimate(&weighted(&data.measurements, &weights, degree), degree) else {
+            return Vec::new();
+        };
+        readings = read_off(&polynomial, &data.measurements);
+        let mut distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
+        let middle = distances.len() / 2;
+        close = 1.5 * *distances.select_nth_unstable_by(middle, f64::total_cmp).1 + 1e-9;
+        let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
+        for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
+            let relative = r.distance / close;
+            *w = given / ((r.slope + 1e-2 * mean).max(1e-300) * (1.0 + relative * relative));
+        }
+    }
+    group(&readings, data.measurements.positions(), close, 2 * degree + 1)
+}
+
+/// Rows of the embedded matrix weighted by w: since ν_n(y) is homogeneous of degree n, that is y scaled by w^(1/n).
+fn weighted(measurements: &Measurements, weights: &[f64], degree: usize) -> Measurements {
+    let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
+    let derivatives = measurements.derivatives().iter().zip(weights).map(|(y, w)| {
+        let scale = libm::pow(w / largest, 1.0 / degree as f64);
+        y.map(|v| v * scale)
+    });
+    Measurements::new(measurements.positions().to_vec(), derivatives.collect()).unwrap_or_else(|_| measurements.clone())
+}
+
+/// What differentiation says about a measurement.
+struct Reading {
+    /// Flow of the factor that vanishes there, in units of [`FLOW_UNIT`] pixels.
+    flow: [f64; 2],
+    /// |∂p/∂y|.
+    slope: f64,
+    /// |p| / |∂p/∂y|: to first order the distance to the nearest factor.
+    distance: f64,
+}
+
+fn read_off(polynomial: &MultibodyMotion, measurements: &Measurements) -> Vec<Reading> {
+    measurements
+        .iter()
+        .map(|([x, y], derivatives)| {
+            let place = [x, y, 1.0];
+            let g = polynomial.gradient_y(place, derivatives);
+            let slope = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+            let distance = polynomial.evaluate(place, derivatives).abs() / (slope + 1e-9);
+            Reading { flow: [g[0] / g[2], g[1] / g[2]], slope, distance }
+        })
+        .collect()
+}
+
+/// Median flows of groups of pixels that are alike in flow and place.
+fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize) -> Vec<[f64; 2]> {
+    let points: Vec<Point> = readings
+        .iter()
+        .zip(positions)
+        .filter_map(|(r, p)| {
+            let [u, v] = r.flow.map(|f| f * FLOW_UNIT);
+            let sensible = u * u + v * v < LARGEST_FLOW * LARGEST_FLOW && r.distance < close;
+            sensible.then_some([u, v, p[0], p[1]])
+        })
+        .collect();
+    let assignment = k_means(&points, groups);
+    (0..groups)
+        .filter_map(|g| {
+            let member = || points.iter().zip(&assignment).filter(move |&(_, &a)| a == g).map(|(p, _)| p);
+            let median = |k: usize| {
+                let mut values: Vec<f64> = member().map(|p| p[k]).collect();
+                let middle = values.len() / 2;
+                *values.select_nth_unstable_by(middle, f64::total_cmp).1
+            };
+            (member().count() >= SMALLEST_GROUP).then(|| [median(0), median(1)])
+        })
+        .collect()
+}

@@ -1,0 +1,132 @@
+//! The paper's constraint with n = 1 in small windows, coarse to fine: a rough flow relative to the dominant motion.
+//!
+//! It serves two ends: to look at every measurement near where it lands (without this, motions of more than a pixel have no
+//! usable derivatives), and as a source of proposals.
+
+use crate::frame::Plane;
+use crate::frame::filter::{double, gaussian, median5};
+use crate::frame::pyramid::Level;
+use crate::frame::warp::Footprint;
+use crate::motion::AffineMotion;
+
+/// Standard deviation of the window at the base level and at coarser ones, pixels.
+const WINDOW: (f32, f32) = (3.0, 2.0);
+/// Iterations per level.
+const ITERATIONS: usize = 3;
+/// Longest step of one iteration, pixels.
+const LONGEST_STEP: f32 = 1.5;
+/// Information added to every window, so that flat ones stay where they are.
+const FLAT: f32 = 0.02;
+
+/// Flow relative to the dominant motion, pixels of the base level, and how well each window determines it.
+pub(crate) struct LocalFlow {
+    pub(crate) u: Plane,
+    pub(crate) v: Plane,
+    /// Smaller eigenvalue of the window's information.
+    pub(crate) certainty: Plane,
+}
+
+/// What a pixel sees along the dominant motion plus the local flow.
+pub(crate) struct Samples {
+    pub(crate) gx: Plane,
+    pub(crate) gy: Plane,
+    /// Intensity difference.
+    pub(crate) residual: Plane,
+}
+
+/// Mean gradients and intensity difference along the dominant motion plus a flow.
+pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Plane) -> Samples {
+    let (width, height) = (level.width(), level.height());
+    let scaled = level.scaled(dominant);
+    let zero = || Plane::filled(width, height, 0.0);
+    let mut out = Samples { gx: zero(), gy: zero(), residual: zero() };
+    for y in 0..height {
+        for x in 0..width {
+            let [du, dv] = scaled.flow(x as f64, y as f64);
+            let px = x as f32 + du as f32 + u.at(x, y);
+            let py = y as f32 + dv as f32 + v.at(x, y);
+            let at = Footprint::new(px, py, width, height);
+            out.gx.row_mut(y)[x] = 0.5 * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
+            out.gy.row_mut(y)[x] = 0.5 * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
+            out.residual.row_mut(y)[x] = at.sample(level.second.values()) - level.first.at(x, y);
+        }
+    }
+    out
+}
+
+/// Weighted products of gradients and residual, summed over Gaussian windows.
+struct Windows {
+    xx: Plane,
+    xy: Plane,
+    yy: Plane,
+    xr: Plane,
+    yr: Plane,
+}
+
+fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
+    let noise = level.noise * level.noise;
+    let weight = Plane::from_fn(level.width(), level.height(), |x, y| {
+        let r = s.residual.at(x, y);
+        1.0 / (noise + r * r / 9.0 + 0.02 * level.energy.at(x, y))
+    });
+    let summed = |a: &Plane, b: &Plane| {
+        let mut product = weight.clone();
+        for ((p, a), b) in product.values_mut().iter_mut().zip(a.values()).zip(b.values()) {
+            *p *= a * b;
+        }
+        gaussian(&product, sigma)
+    };
+    Windows {
+        xx: summed(&s.gx, &s.gx),
+        xy: summed(&s.gx, &s.gy),
+        yy: summed(&s.gy, &s.gy),
+        xr: summed(&s.gx, &s.residual),
+        yr: summed(&s.gy, &s.residual),
+    }
+}
+
+/// Local flow at level `base`, from the coarsest level down.
+pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize) -> LocalFlow {
+    let coarsest = &levels[levels.len() - 1];
+    let mut u = Plane::filled(coarsest.width(), coarsest.height(), 0.0);
+    let mut v = u.clone();
+    let mut certainty = u.clone();
+    for (index, level) in levels.iter().enumerate().skip(base).rev() {
+        if u.width() != level.width() || u.height() != level.height() {
+            for plane in [&mut u, &mut v] {
+                *plane = double(plane, level.width(), level.height());
+                plane.values_mut().iter_mut().for_each(|f| *f *= 2.0);
+            }
+        }
+        for iteration in 0..ITERATIONS {
+            let sigma = if index == base { WINDOW.0 } else { WINDOW.1 };
+            let sums = windows(level, &samples(level, dominant, &u, &v), sigma);
+            step(&mut u, &mut v, &sums);
+            u = median5(&u);
+            v = median5(&v);
+            if index == base && iteration + 1 == ITERATIONS {
+                certainty = smaller_eigenvalue(&sums);
+            }
+        }
+    }
+    LocalFlow { u, v, certainty }
+}
+
+fn step(u: &mut Plane, v: &mut Plane, s: &Windows) {
+    for (k, (u, v)) in u.values_mut().iter_mut().zip(v.values_mut()).enumerate() {
+        let (a, c, d) = (s.xx.values()[k] + FLAT, s.xy.values()[k], s.yy.values()[k] + FLAT);
+        let (p, q) = (s.xr.values()[k], s.yr.values()[k]);
+        let determinant = a * d - c * c;
+        let (du, dv) = ((c * q - d * p) / determinant, (c * p - a * q) / determinant);
+        let shorten = ((du * du + dv * dv).sqrt() / LONGEST_STEP).max(1.0);
+        *u += du / shorten;
+        *v += dv / shorten;
+    }
+}
+
+fn smaller_eigenvalue(s: &Windows) -> Plane {
+    Plane::from_fn(s.xx.width(), s.xx.height(), |x, y| {
+        let (a, c, d) = (s.xx.at(x, y), s.xy.at(x, y), s.yy.at(x, y));
+        0.5 * (a + d - ((a - d) * (a - d) + 4.0 * c * c).sqrt())
+    })
+}

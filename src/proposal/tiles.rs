@@ -1,0 +1,44 @@
+//! Proposals from single windows: the local flow on a grid, the best determined first.
+
+use super::local_flow::LocalFlow;
+use super::{Proposal, distinct, translated};
+use crate::frame::pyramid::Level;
+use crate::motion::AffineMotion;
+
+/// Distance of the windows, pixels of the base level.
+const STRIDE: usize = 6;
+/// A window counts where the smaller eigenvalue of its information exceeds this.
+const CERTAIN: f32 = 0.05;
+/// Flow below this is the dominant motion's, pixels of the base level.
+const MOVING: f32 = 0.15;
+/// Proposals closer than this are the same, pixels of the base level.
+const TOLERANCE: f64 = 0.35;
+
+/// At most `most` motions: the dominant one plus a translation.
+pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Vec<AffineMotion> {
+    let mut windows = Vec::new();
+    for y in (STRIDE / 2..level.height()).step_by(STRIDE) {
+        for x in (STRIDE / 2..level.width()).step_by(STRIDE) {
+            let (u, v) = (flow.u.at(x, y), flow.v.at(x, y));
+            let certainty = flow.certainty.at(x, y);
+            if certainty > CERTAIN && u * u + v * v > MOVING * MOVING {
+                windows.push((certainty, x, y));
+            }
+        }
+    }
+    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let pixel = level.pixel();
+    let proposals: Vec<Proposal> = windows
+        .iter()
+        .map(|&(_, x, y)| Proposal {
+            motion: translated(
+                dominant,
+                f64::from(flow.u.at(x, y)) * pixel,
+                f64::from(flow.v.at(x, y)) * pixel,
+            ),
+            place: [x as f64 * pixel, y as f64 * pixel],
+        })
+        .collect();
+    let size = [level.width() as f64 * pixel, level.height() as f64 * pixel];
+    distinct(&proposals, TOLERANCE * pixel, size, most)
+}

@@ -1,0 +1,177 @@
+//! Greedy deflation: the motion that explains most of what is left is refined on its own region and added, until what is left
+//! would not pay for another.
+
+use super::{Layer, refit, smallest_cost};
+use crate::alignment::cost::{Photometric, total};
+use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::frame::pyramid::Level;
+use crate::labelling::components::{Connectivity, components};
+use crate::motion::AffineMotion;
+
+/// When to add a motion, and how hard to look.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deflation {
+    /// Gain (cost summed over pixels) that pays for a motion.
+    pub(crate) price: f64,
+    /// Largest number of motions.
+    pub(crate) most: usize,
+    /// Proposals tried in earnest per round.
+    pub(crate) tries: usize,
+}
+
+/// Standard deviation of the window over which a gain is gathered, pixels.
+const WINDOW: f32 = 3.0;
+/// Gain per pixel that is no gain: windows at borders, chance.
+const MARGIN: f32 = 0.35;
+/// Side of the blocks on which proposals are compared before the best are looked at in full.
+const BLOCK: usize = 4;
+/// A region of fewer pixels is no region.
+const SMALLEST_REGION: usize = 6;
+/// Prior against linear terms of a motion seen in a small region.
+const RIDGE: f64 = 2e-2;
+/// A gain below this share of the price is not worth a try.
+const WORTH_A_TRY: f64 = 0.25;
+
+/// Where, and by how much, a cost plane is below another: the difference gathered over windows.
+fn improvement(current: &Plane, cost: &Plane) -> Plane {
+    let mut difference = current.clone();
+    for (d, c) in difference.values_mut().iter_mut().zip(cost.values()) {
+        *d -= c;
+    }
+    gaussian(&difference, WINDOW)
+}
+
+fn gain_of(improvement: &Plane) -> f64 {
+    improvement.values().iter().map(|&d| f64::from((d - MARGIN).max(0.0))).sum()
+}
+
+fn gain(current: &Plane, cost: &Plane) -> f64 {
+    gain_of(&improvement(current, cost))
+}
+
+/// Means over blocks: enough to order proposals.
+fn blocks(plane: &Plane) -> Plane {
+    let (width, height) = (plane.width().div_ceil(BLOCK), plane.height().div_ceil(BLOCK));
+    let mut sums = Plane::filled(width, height, 0.0);
+    let mut counts = Plane::filled(width, height, 0.0);
+    for y in 0..plane.height() {
+        for (x, v) in plane.row(y).iter().enumerate() {
+            sums.row_mut(y / BLOCK)[x / BLOCK] += v;
+            counts.row_mut(y / BLOCK)[x / BLOCK] += 1.0;
+        }
+    }
+    for (s, c) in sums.values_mut().iter_mut().zip(counts.values()) {
+        *s /= c;
+    }
+    sums
+}
+
+/// The gain estimated on block means.
+fn rough_gain(current: &Plane, cost: &Plane) -> f64 {
+    let mut difference = current.clone();
+    for (d, c) in difference.values_mut().iter_mut().zip(cost.values()) {
+        *d -= c;
+    }
+    gain_of(&gaussian(&difference, WINDOW / BLOCK as f32)) * (BLOCK * BLOCK) as f64
+}
+
+/// Adds proposed motions to `layers` while each brings more than its price; refits all after each.
+pub(crate) fn add_motions(level: &Level, layers: &mut Vec<Layer>, proposals: &[AffineMotion], how: Deflation) {
+    let rough: Vec<Plane> = proposals.iter().map(|&m| blocks(&Layer::new(level, m).cost)).collect();
+    while layers.len() < how.most {
+        let current = smallest_cost(layers);
+        let current_blocks = blocks(&current);
+        let mut order: Vec<(f64, usize)> =
+            rough.iter().enumerate().map(|(k, cost)| (rough_gain(&current_blocks, cost), k)).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut best: Option<(f64, Layer)> = None;
+        for &(roughly, k) in order.iter().take(how.tries) {
+            if roughly < WORTH_A_TRY * how.price {
+                break;
+            }
+            let layer = sharpened(level, &current, proposals[k]);
+            let brings = gain(&current, &layer.cost);
+            if best.as_ref().is_none_or(|b| brings > b.0) {
+                best = Some((brings, layer));
+            }
+        }
+        match best {
+            Some((brings, layer)) if brings >= how.price => layers.push(layer),
+            _ => break,
+        }
+        refit(level, layers, 1);
+    }
+}
+
+/// A proposal refined on the region where it beats what is there, twice.
+fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion) -> Layer {
+    let mut layer = Layer::new(level, proposal);
+    let mut brings = gain(current, &layer.cost);
+    for round in 0..2 {
+        let Some(region) = heaviest_region(current, &layer.cost) else { break };
+        let support = Support::weighted(&region);
+        let affine = Alignment {
+            freedom: Freedom::Affine,
+            iterations: 3,
+            robustness: 4.0,
+            ridge: RIDGE,
+            photometric: false,
+        };
+        let mut motion = layer.motion;
+        let none = &mut Photometric::default();
+        if round == 0 {
+            motion = align(level, &motion, &support, none, Alignment { freedom: Freedom::Translation, ..affine });
+        }
+        motion = align(level, &motion, &support, none, affine);
+        let refined = Layer::new(level, motion);
+        let better = gain(current, &refined.cost);
+        if better > brings {
+            (layer, brings) = (refined, better);
+        }
+    }
+    layer
+}
+
+/// The connected region in which a cost improves most on what is there, as weights 0 and 1.
+fn heaviest_region(current: &Plane, cost: &Plane) -> Option<Plane> {
+    let improved = improvement(current, cost);
+    let (width, height) = (improved.width(), improved.height());
+    let mask: Vec<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
+    let found = components(width, height, &mask, Connectivity::Eight);
+    let mut weights = vec![0.0f64; found.regions.len()];
+    for ((&region, a), c) in found.ids.iter().zip(current.values()).zip(cost.values()) {
+        weights[region as usize] += f64::from(a - c);
+    }
+    let mut heaviest: Option<usize> = None;
+    for (k, region) in found.regions.iter().enumerate() {
+        let counts = region.label == 1 && region.pixels > SMALLEST_REGION;
+        if counts && heaviest.is_none_or(|h| weights[k] > weights[h]) {
+            heaviest = Some(k);
+        }
+    }
+    let chosen = heaviest?;
+    let values = found.ids.iter().map(|&id| if id as usize == chosen { 1.0 } else { 0.0 }).collect();
+    Some(Plane::from_vec(width, height, values))
+}
+
+/// Takes out every motion but the first whose absence would cost less than its price, the cheapest first.
+pub(crate) fn prune(layers: &mut Vec<Layer>, price: f64) {
+    while layers.len() > 1 {
+        let with_all = total(&smallest_cost(layers));
+        let mut cheapest = (f64::INFINITY, 0);
+        for k in 1..layers.len() {
+            let mut others: Vec<Layer> = layers.clone();
+            others.remove(k);
+            let absence = total(&smallest_cost(&others)) - with_all;
+            if absence < cheapest.0 {
+                cheapest = (absence, k);
+            }
+        }
+        if cheapest.0 >= price {
+            break;
+        }
+        layers.remove(cheapest.1);
+    }
+}

@@ -1,0 +1,92 @@
+//! Proposals at a finer level: one local step (the constraint with n = 1 in a window) around the motion that wins at each pixel.
+//! It finds what moves by less than a pixel of the base level relative to the motions that are known.
+
+use super::Layer;
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::frame::pyramid::Level;
+use crate::frame::warp::Footprint;
+use crate::motion::AffineMotion;
+use crate::proposal::{Proposal, distinct, translated};
+
+/// Standard deviation of the window, pixels.
+const WINDOW: f32 = 4.0;
+/// Distance of the windows, pixels.
+const STRIDE: usize = 10;
+/// Windows looked at, the most promising first.
+const WINDOWS: usize = 200;
+/// Proposals kept.
+const MOST: usize = 16;
+/// Steps shorter or longer than this are left out, pixels.
+const STEPS: (f64, f64) = (0.1, 2.0);
+/// Proposals closer than this are the same, pixels.
+const TOLERANCE: f64 = 0.2;
+/// Information added to every window.
+const FLAT: f32 = 0.02;
+
+/// The most promising local corrections of the layers' motions.
+pub(crate) fn fine_proposals(level: &Level, layers: &[Layer]) -> Vec<AffineMotion> {
+    let (width, height) = (level.width(), level.height());
+    let winners = winners(layers);
+    let [xx, xy, yy, xr, yr] = window_sums(level, layers, &winners);
+    let mut windows = Vec::new();
+    for y in (STRIDE / 2..height).step_by(STRIDE) {
+        for x in (STRIDE / 2..width).step_by(STRIDE) {
+            let (a, c, d) = (xx.at(x, y) + FLAT, xy.at(x, y), yy.at(x, y) + FLAT);
+            let (p, q) = (xr.at(x, y), yr.at(x, y));
+            let determinant = a * d - c * c;
+            let (u, v) = ((c * q - d * p) / determinant, (c * p - a * q) / determinant);
+            windows.push((-(p * u + q * v), x, y, f64::from(u), f64::from(v)));
+        }
+    }
+    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let pixel = level.pixel();
+    let proposals: Vec<Proposal> = windows
+        .iter()
+        .take(WINDOWS)
+        .filter(|&&(_, _, _, u, v)| {
+            let length = (u * u + v * v).sqrt();
+            STEPS.0 < length && length < STEPS.1
+        })
+        .map(|&(_, x, y, u, v)| Proposal {
+            motion: translated(&layers[winners[y * width + x]].motion, u * pixel, v * pixel),
+            place: [x as f64 * pixel, y as f64 * pixel],
+        })
+        .collect();
+    distinct(&proposals, TOLERANCE * pixel, [width as f64 * pixel, height as f64 * pixel], MOST)
+}
+
+/// The cheapest layer of every pixel.
+fn winners(layers: &[Layer]) -> Vec<usize> {
+    let mut winners = vec![0; layers[0].cost.values().len()];
+    for (p, winner) in winners.iter_mut().enumerate() {
+        for k in 1..layers.len() {
+            if layers[k].cost.values()[p] < layers[*winner].cost.values()[p] {
+                *winner = k;
+            }
+        }
+    }
+    winners
+}
+
+/// Products of gradients and residual along each pixel's own motion, in units of variance, summed over windows.
+fn window_sums(level: &Level, layers: &[Layer], winners: &[usize]) -> [Plane; 5] {
+    let (width, height) = (level.width(), level.height());
+    let scaled: Vec<AffineMotion> = layers.iter().map(|l| level.scaled(&l.motion)).collect();
+    let noise = level.noise * level.noise;
+    let mut sums: [Plane; 5] = std::array::from_fn(|_| Plane::filled(width, height, 0.0));
+    for y in 0..height {
+        for x in 0..width {
+            let [u, v] = scaled[winners[y * width + x]].flow(x as f64, y as f64);
+            let at = Footprint::new((x as f64 + u) as f32, (y as f64 + v) as f32, width, height);
+            let gx = 0.5 * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
+            let gy = 0.5 * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
+            let r = at.sample(level.second.values()) - level.first.at(x, y);
+            let weight = 1.0 / (noise + 0.02 * level.energy.at(x, y));
+            for (plane, product) in sums.iter_mut().zip([gx * gx, gx * gy, gy * gy, gx * r, gy * r]) {
+                plane.row_mut(y)[x] = weight * product;
+            }
+        }
+    }
+    sums.map(|plane| gaussian(&plane, WINDOW))
+}

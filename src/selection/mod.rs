@@ -1,0 +1,43 @@
+//! Which of the proposed motions are there: greedy deflation, refinement of each on its own pixels, a second look one level finer.
+
+mod deflation;
+mod fine;
+mod refit;
+
+pub(crate) use deflation::{Deflation, add_motions, prune};
+pub(crate) use fine::fine_proposals;
+pub(crate) use refit::refit;
+
+use crate::alignment::cost::{CostModel, cost};
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::frame::pyramid::Level;
+use crate::motion::AffineMotion;
+
+/// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the level.
+const WINDOW: f32 = 2.0;
+
+/// A motion and what it costs at every pixel of a level, gathered over windows.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    pub(crate) motion: AffineMotion,
+    pub(crate) cost: Plane,
+}
+
+impl Layer {
+    /// A motion looked at on a level.
+    pub(crate) fn new(level: &Level, motion: AffineMotion) -> Layer {
+        Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW) }
+    }
+}
+
+/// The smallest cost of any layer at every pixel.
+pub(crate) fn smallest_cost(layers: &[Layer]) -> Plane {
+    let mut smallest = layers[0].cost.clone();
+    for layer in &layers[1..] {
+        for (s, c) in smallest.values_mut().iter_mut().zip(layer.cost.values()) {
+            *s = s.min(*c);
+        }
+    }
+    smallest
+}

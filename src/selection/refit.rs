@@ -1,0 +1,79 @@
+//! Every motion refined on the pixels where it wins.
+
+use super::Layer;
+use crate::alignment::cost::Photometric;
+use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::frame::pyramid::Level;
+
+/// Priors against linear terms: of the dominant motion (it has most of the frame) and of the others.
+const RIDGE: (f64, f64) = (1e-4, 1e-2);
+/// Regions larger than this many pixels lose their border before they vote.
+const LARGE: usize = 200;
+/// Softening of a region's border, pixels.
+const SOFTNESS: f32 = 0.7;
+/// Regions smaller than this do not vote.
+const SMALLEST_REGION: usize = 20;
+
+/// `rounds` rounds; a refined motion is kept only where it lowers the cost of its own region.
+pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
+    for _ in 0..rounds {
+        let regions: Vec<Option<Plane>> = (0..layers.len()).map(|k| region_of(layers, k)).collect();
+        for (k, (layer, region)) in layers.iter_mut().zip(regions).enumerate() {
+            let Some(region) = region else { continue };
+            let how = Alignment {
+                freedom: Freedom::Affine,
+                iterations: 2,
+                robustness: 4.0,
+                ridge: if k == 0 { RIDGE.0 } else { RIDGE.1 },
+                photometric: false,
+            };
+            let motion =
+                align(level, &layer.motion, &Support::weighted(&region), &mut Photometric::default(), how);
+            let refined = Layer::new(level, motion);
+            if weighted_sum(&refined.cost, &region) < weighted_sum(&layer.cost, &region) {
+                *layer = refined;
+            }
+        }
+    }
+}
+
+fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
+    cost.values().iter().zip(weights.values()).map(|(c, w)| f64::from(c * w)).sum()
+}
+
+/// Weights of the pixels where layer `k` is cheapest, its border taken off and softened.
+fn region_of(layers: &[Layer], k: usize) -> Option<Plane> {
+    let cost = &layers[k].cost;
+    let mut region = Plane::from_fn(cost.width(), cost.height(), |x, y| {
+        let own = cost.at(x, y);
+        let wins = layers.iter().enumerate().all(|(other, layer)| {
+            let value = layer.cost.at(x, y);
+            own < value || (own == value && k <= other)
+        });
+        if wins { 1.0 } else { 0.0 }
+    });
+    let pixels = region.values().iter().filter(|&&w| w > 0.0).count();
+    if pixels < SMALLEST_REGION {
+        return None;
+    }
+    if pixels > LARGE {
+        region = eroded(&region);
+    }
+    Some(gaussian(&region, SOFTNESS))
+}
+
+/// The smallest of each 3×3 neighbourhood; outside the plane counts as inside the region.
+pub(crate) fn eroded(mask: &Plane) -> Plane {
+    let (width, height) = (mask.width(), mask.height());
+    Plane::from_fn(width, height, |x, y| {
+        let mut smallest = f32::INFINITY;
+        for ny in y.saturating_sub(1)..=(y + 1).min(height - 1) {
+            for nx in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+                smallest = smallest.min(mask.at(nx, ny));
+            }
+        }
+        smallest
+    })
+}
