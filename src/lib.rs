@@ -1,15 +1,24 @@
 //! How many things move between two video frames, how each moves, and which pixels belong to it.
 
 mod alignment;
+mod best;
+pub mod embedding;
 mod error;
+pub mod factorisation;
 mod frame;
+pub mod linear;
 mod measurements;
 mod motion;
 mod options;
+pub mod paper;
 mod pipeline;
 mod points;
 mod progress;
+mod labelling;
+mod proposal;
+mod selection;
 mod random;
+pub mod refinement;
 
 pub use error::{Error, Result};
 pub use frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};

@@ -2,14 +2,22 @@
 
 use serde::Serialize;
 
+use crate::best::best_fit;
+use crate::embedding::rank::RankCandidate;
 use crate::error::Result;
+use crate::linear::RowQr;
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
-use crate::options::FitOptions;
+use crate::options::{FitOptions, Method};
+use crate::paper::paper_fit;
 use crate::progress::Progress;
+use crate::refinement::Report;
 
 /// The label of a measurement or pixel that no motion explains.
 pub const UNLABELLED: u8 = 255;
+
+/// An entry counts as determined where its singular value exceeds this share of the largest (normalised measurements).
+const DETERMINED: f64 = 1e-6;
 
 /// What [`fit_motions`] found.
 #[derive(Clone, Debug, Serialize)]
@@ -67,17 +75,103 @@ pub struct Candidate {
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PaperStages {
-    /// Motions after the polynomial factorisation (section 3.3).
+    /// Ranks at the numbers of motions that were tried (Theorem 1); empty where the number was given.
+    pub ranks: Vec<RankCandidate>,
+    /// Whether the rank rule (12) was fulfilled: `false` means that the last tried number was taken. `None` where the number
+    /// was given.
+    pub rank_rule_fired: Option<bool>,
+    /// Motions after the polynomial factorisation (section 3.3), in the order of [`MotionFit::motions`].
     pub factorisation: Vec<AffineMotion>,
-    /// Motions after the nonlinear refinement of (19).
+    /// Motions after the nonlinear refinement of (19), in the same order.
     pub refined: Vec<AffineMotion>,
+    /// How the refinement ended.
+    pub refinement: Report,
 }
 
 /// Solves Problem 1: how many affine motions explain the measurements, which, and which measurement belongs to which.
 ///
 /// # Errors
 /// [`Error::InvalidOption`](crate::Error::InvalidOption), [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements).
-pub fn fit_motions(_measurements: &Measurements, options: &FitOptions, _progress: Progress<'_>) -> Result<MotionFit> {
+pub fn fit_motions(measurements: &Measurements, options: &FitOptions, progress: Progress<'_>) -> Result<MotionFit> {
     options.motions.validate()?;
-    Ok(MotionFit { count: 0, motions: Vec::new(), labels: Vec::new(), evidence: FitEvidence::default(), stages: None })
+    match options.method {
+        Method::Paper => fit_as_the_paper(measurements, options, progress),
+        Method::Best => best_fit(measurements, options, progress),
+    }
+}
+
+fn fit_as_the_paper(measurements: &Measurements, options: &FitOptions, progress: Progress<'_>) -> Result<MotionFit> {
+    let fit = paper_fit(measurements, options.motions, progress)?;
+    let order = order_by_count(fit.refined.len(), &fit.labels);
+    let (motions, labels) = ordered_motions(measurements, &fit.refined, &fit.labels);
+    let in_order = |motions: &[AffineMotion]| order.iter().map(|&i| motions[i]).collect();
+    // The rule fires where the rank is one less than the number of columns: the score is how far it is from that.
+    let candidates = fit
+        .ranks
+        .iter()
+        .map(|tried| Candidate { motions: tried.motions, score: (tried.rank + 1).abs_diff(tried.columns) as f64 });
+    Ok(MotionFit {
+        count: motions.len(),
+        motions,
+        labels,
+        evidence: FitEvidence { candidates: candidates.collect(), singular_values: fit.singular_values },
+        stages: Some(PaperStages {
+            factorisation: in_order(&fit.factorisation),
+            refined: in_order(&fit.refined),
+            ranks: fit.ranks,
+            rank_rule_fired: fit.rank_rule_fired,
+            refinement: fit.refinement,
+        }),
+    })
+}
+
+/// Motions by decreasing number of measurements, and the labels in that numbering. `nearest` holds for each measurement the index
+/// of its motion in `found`; an index beyond marks an outlier, [`UNLABELLED`].
+pub(crate) fn ordered_motions(
+    measurements: &Measurements,
+    found: &[AffineMotion],
+    nearest: &[usize],
+) -> (Vec<FittedMotion>, Vec<u8>) {
+    let order = order_by_count(found.len(), nearest);
+    let mut label_of = vec![UNLABELLED; found.len()];
+    let mut motions = Vec::with_capacity(found.len());
+    for (&i, label) in order.iter().zip(0u8..) {
+        label_of[i] = label;
+        let own: Vec<usize> = (0..nearest.len()).filter(|&j| nearest[j] == i).collect();
+        let determined = determined_entries(&measurements.subset(&own));
+        motions.push(FittedMotion { label, matrix: found[i], measurements: own.len(), determined });
+    }
+    let labels = nearest.iter().map(|&i| label_of.get(i).copied().unwrap_or(UNLABELLED)).collect();
+    (motions, labels)
+}
+
+/// Indices of motions by decreasing number of measurements, ties by the lower index.
+fn order_by_count(motions: usize, nearest: &[usize]) -> Vec<usize> {
+    let mut counts = vec![0usize; motions];
+    for &i in nearest {
+        if let Some(count) = counts.get_mut(i) {
+            *count += 1;
+        }
+    }
+    let mut order: Vec<usize> = (0..motions).collect();
+    order.sort_by_key(|&i| std::cmp::Reverse(counts[i]));
+    order
+}
+
+/// The rank of the constraints `φᵀa = −I_t`, φ = (I_x x, I_x y, I_x, I_y x, I_y y, I_y), that measurements put on one motion: 6 where
+/// they determine it, less where their gradients are parallel, or their positions in line.
+fn determined_entries(measurements: &Measurements) -> usize {
+    let (normalised, _) = measurements.normalised();
+    let mut qr = RowQr::new(6);
+    for first in (0..normalised.len()).step_by(RowQr::BLOCK_ROWS) {
+        let end = normalised.len().min(first + RowQr::BLOCK_ROWS);
+        let rows = normalised.positions()[first..end].iter().zip(&normalised.derivatives()[first..end]);
+        let features: Vec<[f64; 6]> =
+            rows.map(|([x, y], [ix, iy, _])| [ix * x, ix * y, *ix, iy * x, iy * y, *iy]).collect();
+        let mut block: Vec<f64> = (0..6).flat_map(|k| features.iter().map(move |row| row[k])).collect();
+        qr.absorb(features.len(), &mut block);
+    }
+    let values = qr.into_triangle().singular_values().unwrap_or_default();
+    let largest = values.first().copied().unwrap_or(0.0);
+    values.iter().filter(|&&s| s > DETERMINED * largest).count()
 }

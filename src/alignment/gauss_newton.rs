@@ -36,8 +36,9 @@ pub(crate) struct Alignment {
 const SMALL_STEP: f64 = 0.003;
 /// Below this sum of support weights a motion is left as it is.
 const SMALLEST_SUPPORT: f64 = 12.0;
-/// Entries beyond this are no motion of an image.
-const LARGEST_ENTRY: f64 = 1e3;
+/// Linear entries beyond this (a zoom by 40 %, a turn by 23°) are no motion between two frames: what runs there has lost its pixels,
+/// and would be rewarded for moving them out of the frame.
+const LARGEST_LINEAR: f64 = 0.4;
 
 /// Unknowns: the six entries of A (in centred coordinates), bias, gain.
 const UNKNOWNS: usize = 8;
@@ -115,7 +116,7 @@ pub(crate) fn align(
         photometric.bias -= step[6];
         photometric.gain -= step[7];
         apply(&mut scaled, &step, support.centre, scale);
-        if scaled.matrix.iter().any(|a| a.abs() > LARGEST_ENTRY) {
+        if [0, 1, 3, 4].into_iter().any(|k| scaled.matrix[k].abs() > LARGEST_LINEAR) {
             return *motion;
         }
         if (step[2] * step[2] + step[5] * step[5]).sqrt() < SMALL_STEP {

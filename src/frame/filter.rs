@@ -101,6 +101,20 @@ pub(crate) fn median5(plane: &Plane) -> Plane {
     })
 }
 
+/// The smallest of each 3×3 neighbourhood; outside the plane counts as inside the region.
+pub(crate) fn eroded(mask: &Plane) -> Plane {
+    let (width, height) = (mask.width(), mask.height());
+    Plane::from_fn(width, height, |x, y| {
+        let mut smallest = f32::INFINITY;
+        for ny in y.saturating_sub(1)..=(y + 1).min(height - 1) {
+            for nx in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+                smallest = smallest.min(mask.at(nx, ny));
+            }
+        }
+        smallest
+    })
+}
+
 /// Bilinear enlargement to `width` × `height`: pixel (x, y) takes the value at (x/2, y/2).
 pub(crate) fn double(plane: &Plane, width: usize, height: usize) -> Plane {
     Plane::from_fn(width, height, |x, y| {

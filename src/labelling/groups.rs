@@ -10,8 +10,9 @@ const TOLERANCE: f64 = 0.3;
 /// … or by less than this share of the largest jump in the frame.
 const RELATIVE_TOLERANCE: f64 = 0.2;
 
-/// The group of every motion, as the smallest label in it. `motions` in pixels of the label grid.
-pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<usize> {
+/// The group of every motion, as the smallest label in it. `motions` in pixels of the label grid, one of which has `reduction`
+/// pixels of the frame.
+pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, reduction: f64) -> Vec<usize> {
     let n = motions.len();
     let mut jumps: Vec<(f64, usize, usize)> = Vec::new();
     for (i, j, mut along) in borders(motions, labels, width) {
@@ -21,7 +22,7 @@ pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize) -> V
         }
     }
     let largest = jumps.iter().fold(0.0f64, |m, j| m.max(j.0));
-    let tolerance = TOLERANCE.max(RELATIVE_TOLERANCE * largest);
+    let tolerance = (TOLERANCE / reduction).max(RELATIVE_TOLERANCE * largest);
     jumps.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     let mut group: Vec<usize> = (0..n).collect();
     for (jump, i, j) in jumps {
@@ -69,6 +70,6 @@ mod tests {
             AffineMotion::new([0.05, 0.0, 0.0, 0.0, 0.0, 0.0]),
             AffineMotion::translation(7.0, 0.0),
         ];
-        assert_eq!(groups(&motions, &labels, 60), [0, 0, 2]);
+        assert_eq!(groups(&motions, &labels, 60, 1.0), [0, 0, 2]);
     }
 }

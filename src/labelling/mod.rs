@@ -3,7 +3,10 @@
 pub(crate) mod components;
 pub(crate) mod description;
 pub(crate) mod energy;
+mod expansion;
 pub(crate) mod groups;
+mod max_flow;
+mod messages;
 pub(crate) mod potts;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;

@@ -5,10 +5,9 @@ use super::description::{SMALLEST_SHARE, price_of_motion};
 use crate::alignment::cost::{CostModel, Photometric, cost};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
-use crate::frame::filter::gaussian;
+use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
-use crate::selection::eroded;
 
 /// Smallest number of pixels of a part.
 const SMALLEST_PART: usize = 30;
@@ -35,28 +34,28 @@ fn aligned_on(level: &Level, motion: &AffineMotion, mask: &Plane, iterations: us
 /// Splits objects into their connected components where own motions pay for themselves. Returns whether anything changed.
 pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let (width, height) = (level.width(), level.height());
-    let found = components(width, height, labels, Connectivity::Eight);
+    let found = components(labels, width, Connectivity::Eight);
     let mut changed = false;
     for label in 1..motions.len() {
-        let mut parts: Vec<usize> = (0..found.regions.len())
+        let mut parts: Vec<usize> = (0..found.list.len())
             .filter(|&k| {
-                usize::from(found.regions[k].label) == label
-                    && found.regions[k].pixels >= smallest_part(labels.len())
+                usize::from(found.list[k].label) == label
+                    && found.list[k].size >= smallest_part(labels.len())
             })
             .collect();
         if parts.len() < 2 {
             continue;
         }
-        parts.sort_by_key(|&k| (usize::MAX - found.regions[k].pixels, k));
+        parts.sort_by_key(|&k| (usize::MAX - found.list[k].size, k));
         let together = cost(level, &motions[label], CostModel::ESTIMATION);
         let mut fits = Vec::new();
         for &part in &parts {
-            let mask: Vec<f32> = found.ids.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
+            let mask: Vec<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
             let inner = gaussian(&eroded(&Plane::from_vec(width, height, mask)), SOFTNESS);
             let motion = aligned_on(level, &motions[label], &inner, 4, 1e-2);
             let alone = cost(level, &motion, CostModel::ESTIMATION);
             let mut gain = 0.0;
-            for (p, &id) in found.ids.iter().enumerate() {
+            for (p, &id) in found.of.iter().enumerate() {
                 if id as usize == part {
                     gain += 0.5 * f64::from(together.values()[p] - alone.values()[p]);
                 }
@@ -75,7 +74,7 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
             }
             let new = motions.len() as u8;
             motions.push(motion);
-            for (slot, &id) in labels.iter_mut().zip(&found.ids) {
+            for (slot, &id) in labels.iter_mut().zip(&found.of) {
                 if id as usize == part {
                     *slot = new;
                 }

@@ -3,10 +3,10 @@
 use super::mask_of;
 use crate::alignment::cost::inverse;
 use crate::frame::Plane;
+use crate::frame::filter::eroded;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::warp;
 use crate::motion::AffineMotion;
-use crate::selection::eroded;
 
 /// Cost of a pixel that is hidden under the motion in question: neither for nor against it.
 const HIDDEN: f32 = 1.5;

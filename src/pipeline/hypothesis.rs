@@ -77,7 +77,8 @@ pub(super) fn refine(work: &Work, mut layers: Vec<Layer>, settings: &Settings) -
         let look = level.index >= 1 || work.base == 1;
         if look {
             let how = Deflation { price: settings.price[1], most: settings.most, tries: 2 };
-            left_over = add_motions(level, &mut layers, &fine_proposals(level, &layers), how);
+            let proposals = fine_proposals(level, &layers);
+            left_over = add_motions(level, &mut layers, &proposals, how);
         }
         refit(level, &mut layers, 1);
     }

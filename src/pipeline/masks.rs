@@ -149,7 +149,7 @@ impl Draft<'_> {
     fn clean(&mut self) {
         let (width, height) = self.size();
         let smallest = (SMALLEST_SHARE * (width * height) as f64) as usize;
-        absorb_small(width, height, &mut self.labels, smallest);
+        absorb_small(&mut self.labels, width, smallest);
         let sizes = counts(&self.labels, self.motions.len());
         let mut next = 0u8;
         let renumbered: Vec<u8> = (0..self.motions.len())

@@ -82,7 +82,7 @@ pub(super) fn report(
     let size = [level.width(), level.height()];
     let candidates = evidence(work, &labelled, left_over);
     let unknown = options.mark_unknown.then(|| unexplained(work, &labelled));
-    let grouping = groups(&labelled.motions, &labelled.labels, size[0]);
+    let grouping = groups(&labelled.motions, &labelled.labels, size[0], work.reduction);
 
     let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance());
     let order = by_size(&full, labelled.motions.len());

@@ -77,8 +77,9 @@ fn rough_gain(current: &Plane, cost: &Plane) -> f64 {
     gain_of(&gaussian(&difference, WINDOW / BLOCK as f32)) * (BLOCK * BLOCK) as f64
 }
 
-/// Adds proposed motions to `layers` while each brings more than its price; refits all after each.
-pub(crate) fn add_motions(level: &Level, layers: &mut Vec<Layer>, proposals: &[AffineMotion], how: Deflation) {
+/// Adds proposed motions to `layers` while each brings more than its price; refits all after each. Returns what the best motion
+/// that was not added would have brought.
+pub(crate) fn add_motions(level: &Level, layers: &mut Vec<Layer>, proposals: &[AffineMotion], how: Deflation) -> f64 {
     let rough: Vec<Plane> = proposals.iter().map(|&m| blocks(&Layer::new(level, m).cost)).collect();
     while layers.len() < how.most {
         let current = smallest_cost(layers);
@@ -99,10 +100,11 @@ pub(crate) fn add_motions(level: &Level, layers: &mut Vec<Layer>, proposals: &[A
         }
         match best {
             Some((brings, layer)) if brings >= how.price => layers.push(layer),
-            _ => break,
+            rejected => return rejected.map_or(0.0, |r| r.0),
         }
         refit(level, layers, 1);
     }
+    0.0
 }
 
 /// A proposal refined on the region where it beats what is there, twice.
@@ -139,20 +141,20 @@ fn heaviest_region(current: &Plane, cost: &Plane) -> Option<Plane> {
     let improved = improvement(current, cost);
     let (width, height) = (improved.width(), improved.height());
     let mask: Vec<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
-    let found = components(width, height, &mask, Connectivity::Eight);
-    let mut weights = vec![0.0f64; found.regions.len()];
-    for ((&region, a), c) in found.ids.iter().zip(current.values()).zip(cost.values()) {
+    let found = components(&mask, width, Connectivity::Eight);
+    let mut weights = vec![0.0f64; found.list.len()];
+    for ((&region, a), c) in found.of.iter().zip(current.values()).zip(cost.values()) {
         weights[region as usize] += f64::from(a - c);
     }
     let mut heaviest: Option<usize> = None;
-    for (k, region) in found.regions.iter().enumerate() {
-        let counts = region.label == 1 && region.pixels > SMALLEST_REGION;
+    for (k, region) in found.list.iter().enumerate() {
+        let counts = region.label == 1 && region.size > SMALLEST_REGION;
         if counts && heaviest.is_none_or(|h| weights[k] > weights[h]) {
             heaviest = Some(k);
         }
     }
     let chosen = heaviest?;
-    let values = found.ids.iter().map(|&id| if id as usize == chosen { 1.0 } else { 0.0 }).collect();
+    let values = found.of.iter().map(|&id| if id as usize == chosen { 1.0 } else { 0.0 }).collect();
     Some(Plane::from_vec(width, height, values))
 }
 

@@ -4,7 +4,7 @@ use super::Layer;
 use crate::alignment::cost::Photometric;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
-use crate::frame::filter::gaussian;
+use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 
 /// Priors against linear terms: of the dominant motion (it has most of the frame) and of the others.
@@ -62,18 +62,4 @@ fn region_of(layers: &[Layer], k: usize) -> Option<Plane> {
         region = eroded(&region);
     }
     Some(gaussian(&region, SOFTNESS))
-}
-
-/// The smallest of each 3×3 neighbourhood; outside the plane counts as inside the region.
-pub(crate) fn eroded(mask: &Plane) -> Plane {
-    let (width, height) = (mask.width(), mask.height());
-    Plane::from_fn(width, height, |x, y| {
-        let mut smallest = f32::INFINITY;
-        for ny in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-            for nx in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                smallest = smallest.min(mask.at(nx, ny));
-            }
-        }
-        smallest
-    })
 }

@@ -1,0 +1,149 @@
+//! The roots of a real polynomial in one variable, all at once, by the Ehrlich-Aberth iteration.
+
+use nalgebra::Complex;
+
+/// Bound of the iteration; typical polynomials of degree 10 need 10 to 20 steps.
+const MAX_STEPS: usize = 100;
+/// A leading or last coefficient below this share of the largest counts as zero: the root is at infinity or at zero.
+const NEGLIGIBLE: f64 = 1e-15;
+/// A root is settled when its correction is below this share of its size.
+const SETTLED: f64 = 4.0 * f64::EPSILON;
+/// Imaginary parts beyond this share of the size mark a root as one of a conjugate pair.
+const COMPLEX: f64 = 1e-7;
+
+/// The roots of a polynomial, counted with multiplicity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Roots {
+    /// The finite roots. The polynomial is real, so they are real or come in conjugate pairs, whose real parts are equal to
+    /// the last bit.
+    pub finite: Vec<Complex<f64>>,
+    /// Number of roots at infinity: leading coefficients that vanish.
+    pub infinite: usize,
+}
+
+/// The roots of `c[0] + c[1] t + … + c[n] tⁿ`.
+///
+/// Coefficients that are not finite, or all zero, give no finite roots and n infinite ones. Never more than 100 steps;
+/// multiple roots come out with the accuracy that rounding leaves them (about ε^(1/multiplicity)).
+pub fn roots(coefficients: &[f64]) -> Roots {
+    let degree = coefficients.len().saturating_sub(1);
+    let largest = coefficients.iter().fold(0.0, |m: f64, c| if c.is_finite() { m.max(c.abs()) } else { f64::INFINITY });
+    let significant = |c: &f64| c.abs() > NEGLIGIBLE * largest;
+    let bounds = (coefficients.iter().position(significant), coefficients.iter().rposition(significant));
+    let (Some(low), Some(high)) = bounds else {
+        return Roots { finite: Vec::new(), infinite: degree };
+    };
+    let core: Vec<f64> = coefficients[low..=high].iter().map(|c| c / largest).collect();
+    let mut finite = conjugate_symmetric(aberth(&core));
+    finite.extend(std::iter::repeat_n(Complex::new(0.0, 0.0), low));
+    Roots { finite, infinite: degree - high }
+}
+
+/// The iteration on a polynomial whose first and last coefficients do not vanish.
+fn aberth(c: &[f64]) -> Vec<Complex<f64>> {
+    let degree = c.len() - 1;
+    let mut z = starting_points(c);
+    let mut settled = vec![false; degree];
+    for _ in 0..MAX_STEPS {
+        for i in 0..degree {
+            if settled[i] {
+                continue;
+            }
+            let newton = newton_correction(c, z[i]);
+            let mut repulsion = Complex::new(0.0, 0.0);
+            for j in 0..degree {
+                let difference = z[i] - z[j];
+                if j != i && difference.norm_sqr() > 0.0 {
+                    repulsion += difference.inv();
+                }
+            }
+            let denominator = Complex::new(1.0, 0.0) - newton * repulsion;
+            let step = if denominator.norm_sqr() > 1e-300 { newton / denominator } else { newton };
+            if !(step.re.is_finite() && step.im.is_finite()) {
+                settled[i] = true;
+                continue;
+            }
+            z[i] -= step;
+            settled[i] = step.norm_sqr() <= SETTLED * SETTLED * z[i].norm_sqr();
+        }
+        if settled.iter().all(|&s| s) {
+            break;
+        }
+    }
+    z
+}
+
+/// p(z) / p'(z), by Horner's rule on the polynomial or, outside the unit circle, on the reversed one, so that powers stay bounded.
+fn newton_correction(c: &[f64], z: Complex<f64>) -> Complex<f64> {
+    let degree = (c.len() - 1) as f64;
+    if z.norm_sqr() <= 1.0 {
+        let (p, d) = horner(c.iter().rev(), z);
+        return if d.norm_sqr() > 0.0 { p / d } else { Complex::new(0.0, 0.0) };
+    }
+    // With q(w) = wⁿ p(1/w), w = 1/z: p'/p = (n − w q'/q) / z.
+    let w = z.inv();
+    let (q, d) = horner(c.iter(), w);
+    let denominator = q * degree - w * d;
+    if denominator.norm_sqr() > 0.0 { z * q / denominator } else { Complex::new(0.0, 0.0) }
+}
+
+/// Value and derivative, coefficients from the highest power down.
+fn horner<'a>(coefficients: impl Iterator<Item = &'a f64>, z: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
+    let mut value = Complex::new(0.0, 0.0);
+    let mut derivative = Complex::new(0.0, 0.0);
+    for &c in coefficients {
+        derivative = derivative * z + value;
+        value = value * z + c;
+    }
+    (value, derivative)
+}
+
+/// Points on circles whose radii are read off the Newton polygon of the coefficients (Bini, Numerical Algorithms 13, 1996).
+fn starting_points(c: &[f64]) -> Vec<Complex<f64>> {
+    let degree = c.len() - 1;
+    let heights: Vec<f64> = c.iter().map(|v| if *v == 0.0 { f64::NEG_INFINITY } else { libm::log(v.abs()) }).collect();
+    let mut points = Vec::with_capacity(degree);
+    let mut from = 0;
+    while from < degree {
+        // The next edge of the upper hull is the steepest one; among equals the longest.
+        let slope = |to: usize| (heights[to] - heights[from]) / (to - from) as f64;
+        let mut to = from + 1;
+        for next in from + 2..=degree {
+            if slope(next) >= slope(to) {
+                to = next;
+            }
+        }
+        let radius = libm::exp(-slope(to));
+        let count = to - from;
+        for k in 0..count {
+            // The offset keeps the points off the real axis and off each other's conjugates.
+            let angle = std::f64::consts::TAU * (k as f64 / count as f64 + from as f64 / degree as f64) + 0.7;
+            points.push(Complex::new(radius * libm::cos(angle), radius * libm::sin(angle)));
+        }
+        from = to;
+    }
+    points
+}
+
+/// Makes near-real roots real and conjugate pairs exact.
+fn conjugate_symmetric(mut z: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
+    z.sort_by(|a, b| b.im.total_cmp(&a.im).then(a.re.total_cmp(&b.re)));
+    let mut result = Vec::with_capacity(z.len());
+    while !z.is_empty() {
+        let root = z.remove(0);
+        // The partner is the nearest to the conjugate; a real root is its own.
+        let distance = |other: &Complex<f64>| (other - root.conj()).norm_sqr();
+        let partner = (0..z.len()).min_by(|&i, &j| distance(&z[i]).total_cmp(&distance(&z[j])));
+        let is_complex = root.im.abs() > COMPLEX * root.norm_sqr().sqrt();
+        match partner {
+            Some(j) if is_complex && distance(&z[j]) < root.im * root.im => {
+                let other = z.remove(j);
+                let mean = Complex::new(0.5 * (root.re + other.re), 0.5 * (root.im - other.im));
+                result.push(mean);
+                result.push(mean.conj());
+            }
+            _ => result.push(Complex::new(root.re, 0.0)),
+        }
+    }
+    result
+}

@@ -1,0 +1,11 @@
+//! Dense linear algebra that the embedded data needs and a general library does not offer: QR of a tall matrix that arrives
+//! in blocks of rows, and the null vector of its triangle. Knows nothing of motions.
+
+mod kernels;
+mod null_vector;
+mod qr;
+mod triangle;
+
+pub use null_vector::NullVector;
+pub use qr::RowQr;
+pub use triangle::Triangle;

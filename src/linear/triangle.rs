@@ -1,0 +1,127 @@
+//! An upper triangular matrix: R of the QR decomposition, its scaling, its singular values.
+
+use nalgebra::{DMatrix, SVD};
+
+use super::kernels::{add_multiple, dot};
+
+/// An upper triangular m×m matrix, column-major with its zeros.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Triangle {
+    size: usize,
+    values: Vec<f64>,
+}
+
+impl Triangle {
+    /// Largest m for which [`singular_values`](Self::singular_values) answers: the cost grows with m³ (m = 462: n = 6).
+    pub const LARGEST_DECOMPOSED: usize = 500;
+
+    pub(super) fn zeros(size: usize) -> Self {
+        Triangle { size, values: vec![0.0; size * size] }
+    }
+
+    /// Number of rows and columns, m.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    #[inline]
+    pub(super) fn at(&self, row: usize, column: usize) -> f64 {
+        self.values[column * self.size + row]
+    }
+
+    #[inline]
+    pub(super) fn set(&mut self, row: usize, column: usize, value: f64) {
+        self.values[column * self.size + row] = value;
+    }
+
+    /// Rows `first..first + count` of one column.
+    #[inline]
+    pub(super) fn column_part_mut(&mut self, column: usize, first: usize, count: usize) -> &mut [f64] {
+        let start = column * self.size + first;
+        &mut self.values[start..start + count]
+    }
+
+    /// A column down to its diagonal entry.
+    #[inline]
+    fn column(&self, column: usize) -> &[f64] {
+        &self.values[column * self.size..column * self.size + column + 1]
+    }
+
+    /// The same as a dense matrix.
+    pub fn to_matrix(&self) -> DMatrix<f64> {
+        DMatrix::from_column_slice(self.size, self.size, &self.values)
+    }
+
+    /// Divides every column by its length (1 for a zero column); returns the lengths. They are those of the decomposed
+    /// matrix too, so this is the R of the matrix with columns scaled to unit length.
+    pub fn scale_columns(&mut self) -> Vec<f64> {
+        let size = self.size;
+        let mut lengths = Vec::with_capacity(size);
+        for k in 0..size {
+            let length = dot(self.column(k), self.column(k)).sqrt();
+            let length = if length > 0.0 { length } else { 1.0 };
+            for value in self.column_part_mut(k, 0, k + 1) {
+                *value /= length;
+            }
+            lengths.push(length);
+        }
+        lengths
+    }
+
+    /// Singular values, decreasing; `None` where m exceeds [`LARGEST_DECOMPOSED`](Self::LARGEST_DECOMPOSED) or the bounded
+    /// iteration does not end.
+    pub fn singular_values(&self) -> Option<Vec<f64>> {
+        if self.size > Self::LARGEST_DECOMPOSED {
+            return None;
+        }
+        let bound = 100 * self.size.max(10);
+        let decomposition = SVD::try_new(self.to_matrix(), false, false, f64::EPSILON, bound)?;
+        let mut values: Vec<f64> = decomposition.singular_values.iter().copied().collect();
+        values.sort_by(|a, b| b.total_cmp(a));
+        Some(values)
+    }
+
+    /// The same triangle with every column multiplied by a factor.
+    pub(crate) fn with_columns_times(&self, factors: &[f64]) -> Triangle {
+        let mut result = self.clone();
+        for (column, factor) in result.values.chunks_exact_mut(self.size.max(1)).zip(factors) {
+            column.iter_mut().for_each(|value| *value *= factor);
+        }
+        result
+    }
+
+    /// Largest absolute diagonal entry.
+    pub(crate) fn largest_pivot(&self) -> f64 {
+        self.pivots().fold(0.0, f64::max)
+    }
+
+    /// Absolute values of the diagonal.
+    pub(super) fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.size).map(|k| self.at(k, k).abs())
+    }
+
+    /// Solves Rᵀ R z = b in place, with pivots smaller than `floor` taken as `floor`.
+    pub(crate) fn solve_normal(&self, b: &mut [f64], floor: f64) {
+        let pivot = |k: usize| {
+            let r = self.at(k, k);
+            if r.abs() >= floor { r } else { floor }
+        };
+        for k in 0..self.size {
+            b[k] = (b[k] - dot(&self.column(k)[..k], &b[..k])) / pivot(k);
+        }
+        for k in (0..self.size).rev() {
+            b[k] /= pivot(k);
+            let (above, value) = (&self.column(k)[..k], b[k]);
+            add_multiple(&mut b[..k], -value, above);
+        }
+    }
+
+    /// |R v|.
+    pub(super) fn image_length(&self, v: &[f64]) -> f64 {
+        let mut image = vec![0.0; self.size];
+        for k in 0..self.size {
+            add_multiple(&mut image, v[k], self.column(k));
+        }
+        dot(&image, &image).sqrt()
+    }
+}

@@ -1,0 +1,54 @@
+//! Measurements with known motions: protocol B1, after the paper's Figure 1.
+#![allow(dead_code)]
+
+use veronese::factorisation::assignment::assign;
+use veronese::{AffineMotion, Measurements, Random};
+
+/// How measurements are drawn.
+pub enum Protocol {
+    /// Positions uniform in [−1, 1]²; motions in turn; y of unit length, uniform on the circle orthogonal to A x; then uniform
+    /// noise on every component.
+    B1,
+}
+
+/// Motions whose six entries are uniform in [−1, 1].
+pub fn random_motions(n: usize, random: &mut Random) -> Vec<AffineMotion> {
+    (0..n).map(|_| AffineMotion::new(std::array::from_fn(|_| random.uniform(-1.0, 1.0)))).collect()
+}
+
+impl Protocol {
+    /// `count` measurements of the motions; measurement j belongs to motion j mod n.
+    pub fn measurements(
+        &self,
+        motions: &[AffineMotion],
+        count: usize,
+        noise: f64,
+        random: &mut Random,
+    ) -> Measurements {
+        let mut positions = Vec::with_capacity(count);
+        let mut derivatives = Vec::with_capacity(count);
+        for j in 0..count {
+            let [x, y] = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
+            let [u, v] = motions[j % motions.len()].flow(x, y);
+            let g: [f64; 3] = std::array::from_fn(|_| random.normal());
+            let share = (g[0] * u + g[1] * v + g[2]) / (u * u + v * v + 1.0);
+            let across = [g[0] - share * u, g[1] - share * v, g[2] - share];
+            let length = across.iter().map(|c| c * c).sum::<f64>().sqrt();
+            positions.push([x, y]);
+            derivatives.push(across.map(|c| c / length + random.uniform(-noise, noise)));
+        }
+        Measurements::new(positions, derivatives).unwrap()
+    }
+}
+
+/// Relative errors of eq. (20) of each true motion, in the order of the best permutation.
+pub fn errors(truth: &[AffineMotion], found: &[AffineMotion]) -> Vec<f64> {
+    let costs: Vec<Vec<f64>> = truth.iter().map(|a| found.iter().map(|b| a.relative_error(b)).collect()).collect();
+    let partner = assign(&costs);
+    partner.iter().enumerate().map(|(i, &k)| costs[i].get(k).copied().unwrap_or(f64::INFINITY)).collect()
+}
+
+/// The largest of [`errors`].
+pub fn worst_error(truth: &[AffineMotion], found: &[AffineMotion]) -> f64 {
+    errors(truth, found).into_iter().fold(0.0, f64::max)
+}
