@@ -2,6 +2,8 @@
 
 mod error;
 mod frame;
+#[allow(dead_code)] // until the pipeline calls it
+mod labelling;
 mod measurements;
 mod motion;
 mod options;
