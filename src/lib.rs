@@ -11,6 +11,7 @@ mod pipeline;
 mod points;
 mod progress;
 mod random;
+pub mod scene;
 
 pub use error::{Error, Result};
 pub use frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};

@@ -49,6 +49,7 @@ impl Potts<'_> {
 
     /// The cost of pixel p under a label, cut to ±[`FORBIDDEN`].
     #[inline]
+    #[allow(clippy::manual_clamp)] // `clamp` would let NaN through
     pub(super) fn cost(&self, label: usize, p: usize) -> f32 {
         // `min` takes the number where the other side is NaN.
         self.costs[label].values()[p].min(FORBIDDEN).max(-FORBIDDEN)
