@@ -4,6 +4,7 @@ mod error;
 mod frame;
 #[allow(dead_code)] // until the pipeline calls it
 mod labelling;
+mod literal;
 mod measurements;
 mod motion;
 mod options;
@@ -14,7 +15,8 @@ mod random;
 pub mod scene;
 
 pub use error::{Error, Result};
-pub use frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
+pub use frame::{Derivatives, Frame, MAX_SIDE, MIN_SIDE, Plane, derivatives};
+pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair};
 pub use measurements::{Measurements, Normalisation};
 pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};

@@ -1,7 +1,9 @@
 //! Pixels in, planes and measurements out. Knows no algebra.
 
+mod derivatives;
 mod plane;
 
+pub use derivatives::{Derivatives, derivatives};
 pub use plane::Plane;
 
 use crate::error::{Error, Result};
