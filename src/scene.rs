@@ -14,6 +14,7 @@
 //! # Ok::<(), veronese::Error>(())
 //! ```
 
+mod layer;
 mod render;
 mod shape;
 mod spline;
@@ -25,9 +26,9 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::motion::AffineMotion;
 use crate::random::Random;
-use render::Layer;
+use layer::{background, object};
 use shape::{Kind, Shape};
-use texture::{Style, Texture};
+use texture::Style;
 
 /// Largest number of objects in a scene.
 pub const MAX_OBJECTS: usize = 8;
@@ -276,46 +277,8 @@ pub fn leader_follower(seed: u64) -> Result<Scene> {
         let linear = [libm::cos(turn) - 1.0, -libm::sin(turn), libm::sin(turn), libm::cos(turn) - 1.0];
         let motion = about(centre, [-speed * s, 0.8 * speed * c], linear);
         let length = (s * s + 0.64 * c * c).sqrt();
-        let shape = Shape::oriented(Kind::Rectangle, 13.0, [-s / length, 0.8 * c / length], 1.5);
+        let shape = Shape::oriented(Kind::Rectangle, 17.0, [-s / length, 0.8 * c / length], 1.5);
         layers.push(object(&mut random, &options, motion, shape, centre, &Style::THINGS));
     }
     render::render(&layers, &SceneOptions { objects: 2, ..options }, &mut random)
-}
-
-fn background(
-    random: &mut Random,
-    options: &SceneOptions,
-    motion: AffineMotion,
-    margin: usize,
-    style: &Style,
-) -> Layer {
-    let (width, height) = (options.width + 2 * margin, options.height + 2 * margin);
-    let texture = textured(random, style, width, height, options.colour, 15.0);
-    Layer { motion, texture, offset: [margin as f64; 2], shape: None }
-}
-
-fn object(
-    random: &mut Random,
-    options: &SceneOptions,
-    motion: AffineMotion,
-    shape: Shape,
-    centre: [f64; 2],
-    style: &Style,
-) -> Layer {
-    let side = (2.0 * shape.reach()) as usize + 8;
-    let texture = textured(random, style, side, side, options.colour, 22.0);
-    let half = 0.5 * side as f64;
-    Layer { motion, texture, offset: [half - centre[0], half - centre[1]], shape: Some((shape, centre)) }
-}
-
-/// The first of some textures with at least the wanted contrast, or the last.
-fn textured(random: &mut Random, style: &Style, width: usize, height: usize, colour: bool, contrast: f64) -> Texture {
-    let mut texture = Texture::draw(random, style, width, height, colour);
-    for _ in 0..8 {
-        if texture.contrast >= contrast {
-            break;
-        }
-        texture = Texture::draw(random, style, width, height, colour);
-    }
-    texture
 }

@@ -2,7 +2,11 @@
 //!
 //! Finding the minimum is NP-hard from three labels on, so there are two solvers with different strengths:
 //! [`Solver::Messages`] (tree-reweighted message passing) is the faster one and knows a lower bound of the energy;
-//! [`Solver::Expansion`] (α-expansion by minimum cuts) is exact for two labels.
+//! [`Solver::Expansion`] (α-expansion by minimum cuts) is exact for two labels and comes nearest with more.
+//!
+//! On generated scenes, 320×240 pixels, four labels (the ignored test `energies_and_times`): [`Solver::FAST`] is 0.1 % above
+//! the bound, twenty iterations 0.02 %, α-expansion 0.00 % in about twice their time, and all three err on the same number
+//! of pixels: what is wrong there is the costs. Two iterations without the pyramid are 1 % above and err more.
 
 use super::{expansion, messages};
 use crate::frame::Plane;
@@ -35,7 +39,7 @@ impl Solver {
     /// For live use.
     pub(crate) const FAST: Solver = Solver::Messages { levels: 4, iterations: 2 };
     /// For keeping.
-    pub(crate) const BEST: Solver = Solver::Messages { levels: 4, iterations: 20 };
+    pub(crate) const BEST: Solver = Solver::Messages { levels: 4, iterations: 10 };
 }
 
 impl Potts<'_> {

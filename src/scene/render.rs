@@ -1,22 +1,11 @@
 //! From layers to frames and their truth.
 
-use super::shape::Shape;
-use super::texture::Texture;
+use super::layer::Layer;
 use super::{Scene, SceneOptions};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::motion::AffineMotion;
 use crate::random::Random;
-
-/// One thing: a texture cut out by a shape, moving. Coordinates are those of the frame `first`.
-pub(super) struct Layer {
-    pub(super) motion: AffineMotion,
-    pub(super) texture: Texture,
-    /// What to add to a pixel to get its place in the texture.
-    pub(super) offset: [f64; 2],
-    /// Outline and its centre; none for the background.
-    pub(super) shape: Option<(Shape, [f64; 2])>,
-}
 
 /// `[a, b, c, d, e, f]` takes (x, y) to (a x + b y + c, d x + e y + f).
 type Warp = [f64; 6];
