@@ -1,10 +1,12 @@
 //! Pixels in, planes and measurements out. Knows no algebra.
 
+mod derivatives;
 pub(crate) mod filter;
 mod plane;
 pub(crate) mod pyramid;
 pub(crate) mod warp;
 
+pub use derivatives::{Derivatives, derivatives};
 pub use plane::Plane;
 
 use crate::error::{Error, Result};

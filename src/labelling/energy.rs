@@ -46,9 +46,7 @@ impl Borders {
             horizontal: Plane::from_fn(width, height, |x, y| {
                 price(first.at(x, y), first.at((x + 1).min(width - 1), y))
             }),
-            vertical: Plane::from_fn(width, height, |x, y| {
-                price(first.at(x, y), first.at(x, (y + 1).min(height - 1)))
-            }),
+            vertical: Plane::from_fn(width, height, |x, y| price(first.at(x, y), first.at(x, (y + 1).min(height - 1)))),
         }
     }
 

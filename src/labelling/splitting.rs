@@ -38,10 +38,7 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
     let mut changed = false;
     for label in 1..motions.len() {
         let mut parts: Vec<usize> = (0..found.list.len())
-            .filter(|&k| {
-                usize::from(found.list[k].label) == label
-                    && found.list[k].size >= smallest_part(labels.len())
-            })
+            .filter(|&k| usize::from(found.list[k].label) == label && found.list[k].size >= smallest_part(labels.len()))
             .collect();
         if parts.len() < 2 {
             continue;
@@ -136,7 +133,8 @@ fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<
     for (&p, &s) in region.iter().zip(&second) {
         gain += 0.5 * f64::from(one.values()[p] - two[usize::from(s)].values()[p]);
     }
-    let price = price_of_motion(width * height) + PER_BORDER_PIXEL * inner_border(region, &second, width, height) as f64;
+    let price =
+        price_of_motion(width * height) + PER_BORDER_PIXEL * inner_border(region, &second, width, height) as f64;
     (gain > price).then_some((pair, second))
 }
 

@@ -31,11 +31,7 @@ pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlo
     let proposals: Vec<Proposal> = windows
         .iter()
         .map(|&(_, x, y)| Proposal {
-            motion: translated(
-                dominant,
-                f64::from(flow.u.at(x, y)) * pixel,
-                f64::from(flow.v.at(x, y)) * pixel,
-            ),
+            motion: translated(dominant, f64::from(flow.u.at(x, y)) * pixel, f64::from(flow.v.at(x, y)) * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         })
         .collect();

@@ -114,13 +114,8 @@ fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion) -> Layer {
     for round in 0..2 {
         let Some(region) = heaviest_region(current, &layer.cost) else { break };
         let support = Support::weighted(&region);
-        let affine = Alignment {
-            freedom: Freedom::Affine,
-            iterations: 3,
-            robustness: 4.0,
-            ridge: RIDGE,
-            photometric: false,
-        };
+        let affine =
+            Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: RIDGE, photometric: false };
         let mut motion = layer.motion;
         let none = &mut Photometric::default();
         if round == 0 {

@@ -29,8 +29,7 @@ pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
                 ridge: if k == 0 { RIDGE.0 } else { RIDGE.1 },
                 photometric: false,
             };
-            let motion =
-                align(level, &layer.motion, &Support::weighted(&region), &mut Photometric::default(), how);
+            let motion = align(level, &layer.motion, &Support::weighted(&region), &mut Photometric::default(), how);
             let refined = Layer::new(level, motion);
             if weighted_sum(&refined.cost, &region) < weighted_sum(&layer.cost, &region) {
                 *layer = refined;

@@ -1,0 +1,284 @@
+//! Sequential tree-reweighted message passing (Kolmogorov, PAMI 28(10), 2006) on the 4-connected grid with Potts weights.
+//!
+//! The pixels in raster order; every edge keeps one message, which points to whichever of its ends is visited next. A
+//! forward pass sends messages right and down, a backward pass left and up. With Potts weights a message costs O(labels):
+//! `m(l) = min(s(l) − min s, w)`. The backward pass also gives a lower bound of the energy, which never falls; where
+//! the energy of the labels read out on the way meets it, they are optimal and the work ends.
+//!
+//! On a pyramid (costs and weights summed over 2×2 blocks, messages handed down at half their size) a handful of
+//! iterations carries information across the image that would otherwise need as many iterations as a region is wide.
+
+use super::potts::Potts;
+
+/// Labels are handled in vectors of 4, 8 or 16.
+pub(super) const MAX_LABELS: usize = 16;
+/// Cost of the labels that only fill up a vector.
+const PADDING: f32 = 1e20;
+/// Smallest side of a level of the pyramid.
+const SMALLEST: usize = 8;
+/// Relative gap between energy and bound at which the labels count as optimal.
+const CLOSED: f64 = 1e-6;
+/// Relative rise of the bound in one iteration below which no more is expected.
+const STALLED: f64 = 2e-6;
+
+/// Labels, their energy, and a number no labelling's energy is below.
+pub(super) struct Solution {
+    pub(super) labels: Vec<u8>,
+    #[cfg_attr(not(test), allow(dead_code))]
+    pub(super) bound: f64,
+}
+
+/// At most `iterations` iterations on each of at most `levels` levels.
+pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
+    match problem.costs.len() {
+        0..=4 => solve::<4>(problem, levels, iterations),
+        5..=8 => solve::<8>(problem, levels, iterations),
+        _ => solve::<16>(problem, levels, iterations),
+    }
+}
+
+/// One level: a grid with costs, weights, and the messages on its edges.
+struct Grid<const L: usize> {
+    width: usize,
+    height: usize,
+    costs: Vec<[f32; L]>,
+    /// Weight of the edge from p to its right and to its lower neighbour.
+    weights: Vec<[f32; 2]>,
+    /// Message on the edge from p to its right neighbour and to its lower neighbour.
+    right: Vec<[f32; L]>,
+    down: Vec<[f32; L]>,
+}
+
+fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
+    let mut pyramid = vec![Grid::<L>::new(problem)];
+    while pyramid.len() < levels {
+        let finest = &pyramid[pyramid.len() - 1];
+        if finest.width.min(finest.height) < 2 * SMALLEST {
+            break;
+        }
+        let coarser = finest.halved();
+        pyramid.push(coarser);
+    }
+    for level in (1..pyramid.len()).rev() {
+        for _ in 0..iterations.min(COARSE_ITERATIONS) {
+            pyramid[level].forward(None);
+            pyramid[level].backward();
+        }
+        let (finer, coarser) = pyramid.split_at_mut(level);
+        finer[level - 1].inherit(&coarser[0]);
+    }
+
+    let grid = &mut pyramid[0];
+    let mut labels = vec![0u8; grid.costs.len()];
+    let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
+    let mut bound = f64::NEG_INFINITY;
+    for iteration in 0..=iterations {
+        // The first pass over messages that are all zero would read out the costs alone: still an answer.
+        let energy = grid.forward(Some(&mut labels));
+        if energy < lowest {
+            lowest = energy;
+            best.copy_from_slice(&labels);
+        }
+        if iteration == iterations || lowest - bound <= CLOSED * (1.0 + lowest.abs()) {
+            break;
+        }
+        let reached = grid.backward();
+        if reached - bound <= STALLED * (1.0 + reached.abs()) && iteration > 2 {
+            bound = bound.max(reached);
+            break;
+        }
+        bound = bound.max(reached);
+    }
+    problem.descend(&mut best, 2);
+    Solution { labels: best, bound }
+}
+
+/// On the coarse levels the messages only have to point the right way.
+const COARSE_ITERATIONS: usize = 3;
+
+impl<const L: usize> Grid<L> {
+    fn new(problem: &Potts<'_>) -> Self {
+        let (width, height) = (problem.width(), problem.height());
+        let mut costs = vec![[PADDING; L]; width * height];
+        for l in 0..problem.costs.len() {
+            for (p, cost) in costs.iter_mut().enumerate() {
+                cost[l] = problem.cost(l, p);
+            }
+        }
+        let (h, v) = (problem.horizontal.values(), problem.vertical.values());
+        let weights = h.iter().zip(v).map(|(&h, &v)| [h, v]).collect();
+        Self::with(width, height, costs, weights)
+    }
+
+    fn with(width: usize, height: usize, costs: Vec<[f32; L]>, weights: Vec<[f32; 2]>) -> Self {
+        let none = vec![[0.0; L]; width * height];
+        Grid { width, height, costs, weights, right: none.clone(), down: none }
+    }
+
+    /// Costs and the weights across the border of 2×2 blocks, summed.
+    fn halved(&self) -> Self {
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let mut costs = vec![[0.0; L]; width * height];
+        let mut weights = vec![[0.0; 2]; width * height];
+        for y in 0..self.height {
+            for x in 0..self.width {
+                let (p, q) = (y * self.width + x, (y / 2) * width + x / 2);
+                for l in 0..L {
+                    costs[q][l] += self.costs[p][l];
+                }
+                weights[q][0] += if x % 2 == 1 { self.weights[p][0] } else { 0.0 };
+                weights[q][1] += if y % 2 == 1 { self.weights[p][1] } else { 0.0 };
+            }
+        }
+        Self::with(width, height, costs, weights)
+    }
+
+    /// Messages from the level above. They are a start and nothing more: any messages keep the bound valid.
+    fn inherit(&mut self, coarser: &Self) {
+        for y in 0..self.height {
+            for x in 0..self.width {
+                let (p, q) = (y * self.width + x, (y / 2) * coarser.width + x / 2);
+                self.right[p] = coarser.right[q].map(|m| 0.5 * m);
+                self.down[p] = coarser.down[q].map(|m| 0.5 * m);
+            }
+        }
+    }
+
+    /// Share of a pixel's costs that goes along with a message: one over the number of chains through the pixel.
+    fn share(&self, x: usize, y: usize) -> f32 {
+        let ahead = u8::from(x + 1 < self.width) + u8::from(y + 1 < self.height);
+        let behind = u8::from(x > 0) + u8::from(y > 0);
+        1.0 / f32::from(ahead.max(behind).max(1))
+    }
+
+    /// Sends messages right and down. Where `labels` is given, reads them out on the way: each pixel takes what is cheapest
+    /// given the labels before it and the messages from after it. Returns the energy of the labels.
+    fn forward(&mut self, mut labels: Option<&mut [u8]>) -> f64 {
+        let mut energy = 0.0;
+        for y in 0..self.height {
+            let mut row = 0.0;
+            for x in 0..self.width {
+                let p = y * self.width + x;
+                let none = [0.0; L];
+                let left = if x > 0 { self.right[p - 1] } else { none };
+                let up = if y > 0 { self.down[p - self.width] } else { none };
+                let right = if x + 1 < self.width { self.right[p] } else { none };
+                let down = if y + 1 < self.height { self.down[p] } else { none };
+                let ahead = sum3(&self.costs[p], &right, &down);
+                if let Some(labels) = labels.as_deref_mut() {
+                    let mut price = ahead;
+                    let mut fixed = [0.0; L];
+                    if x > 0 {
+                        add_change(&mut fixed, labels[p - 1], self.weights[p - 1][0]);
+                    }
+                    if y > 0 {
+                        add_change(&mut fixed, labels[p - self.width], self.weights[p - self.width][1]);
+                    }
+                    for l in 0..L {
+                        price[l] += fixed[l];
+                    }
+                    let l = first_lowest(&price);
+                    labels[p] = l as u8;
+                    row += f64::from(self.costs[p][l] + fixed[l]);
+                }
+                let total = sum3(&ahead, &left, &up);
+                let share = self.share(x, y);
+                if x + 1 < self.width {
+                    (self.right[p], _) = message(&total, share, &right, self.weights[p][0]);
+                }
+                if y + 1 < self.height {
+                    (self.down[p], _) = message(&total, share, &down, self.weights[p][1]);
+                }
+            }
+            energy += row;
+        }
+        energy
+    }
+
+    /// Sends messages left and up; returns a lower bound of the energy.
+    fn backward(&mut self) -> f64 {
+        let mut bound = 0.0;
+        for y in (0..self.height).rev() {
+            for x in (0..self.width).rev() {
+                let p = y * self.width + x;
+                let none = [0.0; L];
+                let right = if x + 1 < self.width { self.right[p] } else { none };
+                let down = if y + 1 < self.height { self.down[p] } else { none };
+                let left = if x > 0 { self.right[p - 1] } else { none };
+                let up = if y > 0 { self.down[p - self.width] } else { none };
+                let mut total = sum3(&sum3(&self.costs[p], &right, &down), &left, &up);
+                let lowest = lowest(&total);
+                bound += f64::from(lowest);
+                for t in &mut total {
+                    *t -= lowest;
+                }
+                let share = self.share(x, y);
+                if x > 0 {
+                    let (m, removed) = message(&total, share, &left, self.weights[p - 1][0]);
+                    self.right[p - 1] = m;
+                    bound += f64::from(removed);
+                }
+                if y > 0 {
+                    let (m, removed) = message(&total, share, &up, self.weights[p - self.width][1]);
+                    self.down[p - self.width] = m;
+                    bound += f64::from(removed);
+                }
+            }
+        }
+        bound
+    }
+}
+
+#[inline(always)]
+fn sum3<const L: usize>(a: &[f32; L], b: &[f32; L], c: &[f32; L]) -> [f32; L] {
+    std::array::from_fn(|l| a[l] + b[l] + c[l])
+}
+
+/// Adds the weight to all labels but one.
+#[inline(always)]
+fn add_change<const L: usize>(price: &mut [f32; L], label: u8, weight: f32) {
+    for (l, p) in price.iter_mut().enumerate() {
+        *p += if l == usize::from(label) { 0.0 } else { weight };
+    }
+}
+
+/// The smallest value, by halves so that the compiler can compare several at once.
+#[inline(always)]
+fn lowest<const L: usize>(values: &[f32; L]) -> f32 {
+    let mut v = *values;
+    let mut half = L / 2;
+    while half > 0 {
+        for l in 0..half {
+            v[l] = if v[l + half] < v[l] { v[l + half] } else { v[l] };
+        }
+        half /= 2;
+    }
+    v[0]
+}
+
+/// The first index of the smallest value.
+#[inline(always)]
+fn first_lowest<const L: usize>(values: &[f32; L]) -> usize {
+    let (mut best, mut value) = (0, values[0]);
+    for l in 1..L {
+        if values[l] < value {
+            (best, value) = (l, values[l]);
+        }
+    }
+    best
+}
+
+/// The new message along an edge whose old one (against the direction) was `old`, and what was taken off to make its
+/// smallest entry zero.
+#[inline(always)]
+fn message<const L: usize>(total: &[f32; L], share: f32, old: &[f32; L], weight: f32) -> ([f32; L], f32) {
+    let source: [f32; L] = std::array::from_fn(|l| share * total[l] - old[l]);
+    let low = lowest(&source);
+    (
+        std::array::from_fn(|l| {
+            let m = source[l] - low;
+            if m < weight { m } else { weight }
+        }),
+        low,
+    )
+}

@@ -1,0 +1,162 @@
+//! The labelling energy `E(l) = Σ_p D_p(l_p) + Σ_pq w_pq [l_p ≠ l_q]` on the 4-connected grid, and who minimises it.
+//!
+//! Finding the minimum is NP-hard from three labels on, so there are two solvers with different strengths:
+//! [`Solver::Messages`] (tree-reweighted message passing) is the faster one and knows a lower bound of the energy;
+//! [`Solver::Expansion`] (α-expansion by minimum cuts) is exact for two labels and comes nearest with more.
+//!
+//! On generated scenes, 320×240 pixels, four labels (the ignored test `energies_and_times`): [`Solver::FAST`] is 0.1 % above
+//! the bound, twenty iterations 0.02 %, α-expansion 0.00 % in about twice their time, and all three err on the same number
+//! of pixels: what is wrong there is the costs. Two iterations without the pyramid are 1 % above and err more.
+
+use super::{expansion, messages};
+use crate::frame::Plane;
+
+/// Largest absolute cost of a pixel under a label: what is above (or NaN) means "forbidden" and is cut to this.
+pub(super) const FORBIDDEN: f32 = 1e7;
+
+/// A labelling problem: costs and weights of one grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Potts<'a> {
+    /// One plane per label, `costs[l].at(x, y)` = D_p(l); all of one size.
+    pub(crate) costs: &'a [Plane],
+    /// `horizontal.at(x, y)` ≥ 0 is the price of different labels at (x, y) and (x + 1, y); the last column is not read.
+    pub(crate) horizontal: &'a Plane,
+    /// `vertical.at(x, y)` ≥ 0 is the price of different labels at (x, y) and (x, y + 1); the last row is not read.
+    pub(crate) vertical: &'a Plane,
+}
+
+/// How to minimise the energy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Solver {
+    /// Sequential tree-reweighted message passing, at most `iterations` on each of `levels` levels of a pyramid (1: the
+    /// grid alone). Few iterations on several levels are the cheap choice, many iterations come close to the optimum.
+    Messages { levels: usize, iterations: usize },
+    /// α-expansion, at most `sweeps` times over all labels.
+    Expansion { sweeps: usize },
+}
+
+impl Solver {
+    /// For live use.
+    pub(crate) const FAST: Solver = Solver::Messages { levels: 4, iterations: 2 };
+    /// For keeping.
+    pub(crate) const BEST: Solver = Solver::Messages { levels: 4, iterations: 10 };
+}
+
+impl Potts<'_> {
+    pub(super) fn width(&self) -> usize {
+        self.horizontal.width()
+    }
+
+    pub(super) fn height(&self) -> usize {
+        self.horizontal.height()
+    }
+
+    /// The cost of pixel p under a label, cut to ±[`FORBIDDEN`].
+    #[inline]
+    #[allow(clippy::manual_clamp)] // `clamp` would let NaN through
+    pub(super) fn cost(&self, label: usize, p: usize) -> f32 {
+        // `min` takes the number where the other side is NaN.
+        self.costs[label].values()[p].min(FORBIDDEN).max(-FORBIDDEN)
+    }
+
+    /// Energy of a labelling.
+    pub(crate) fn energy(&self, labels: &[u8]) -> f64 {
+        let (width, height) = (self.width(), self.height());
+        let mut energy = 0.0;
+        for y in 0..height {
+            for x in 0..width {
+                let p = y * width + x;
+                energy += f64::from(self.cost(usize::from(labels[p]), p));
+                if x + 1 < width && labels[p] != labels[p + 1] {
+                    energy += f64::from(self.horizontal.values()[p]);
+                }
+                if y + 1 < height && labels[p] != labels[p + width] {
+                    energy += f64::from(self.vertical.values()[p]);
+                }
+            }
+        }
+        energy
+    }
+
+    /// The cheapest label of every pixel by itself; the first of equals.
+    pub(crate) fn cheapest(&self) -> Vec<u8> {
+        (0..self.width() * self.height())
+            .map(|p| {
+                let mut best = 0;
+                for l in 1..self.costs.len() {
+                    if self.cost(l, p) < self.cost(best, p) {
+                        best = l;
+                    }
+                }
+                best as u8
+            })
+            .collect()
+    }
+
+    /// Iterated conditional modes: every pixel takes the label that is cheapest given its four neighbours, until nothing
+    /// changes or for `sweeps` sweeps. Never raises the energy.
+    pub(super) fn descend(&self, labels: &mut [u8], sweeps: usize) {
+        let (width, height) = (self.width(), self.height());
+        let (horizontal, vertical) = (self.horizontal.values(), self.vertical.values());
+        for _ in 0..sweeps {
+            let mut changed = false;
+            for y in 0..height {
+                for x in 0..width {
+                    let p = y * width + x;
+                    let left = if x > 0 { Some((labels[p - 1], horizontal[p - 1])) } else { None };
+                    let right = if x + 1 < width { Some((labels[p + 1], horizontal[p])) } else { None };
+                    let up = if y > 0 { Some((labels[p - width], vertical[p - width])) } else { None };
+                    let down = if y + 1 < height { Some((labels[p + width], vertical[p])) } else { None };
+                    let neighbours = [left, right, up, down];
+                    let price = |l: u8| {
+                        let mut sum = self.cost(usize::from(l), p);
+                        for &(other, weight) in neighbours.iter().flatten() {
+                            if other != l {
+                                sum += weight;
+                            }
+                        }
+                        sum
+                    };
+                    let (mut best, mut lowest) = (labels[p], price(labels[p]));
+                    for l in 0..self.costs.len() as u8 {
+                        let value = price(l);
+                        if value < lowest {
+                            (best, lowest) = (l, value);
+                        }
+                    }
+                    changed |= best != labels[p];
+                    labels[p] = best;
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+    }
+}
+
+/// Minimises the energy: one label per pixel, row by row. `init`, where given, is where [`Solver::Expansion`] starts and
+/// what the answer of either solver is never worse than. Up to 255 labels; more than 16 are always solved by expansion.
+pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver, init: Option<&[u8]>) -> Vec<u8> {
+    let labels = problem.costs.len();
+    let size = problem.width() * problem.height();
+    if labels < 2 || size == 0 {
+        return vec![0; size];
+    }
+    let init = init.filter(|l| l.len() == size && l.iter().all(|&l| usize::from(l) < labels));
+    let found = match solver {
+        Solver::Messages { levels, iterations } if labels <= messages::MAX_LABELS => {
+            messages::minimise(problem, levels, iterations).labels
+        }
+        Solver::Messages { .. } => expansion::minimise(problem, 3, init),
+        Solver::Expansion { sweeps } => expansion::minimise(problem, sweeps, init),
+    };
+    match init {
+        Some(init) if problem.energy(init) < problem.energy(&found) => init.to_vec(),
+        _ => found,
+    }
+}
+
+#[cfg(test)]
+#[path = "potts_tests.rs"]
+mod tests;

@@ -1,0 +1,57 @@
+//! What a scene is made of.
+
+use super::SceneOptions;
+use super::shape::Shape;
+use super::texture::{Style, Texture};
+use crate::motion::AffineMotion;
+use crate::random::Random;
+
+/// One thing: a texture cut out by a shape, moving. Coordinates are those of the frame `first`.
+pub(super) struct Layer {
+    pub(super) motion: AffineMotion,
+    pub(super) texture: Texture,
+    /// What to add to a pixel to get its place in the texture.
+    pub(super) offset: [f64; 2],
+    /// Outline and its centre; none for the background.
+    pub(super) shape: Option<(Shape, [f64; 2])>,
+}
+
+/// What is behind everything, with some margin around the frame.
+pub(super) fn background(
+    random: &mut Random,
+    options: &SceneOptions,
+    motion: AffineMotion,
+    margin: usize,
+    style: &Style,
+) -> Layer {
+    let (width, height) = (options.width + 2 * margin, options.height + 2 * margin);
+    let texture = textured(random, style, width, height, options.colour, 15.0);
+    Layer { motion, texture, offset: [margin as f64; 2], shape: None }
+}
+
+/// Something in front of it.
+pub(super) fn object(
+    random: &mut Random,
+    options: &SceneOptions,
+    motion: AffineMotion,
+    shape: Shape,
+    centre: [f64; 2],
+    style: &Style,
+) -> Layer {
+    let side = (2.0 * shape.reach()) as usize + 8;
+    let texture = textured(random, style, side, side, options.colour, 22.0);
+    let half = 0.5 * side as f64;
+    Layer { motion, texture, offset: [half - centre[0], half - centre[1]], shape: Some((shape, centre)) }
+}
+
+/// The first of some textures with at least the wanted contrast, or the last.
+fn textured(random: &mut Random, style: &Style, width: usize, height: usize, colour: bool, contrast: f64) -> Texture {
+    let mut texture = Texture::draw(random, style, width, height, colour);
+    for _ in 0..8 {
+        if texture.contrast >= contrast {
+            break;
+        }
+        texture = Texture::draw(random, style, width, height, colour);
+    }
+    texture
+}

@@ -1,0 +1,177 @@
+//! From layers to frames and their truth.
+
+use super::layer::Layer;
+use super::{Scene, SceneOptions};
+use crate::error::{Error, Result};
+use crate::frame::Frame;
+use crate::motion::AffineMotion;
+use crate::random::Random;
+
+/// `[a, b, c, d, e, f]` takes (x, y) to (a x + b y + c, d x + e y + f).
+type Warp = [f64; 6];
+
+/// x ↦ x + A x.
+fn forward(motion: &AffineMotion) -> Warp {
+    let a = &motion.matrix;
+    [1.0 + a[0], a[1], a[2], a[3], 1.0 + a[4], a[5]]
+}
+
+/// The inverse of [`forward`]; the identity where there is none.
+fn backward(motion: &AffineMotion) -> Warp {
+    let [a, b, c, d, e, f] = forward(motion);
+    let determinant = a * e - b * d;
+    if determinant.abs() < 1e-9 {
+        return [1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    }
+    let (a, b, d, e) = (e / determinant, -b / determinant, -d / determinant, a / determinant);
+    [a, b, -(a * c + b * f), d, e, -(d * c + e * f)]
+}
+
+/// Renders the frames at t = −1, 0, 1 from the layers, the first of which is the background, the last the nearest.
+pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Random) -> Result<Scene> {
+    let (width, height) = (options.width, options.height);
+    let mut rgba: [Vec<u8>; 3] = Default::default();
+    let mut labels: [Vec<u8>; 3] = Default::default();
+    for t in 0..3 {
+        let (mut image, visible) = compose(layers, width, height, t);
+        blur(&mut image, width, height, options.blur);
+        labels[t] = visible;
+        let (gain, bias) = match t {
+            0 => (1.0 / options.gain, -options.bias),
+            1 => (1.0, 0.0),
+            _ => (options.gain, options.bias),
+        };
+        rgba[t] = exposed(&image, gain as f32, bias as f32, options.noise, random);
+    }
+    let frame = |t: usize| Frame::from_rgba(width, height, &rgba[t]);
+    let motions: Vec<AffineMotion> = layers.iter().map(|l| l.motion).collect();
+    let occluded = occlusion(&motions, &labels[1], &labels[2], width, height);
+    let [_, truth, _] = labels;
+    Ok(Scene { frames: [frame(0)?, frame(1)?, frame(2)?], rgba, labels: truth, motions, occluded, options: *options })
+}
+
+/// The sharp image at time t (0, 1, 2 for before, first, second) and the layer that is seen at every pixel.
+fn compose(layers: &[Layer], width: usize, height: usize, t: usize) -> (Vec<[f32; 3]>, Vec<u8>) {
+    let mut image = vec![[0.0f32; 3]; width * height];
+    let mut labels = vec![0u8; width * height];
+    for (index, layer) in layers.iter().enumerate() {
+        let [a, b, c, d, e, f] = match t {
+            0 => forward(&layer.motion),
+            1 => forward(&AffineMotion::STATIC),
+            _ => backward(&layer.motion),
+        };
+        for y in 0..height {
+            for x in 0..width {
+                let p = y * width + x;
+                let (px, py) = (x as f64, y as f64);
+                let (u, v) = (a * px + b * py + c, d * px + e * py + f);
+                let cover = match &layer.shape {
+                    None => 1.0,
+                    Some((shape, centre)) => {
+                        let (dx, dy) = (u - centre[0], v - centre[1]);
+                        let reach = shape.reach() + 2.0;
+                        if dx * dx + dy * dy > reach * reach {
+                            continue;
+                        }
+                        shape.coverage(dx, dy) as f32
+                    }
+                };
+                if cover <= 0.0 {
+                    continue;
+                }
+                let new = layer.texture.at(u + layer.offset[0], v + layer.offset[1]);
+                for k in 0..3 {
+                    image[p][k] += cover * (new[k] - image[p][k]);
+                }
+                if cover > 0.5 {
+                    labels[p] = index as u8;
+                }
+            }
+        }
+    }
+    (image, labels)
+}
+
+/// The point spread of the camera: a Gaussian of standard deviation `sigma` pixels.
+fn blur(image: &mut [[f32; 3]], width: usize, height: usize, sigma: f64) {
+    if sigma <= 0.0 {
+        return;
+    }
+    let reach = libm::ceil(3.0 * sigma) as i64;
+    let mut kernel: Vec<f64> = (-reach..=reach).map(|k| libm::exp(-((k * k) as f64) / (2.0 * sigma * sigma))).collect();
+    let sum: f64 = kernel.iter().sum();
+    kernel.iter_mut().for_each(|k| *k /= sum);
+    let mut pass = |step: usize, length: usize, starts: usize, next: usize| {
+        let mut line = vec![[0.0f32; 3]; length];
+        for start in (0..starts).map(|s| s * next) {
+            for (i, value) in line.iter_mut().enumerate() {
+                *value = image[start + i * step];
+            }
+            for i in 0..length {
+                let mut sum = [0.0f32; 3];
+                for (k, &weight) in kernel.iter().enumerate() {
+                    let j = (i as i64 + k as i64 - reach).clamp(0, length as i64 - 1) as usize;
+                    for c in 0..3 {
+                        sum[c] += weight as f32 * line[j][c];
+                    }
+                }
+                image[start + i * step] = sum;
+            }
+        }
+    };
+    pass(1, width, height, width);
+    pass(width, height, width, 1);
+}
+
+/// Gain, bias, noise of deviation `noise`·√(I/128), eight bits. The noise is that of the luminance: equal in all channels.
+fn exposed(image: &[[f32; 3]], gain: f32, bias: f32, noise: f64, random: &mut Random) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(image.len() * 4);
+    for pixel in image {
+        let value = pixel.map(|c| c.clamp(0.0, 255.0) * gain + bias);
+        let luminance = 0.299 * value[0] + 0.587 * value[1] + 0.114 * value[2];
+        let level = f64::from(luminance.clamp(10.0, 255.0));
+        let error = (noise * (level / 128.0).sqrt() * random.normal()) as f32;
+        bytes.extend(value.map(|c| (c + error).round().clamp(0.0, 255.0) as u8));
+        bytes.push(255);
+    }
+    bytes
+}
+
+/// Pixels of `first` that leave the image or land where `second` shows another layer.
+fn occlusion(motions: &[AffineMotion], first: &[u8], second: &[u8], width: usize, height: usize) -> Vec<bool> {
+    (0..first.len())
+        .map(|p| {
+            let (x, y) = ((p % width) as f64, (p / width) as f64);
+            let [u, v] = motions[usize::from(first[p])].flow(x, y);
+            let (x, y) = ((x + u).round(), (y + v).round());
+            let inside = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+            !inside || second[y as usize * width + x as usize] != first[p]
+        })
+        .collect()
+}
+
+/// A frame of another size than the options allow, or a number that is none.
+pub(super) fn check(options: &SceneOptions) -> Result<()> {
+    let bad = |name, reason: &str| Err(Error::InvalidOption { name, reason: reason.to_owned() });
+    let (width, height) = (options.width, options.height);
+    let sides = crate::frame::MIN_SIDE..=crate::frame::MAX_SIDE;
+    if !sides.contains(&width) || !sides.contains(&height) {
+        return Err(Error::FrameSizeUnsupported { width, height, min: *sides.start(), max: *sides.end() });
+    }
+    if options.objects > super::MAX_OBJECTS {
+        return bad("objects", &format!("must be from 0 to {}, not {}", super::MAX_OBJECTS, options.objects));
+    }
+    if !(0.0..=50.0).contains(&options.noise) {
+        return bad("noise", &format!("must be from 0 to 50 grey levels, not {}", options.noise));
+    }
+    if !(0.5..=2.0).contains(&options.gain) {
+        return bad("gain", &format!("must be from 0.5 to 2, not {}", options.gain));
+    }
+    if !(-100.0..=100.0).contains(&options.bias) {
+        return bad("bias", &format!("must be from -100 to 100 grey levels, not {}", options.bias));
+    }
+    if !(0.0..=5.0).contains(&options.blur) {
+        return bad("blur", &format!("must be from 0 to 5 pixels, not {}", options.blur));
+    }
+    Ok(())
+}
