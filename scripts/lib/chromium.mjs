@@ -34,9 +34,9 @@ export async function prepareChromium() {
 }
 
 async function findChromium() {
-  const candidates = [...NAMES.map(which), ...MAC.filter(existsSync), playwrightsOwn()];
-  for (const path of candidates) if (path && (await works(path))) return path;
-  return undefined;
+  for (const path of [...NAMES.map(which), ...MAC.filter(existsSync)]) if (path && (await works(path))) return path;
+  const own = playwrightsOwn();
+  return own && (await works(own)) ? own : undefined;
 }
 
 /** A name is not enough: Ubuntu's `chromium-browser` outside snap only prints how to install snap. */
