@@ -8,7 +8,7 @@ import { buildModules, buildPackage, buildPage } from './lib/builds.mjs';
 import { describe } from './lib/describe.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
-import { Stop, command, run } from './lib/run.mjs';
+import { Stop, command, interruption, run } from './lib/run.mjs';
 import { serve } from './lib/static-server.mjs';
 
 const SAMPLE = join(root, 'www', 'public', 'samples', 'intel-two-cars');
@@ -80,9 +80,7 @@ async function serveUntilInterrupted({ port, host }) {
   const server = await serve(join(root, 'www', 'dist'), { port, host });
   const shown = host === '127.0.0.1' ? 'localhost' : host;
   console.log(`The page is at http://${shown}:${server.address().port}/ (Ctrl-C ends it)`);
-  await new Promise((resolve) => {
-    process.once('SIGINT', resolve);
-  });
+  await interruption();
   server.close();
   server.closeAllConnections();
 }

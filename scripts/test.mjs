@@ -14,7 +14,7 @@ const PARTS = {
   },
   wasm: {
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', '--no-fail-fast']),
+    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked']),
   },
   package: {
     title: 'package tests',

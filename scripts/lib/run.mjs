@@ -78,11 +78,27 @@ export async function command(main) {
   }
 }
 
-// Whoever ends this program ends what it started; a terminal's Ctrl-C reaches the children by itself.
-process.on('SIGTERM', () => {
-  for (const child of running) child.kill('SIGTERM');
-  process.exit(143);
+// An interruption ends what was started and this program with it.
+const INTERRUPTIONS = { SIGINT: 130, SIGTERM: 143 };
+const handlers = Object.entries(INTERRUPTIONS).map(([signal, code]) => {
+  const handler = () => {
+    for (const child of running) child.kill(signal);
+    process.exit(code);
+  };
+  process.on(signal, handler);
+  return [signal, handler];
 });
+
+/**
+ * Waits for an interruption, which from now on is the ordinary way to end. The handlers stay: npm passes on a signal
+ * that the terminal has sent already, and the second one must not cut short what the first one ends.
+ */
+export function interruption() {
+  for (const [signal, handler] of handlers) process.off(signal, handler);
+  return new Promise((resolve) => {
+    for (const signal of Object.keys(INTERRUPTIONS)) process.on(signal, resolve);
+  });
+}
 
 /** The environment with changes; `undefined` removes a variable. */
 function merged(changes) {
