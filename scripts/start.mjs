@@ -78,9 +78,10 @@ function relativeToRoot(path) {
 
 async function serveUntilInterrupted({ port, host }) {
   const server = await serve(join(root, 'www', 'dist'), { port, host });
+  const ended = interruption();
   const shown = host === '127.0.0.1' ? 'localhost' : host;
   console.log(`The page is at http://${shown}:${server.address().port}/ (Ctrl-C ends it)`);
-  await interruption();
+  await ended;
   server.close();
   server.closeAllConnections();
 }
