@@ -2,6 +2,7 @@
 
 import { rmSync } from 'node:fs';
 import { join, relative } from 'node:path';
+import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 
 import { buildModules, buildPackage, buildPage } from './lib/builds.mjs';
@@ -84,4 +85,6 @@ async function serveUntilInterrupted({ port, host }) {
   await ended;
   server.close();
   server.closeAllConnections();
+  // npm passes on the signal that the terminal has sent already: be there to hear it, or it would end us with an error.
+  await sleep(200);
 }

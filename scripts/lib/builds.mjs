@@ -13,7 +13,7 @@ const RUST_SOURCES = ['src', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 /** The modules that wasm-pack builds: the small one runs everywhere, the one with codecs reads image files in Node. */
 export const MODULES = [
   { name: 'veronese', folder: 'pkg/wasm', features: [] },
-  { name: 'veronese', folder: 'pkg/wasm-codecs', features: ['codecs'] },
+  { name: 'veronese_codecs', folder: 'pkg/wasm/codecs', features: ['codecs'] },
 ];
 
 /** Everything, in order. */
@@ -43,17 +43,19 @@ export async function buildModules() {
   }
 }
 
-/** The npm package: TypeScript to JavaScript and declarations. */
+/** The npm package: the JavaScript beside the modules, and TypeScript to JavaScript. */
 export async function buildPackage() {
-  const inputs = ['pkg/src', 'pkg/package.json', 'pkg/tsconfig.json', 'package-lock.json', ...declarations()];
-  await step('the npm package', 'pkg/dist', ['pkg/dist/index.js', 'pkg/dist/index.d.ts'], inputs, [], () =>
+  const glue = MODULES.flatMap(({ name, folder }) => [`${folder}/${name}.js`, `${folder}/${name}.d.ts`]);
+  const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
+  const inputs = [...sources, ...glue, 'package-lock.json'];
+  await step('the npm package', 'pkg/dist', ['pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>
     must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
   );
 }
 
-/** The page, with everything it uses. */
+/** The page, with what it takes from the package. */
 export async function buildPage() {
-  const inputs = ['www', 'pkg/src', 'pkg/package.json', MODULES[0].folder, 'package-lock.json'];
+  const inputs = ['www', 'pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm', 'package-lock.json'];
   await step('the page', 'www/dist', ['www/dist/index.html'], inputs, [], () =>
     must('The page could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'www']),
   );
@@ -65,10 +67,6 @@ async function step(title, folder, outputs, inputs, versions, build) {
     await build();
   });
   if (!built) console.log(`${folder} is up to date.`);
-}
-
-function declarations() {
-  return MODULES.map(({ name, folder }) => `${folder}/${name}.d.ts`);
 }
 
 async function wasmPack(name, folder, features) {

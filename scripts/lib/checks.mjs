@@ -19,7 +19,7 @@ const CHECKS = [
   ['clippy for wasm with codecs', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...CODECS, ...DENY]],
   ['documentation', 'cargo', [...DOC, ...CODECS], DENY_IN_DOCS],
   ['documentation for wasm', 'cargo', [...DOC, ...CODECS, ...WASM], DENY_IN_DOCS],
-  ['types of the package', 'tsc', ['--noEmit', '--project', 'pkg']],
+  ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
 ];
 

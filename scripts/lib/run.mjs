@@ -89,10 +89,7 @@ const handlers = Object.entries(INTERRUPTIONS).map(([signal, code]) => {
   return [signal, handler];
 });
 
-/**
- * Waits for an interruption, which from now on is the ordinary way to end. The handlers stay: npm passes on a signal
- * that the terminal has sent already, and the second one must not cut short what the first one ends.
- */
+/** Waits for an interruption, which from now on is the ordinary way to end; a second one changes nothing. */
 export function interruption() {
   for (const [signal, handler] of handlers) process.off(signal, handler);
   return new Promise((resolve) => {
