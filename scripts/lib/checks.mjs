@@ -1,0 +1,52 @@
+// What must hold beside the tests: formatting, lints, documentation, types, versions. A warning is a failure.
+
+import { buildModules, buildPackage } from './builds.mjs';
+import { projectText } from './project.mjs';
+import { run } from './run.mjs';
+
+const WASM = ['--target', 'wasm32-unknown-unknown'];
+const CODECS = ['--features', 'codecs'];
+const DENY = ['--', '-D', 'warnings'];
+const DOC = ['doc', '--locked', '--no-deps'];
+const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
+
+const CHECKS = [
+  ['formatting', 'cargo', ['fmt', '--check']],
+  ['clippy', 'cargo', ['clippy', '--locked', '--all-targets', ...DENY]],
+  ['clippy with codecs', 'cargo', ['clippy', '--locked', '--all-targets', ...CODECS, ...DENY]],
+  // Benchmarks and examples are native programs.
+  ['clippy for wasm', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...DENY]],
+  ['clippy for wasm with codecs', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...CODECS, ...DENY]],
+  ['documentation', 'cargo', [...DOC, ...CODECS], DENY_IN_DOCS],
+  ['documentation for wasm', 'cargo', [...DOC, ...CODECS, ...WASM], DENY_IN_DOCS],
+  ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
+  ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
+];
+
+/** Runs every check, also after one failed, and returns `{ passed, failed, skipped }`. */
+export async function runChecks() {
+  const results = [['one version everywhere', versionsAgree()]];
+  // The types of the package come from the built modules, those of the page from the built package.
+  await buildModules();
+  await buildPackage();
+  for (const [title, program, args, env = {}] of CHECKS) {
+    console.log(`\n— ${title}: ${program} ${args.join(' ')}`);
+    results.push([title, (await run(program, args, { env })).code === 0]);
+  }
+  console.log();
+  for (const [title, good] of results) console.log(`${good ? 'passed' : 'FAILED'}  ${title}`);
+  const failed = results.filter(([, good]) => !good).length;
+  return { passed: results.length - failed, failed, skipped: 0 };
+}
+
+/** Crate, package and project are released together under one number. */
+function versionsAgree() {
+  const versions = {
+    'Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('Cargo.toml'))?.[1],
+    'package.json': JSON.parse(projectText('package.json')).version,
+    'pkg/package.json': JSON.parse(projectText('pkg/package.json')).version,
+  };
+  const agree = new Set(Object.values(versions)).size === 1;
+  if (!agree) console.error(`The versions differ: ${JSON.stringify(versions)}`);
+  return agree;
+}

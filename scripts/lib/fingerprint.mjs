@@ -1,0 +1,43 @@
+// Skipping a build whose inputs have not changed.
+
+import { createHash } from 'node:crypto';
+import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { inProject, root, toolsFolder } from './project.mjs';
+
+const NOT_INPUTS = new Set(['node_modules', 'dist', 'test-results', 'playwright-report']);
+
+/**
+ * Runs `build` unless `outputs` exist and the contents of `inputs` (files and folders of the project) and `versions`
+ * (of the programs that build) are those of the last build that succeeded. Returns whether it was run.
+ */
+export async function buildIfChanged(name, { inputs, outputs, versions = [] }, build) {
+  const record = join(toolsFolder, 'built', name);
+  const current = fingerprint(inputs, versions);
+  const same = existsSync(record) && readFileSync(record, 'utf8') === current;
+  if (same && outputs.every(inProject)) return false;
+  rmSync(record, { force: true });
+  await build();
+  mkdirSync(join(toolsFolder, 'built'), { recursive: true });
+  writeFileSync(record, current);
+  return true;
+}
+
+function fingerprint(inputs, versions) {
+  const hash = createHash('sha256');
+  hash.update(JSON.stringify(versions));
+  for (const path of inputs.flatMap(filesIn)) {
+    const content = readFileSync(join(root, path));
+    hash.update(`${path}\0${content.length}\0`).update(content);
+  }
+  return `${hash.digest('hex')}\n`;
+}
+
+/** The files at or below a path of the project, sorted; none where there is nothing. */
+function filesIn(path) {
+  if (!inProject(path)) return [];
+  if (!statSync(join(root, path)).isDirectory()) return [path];
+  const names = readdirSync(join(root, path)).filter((name) => !NOT_INPUTS.has(name));
+  return names.sort().flatMap((name) => filesIn(`${path}/${name}`));
+}

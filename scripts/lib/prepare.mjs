@@ -1,0 +1,32 @@
+// Set-up: everything the other commands need, from git, Node and rustup's cargo. What is there already is left alone,
+// and nothing is recorded: each piece is looked at anew, which takes less than a second.
+
+import { prepareChromium } from './chromium.mjs';
+import { prepareNpmPackages } from './npm-packages.mjs';
+import { projectText, atLeast } from './project.mjs';
+import { Stop } from './run.mjs';
+import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
+
+/**
+ * Prepares compiler, wasm tools and npm packages; with `checks` formatter and clippy too, with `browser` Chromium.
+ * Throws `Stop` with a sentence for every missing piece. Only a missing browser is returned instead, as
+ * `{ chromium: { problem } }`, because everything but the page tests works without it.
+ */
+export async function prepare({ checks = false, browser = false } = {}) {
+  checkNode();
+  await checkRust();
+  const rust = prepareCompiler({ checks }).then(prepareWasmTools);
+  const javascript = prepareNpmPackages().then(() => (browser ? prepareChromium() : {}));
+  const outcomes = await Promise.allSettled([rust, javascript]);
+  const failures = outcomes.filter(({ status }) => status === 'rejected').map(({ reason }) => reason);
+  const surprise = failures.find((reason) => !(reason instanceof Stop));
+  if (surprise) throw surprise;
+  if (failures.length > 0) throw new Stop(failures.map(({ message }) => message).join('\n'));
+  return { chromium: outcomes[1].value };
+}
+
+function checkNode() {
+  const needed = /\d+/.exec(JSON.parse(projectText('package.json')).engines.node)[0];
+  const found = process.versions.node;
+  if (!atLeast(found, needed)) throw new Stop(`Node ${found} is too old, ${needed} is needed: see https://nodejs.org.`);
+}

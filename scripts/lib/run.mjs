@@ -1,0 +1,105 @@
+// Starting other programs.
+
+import { spawn } from 'node:child_process';
+
+import { environment, root } from './project.mjs';
+
+/** Something a sentence explains to the user; the commands print it without a stack. */
+export class Stop extends Error {}
+
+const running = new Set();
+
+/**
+ * Runs a program to its end and never throws.
+ *
+ * `output`: `inherit` shows what it writes, `collect` keeps it, `both` does both.
+ * Returns `{ code, text }`: the exit code (127 where the program could not be started, 128 for a signal) and what it
+ * wrote, with standard output in `stdout` alone as well.
+ */
+export function run(program, args, { output = 'inherit', env = {}, cwd = root } = {}) {
+  const pipe = output === 'inherit' ? 'inherit' : 'pipe';
+  return new Promise((resolve) => {
+    const child = spawn(program, args, { cwd, env: merged(env), stdio: ['ignore', pipe, pipe] });
+    running.add(child);
+    const pieces = [];
+    const written = [];
+    child.stdout?.on('data', (piece) => {
+      pieces.push(piece);
+      written.push(piece);
+      if (output === 'both') process.stdout.write(piece);
+    });
+    child.stderr?.on('data', (piece) => {
+      pieces.push(piece);
+      if (output === 'both') process.stderr.write(piece);
+    });
+    const finish = (code, note = '') => {
+      running.delete(child);
+      resolve({ code, text: Buffer.concat(pieces) + note, stdout: Buffer.concat(written).toString() });
+    };
+    child.on('error', (error) => finish(127, `${program}: ${error.message}\n`));
+    child.on('close', (code) => finish(code ?? 128));
+  });
+}
+
+/** Like `run`, but a failure stops the command with `sentence`, after what the program wrote if that was not shown. */
+export async function must(sentence, program, args, options = {}) {
+  const result = await run(program, args, options);
+  if (result.code === 0) return result;
+  if (options.output === 'collect') process.stderr.write(result.text);
+  throw new Stop(sentence);
+}
+
+/**
+ * Announces a long step, runs it quietly and says every minute that it is still at work. Where the user watches a
+ * terminal and nothing else runs beside it, pass `output: 'inherit'` to show the program's own progress instead.
+ */
+export async function longStep(announcement, sentence, program, args, options = {}) {
+  console.log(`${announcement} …`);
+  const start = Date.now();
+  const what = announcement.replace(/ \(.*$/, '');
+  const reminder = setInterval(() => {
+    console.log(`… ${what}: ${Math.round((Date.now() - start) / 60_000)} min so far`);
+  }, 60_000);
+  try {
+    return await must(sentence, program, args, { output: 'collect', ...options });
+  } finally {
+    clearInterval(reminder);
+  }
+}
+
+/** Runs a command's main function: a `Stop` becomes one line and exit code 1, anything else keeps its stack. */
+export async function command(main) {
+  try {
+    process.exitCode = (await main(process.argv.slice(2))) ?? 0;
+  } catch (error) {
+    if (!(error instanceof Stop)) throw error;
+    console.error(`\n${error.message}`);
+    process.exitCode = 1;
+  }
+}
+
+// An interruption ends what was started and this program with it.
+const INTERRUPTIONS = { SIGINT: 130, SIGTERM: 143 };
+const handlers = Object.entries(INTERRUPTIONS).map(([signal, code]) => {
+  const handler = () => {
+    for (const child of running) child.kill(signal);
+    process.exit(code);
+  };
+  process.on(signal, handler);
+  return [signal, handler];
+});
+
+/** Waits for an interruption, which from now on is the ordinary way to end; a second one changes nothing. */
+export function interruption() {
+  for (const [signal, handler] of handlers) process.off(signal, handler);
+  return new Promise((resolve) => {
+    for (const signal of Object.keys(INTERRUPTIONS)) process.on(signal, resolve);
+  });
+}
+
+/** The environment with changes; `undefined` removes a variable. */
+function merged(changes) {
+  const env = { ...environment, ...changes };
+  for (const [name, value] of Object.entries(changes)) if (value === undefined) delete env[name];
+  return env;
+}

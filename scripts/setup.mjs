@@ -1,0 +1,11 @@
+// npm run setup: prepares everything, also what only the tests need.
+
+import { prepare } from './lib/prepare.mjs';
+import { command } from './lib/run.mjs';
+
+await command(async () => {
+  const { chromium } = await prepare({ checks: true, browser: true });
+  if (chromium.problem) console.log(chromium.problem);
+  console.log(chromium.problem ? 'Everything else is ready.' : 'Everything is ready.');
+  return chromium.problem ? 1 : 0;
+});
