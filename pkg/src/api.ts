@@ -12,21 +12,12 @@ import type {
   SegmentOptions,
   WasmSource,
 } from '../types/index.js';
-import type { Core, Glue } from './core.js';
+import type { Core } from './core.js';
 import { cancelled, VeroneseError } from './errors.js';
 import { colourBytes, davisPalette } from './palette.js';
 
-type OnStage = (stage: string, index: number, of: number) => void;
-
-/** What the generated glue has for us. Results are made by `src/wasm.rs`; the tests check every field of them. */
-export interface CoreGlue extends Glue {
-  segmentPair(first: unknown, second: unknown, before: unknown, options: unknown, onStage: OnStage): unknown;
-  fitMotions(positions: Float64Array, derivatives: Float64Array, options: unknown, onStage: OnStage): unknown;
-  paintLabels(context: CanvasRenderingContext2D, ...rest: PaintArguments): void;
-  paintLabelsOffscreen(context: OffscreenCanvasRenderingContext2D, ...rest: PaintArguments): void;
-}
-
-type PaintArguments = [labels: Uint8Array, width: number, height: number, palette: Uint8Array, opacity: number];
+type CoreGlue = typeof import('./glue.js');
+type OnStage = Parameters<CoreGlue['fitMotions']>[3];
 
 export class Api {
   readonly #core: Core<CoreGlue>;
@@ -56,7 +47,7 @@ export class Api {
     { labels, width, height }: Pick<Segmentation, 'labels' | 'width' | 'height'>,
     { palette = overlayPalette(), opacity = 0.5 }: PaintOptions = {},
   ): Promise<void> => {
-    const rest: PaintArguments = [labels, width, height, colourBytes(palette, 4), opacity];
+    const rest = [labels, width, height, colourBytes(palette, 4), opacity] as const;
     await this.#core.call((glue) => {
       if (isOffscreen(context)) glue.paintLabelsOffscreen(context, ...rest);
       else glue.paintLabels(context, ...rest);

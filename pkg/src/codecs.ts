@@ -1,21 +1,14 @@
 // Image files under Node: the second WebAssembly build, which has everything of the first and reads and writes files.
 
-import * as glue from '../wasm/codecs/veronese_codecs.js';
+import * as glue from './glue-codecs.js';
 import type { Picture } from '../types/codecs.js';
-import { Api, type CoreGlue } from './api.js';
+import { Api } from './api.js';
 import { Core } from './core.js';
 import { VeroneseError } from './errors.js';
 import { colourBytes } from './palette.js';
 import { read } from './reading.js';
 
-interface CodecsGlue extends CoreGlue {
-  decodeImage(file: Uint8Array): unknown;
-  encodeIndexedPng(width: number, height: number, indices: Uint8Array, palette: Uint8Array): Uint8Array;
-  encodeGreyPng(width: number, height: number, grey: Uint8Array): Uint8Array;
-  encodeColourPng(width: number, height: number, pixels: Uint8Array): Uint8Array;
-}
-
-const core = new Core<CodecsGlue>(glue, read, new URL('../wasm/codecs/veronese_codecs_bg.wasm', import.meta.url));
+const core = new Core(glue, read, new URL('../wasm/codecs/veronese_codecs_bg.wasm', import.meta.url));
 
 /** The calls of the package on this build: what decodes also segments, so the command line loads one module only. */
 export const api = new Api(core);

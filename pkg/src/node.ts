@@ -1,7 +1,7 @@
 // The entry for Node.
 
 import { Worker } from 'node:worker_threads';
-import * as glue from '../wasm/veronese.js';
+import * as glue from './glue.js';
 import type { WasmSource } from '../types/index.js';
 import { Api } from './api.js';
 import { Core } from './core.js';

@@ -1,6 +1,6 @@
 // The entry for browsers, workers and bundlers.
 
-import * as glue from '../wasm/veronese.js';
+import * as glue from './glue.js';
 import type { WasmSource } from '../types/index.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
