@@ -16,6 +16,8 @@ export class Core<G extends Glue> {
   readonly #place: URL | undefined;
   #module: Promise<WebAssembly.Module> | undefined;
   #instance: Promise<unknown> | undefined;
+  /** Whether the glue has an instance to call. */
+  #live = false;
 
   /** `place`: where the module lies if nobody says otherwise. */
   constructor(glue: G, read: Read, place?: URL) {
@@ -52,6 +54,7 @@ export class Core<G extends Glue> {
     const module = await this.module(source);
     try {
       await this.#glue.default({ module_or_path: module });
+      this.#live = true;
     } catch (thrown) {
       // A module, but not ours: do not keep it.
       this.#glue.forgetInstance();
@@ -66,7 +69,7 @@ export class Core<G extends Glue> {
    */
   async call<T>(work: (glue: G) => T): Promise<T> {
     do await this.init();
-    while (!this.#instance); // another call, between our two turns, may have let go of it
+    while (!this.#live); // another call may have let go of the instance just before our turn
     try {
       return work(this.#glue);
     } catch (thrown) {
@@ -74,6 +77,7 @@ export class Core<G extends Glue> {
       if (!ordinary) {
         this.#glue.forgetInstance();
         this.#instance = undefined;
+        this.#live = false;
       }
       throw veroneseError(thrown);
     }
