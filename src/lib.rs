@@ -2,6 +2,8 @@
 
 mod alignment;
 mod best;
+#[cfg(feature = "codecs")]
+pub mod codecs;
 pub mod embedding;
 mod error;
 pub mod factorisation;
@@ -21,6 +23,8 @@ mod random;
 pub mod refinement;
 pub mod scene;
 mod selection;
+#[cfg(target_arch = "wasm32")]
+pub mod wasm;
 
 pub use error::{Error, Result};
 pub use frame::{Derivatives, Frame, MAX_SIDE, MIN_SIDE, Plane, derivatives};

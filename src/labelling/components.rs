@@ -28,18 +28,6 @@ pub(crate) struct Components {
     pub(crate) list: Vec<Component>,
 }
 
-impl Component {
-    /// Width of the bounding box.
-    pub(crate) fn width(&self) -> usize {
-        self.bounds[2] - self.bounds[0] + 1
-    }
-
-    /// Height of the bounding box.
-    pub(crate) fn height(&self) -> usize {
-        self.bounds[3] - self.bounds[1] + 1
-    }
-}
-
 /// The components of `labels`, rows of `width` pixels.
 pub(crate) fn components(labels: &[u8], width: usize, connectivity: Connectivity) -> Components {
     const UNSEEN: u32 = u32::MAX;
