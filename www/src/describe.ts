@@ -17,8 +17,8 @@ export interface MotionParts {
   readonly stretch: number;
 }
 
-/** Half of what the eye can see of a moving edge, pixels: parts that move no pixel of the mask that far go unsaid. */
-const VISIBLE = 0.05;
+/** A tenth of a pixel is about what the estimate is good for: parts that move no pixel of the mask that far go unsaid. */
+const VISIBLE = 0.1;
 
 /** Splits `x ↦ x + A x` into displacement of `centre`, rotation, growth and stretch (the polar decomposition of its linear part). */
 export function partsOf(matrix: Matrix, centre: readonly [number, number]): MotionParts {

@@ -8,6 +8,9 @@ const tenths = decimals(1);
 const hundredths = decimals(2);
 const whole = decimals(0);
 
+/** Keeps a number and its unit on one line. */
+const NBSP = '\u00a0';
+
 /** Two digits below one, one digit above: as exact as anybody reads. */
 function amount(value: number): string {
   const size = Math.abs(value);
@@ -38,19 +41,19 @@ function stage(name: string): string {
 function motion(parts: MotionParts): string {
   const said: string[] = [];
   const moves: string[] = [];
-  if (parts.right !== 0) moves.push(`${amount(parts.right)} px ${parts.right > 0 ? 'right' : 'left'}`);
-  if (parts.down !== 0) moves.push(`${amount(parts.down)} px ${parts.down > 0 ? 'down' : 'up'}`);
+  if (parts.right !== 0) moves.push(`${amount(parts.right)}${NBSP}px ${parts.right > 0 ? 'right' : 'left'}`);
+  if (parts.down !== 0) moves.push(`${amount(parts.down)}${NBSP}px ${parts.down > 0 ? 'down' : 'up'}`);
   if (moves.length > 0) said.push(`moves ${moves.join(', ')}`);
   if (parts.turn !== 0) said.push(`turns ${amount(parts.turn)}° ${parts.turn > 0 ? 'clockwise' : 'anticlockwise'}`);
-  if (parts.growth !== 0) said.push(`${parts.growth > 0 ? 'grows' : 'shrinks'} ${amount(parts.growth * 100)} %`);
-  if (parts.stretch !== 0) said.push(`stretches ${amount(parts.stretch * 100)} %`);
+  if (parts.growth !== 0) said.push(`${parts.growth > 0 ? 'grows' : 'shrinks'} ${amount(parts.growth * 100)}${NBSP}%`);
+  if (parts.stretch !== 0) said.push(`stretches ${amount(parts.stretch * 100)}${NBSP}%`);
   return said.length > 0 ? said.join('; ') : 'stands still';
 }
 
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' } satisfies Record<Slot, string>,
   size: (width: number, height: number): string => `${width} × ${height}`,
-  percent: (share: number): string => `${tenths.format(share * 100)} %`,
+  percent: (share: number): string => `${tenths.format(share * 100)}${NBSP}%`,
   milliseconds: (ms: number): string => `${ms < 10 ? tenths.format(ms) : whole.format(ms)} ms`,
   stage,
 

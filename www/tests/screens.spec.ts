@@ -1,6 +1,6 @@
 //! Pictures of the page in its states, in `out/screens/`, for people to look at. Each waits for the state it shows.
 
-import { expect, open, done, screen, square, test, upload } from './support.js';
+import { done, expect, open, sample, screen, square, test, upload } from './support.js';
 
 test('desktop', async ({ page }) => {
   await open(page);
@@ -22,7 +22,7 @@ test('phone', async ({ page }) => {
 
 test('error', async ({ page }) => {
   await open(page);
-  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
+  await upload(page, [await sample('first'), await square('second.png', 640, 480, 0, 0)]);
   await expect(page.getByRole('alert')).toBeVisible();
   await page.screenshot({ path: screen('error') });
 });

