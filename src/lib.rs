@@ -1,5 +1,7 @@
 //! How many things move between two video frames, how each moves, and which pixels belong to it.
 
+#[cfg(feature = "codecs")]
+pub mod codecs;
 mod error;
 mod frame;
 mod measurements;
@@ -9,6 +11,8 @@ mod pipeline;
 mod points;
 mod progress;
 mod random;
+#[cfg(target_arch = "wasm32")]
+pub mod wasm;
 
 pub use error::{Error, Result};
 pub use frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};

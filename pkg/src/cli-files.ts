@@ -1,0 +1,99 @@
+// Files of the command line: read with a limit, written whole or not at all.
+
+import { readdirSync, renameSync, rmSync, statSync } from 'node:fs';
+import { type FileHandle, mkdir, open, writeFile } from 'node:fs/promises';
+import { join } from 'node:path';
+import { VeroneseError } from './errors.js';
+
+/** Largest input, bytes: more than the largest frame needs in the most wasteful of the formats. */
+const LARGEST = 512 * 1024 * 1024;
+
+/** Throws `file-not-found` or `unreadable-file`. */
+export async function readInput(path: string): Promise<Uint8Array> {
+  let file: FileHandle | undefined;
+  try {
+    file = await open(path, 'r');
+    const status = await file.stat();
+    if (status.isDirectory()) throw new VeroneseError('unreadable-file', `'${path}' is a folder`);
+    if (status.size > LARGEST) throw tooLarge(path);
+    return await readUpToLimit(path, file);
+  } catch (thrown) {
+    if (thrown instanceof VeroneseError) throw thrown;
+    const { code, message } = thrown as NodeJS.ErrnoException;
+    if (code === 'ENOENT' || code === 'ENOTDIR') throw new VeroneseError('file-not-found', `there is no file '${path}'`);
+    throw new VeroneseError('unreadable-file', `'${path}' cannot be read: ${message}`);
+  } finally {
+    await file?.close();
+  }
+}
+
+/** A pipe or a device has no size to believe. */
+async function readUpToLimit(path: string, file: FileHandle): Promise<Uint8Array> {
+  const chunks: Uint8Array[] = [];
+  let total = 0;
+  for await (const chunk of file.createReadStream({ autoClose: false }) as AsyncIterable<Uint8Array>) {
+    total += chunk.length;
+    if (total > LARGEST) throw tooLarge(path);
+    chunks.push(chunk);
+  }
+  return new Uint8Array(Buffer.concat(chunks));
+}
+
+function tooLarge(path: string): VeroneseError {
+  return new VeroneseError('unreadable-file', `'${path}' is larger than ${LARGEST / 1024 / 1024} MB`);
+}
+
+/** Throws `write-failed` early, before the work, where the output folder cannot be one. */
+export function checkFolder(folder: string): void {
+  const status = statSync(folder, { throwIfNoEntry: false });
+  if (status && !status.isDirectory()) throw new VeroneseError('write-failed', `'${folder}' is not a folder`);
+}
+
+export interface OutputFile {
+  name: string;
+  bytes: Uint8Array;
+}
+
+/** What this program writes; files of an earlier run that this one did not make would be mistaken for its own. */
+const OURS = /^(mask-\d+|overlay)\.png$/;
+
+/** A set of files that appears as a whole: all are written under temporary names, then renamed in one go. */
+export class Output {
+  readonly #temporary = new Set<string>();
+
+  /** Throws `write-failed`, leaving nothing behind but the folder. The last file is renamed last. */
+  async write(folder: string, files: readonly OutputFile[]): Promise<void> {
+    try {
+      await mkdir(folder, { recursive: true });
+      const moves: { from: string; to: string }[] = [];
+      for (const { name, bytes } of files) {
+        const move = { from: join(folder, `.${name}.${process.pid}.part`), to: join(folder, name) };
+        if (statSync(move.to, { throwIfNoEntry: false })?.isDirectory()) throw new Error(`'${move.to}' is a folder`);
+        this.#temporary.add(move.from);
+        await writeFile(move.from, bytes);
+        moves.push(move);
+      }
+      this.#replace(folder, moves, new Set(files.map(({ name }) => name)));
+    } catch (thrown) {
+      const reason = thrown instanceof Error ? thrown.message : String(thrown);
+      throw new VeroneseError('write-failed', `the results cannot be written into '${folder}': ${reason}`);
+    } finally {
+      this.discard();
+    }
+  }
+
+  /** Without a pause, so that no signal is handled in between. */
+  #replace(folder: string, moves: readonly { from: string; to: string }[], names: ReadonlySet<string>): void {
+    for (const name of readdirSync(folder)) if (OURS.test(name) && !names.has(name)) rmSync(join(folder, name));
+    for (const { from, to } of moves) {
+      renameSync(from, to);
+      this.#temporary.delete(from);
+    }
+  }
+
+  /** Removes what is half-written. */
+  discard(): void {
+    for (const path of this.#temporary) rmSync(path, { force: true });
+    this.#temporary.clear();
+  }
+}

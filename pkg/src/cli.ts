@@ -1,0 +1,84 @@
+// The program `veronese`: reads files, has the work done in a thread, writes files and one line of JSON.
+
+import { writeSync } from 'node:fs';
+import { Worker } from 'node:worker_threads';
+import { type Command, filesOf, HELP, parseCommand } from './cli-arguments.js';
+import { checkFolder, Output, readInput } from './cli-files.js';
+import type { Outcome, Work } from './cli-work.js';
+import { VeroneseError, veroneseError } from './errors.js';
+import { version } from './version.js';
+
+const EXIT = { failed: 1, usage: 2, interrupted: 130, terminated: 143 } as const;
+
+/** Sets the process's exit code; never rejects. */
+export async function main(args: string[]): Promise<void> {
+  let command: Command;
+  try {
+    command = parseCommand(args);
+  } catch (thrown) {
+    complain(thrown);
+    process.exitCode = EXIT.usage;
+    return;
+  }
+  const output = new Output();
+  process.on('SIGINT', () => stop(output, EXIT.interrupted));
+  process.on('SIGTERM', () => stop(output, EXIT.terminated));
+  try {
+    await print(await answer(command, output));
+  } catch (thrown) {
+    complain(thrown);
+    process.exitCode = EXIT.failed;
+  }
+}
+
+async function answer(command: Command, output: Output): Promise<string> {
+  if (command.name === 'help') return HELP;
+  if (command.name === 'version') return `veronese ${version}\n`;
+  const folder = command.name === 'pair' ? command.out : undefined;
+  if (folder !== undefined) checkFolder(folder);
+  const contents: Uint8Array[] = [];
+  for (const path of filesOf(command)) contents.push(await readInput(path));
+  const { json, files } = await inThread({ command, contents });
+  if (folder !== undefined) await output.write(folder, files);
+  return json;
+}
+
+function inThread(work: Work): Promise<Exclude<Outcome, { error: unknown }>> {
+  return new Promise((resolve, reject) => {
+    const transferList = work.contents.map(({ buffer }) => buffer as ArrayBuffer);
+    const worker = new Worker(new URL('./cli-work.js', import.meta.url), { workerData: work, transferList });
+    worker.once('message', (outcome: Outcome) => {
+      if ('error' in outcome) reject(new VeroneseError(outcome.error.code, outcome.error.message));
+      else resolve(outcome);
+    });
+    worker.once('error', reject);
+    worker.once('exit', (code) => reject(new VeroneseError('internal', `the work ended early (${code})`)));
+  });
+}
+
+/** Ctrl-C: at once, and nothing half-written stays. */
+function stop(output: Output, code: number): never {
+  output.discard();
+  complain(new VeroneseError('cancelled', 'stopped by a signal'));
+  process.exit(code);
+}
+
+function print(text: string): Promise<void> {
+  return new Promise((resolve, reject) => {
+    const failed = (error: Error) => {
+      reject(new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`));
+    };
+    process.stdout.once('error', failed);
+    process.stdout.write(text, (error) => (error ? failed(error) : resolve()));
+  });
+}
+
+/** One line on stderr, whatever the error's message looks like. */
+function complain(thrown: unknown): void {
+  const { code, message } = veroneseError(thrown);
+  try {
+    writeSync(2, `veronese: error: ${code}: ${message.replace(/\s+/g, ' ').trim()}\n`);
+  } catch {
+    // Nobody listens: the exit code says it.
+  }
+}

@@ -1,0 +1,31 @@
+// Colours of labels: the palette of the DAVIS benchmark, which annotation tools know from indexed PNG masks.
+
+import type { Colour } from '../types/index.js';
+
+/** Number of colours that DAVIS takes from the PASCAL VOC pattern; grey levels follow. */
+const PATTERNED = 22;
+
+/**
+ * The 256 colours. VOC spreads the bits of the index over the three channels, three bits at a time from the highest bit
+ * down; DAVIS has 191 where that gives 192, and (k, k, k) from index 22 on.
+ */
+export function davisPalette(): [number, number, number][] {
+  return Array.from({ length: 256 }, (_, index) => {
+    if (index >= PATTERNED) return [index, index, index];
+    const channel = (shift: number) => {
+      const value = (((index >> shift) & 1) << 7) | (((index >> (shift + 3)) & 1) << 6);
+      return value === 192 ? 191 : value;
+    };
+    return [channel(0), channel(1), channel(2)];
+  });
+}
+
+/** Colours as bytes, one after another: three each, or four with alpha (255 where a colour has none). */
+export function colourBytes(colours: readonly Colour[], channels: 3 | 4): Uint8Array {
+  const bytes = new Uint8ClampedArray(colours.length * channels);
+  colours.forEach((colour, index) => {
+    bytes.set(colour.slice(0, channels), index * channels);
+    if (channels === 4 && colour.length === 3) bytes[index * channels + 3] = 255;
+  });
+  return new Uint8Array(bytes.buffer);
+}

@@ -1,0 +1,29 @@
+// The worker's side: one task at a time, answered by messages.
+
+import * as glue from './glue.js';
+import { Api } from './api.js';
+import { Core } from './core.js';
+import { errorMessage } from './errors.js';
+import type { Reply, Request } from './messages.js';
+
+/** Answers one request at a time: the page sends the next when it has the answer to the last. */
+export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (request: Request) => Promise<void> {
+  const api = new Api(new Core(glue, () => Promise.reject(new Error('a worker gets its module from the page'))));
+  return async ({ task, module }) => {
+    try {
+      if (module) await api.init(module);
+      const onProgress = (progress: { stage: string; index: number; of: number }) => {
+        post({ kind: 'progress', progress }, []);
+      };
+      const options = { ...task.options, onProgress };
+      const result =
+        task.call === 'segmentPair'
+          ? await api.segmentPair(task.first, task.second, options)
+          : await api.fitMotions(task.measurements, options);
+      post({ kind: 'done', result }, [result.labels.buffer as ArrayBuffer]);
+    } catch (thrown) {
+      // An exception in an asynchronous handler would not reach the page by itself.
+      post({ kind: 'failed', error: errorMessage(thrown) }, []);
+    }
+  };
+}

@@ -1,0 +1,140 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { describe, test } from 'node:test';
+import { fitMotions, Segmenter, segmentPair, VeroneseError } from 'veronese';
+import { frame, pair, points } from './support/frames.mjs';
+import { temporaryFolder } from './support/program.mjs';
+import { failure, timeless } from './support/shapes.mjs';
+
+/** A segmenter that ends with the test. */
+function segmenter(t, source) {
+  const made = new Segmenter(source);
+  t.after(() => made.close());
+  return made;
+}
+
+describe('Segmenter', () => {
+  test('gives the same bits as the direct calls', async (t) => {
+    const worker = segmenter(t);
+    const options = { motions: 'auto', seed: 3, before: frame(-1), markUnknown: true };
+    assert.deepEqual(timeless(await worker.segmentPair(...pair(), options)), timeless(await segmentPair(...pair(), options)));
+    const measurements = points(80, 1, 2);
+    assert.deepEqual(timeless(await worker.fitMotions(measurements)), timeless(await fitMotions(measurements)));
+  });
+
+  test('leaves the frames usable', async (t) => {
+    const [first, second] = pair();
+    await segmenter(t).segmentPair(first, second);
+    assert.equal(first.data.length, 64 * 48 * 4);
+  });
+
+  test('reports progress', async (t) => {
+    const [direct, there] = [[], []];
+    await segmentPair(...pair(), { onProgress: (progress) => direct.push(progress) });
+    await segmenter(t).segmentPair(...pair(), { onProgress: (progress) => there.push(progress) });
+    assert.deepEqual(there, direct);
+  });
+
+  test('does many calls in their order', async (t) => {
+    const worker = segmenter(t);
+    const order = [];
+    const calls = [1, 2, 3, 4, 5].map((seed) =>
+      worker.segmentPair(...pair(), { seed }).then(({ settings }) => order.push(settings.seed)),
+    );
+    await Promise.all(calls);
+    assert.deepEqual(order, [1, 2, 3, 4, 5]);
+  });
+
+  test('passes errors on with their codes, and goes on', async (t) => {
+    const worker = segmenter(t);
+    const cases = [
+      ['frame-size-mismatch', () => worker.segmentPair(frame(0), frame(1, { width: 70 }))],
+      ['invalid-option', () => worker.segmentPair(...pair(), { motions: 0 })],
+      ['invalid-option', () => worker.segmentPair(...pair(), { nonsense: 1 })],
+      ['invalid-input', () => worker.segmentPair(frame(0), undefined)],
+      ['invalid-input', () => worker.segmentPair(...pair(), { before: {} })],
+      ['invalid-input', () => worker.fitMotions({})],
+    ];
+    for (const [code, call] of cases) {
+      const error = await failure(call());
+      assert.ok(error instanceof VeroneseError);
+      assert.equal(error.code, code);
+    }
+    assert.equal((await worker.segmentPair(...pair())).width, 64);
+  });
+
+  test('a call is cancelled at once, the next one gets a fresh worker', async (t) => {
+    const worker = segmenter(t);
+    const expected = timeless(await worker.segmentPair(...pair()));
+    const controller = new AbortController();
+    const large = pair({ width: 1024, height: 1024 });
+    const started = performance.now();
+    const cancelled = worker.segmentPair(...large, { signal: controller.signal, onProgress: () => controller.abort('enough') });
+    const waiting = worker.segmentPair(...pair());
+    const error = await failure(cancelled);
+    assert.ok(performance.now() - started < 1000);
+    assert.equal(error.code, 'cancelled');
+    assert.equal(error.cause, 'enough');
+    assert.deepEqual(timeless(await waiting), expected);
+  });
+
+  test('a waiting call is cancelled without disturbing the one under way', async (t) => {
+    const worker = segmenter(t);
+    const running = worker.segmentPair(...pair());
+    const controller = new AbortController();
+    const waiting = worker.segmentPair(...pair(), { signal: controller.signal });
+    controller.abort();
+    assert.equal((await failure(waiting)).code, 'cancelled');
+    assert.equal((await running).width, 64);
+    controller.abort();
+  });
+
+  test('an aborted signal cancels before anything starts', async (t) => {
+    assert.equal((await failure(segmenter(t).segmentPair(...pair(), { signal: AbortSignal.abort() }))).code, 'cancelled');
+  });
+
+  test('a signal that is aborted after the answer does nothing', async (t) => {
+    const worker = segmenter(t);
+    const controller = new AbortController();
+    await worker.segmentPair(...pair(), { signal: controller.signal });
+    const next = worker.segmentPair(...pair());
+    controller.abort();
+    assert.equal((await next).width, 64);
+  });
+
+  test('what a listener throws ends its call only', async (t) => {
+    const worker = segmenter(t);
+    const mine = new Error('mine');
+    assert.equal(await failure(worker.segmentPair(...pair(), { onProgress: () => { throw mine; } })), mine);
+    assert.equal((await worker.segmentPair(...pair())).width, 64);
+  });
+
+  test('close rejects what is under way and waiting; a later call starts again', async (t) => {
+    const worker = segmenter(t);
+    const calls = [worker.segmentPair(...pair()), worker.fitMotions(points(60, 1, 1))];
+    worker.close();
+    for (const call of calls) assert.equal((await failure(call)).code, 'cancelled');
+    assert.equal((await worker.segmentPair(...pair())).width, 64);
+  });
+
+  test('a source that is no module rejects, a later call tries again', async (t) => {
+    const worker = segmenter(t, Buffer.from('<!doctype html>'));
+    for (let i = 0; i < 2; i++) assert.equal((await failure(worker.segmentPair(...pair()))).code, 'wasm-load-failed');
+    const bytes = readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url));
+    assert.equal((await segmenter(t, bytes).segmentPair(...pair())).width, 64);
+  });
+
+  test('an idle worker lets the process end', (t) => {
+    const folder = temporaryFolder(t);
+    const url = (path) => JSON.stringify(String(new URL(path, import.meta.url)));
+    const script = folder.file(
+      'idle.mjs',
+      `import { Segmenter } from ${url('../dist/node.js')}; import { pair } from ${url('./support/frames.mjs')};
+       console.log((await new Segmenter().segmentPair(...pair())).width);`,
+    );
+    const { stdout, status, stderr } = spawnSync(process.execPath, [script], { encoding: 'utf8', timeout: 20000 });
+    assert.equal(stdout.trim(), '64', stderr);
+    assert.equal(status, 0);
+  });
+});

@@ -1,0 +1,29 @@
+// Image files under Node: the second WebAssembly build, which is loaded only when this module is used.
+
+/** A decoded image: RGBA bytes, row by row. */
+export interface Picture {
+  data: Uint8Array;
+  width: number;
+  height: number;
+}
+
+/**
+ * Decodes a PNG, JPEG, WebP, BMP or PNM file; an Exif orientation is applied.
+ *
+ * Rejects with code `unreadable-image`, or `frame-size-unsupported` for a side above 4096 pixels.
+ */
+export function decodeImage(file: Uint8Array): Promise<Picture>;
+
+/** An 8-bit indexed PNG: one palette index per pixel. Rejects with code `invalid-option`. */
+export function encodeIndexedPng(
+  width: number,
+  height: number,
+  indices: Uint8Array,
+  palette: readonly (readonly [number, number, number])[],
+): Promise<Uint8Array>;
+
+/** An 8-bit grey PNG: one byte per pixel. Rejects with code `invalid-option`. */
+export function encodeGreyPng(width: number, height: number, grey: Uint8Array): Promise<Uint8Array>;
+
+/** An RGB PNG of three bytes per pixel, or an RGBA PNG of four. Rejects with code `invalid-option`. */
+export function encodeColourPng(width: number, height: number, pixels: Uint8Array): Promise<Uint8Array>;

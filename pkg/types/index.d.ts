@@ -1,0 +1,235 @@
+// The public types, written by hand: what stands here is what a caller may rely on.
+
+/** RGBA bytes, row by row. An `ImageData` fits. Sides from 16 to 4096 pixels. */
+export interface Pixels {
+  data: Uint8ClampedArray | Uint8Array;
+  width: number;
+  height: number;
+}
+
+/** Where the work is: a stage has just begun. */
+export interface Progress {
+  /** A stable camelCase name, the key of the stage in `milliseconds`. */
+  stage: string;
+  /** Position of the stage among all of this call, from 0. */
+  index: number;
+  /** Number of stages of this call. */
+  of: number;
+}
+
+/** What every call takes. */
+export interface CallOptions {
+  /**
+   * Cancels the call, which then rejects with code `cancelled`. A {@link Segmenter} stops at once; a direct call, which
+   * occupies its thread, looks at the signal between stages.
+   */
+  signal?: AbortSignal | undefined;
+  /** Called when a stage begins. What it throws ends the call and is thrown on. */
+  onProgress?: ((progress: Progress) => void) | undefined;
+}
+
+export interface SegmentOptions extends CallOptions {
+  /** Number of motions, 1 to 10; default `'auto'`: find it. */
+  motions?: 'auto' | number | undefined;
+  /** Work to spend: `'fast'` for live use, `'best'` (the default) for keeping. */
+  quality?: 'fast' | 'best' | undefined;
+  /** Label 255 where no motion explains a pixel; default `false`. */
+  markUnknown?: boolean | undefined;
+  /** Seed of every random choice, a whole number from 0; default 1. */
+  seed?: number | undefined;
+  /** The frame before the first: a third view that helps where something is hidden in the second. */
+  before?: Pixels | undefined;
+}
+
+export interface FitOptions extends CallOptions {
+  /** Number of motions, 1 to 10; default `'auto'`: find it. */
+  motions?: 'auto' | number | undefined;
+  /** `'paper'`: the algorithm of the paper; `'best'` (the default): ours. */
+  method?: 'paper' | 'best' | undefined;
+  /** Seed of every random choice, a whole number from 0; default 1. */
+  seed?: number | undefined;
+}
+
+/**
+ * `[a11, a12, a13, a21, a22, a23]`: the pixel (x, y) of the first frame is displaced by u = a11·x + a12·y + a13,
+ * v = a21·x + a22·y + a23 pixels in the second. (0, 0) is the centre of the top-left pixel, x right, y down.
+ */
+export type Matrix = [number, number, number, number, number, number];
+
+/** Milliseconds of the whole call and of each of its stages. */
+export interface Milliseconds {
+  total: number;
+  [stage: string]: number;
+}
+
+/** One number of motions that was tried; a smaller score is better. */
+export interface Candidate {
+  motions: number;
+  score: number;
+}
+
+/** One motion of a {@link Segmentation}. */
+export interface SegmentedMotion {
+  label: number;
+  matrix: Matrix;
+  /** Number of its pixels. */
+  pixels: number;
+  /** Their share of all pixels, 0 to 1. */
+  share: number;
+  /** Root mean square of the motion-compensated intensity difference over its pixels, in grey levels (0 to 255). */
+  residual: number;
+  /** Bounding box of its pixels: x, y, width, height. */
+  bbox: [number, number, number, number];
+  /** Motions of one rigid background share a group; group 0 has the most pixels. */
+  group: number;
+}
+
+/** What {@link segmentPair} found: plain data, nothing to free. */
+export interface Segmentation {
+  version: 1;
+  width: number;
+  height: number;
+  /** Number of motions. */
+  count: number;
+  /** By decreasing number of pixels: `motions[i].label === i`. */
+  motions: SegmentedMotion[];
+  evidence: { candidates: Candidate[] };
+  /** Number of pixels with label 255. */
+  unlabelled: number;
+  milliseconds: Milliseconds;
+  settings: {
+    motions: 'auto' | number;
+    quality: 'fast' | 'best';
+    markUnknown: boolean;
+    /** Whether there was a frame before the first. */
+    before: boolean;
+    seed: number;
+    software: string;
+  };
+  /** One label per pixel, row by row; 255 is unlabelled. */
+  labels: Uint8Array;
+}
+
+/** One motion of a {@link MotionFit}. */
+export interface FittedMotion {
+  label: number;
+  matrix: Matrix;
+  /** Number of measurements that belong to it. */
+  measurements: number;
+  /** How many of the six entries its measurements determine: below 6 the rest is a choice. */
+  determined: number;
+}
+
+/** What {@link fitMotions} found. */
+export interface MotionFit {
+  version: 1;
+  /** Number of motions. */
+  count: number;
+  /** By decreasing number of measurements: `motions[i].label === i`. */
+  motions: FittedMotion[];
+  evidence: { singularValues: number[]; candidates: Candidate[] };
+  /** What the paper's steps gave; only with `method: 'paper'`. */
+  stages?: { factorisation: Matrix[]; refined: Matrix[] };
+  milliseconds: Milliseconds;
+  settings: { motions: 'auto' | number; method: 'paper' | 'best'; seed: number; software: string };
+  /** One label per measurement, in input order; 255 is an outlier. */
+  labels: Uint8Array;
+}
+
+/** Image measurements: x, y of each in `positions`, I_x, I_y, I_t of each in `derivatives`. */
+export interface PointMeasurements {
+  positions: Float64Array;
+  derivatives: Float64Array;
+}
+
+/** Where the WebAssembly module comes from. */
+export type WasmSource = URL | string | Response | BufferSource | WebAssembly.Module;
+
+/** Red, green, blue and, where given, alpha: 0 to 255. */
+export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
+
+export interface PaintOptions {
+  /**
+   * One colour per label; labels beyond are transparent, and alpha 0 hides one. Default: the DAVIS palette with label 0 and
+   * 255 transparent.
+   */
+  palette?: readonly Colour[] | undefined;
+  /** 0 to 1, scales every alpha; default 0.5. */
+  opacity?: number | undefined;
+}
+
+/** Stable codes of every error, the same on the command line. */
+export type ErrorCode =
+  // the input
+  | 'frame-size-mismatch'
+  | 'frame-size-unsupported'
+  | 'pixel-count-mismatch'
+  | 'measurement-count-mismatch'
+  | 'too-few-measurements'
+  | 'not-finite'
+  | 'invalid-option'
+  | 'invalid-input'
+  | 'unreadable-image'
+  // the surroundings
+  | 'wasm-load-failed'
+  | 'worker-failed'
+  | 'cancelled'
+  | 'internal'
+  // the command line alone
+  | 'usage'
+  | 'file-not-found'
+  | 'unreadable-file'
+  | 'invalid-json'
+  | 'write-failed';
+
+/** Every error that this package throws or rejects with. */
+export class VeroneseError extends Error {
+  constructor(code: ErrorCode, message: string, options?: ErrorOptions);
+  readonly code: ErrorCode;
+}
+
+/** Version of the package. */
+export const version: string;
+
+/**
+ * Loads the WebAssembly module. Optional, since every call does so by itself: call it to load early or from a place of your
+ * own. May be called again: the first source that loaded stays.
+ *
+ * Rejects with code `wasm-load-failed`; a later call tries again.
+ */
+export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
+
+/** Finds how many things move between two frames, how each moves, and which pixels belong to it. */
+export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
+
+/** Solves the paper's Problem 1 on measurements of your own. */
+export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
+
+/**
+ * Replaces the top-left width × height pixels of a canvas by the colours of the labels, with transparency: lay the canvas
+ * over the frame.
+ */
+export function paintLabels(
+  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+  segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
+  options?: PaintOptions,
+): Promise<void>;
+
+/** One group number per pixel instead of its motion; 255 stays. */
+export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions'>): Uint8Array;
+
+/** The 256 colours of the DAVIS benchmark's masks; label 0 is black. */
+export function davisPalette(): [number, number, number][];
+
+/**
+ * The same calls in a Web Worker, or in a worker thread under Node: the page stays responsive, and a cancelled call stops at
+ * once. Calls are done one after another.
+ */
+export class Segmenter {
+  /** `source` as in {@link init}; by default the file beside the package's code. */
+  constructor(source?: WasmSource | Promise<WasmSource>);
+  segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
+  fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
+  /** Ends the worker; calls under way reject with code `cancelled`. The next call starts a fresh one. */
+  close(): void;
+}
