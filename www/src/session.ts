@@ -130,9 +130,11 @@ export class Session {
   }
 
   #take(pair: FramePair): void {
-    const { look } = this.#store.get();
+    const { look, pair: before } = this.#store.get();
     const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
     this.#store.set({ pair, result: null, look: { ...look, frame: only, hidden: new Set(), solo: null, still: null } });
+    // Nobody draws the old frames any more: give their memory back now, not at the next collection.
+    for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     void this.segment();
   }
 

@@ -52,7 +52,7 @@ function motion(parts: MotionParts): string {
 
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' } satisfies Record<Slot, string>,
-  size: (width: number, height: number): string => `${width} × ${height}`,
+  size: (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`,
   percent: (share: number): string => `${tenths.format(share * 100)}${NBSP}%`,
   milliseconds: (ms: number): string => `${ms < 10 ? tenths.format(ms) : whole.format(ms)} ms`,
   stage,

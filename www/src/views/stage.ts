@@ -14,9 +14,11 @@ export function mountStage(stage: HTMLElement, store: Store): void {
   const context = contextOf(canvas);
 
   store.subscribe((now, before) => {
-    if (now.pair === before.pair && now.look === before.look && now.result === before.result) return;
+    const { pair, result, look, run } = now;
+    invitation.hidden = shownFrame(now) !== null || run.phase === 'opening';
+    const same = pair === before.pair && result === before.result && look.frame === before.look.frame && look.still === before.look.still;
+    if (same) return;
     const frame = shownFrame(now);
-    invitation.hidden = frame !== null;
     layers.hidden = frame === null;
     caption.textContent = frame === null ? '' : captionOf(now, frame);
     if (frame === null) return;
