@@ -13,7 +13,6 @@ export default defineConfig({
   use: {
     baseURL: `http://127.0.0.1:${PORT}/`,
     viewport: { width: 1280, height: 860 },
-    trace: 'retain-on-failure',
     launchOptions: {
       executablePath: process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium',
       args: [

@@ -1,5 +1,6 @@
 //! Files to pixels. The bytes come out as the file has them: no colour conversion, no premultiplication, but turned the way
-//! the camera was held.
+//! the camera was held. For opaque PNG files they are the bytes that Node decodes. A canvas keeps colours multiplied by alpha,
+//! so half-transparent pixels come back rounded; and JPEG decoders differ from each other by a grey level here and there.
 
 import type { Pixels } from 'veronese';
 import { PageError } from './errors.js';

@@ -87,7 +87,7 @@ export class Session {
       const sameLabels = result?.segmentation.count === segmentation.count && result.pair.first === first;
       this.#store.set({
         run: { phase: 'done' },
-        result: { segmentation, pair: { first, second }, settings, waited: performance.now() - began },
+        result: { segmentation, pair: { first, second }, waited: performance.now() - began },
         look: sameLabels ? look : { ...look, hidden: new Set(), solo: null, still: null },
       });
     } catch (error) {

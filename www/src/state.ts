@@ -20,11 +20,10 @@ export type Run =
   | { readonly phase: 'idle' | 'opening' | 'done' | 'cancelled' | 'failed' }
   | { readonly phase: 'working'; readonly stage: string; readonly index: number; readonly of: number };
 
-/** A segmentation together with what it was made from, so that late views never mix two requests. */
+/** A segmentation together with the frames it was made from, so that late views never mix two requests. */
 export interface Result {
   readonly segmentation: Segmentation;
   readonly pair: { readonly first: LoadedFrame; readonly second: LoadedFrame };
-  readonly settings: Settings;
   /** Milliseconds from request to answer, as the page saw it: transfer to the worker and back included. */
   readonly waited: number;
 }

@@ -66,6 +66,8 @@ test('a request is cancelled at once and can be made again', async ({ page, cont
   await expect(page.locator('#status')).toHaveText('Cancelled.');
   await expect(page.locator('#motions > li')).toHaveCount(0);
   release();
+  await page.waitForTimeout(1000); // long enough for the answer, were anybody still working on it
+  await expect(page.locator('#status')).toHaveText('Cancelled.');
   await page.getByRole('button', { name: 'Segment again' }).click();
   await done(page);
   expect((await labelsOnCanvas(page)).length).toBe(768 * 432);
