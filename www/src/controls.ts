@@ -1,0 +1,85 @@
+//! The settings as data: what each is called, what it may be, what it does. `views/options.ts` draws a form from it.
+
+import type { Settings } from './state.js';
+
+interface Common<K extends keyof Settings> {
+  readonly name: K;
+  readonly label: string;
+  readonly help: string;
+  readonly initial: Settings[K];
+}
+
+/** One of a few values. */
+export interface ChoiceControl<K extends keyof Settings = keyof Settings> extends Common<K> {
+  readonly kind: 'select' | 'radio';
+  readonly choices: readonly { readonly value: Settings[K]; readonly label: string }[];
+}
+
+/** A whole number. */
+export interface NumberControl extends Common<'seed'> {
+  readonly kind: 'number';
+  readonly min: number;
+  readonly max: number;
+}
+
+/** On or off. */
+export interface SwitchControl extends Common<'markUnknown'> {
+  readonly kind: 'switch';
+}
+
+export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | NumberControl | SwitchControl;
+
+/** The paper's own limit on the number of motions. */
+const MOST_MOTIONS = 10;
+
+const MOTIONS: ChoiceControl<'motions'> = {
+  kind: 'select',
+  name: 'motions',
+  label: 'Number of motions',
+  help: 'Found from the frames, or as many as you say.',
+  initial: 'auto',
+  choices: [
+    { value: 'auto', label: 'Automatic' },
+    ...Array.from({ length: MOST_MOTIONS }, (_, i) => ({ value: i + 1, label: String(i + 1) })),
+  ],
+};
+
+const QUALITY: ChoiceControl<'quality'> = {
+  kind: 'radio',
+  name: 'quality',
+  label: 'Quality',
+  help: 'Fast is for trying things out, best is for keeping.',
+  initial: 'best',
+  choices: [
+    { value: 'fast', label: 'Fast' },
+    { value: 'best', label: 'Best' },
+  ],
+};
+
+const MARK_UNKNOWN: SwitchControl = {
+  kind: 'switch',
+  name: 'markUnknown',
+  label: 'Mark what cannot be told',
+  help: 'Leaves pixels without a label where no motion explains them.',
+  initial: false,
+};
+
+const SEED: NumberControl = {
+  kind: 'number',
+  name: 'seed',
+  label: 'Seed',
+  help: 'The same seed gives the same masks, everywhere.',
+  initial: 1,
+  min: 0,
+  max: 0xffff_ffff,
+};
+
+/** In the order in which they are shown. */
+export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, MARK_UNKNOWN, SEED];
+
+export const DEFAULT_SETTINGS: Settings = {
+  motions: MOTIONS.initial,
+  quality: QUALITY.initial,
+  markUnknown: MARK_UNKNOWN.initial,
+  seed: SEED.initial,
+};

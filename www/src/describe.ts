@@ -1,0 +1,71 @@
+//! An affine motion as a person would say it: where its pixels go, how far they turn, grow and stretch.
+
+import type { Segmentation } from 'veronese';
+
+/** Six entries `[a11, a12, a13, a21, a22, a23]`, as everywhere in the package. */
+export type Matrix = Segmentation['motions'][number]['matrix'];
+
+export interface MotionParts {
+  /** Displacement of the centre, pixels; x right, y down. */
+  readonly right: number;
+  readonly down: number;
+  /** Degrees, clockwise as seen. */
+  readonly turn: number;
+  /** Relative growth of lengths; 0.01 is one per cent. */
+  readonly growth: number;
+  /** Longest over shortest side of what a square becomes, minus 1: 0 for a motion without shear. */
+  readonly stretch: number;
+}
+
+/** A tenth of a pixel is about what the estimate is good for: parts that move no pixel of the mask that far go unsaid. */
+const VISIBLE = 0.1;
+
+/** Splits `x ↦ x + A x` into displacement of `centre`, rotation, growth and stretch (the polar decomposition of its linear part). */
+export function partsOf(matrix: Matrix, centre: readonly [number, number]): MotionParts {
+  const [a11 = 0, a12 = 0, a13 = 0, a21 = 0, a22 = 0, a23 = 0] = matrix;
+  const [x, y] = centre;
+  const [f11, f12, f21, f22] = [1 + a11, a12, a21, 1 + a22];
+  const turning = Math.hypot((f11 + f22) / 2, (f21 - f12) / 2);
+  const shearing = Math.hypot((f11 - f22) / 2, (f21 + f12) / 2);
+  const shortest = Math.abs(turning - shearing);
+  return {
+    right: a11 * x + a12 * y + a13,
+    down: a21 * x + a22 * y + a23,
+    turn: (Math.atan2(f21 - f12, f11 + f22) * 180) / Math.PI,
+    growth: Math.sqrt(Math.abs(f11 * f22 - f12 * f21)) - 1,
+    stretch: shortest > 0 ? (turning + shearing) / shortest - 1 : 0,
+  };
+}
+
+/** The parts that matter for a mask of this size; the others are set to 0. `reach` is the distance from centre to corner, pixels. */
+export function visibleParts(parts: MotionParts, reach: number): MotionParts {
+  const keep = (value: number, pixels: number): number => (Math.abs(pixels) >= VISIBLE ? value : 0);
+  return {
+    right: keep(parts.right, parts.right),
+    down: keep(parts.down, parts.down),
+    turn: keep(parts.turn, (parts.turn * Math.PI * reach) / 180),
+    growth: keep(parts.growth, parts.growth * reach),
+    stretch: keep(parts.stretch, (parts.stretch * reach) / 2),
+  };
+}
+
+/** Mean position of the pixels of every label, `centres[label]`, pixels; the frame's centre for a label without pixels. */
+export function centresOf(segmentation: Segmentation): (readonly [number, number])[] {
+  const { labels, width, height, motions } = segmentation;
+  const count = new Float64Array(256);
+  const sumX = new Float64Array(256);
+  const sumY = new Float64Array(256);
+  let i = 0;
+  for (let y = 0; y < height; y++) {
+    for (let x = 0; x < width; x++, i++) {
+      const label = labels[i] ?? 255;
+      count[label]! += 1;
+      sumX[label]! += x;
+      sumY[label]! += y;
+    }
+  }
+  return motions.map(({ label }) => {
+    const n = count[label] ?? 0;
+    return n > 0 ? [sumX[label]! / n, sumY[label]! / n] : [(width - 1) / 2, (height - 1) / 2];
+  });
+}

@@ -1,0 +1,38 @@
+//! Files dropped anywhere on the page, or pasted.
+
+import type { Session } from '../session.js';
+
+export function mountDrop(root: HTMLElement, session: Session): void {
+  // Entering a child leaves its parent: count, to know when the files have left the page.
+  let inside = 0;
+  const show = (): void => void root.classList.toggle('dropping', inside > 0);
+  const carriesFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') ?? false;
+
+  root.addEventListener('dragenter', (event) => {
+    if (!carriesFiles(event)) return;
+    event.preventDefault();
+    inside += 1;
+    show();
+  });
+  root.addEventListener('dragover', (event) => {
+    if (carriesFiles(event)) event.preventDefault();
+  });
+  root.addEventListener('dragleave', (event) => {
+    if (!carriesFiles(event)) return;
+    inside = Math.max(0, inside - 1);
+    show();
+  });
+  root.addEventListener('drop', (event) => {
+    inside = 0;
+    show();
+    if (!carriesFiles(event)) return;
+    event.preventDefault();
+    void session.openFiles(event.dataTransfer?.files ?? []);
+  });
+  document.addEventListener('paste', (event) => {
+    const files = event.clipboardData?.files;
+    if (files === undefined || files.length === 0) return; // text for a field
+    event.preventDefault();
+    void session.openFiles(files);
+  });
+}

@@ -1,0 +1,35 @@
+//! Where the time went, stage by stage.
+
+import type { Result, Store } from '../state.js';
+import { strings } from '../strings.js';
+import { find } from './markup.js';
+
+export function mountTimings(root: HTMLElement, store: Store): void {
+  const body = find(root, 'tbody', HTMLElement);
+  store.subscribe(({ result }, before) => {
+    if (result === before.result) return;
+    root.hidden = result === null;
+    body.replaceChildren(...(result === null ? [] : linesOf(result).map(([what, ms]) => line(what, ms))));
+  });
+}
+
+function linesOf({ pair, segmentation, waited }: Result): [string, number][] {
+  const { total, ...stages } = segmentation.milliseconds;
+  return [
+    [strings.timings.decode(pair.first.name), pair.first.decoded],
+    [strings.timings.decode(pair.second.name), pair.second.decoded],
+    ...Object.entries(stages).map(([stage, ms]): [string, number] => [strings.stage(stage), ms]),
+    [strings.timings.total, total],
+    [strings.timings.waited, waited],
+  ];
+}
+
+function line(what: string, ms: number): HTMLTableRowElement {
+  const row = document.createElement('tr');
+  const head = document.createElement('th');
+  head.scope = 'row';
+  head.textContent = what;
+  row.append(head);
+  row.insertCell().textContent = strings.milliseconds(ms);
+  return row;
+}

@@ -1,0 +1,82 @@
+//! What goes wrong is said in a sentence, and the page goes on working.
+
+import { type Page } from '@playwright/test';
+
+import { done, expect, labelsOnCanvas, open, sample, square, test, upload } from './support.js';
+
+/** The page still segments. */
+async function expectToWork(page: Page): Promise<void> {
+  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 96, 64, 2, 0)]);
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 96 × 64');
+  await done(page);
+  await expect(page.getByRole('alert')).toBeHidden();
+  expect((await labelsOnCanvas(page)).length).toBe(96 * 64);
+}
+
+test('a broken file is reported and the open pair stays', async ({ page }) => {
+  await open(page);
+  const whole = await sample('first');
+  const broken = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('this is not an image') };
+  await upload(page, [broken, whole]);
+  await expect(page.getByRole('alert')).toContainText('“broken.png” is not an image that this browser can read.');
+  await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+  expect((await labelsOnCanvas(page)).length).toBe(768 * 432);
+  await expectToWork(page);
+});
+
+test('frames of different size are refused with the sentence of the package', async ({ page }) => {
+  await open(page);
+  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
+  await expect(page.getByRole('alert')).toContainText('The frames differ in size: 96×64 and 64×96 pixels.');
+  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
+  await expect(page.locator('#motions > li')).toHaveCount(0);
+  await expectToWork(page);
+});
+
+test('a frame that is too small is refused', async ({ page }) => {
+  await open(page);
+  const dot = await square('dot.png', 1, 1, 0, 0);
+  await upload(page, [dot, { ...dot, name: 'dot2.png' }]);
+  await expect(page.locator('#notice-code')).toHaveText('frame-size-unsupported');
+  await expectToWork(page);
+});
+
+test('a seed that is none is refused', async ({ page }) => {
+  await open(page);
+  const seed = page.getByLabel('Seed');
+  await seed.fill('-3');
+  await seed.blur();
+  await expect(page.getByRole('alert')).toContainText('Seed must be a whole number');
+  await expect(seed).toHaveValue('1');
+});
+
+test('a request is cancelled at once and can be made again', async ({ page, context }) => {
+  // The worker's file is held back, so that the request is certainly under way.
+  let release = (): void => undefined;
+  const held = new Promise<void>((resolve) => (release = resolve));
+  await context.route('**/*worker*.js', async (route) => {
+    await held;
+    await route.continue().catch(() => undefined); // whoever asked may be gone
+  });
+  await page.goto('./');
+  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
+  await expect(page.getByRole('progressbar')).toBeVisible();
+  await page.getByRole('button', { name: 'Cancel' }).click();
+  await expect(page.locator('#status')).toHaveText('Cancelled.');
+  await expect(page.locator('#motions > li')).toHaveCount(0);
+  release();
+  await page.waitForTimeout(1000); // long enough for the answer, were anybody still working on it
+  await expect(page.locator('#status')).toHaveText('Cancelled.');
+  await page.getByRole('button', { name: 'Segment again' }).click();
+  await done(page);
+  expect((await labelsOnCanvas(page)).length).toBe(768 * 432);
+});
+
+test('a missing sample is reported and files still open', async ({ page, context }) => {
+  await context.route('**/samples/**', (route) => route.fulfill({ status: 200, body: 'nothing' }));
+  await page.goto('./');
+  await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
+  await expect(page.locator('#invitation')).toBeVisible();
+  await expectToWork(page);
+});

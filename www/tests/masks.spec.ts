@@ -1,0 +1,119 @@
+//! What the page shows is what the package computes, bit for bit.
+
+import { readFile } from 'node:fs/promises';
+
+import { davisPalette } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
+
+import { MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, pixelsOf, sample, segmentedInNode, square, test, upload } from './support.js';
+
+test('opens with the bundled pair segmented', async ({ page }) => {
+  await open(page);
+  const rows = page.locator('#motions > li');
+  expect(await rows.count()).toBeGreaterThanOrEqual(MOTIONS_IN_SAMPLE);
+  await expect(page.locator('#status')).toHaveText(/found in [\d,]+ ms\.$/);
+  await expect(rows.first().locator('.motion-words')).toHaveText(/stands still|moves|turns|grows|shrinks|stretches/);
+  await expect(page.locator('footer')).toContainText('Intel IoT DevKit sample-videos, car-detection.mp4, CC BY 4.0');
+
+  const expected = await segmentedInNode(await sample('first'), await sample('second'));
+  expect(await rows.count()).toBe(expected.count);
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+});
+
+test('decodes a file to the same bytes as Node', async ({ page }) => {
+  await open(page);
+  const first = await decodeImage((await sample('first')).buffer);
+  const shown = await pixelsOf(page, '#frame');
+  expect([shown.width, shown.height]).toEqual([first.width, first.height]);
+  expect(differences(shown.data, first.data)).toBe(0);
+});
+
+test('two uploaded files give the masks that Node gives', async ({ page }) => {
+  await open(page);
+  // The order is that of the names, read as a person reads numbers; the odd size catches a wrong row length.
+  const [second, first] = [await square('frame10.png', 161, 97, 3, 1), await square('frame9.png', 161, 97, 0, 0)];
+  await upload(page, [second, first]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('frame9.png, 161 × 97');
+  await done(page);
+  const expected = await segmentedInNode(first, second);
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+});
+
+test('swapped frames are segmented the other way round', async ({ page }) => {
+  await open(page);
+  await page.locator('#swap').click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('second.png, 768 × 432');
+  await done(page);
+  const expected = await segmentedInNode(await sample('second'), await sample('first'));
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+});
+
+test('settings reach the package, and the latest request wins', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Seed').fill('7');
+  await page.getByLabel('Number of motions').selectOption('2');
+  await page.getByLabel('Fast').check();
+  await done(page);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
+  const report: unknown = JSON.parse(await readFile(await download.path(), 'utf8'));
+  expect(report).toMatchObject({ version: 1, width: 768, height: 432, settings: { motions: 2, quality: 'fast', seed: 7, markUnknown: false } });
+  expect(report).not.toHaveProperty('labels');
+  const expected = await segmentedInNode(await sample('first'), await sample('second'), { motions: 2, quality: 'fast', seed: 7 });
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+});
+
+test('the labels PNG holds the labels', async ({ page }) => {
+  await open(page);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
+  expect(download.suggestedFilename()).toBe('labels.png');
+  const file = await readFile(await download.path());
+  expect([...file.subarray(24, 26)]).toEqual([8, 3]); // eight bits, indexed
+  const { data } = await decodeImage(file);
+  const labelByColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
+  const labels = Array.from({ length: data.length / 4 }, (_, i) => labelByColour.get(data.subarray(4 * i, 4 * i + 3).join()) ?? -1);
+  const expected = await segmentedInNode(await sample('first'), await sample('second'));
+  expect(differences(labels, expected.labels)).toBe(0);
+});
+
+test('toggle, solo, opacity and outlines change what is seen', async ({ page }) => {
+  await open(page);
+  const all = await labelsOnCanvas(page);
+  const row = page.locator('#motions > li').first();
+
+  await row.getByRole('checkbox').uncheck();
+  const without = await labelsOnCanvas(page);
+  expect(differences(without, all.map((label) => (label === 0 ? -1 : label)))).toBe(0);
+  expect(differences(without, all)).toBeGreaterThan(0);
+
+  await row.getByRole('button', { name: 'Show only' }).click();
+  expect(differences(await labelsOnCanvas(page), all.map((label) => (label === 0 ? 0 : -1)))).toBe(0);
+  await row.getByRole('button', { name: 'Show only' }).click();
+  await row.getByRole('checkbox').check();
+  expect(differences(await labelsOnCanvas(page), all)).toBe(0);
+
+  const slider = page.getByRole('slider', { name: /Opacity/ });
+  await slider.fill('100');
+  await expect(page.locator('#fill')).toHaveCSS('opacity', '1');
+  await slider.fill('0');
+  await expect(page.locator('#fill')).toHaveCSS('opacity', '0');
+  await page.getByLabel('Outlines').uncheck();
+  await expect(page.locator('#outlines')).toBeHidden();
+});
+
+test('the second frame is shown by switch and while a key is held', async ({ page }) => {
+  await open(page);
+  const first = await decodeImage((await sample('first')).buffer);
+  const second = await decodeImage((await sample('second')).buffer);
+  const shows = async (frame: typeof first): Promise<number> => differences((await pixelsOf(page, '#frame')).data, frame.data);
+
+  await page.keyboard.down('b');
+  expect(await shows(second)).toBe(0);
+  await page.keyboard.up('b');
+  expect(await shows(first)).toBe(0);
+  await page.locator('#look [value=second]').check();
+  expect(await shows(second)).toBe(0);
+
+  // What stands still lies where it lay in the first frame: warped by nothing where the largest motion is none.
+  await page.getByRole('button', { name: 'with Motion 0 held still' }).click();
+  await expect(page.locator('#caption')).toHaveText('Second frame, Motion 0 held still');
+});

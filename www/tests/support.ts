@@ -1,0 +1,142 @@
+//! What the browser tests share: the page under watch, files to upload, masks read back from the canvas.
+
+import { readFile } from 'node:fs/promises';
+import { fileURLToPath } from 'node:url';
+
+import { type Page, test as base, expect } from '@playwright/test';
+import { type Segmentation, type SegmentOptions, segmentPair } from 'veronese';
+import { decodeImage, encodeColourPng } from 'veronese/codecs';
+
+import { PALETTE, UNKNOWN_COLOUR } from '../src/palette.js';
+
+export { expect };
+
+/** The bundled pair shows two cars on a road: at least so many motions are found in it. */
+export const MOTIONS_IN_SAMPLE = 1;
+
+/** A file as Playwright takes it. */
+export interface Upload {
+  name: string;
+  mimeType: string;
+  buffer: Buffer;
+}
+
+/** A test whose page must log no error, violate no policy, and ask nothing of other hosts. */
+export const test = base.extend<{ page: Page }>({
+  page: async ({ page, baseURL }, use) => {
+    const complaints: string[] = [];
+    page.on('console', (message) => {
+      if (message.type() === 'error') complaints.push(`console: ${message.text()}`);
+    });
+    page.on('pageerror', (error) => complaints.push(`uncaught: ${error.message}`));
+    page.on('request', (request) => {
+      const { protocol, origin } = new URL(request.url());
+      const own = protocol === 'blob:' || protocol === 'data:' || origin === new URL(baseURL ?? '').origin;
+      if (!own || request.method() !== 'GET') complaints.push(`request: ${request.method()} ${request.url()}`);
+    });
+    await page.addInitScript(() => {
+      document.addEventListener('securitypolicyviolation', (event) => {
+        console.error(`policy violated: ${event.violatedDirective} by ${event.blockedURI}`);
+      });
+    });
+    await use(page);
+    expect(complaints).toEqual([]);
+  },
+});
+
+/** Opens the page and waits for the bundled pair's masks. */
+export async function open(page: Page): Promise<void> {
+  await page.goto('./');
+  await done(page);
+}
+
+/** Waits until the last request is answered. */
+export async function done(page: Page): Promise<void> {
+  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+}
+
+/** Opens files through the picker and waits for their masks. */
+export async function upload(page: Page, files: Upload[]): Promise<void> {
+  await page.locator('#open-pair').setInputFiles(files);
+}
+
+/** A file that comes with the page. */
+export async function sample(name: 'first' | 'second', as = `${name}.png`): Promise<Upload> {
+  const path = fileURLToPath(new URL(`../public/samples/intel-two-cars/${name}.png`, import.meta.url));
+  return { name: as, mimeType: 'image/png', buffer: await readFile(path) };
+}
+
+/** A textured ground and, before it, a textured square that has moved by (`dx`, `dy`): a PNG file of our own making. */
+export async function square(name: string, width: number, height: number, dx: number, dy: number): Promise<Upload> {
+  const pixels = new Uint8Array(width * height * 3);
+  const side = Math.min(width, height) / 3;
+  for (let y = 0, i = 0; y < height; y++) {
+    for (let x = 0; x < width; x++, i += 3) {
+      const [u, v] = [x - width / 3 - dx, y - height / 3 - dy];
+      const inside = u >= 0 && u < side && v >= 0 && v < side;
+      pixels.set(inside ? texture(u + 500, v + 300, 0.7) : texture(x, y, 0.45), i);
+    }
+  }
+  return { name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
+}
+
+/** Smooth, nowhere flat, and of different colours in the three channels. */
+function texture(x: number, y: number, pitch: number): [number, number, number] {
+  const wave = (a: number, b: number): number => Math.round(128 + 60 * Math.sin(pitch * (a * x + b * y)) + 50 * Math.cos(pitch * (b * x - a * y) * 0.61));
+  return [wave(0.9, 0.4), wave(0.5, -0.8), wave(0.2, 0.95)];
+}
+
+/** What Node makes of the same two files. */
+export async function segmentedInNode(first: Upload, second: Upload, options: SegmentOptions = {}): Promise<Segmentation> {
+  return segmentPair(await decodeImage(first.buffer), await decodeImage(second.buffer), options);
+}
+
+interface CanvasPixels {
+  width: number;
+  height: number;
+  data: Uint8Array;
+}
+
+/** The RGBA bytes of a canvas of the page. */
+export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixels> {
+  const { width, height, base64 } = await page.locator(selector).evaluate((canvas) => {
+    if (!(canvas instanceof HTMLCanvasElement)) throw new Error('no canvas');
+    const { width, height } = canvas;
+    // Read from a copy: reading a canvas often changes how the browser keeps it.
+    const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+    copy?.drawImage(canvas, 0, 0);
+    const image = copy?.getImageData(0, 0, width, height);
+    if (!image) throw new Error('no pixels');
+    let binary = '';
+    for (let i = 0; i < image.data.length; i += 0x8000) binary += String.fromCharCode(...image.data.subarray(i, i + 0x8000));
+    return { width, height, base64: btoa(binary) };
+  });
+  return { width, height, data: new Uint8Array(Buffer.from(base64, 'base64')) };
+}
+
+/** The label of every pixel, read back from the colours of the masks; -1 where nothing is painted. */
+export async function labelsOnCanvas(page: Page): Promise<Int16Array> {
+  const { data } = await pixelsOf(page, '#fill');
+  const labelByColour = new Map(PALETTE.map((colour, label) => [colour.join(), label]));
+  labelByColour.set(UNKNOWN_COLOUR.join(), 255);
+  return Int16Array.from({ length: data.length / 4 }, (_, i) => {
+    const [r, g, b, alpha] = data.subarray(4 * i, 4 * i + 4);
+    if (alpha === 0) return -1;
+    const label = labelByColour.get([r, g, b].join());
+    if (label === undefined || alpha !== 255) throw new Error(`pixel ${i} has the colour ${r},${g},${b},${alpha} of no label`);
+    return label;
+  });
+}
+
+/** Number of pixels that differ; a number reads better in a failure than two arrays of a million. */
+export function differences(a: ArrayLike<number>, b: ArrayLike<number>): number {
+  if (a.length !== b.length) return Math.max(a.length, b.length);
+  let count = 0;
+  for (let i = 0; i < a.length; i++) if (a[i] !== b[i]) count += 1;
+  return count;
+}
+
+/** Where screenshots go, to be looked at. */
+export function screen(name: string): string {
+  return fileURLToPath(new URL(`../../out/screens/${name}.png`, import.meta.url));
+}
