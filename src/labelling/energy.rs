@@ -14,7 +14,9 @@ pub(crate) struct Coherence {
     pub(crate) smoothness: f32,
     /// Price of a pixel that does not go with the dominant motion: decides where the data cannot tell.
     pub(crate) departure: f32,
-    /// Who minimises.
+    /// Who minimises while motions still come and go.
+    pub(crate) draft_solver: Solver,
+    /// Who minimises at the end.
     pub(crate) solver: Solver,
 }
 
@@ -51,9 +53,8 @@ impl Borders {
     }
 
     /// The labels of least energy.
-    pub(crate) fn solve(&self, costs: &[Plane], coherence: Coherence, start: Option<&[u8]>) -> Vec<u8> {
-        let problem = Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical };
-        minimise(&problem, coherence.solver, start)
+    pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Vec<u8> {
+        minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, None)
     }
 }
 

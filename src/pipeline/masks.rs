@@ -7,6 +7,7 @@ use crate::frame::Plane;
 use crate::labelling::components::absorb_small;
 use crate::labelling::description::{SMALLEST_SHARE, counts, worth};
 use crate::labelling::energy::{Borders, label_cost};
+use crate::labelling::potts::Solver;
 use crate::labelling::splitting::{split_bodies, split_components};
 use crate::labelling::visibility::with_visibility;
 use crate::motion::AffineMotion;
@@ -55,6 +56,7 @@ pub(super) fn label(work: &Work, motions: Vec<AffineMotion>, settings: &Settings
     if draft.split() {
         draft.thin_out();
     }
+    draft.finish();
     draft.clean();
     Labelled { motions: draft.motions, labels: draft.labels }
 }
@@ -73,7 +75,16 @@ impl Draft<'_> {
     }
 
     fn solve(&mut self) {
-        self.labels = self.borders.solve(&self.costs, self.settings.coherence, None);
+        self.labels = self.borders.solve(&self.costs, self.settings.coherence.draft_solver);
+    }
+
+    /// Solves with care: exactly where there are two labels, close to it otherwise.
+    fn finish(&mut self) {
+        let solver = match self.motions.len() {
+            2 => Solver::Expansion { sweeps: 1 },
+            _ => self.settings.coherence.solver,
+        };
+        self.labels = self.borders.solve(&self.costs, solver);
     }
 
     /// Takes away the motion that is worth least, while that is less than nothing, and solves again.

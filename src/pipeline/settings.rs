@@ -47,7 +47,7 @@ impl Settings {
             hypothesis_price: 300.0,
             most: 7,
             least: 1,
-            coherence: Coherence { smoothness: 6.0, departure: 0.05, solver: Solver::BEST },
+            coherence: Coherence { smoothness: 6.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
         };
         let mut settings = match options.quality {
             Quality::Best => best,
