@@ -52,3 +52,45 @@ pub fn errors(truth: &[AffineMotion], found: &[AffineMotion]) -> Vec<f64> {
 pub fn worst_error(truth: &[AffineMotion], found: &[AffineMotion]) -> f64 {
     errors(truth, found).into_iter().fold(0.0, f64::max)
 }
+
+/// A special configuration of motions, as in the table of degenerate cases: what it is called and how it is made.
+pub type Configuration = (&'static str, fn(&mut [AffineMotion]));
+
+/// The configurations on which the paper's factorisation is undefined, ambiguous or unproven, and the generic one.
+pub const CONFIGURATIONS: [Configuration; 13] = [
+    ("generic", |_| {}),
+    ("equal (1,3)", |motions| share(motions, &[2])),
+    ("equal (2,3)", |motions| share(motions, &[5])),
+    ("equal (1,3) and (2,3)", |motions| share(motions, &[2, 5])),
+    ("equal linear parts", |motions| share(motions, &[0, 1, 3, 4])),
+    ("one translation", |motions| clear(&mut motions[0], &[0, 1, 3, 4])),
+    ("static background", |motions| motions[0] = AffineMotion::STATIC),
+    ("static and translation", |motions| {
+        motions[0] = AffineMotion::STATIC;
+        clear(&mut motions[1], &[0, 1, 3, 4]);
+    }),
+    ("rank 1", |motions| clear(&mut motions[0], &[0, 1, 2, 3, 4])),
+    ("rank 2", |motions| {
+        let first = motions[0].matrix;
+        (motions[0].matrix[3], motions[0].matrix[4]) = (0.5 * first[0], 0.5 * first[1]);
+    }),
+    ("one zero row", |motions| clear(&mut motions[0], &[3, 4, 5])),
+    ("all translations", |motions| motions.iter_mut().for_each(|a| clear(a, &[0, 1, 3, 4]))),
+    ("all similarities", |motions| {
+        for a in motions {
+            (a.matrix[3], a.matrix[4]) = (-a.matrix[1], a.matrix[0]);
+        }
+    }),
+];
+
+/// Gives all motions the entries of the first.
+fn share(motions: &mut [AffineMotion], entries: &[usize]) {
+    let first = motions[0].matrix;
+    for a in motions {
+        entries.iter().for_each(|&k| a.matrix[k] = first[k]);
+    }
+}
+
+fn clear(motion: &mut AffineMotion, entries: &[usize]) {
+    entries.iter().for_each(|&k| motion.matrix[k] = 0.0);
+}
