@@ -1,5 +1,6 @@
 //! The paper's Figure 1 on protocol B1: mean and median error of the factorisation, the refinement and the differentiation.
 //! A measurement rather than a test: `cargo test --test figure_1 -- --ignored --nocapture`.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]
 
 mod synthetic;
@@ -55,7 +56,7 @@ fn summary(trials: &[Vec<f64>]) -> String {
 
 /// How often the rank rule finds the number of motions, raw and with scaled columns.
 #[test]
-#[ignore = "a measurement"]
+#[ignore = "takes ten seconds and prints a table"]
 fn rank_rule() {
     use veronese::embedding::EmbeddedData;
     use veronese::embedding::monomials::unknowns;

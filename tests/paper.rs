@@ -1,5 +1,6 @@
 //! The paper's claims, one by one: Lemma 1, Example 1, Appendix A, Theorem 1, the five steps, the refinement, and the open
 //! problem that differentiation solves.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -10,7 +11,7 @@ use synthetic::{CONFIGURATIONS, Protocol, random_motions, worst_error};
 use veronese::embedding::monomials::{count, kept_pairs, structural_zeros, unknowns};
 use veronese::embedding::rank::{KAPPA, number_of_motions, numerical_rank};
 use veronese::embedding::{EmbeddedData, MultibodyMotion, embedded_matrix, taubin_motion};
-use veronese::factorisation::differentiation::{POINTS, motions_from_points};
+use veronese::factorisation::differentiation::{POINTS, algebraic_start, motions_from_points};
 use veronese::factorisation::five_steps;
 use veronese::refinement::{Termination, product};
 use veronese::{
@@ -415,6 +416,26 @@ fn the_same_seed_gives_the_same_bits() {
     }
 }
 
+/// FNV-1a over the bits of all entries.
+fn fingerprint(motions: &[AffineMotion]) -> u64 {
+    let entries = motions.iter().flat_map(|a| a.matrix);
+    let bytes = entries.flat_map(|entry| entry.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+/// One number for both targets: it changes with every change of the numerics, and then must change for both alike.
+#[test]
+fn the_results_have_the_same_bits_natively_and_in_webassembly() {
+    let mut random = Random::from_seed(62);
+    let truth = random_motions(3, &mut random);
+    let data = Protocol::B1.measurements(&truth, 400, 0.02, &mut random);
+    let stages = fit(&data, Method::Paper, MotionCount::Given(3)).unwrap().stages.unwrap();
+    let start = algebraic_start(&data, 3, &mut random, POINTS).unwrap();
+    assert!(start.len() > 2 * POINTS);
+    let found = [&stages.factorisation, &stages.refined, &start].map(|motions| fingerprint(motions));
+    assert_eq!(found, [0x0a3d_fe3d_daab_2cd5, 0xb3b4_a714_284a_fcb8, 0xab20_bb81_a7e2_c353], "{found:#x?}");
+}
+
 #[test]
 fn too_few_measurements_are_an_error_that_says_how_many_are_needed() {
     let mut random = Random::from_seed(70);
@@ -447,7 +468,9 @@ fn numbers_of_motions_outside_one_to_ten_are_refused() {
 fn data_without_information_give_a_finite_answer_that_says_so() {
     let grid: Vec<[f64; 2]> = (0..400).map(|j| [f64::from(j % 20), f64::from(j / 20)]).collect();
     let mut random = Random::from_seed(80);
-    let cases: [(&str, Vec<[f64; 2]>, Vec<[f64; 3]>, usize); 5] = [
+    // Name, positions, derivatives, and how many entries of a motion they can determine at most.
+    type Case = (&'static str, Vec<[f64; 2]>, Vec<[f64; 3]>, usize);
+    let cases: [Case; 5] = [
         ("all derivatives zero", grid.clone(), vec![[0.0; 3]; 400], 0),
         ("the same derivatives everywhere", grid.clone(), vec![[3.0, -1.0, 2.0]; 400], 3),
         ("no spatial gradient", grid.clone(), vec![[0.0, 0.0, 5.0]; 400], 0),

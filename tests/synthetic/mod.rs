@@ -1,24 +1,24 @@
 //! Measurements with known motions: protocol B1, after the paper's Figure 1.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used, reason = "each test file uses its part; test code may panic")]
 
 use veronese::factorisation::assignment::assign;
 use veronese::{AffineMotion, Measurements, Random};
 
 /// How measurements are drawn.
-pub enum Protocol {
+pub(crate) enum Protocol {
     /// Positions uniform in [−1, 1]²; motions in turn; y of unit length, uniform on the circle orthogonal to A x; then uniform
     /// noise on every component.
     B1,
 }
 
 /// Motions whose six entries are uniform in [−1, 1].
-pub fn random_motions(n: usize, random: &mut Random) -> Vec<AffineMotion> {
+pub(crate) fn random_motions(n: usize, random: &mut Random) -> Vec<AffineMotion> {
     (0..n).map(|_| AffineMotion::new(std::array::from_fn(|_| random.uniform(-1.0, 1.0)))).collect()
 }
 
 impl Protocol {
     /// `count` measurements of the motions; measurement j belongs to motion j mod n.
-    pub fn measurements(
+    pub(crate) fn measurements(
         &self,
         motions: &[AffineMotion],
         count: usize,
@@ -42,22 +42,22 @@ impl Protocol {
 }
 
 /// Relative errors of eq. (20) of each true motion, in the order of the best permutation.
-pub fn errors(truth: &[AffineMotion], found: &[AffineMotion]) -> Vec<f64> {
+pub(crate) fn errors(truth: &[AffineMotion], found: &[AffineMotion]) -> Vec<f64> {
     let costs: Vec<Vec<f64>> = truth.iter().map(|a| found.iter().map(|b| a.relative_error(b)).collect()).collect();
     let partner = assign(&costs);
     partner.iter().enumerate().map(|(i, &k)| costs[i].get(k).copied().unwrap_or(f64::INFINITY)).collect()
 }
 
 /// The largest of [`errors`].
-pub fn worst_error(truth: &[AffineMotion], found: &[AffineMotion]) -> f64 {
+pub(crate) fn worst_error(truth: &[AffineMotion], found: &[AffineMotion]) -> f64 {
     errors(truth, found).into_iter().fold(0.0, f64::max)
 }
 
 /// A special configuration of motions, as in the table of degenerate cases: what it is called and how it is made.
-pub type Configuration = (&'static str, fn(&mut [AffineMotion]));
+pub(crate) type Configuration = (&'static str, fn(&mut [AffineMotion]));
 
 /// The configurations on which the paper's factorisation is undefined, ambiguous or unproven, and the generic one.
-pub const CONFIGURATIONS: [Configuration; 13] = [
+pub(crate) const CONFIGURATIONS: [Configuration; 13] = [
     ("generic", |_| {}),
     ("equal (1,3)", |motions| share(motions, &[2])),
     ("equal (2,3)", |motions| share(motions, &[5])),
