@@ -18,10 +18,10 @@ const STAGES: &[&str] = &["embedding", "factorisation", "refinement", "labels"];
 pub struct PaperFit {
     /// Ranks at the numbers of motions that were tried (Theorem 1); empty where the number was given.
     pub ranks: Vec<RankCandidate>,
-    /// Whether the rank rule (12) was fulfilled; `None` where the number was given. Where it was not, the last tried number
-    /// is used.
+    /// Whether the rank rule (12) was fulfilled; `None` where the number was given. Where it was not, see
+    /// [`number_of_motions`] for the number that is used.
     pub rank_rule_fired: Option<bool>,
-    /// Singular values of P̃_n on normalised measurements, decreasing; empty for n > 6, where they are too costly.
+    /// Singular values of P̃_n on normalised measurements, columns scaled to unit length, decreasing; empty for n > 6, where they are too costly.
     pub singular_values: Vec<f64>,
     /// The multibody motion 𝒜 of (9), in normalised coordinates.
     pub multibody: MultibodyMotion,
@@ -75,7 +75,7 @@ fn given(measurements: &Measurements, motions: usize) -> Result<RankRule> {
         return Err(Error::TooFewMeasurements { motions, needed, found: measurements.len() });
     }
     let data = EmbeddedData::new(measurements, motions);
-    let singular_values = data.singular_values().unwrap_or_default();
+    let singular_values = data.scaled_singular_values().unwrap_or_default();
     Ok(RankRule { motions, fired: false, candidates: Vec::new(), singular_values, data })
 }
 

@@ -77,8 +77,8 @@ pub struct Candidate {
 pub struct PaperStages {
     /// Ranks at the numbers of motions that were tried (Theorem 1); empty where the number was given.
     pub ranks: Vec<RankCandidate>,
-    /// Whether the rank rule (12) was fulfilled: `false` means that the last tried number was taken. `None` where the number
-    /// was given.
+    /// Whether the rank rule (12) was fulfilled; where not, the number is the smallest whose rank is too low, or else the last
+    /// tried. `None` where the number was given.
     pub rank_rule_fired: Option<bool>,
     /// Motions after the polynomial factorisation (section 3.3), in the order of [`MotionFit::motions`].
     pub factorisation: Vec<AffineMotion>,

@@ -1,30 +1,512 @@
 //! The paper's claims, one by one: Lemma 1, Example 1, Appendix A, Theorem 1, the five steps, the refinement, and the open
 //! problem that differentiation solves.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
 mod synthetic;
 
-use synthetic::{Protocol, worst_error};
-use veronese::embedding::MultibodyMotion;
-use veronese::factorisation::differentiation::{POINTS, motions_from_points};
+use synthetic::{CONFIGURATIONS, Protocol, random_motions, worst_error};
+use veronese::embedding::monomials::{count, kept_pairs, structural_zeros, unknowns};
+use veronese::embedding::rank::{KAPPA, number_of_motions, numerical_rank};
+use veronese::embedding::{EmbeddedData, MultibodyMotion, embedded_matrix, taubin_motion};
+use veronese::factorisation::differentiation::{POINTS, algebraic_start, motions_from_points};
 use veronese::factorisation::five_steps;
-use veronese::{AffineMotion, Random};
+use veronese::refinement::{Termination, product};
+use veronese::{
+    AffineMotion, Error, FitOptions, Measurements, Method, MotionCount, MotionFit, Random, UNLABELLED, fit_motions,
+};
+
+fn fit(data: &Measurements, method: Method, motions: MotionCount) -> Result<MotionFit, Error> {
+    fit_motions(data, &FitOptions { motions, method, seed: 1 }, &mut |_| {})
+}
+
+/// Measurements of a 320×240 frame: positions in pixels, motions of a few pixels, grey-level derivatives.
+fn pixel_data(n: usize, random: &mut Random) -> (Vec<AffineMotion>, Measurements) {
+    let (centre, scale) = ([160.0, 120.0], 160.0);
+    let truth = random_motions(n, random);
+    let data = Protocol::B1.measurements(&truth, 200 * n.max(3), 0.0, random);
+    let positions = data.positions().iter().map(|p| [centre[0] + scale * p[0], centre[1] + scale * p[1]]).collect();
+    let derivatives = data.derivatives().iter().map(|y| y.map(|d| 40.0 * d)).collect();
+    let truth = truth.iter().map(|a| a.from_normalised(centre, scale)).collect();
+    (truth, Measurements::new(positions, derivatives).unwrap())
+}
+
+#[test]
+fn lemma_1_the_constraint_is_bilinear_in_the_embedded_data() {
+    let mut random = Random::from_seed(1);
+    for n in 1..=6 {
+        let motions = random_motions(n, &mut random);
+        let multibody = MultibodyMotion::from_motions(&motions);
+        for _ in 0..20 {
+            // z need not be 1.
+            let x: [f64; 3] = std::array::from_fn(|_| random.uniform(-1.0, 1.0));
+            let y: [f64; 3] = std::array::from_fn(|_| random.uniform(-1.0, 1.0));
+            let factor = |a: &AffineMotion| {
+                let m = &a.matrix;
+                y[0] * (m[0] * x[0] + m[1] * x[1] + m[2] * x[2])
+                    + y[1] * (m[3] * x[0] + m[4] * x[1] + m[5] * x[2])
+                    + y[2] * x[2]
+            };
+            let expected: f64 = motions.iter().map(factor).product();
+            assert!((multibody.evaluate(x, y) - expected).abs() < 1e-13, "n = {n}");
+        }
+    }
+}
+
+#[test]
+fn example_1_all_36_entries_of_the_two_body_motion() {
+    let mut random = Random::from_seed(2);
+    let motions = random_motions(2, &mut random);
+    let [b11, b12, b13, b21, b22, b23] = motions[0].matrix;
+    let [c11, c12, c13, c21, c22, c23] = motions[1].matrix;
+    let a12 = b11 * c12 + b12 * c11;
+    let a42 = b21 * c22 + b22 * c21;
+    let a21 = b11 * c21 + b21 * c11;
+    let a22 = b11 * c22 + b21 * c12 + b12 * c21 + b22 * c11;
+    let a23 = b11 * c23 + b21 * c13 + b13 * c21 + b23 * c11;
+    let a24 = b12 * c22 + b22 * c12;
+    let a25 = b12 * c23 + b22 * c13 + b13 * c22 + b23 * c12;
+    let a26 = b13 * c23 + b23 * c13;
+    let expected = [
+        [b11 * c11, a12, b11 * c13 + b13 * c11, b12 * c12, b12 * c13 + b13 * c12, b13 * c13],
+        [a21, a22, a23, a24, a25, a26],
+        [0.0, 0.0, b11 + c11, 0.0, b12 + c12, b13 + c13],
+        [b21 * c21, a42, b21 * c23 + b23 * c21, b22 * c22, b22 * c23 + b23 * c22, b23 * c23],
+        [0.0, 0.0, b21 + c21, 0.0, b22 + c22, b23 + c23],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+    ];
+    let found = MultibodyMotion::from_motions(&motions);
+    for (row, values) in expected.iter().enumerate() {
+        for (column, value) in values.iter().enumerate() {
+            assert!((found.matrix()[(row, column)] - value).abs() < 1e-15, "entry ({}, {})", row + 1, column + 1);
+        }
+    }
+}
+
+#[test]
+fn appendix_a_the_numbers_of_monomials_zeros_and_unknowns() {
+    assert_eq!((1..=4).map(structural_zeros).collect::<Vec<_>>(), [2, 11, 35, 85]);
+    assert_eq!((1..=4).map(count).collect::<Vec<_>>(), [3, 6, 10, 15]);
+    let expected = [7, 25, 65, 140, 266, 462, 750, 1155, 1705, 2431];
+    for (n, expected) in (1..=10).zip(expected) {
+        let pairs = kept_pairs(n);
+        assert_eq!((unknowns(n), pairs.len()), (expected, expected), "n = {n}");
+        assert_eq!(pairs.last(), Some(&(count(n) - 1, count(n) - 1)));
+        // The sum by degrees in (I_x, I_y): (m + 1)²(m + 2)/2.
+        assert_eq!((0..=n).map(|m| (m + 1) * (m + 1) * (m + 2) / 2).sum::<usize>(), expected);
+    }
+}
+
+#[test]
+fn appendix_a_all_other_entries_vanish_and_no_kept_one_does() {
+    let mut random = Random::from_seed(3);
+    for n in 1..=5 {
+        let multibody = MultibodyMotion::from_motions(&random_motions(n, &mut random));
+        let kept = kept_pairs(n);
+        for row in 0..count(n) {
+            for column in 0..count(n) {
+                let value = multibody.matrix()[(row, column)];
+                assert_eq!(value != 0.0, kept.contains(&(row, column)), "n = {n}, entry ({row}, {column})");
+            }
+        }
+        let again = MultibodyMotion::from_coefficients(n, &multibody.coefficients());
+        assert_eq!(again.matrix(), multibody.matrix());
+    }
+}
+
+#[test]
+fn equation_9_the_motions_are_in_the_null_space_of_the_embedded_data() {
+    let mut random = Random::from_seed(4);
+    for n in 1..=3 {
+        let truth = random_motions(n, &mut random);
+        let data = Protocol::B1.measurements(&truth, 100, 0.0, &mut random);
+        let coefficients = MultibodyMotion::from_motions(&truth).coefficients();
+        let product = embedded_matrix(&data, n) * nalgebra::DVector::from_vec(coefficients);
+        assert_eq!(product.len(), 100);
+        assert!(product.amax() < 1e-13);
+    }
+}
+
+#[test]
+fn the_triangle_has_the_singular_values_of_the_embedded_matrix() {
+    let mut random = Random::from_seed(5);
+    let truth = random_motions(2, &mut random);
+    let data = Protocol::B1.measurements(&truth, 301, 0.02, &mut random);
+    let found = EmbeddedData::new(&data, 3).singular_values().unwrap();
+    let expected = embedded_matrix(&data, 3).singular_values();
+    assert_eq!(found.len(), 65);
+    for (a, b) in found.iter().zip(expected.iter()) {
+        assert!((a - b).abs() < 1e-12 * expected[0]);
+    }
+}
+
+#[test]
+fn theorem_1_the_ranks_below_at_and_above_the_number_of_motions() {
+    // Exact data: what counts as zero is rounding, not κ.
+    const ROUNDING: f64 = 1e-11;
+    let mut random = Random::from_seed(6);
+    for n in 1..=3 {
+        let truth = random_motions(n, &mut random);
+        let data = Protocol::B1.measurements(&truth, 600, 0.0, &mut random);
+        for i in 1..=4 {
+            let values = EmbeddedData::new(&data, i).scaled_singular_values().unwrap();
+            let rank = numerical_rank(&values, ROUNDING);
+            assert_eq!(rank.cmp(&(unknowns(i) - 1)), n.cmp(&i), "n = {n}, i = {i}, rank {rank}");
+        }
+    }
+}
+
+#[test]
+fn equation_12_the_rank_rule_finds_one_and_two_motions() {
+    for (n, noise) in [(1, 0.0), (1, 0.005), (2, 0.0), (2, 0.01)] {
+        for seed in 0..10 {
+            let mut random = Random::from_seed(seed);
+            let truth = random_motions(n, &mut random);
+            let data = Protocol::B1.measurements(&truth, 600, noise, &mut random);
+            let rule = number_of_motions(&data, 4).unwrap();
+            assert_eq!((rule.motions, rule.fired), (n, true), "noise {noise}, seed {seed}");
+            let last = rule.candidates.last().unwrap();
+            assert_eq!((last.motions, last.rank, last.columns), (n, unknowns(n) - 1, unknowns(n)));
+            assert!(last.ratio < KAPPA && rule.candidates.len() == n);
+        }
+    }
+}
+
+#[test]
+fn the_rank_rule_says_when_it_did_not_fire() {
+    // 30 % noise: no null vector at one motion, and too few measurements for two.
+    let mut random = Random::from_seed(7);
+    let truth = random_motions(2, &mut random);
+    let data = Protocol::B1.measurements(&truth, 20, 0.3, &mut random);
+    let rule = number_of_motions(&data, 6).unwrap();
+    assert_eq!((rule.motions, rule.fired, rule.candidates.len()), (1, false, 1));
+    let stages = fit(&data, Method::Paper, MotionCount::Auto).unwrap().stages.unwrap();
+    assert_eq!(stages.rank_rule_fired, Some(false));
+}
 
 #[test]
 fn generic_motions_are_recovered_without_noise() {
     for n in 1..=4 {
         for seed in 0..5 {
             let mut random = Random::from_seed(100 * n as u64 + seed);
-            let truth = synthetic::random_motions(n, &mut random);
+            let truth = random_motions(n, &mut random);
             let data = Protocol::B1.measurements(&truth, 600, 0.0, &mut random);
             let multibody = MultibodyMotion::estimate(&data, n).unwrap();
             let expected = MultibodyMotion::from_motions(&truth);
-            println!("{n} {seed} {:.1e}", (multibody.matrix() - expected.matrix()).amax() / expected.matrix().amax());
+            assert!((multibody.matrix() - expected.matrix()).amax() < 1e-10 * expected.matrix().amax());
             let motions = motions_from_points(&multibody, &data, POINTS, &mut random);
-            println!("   differentiation {:.1e}", worst_error(&truth, &motions));
-            println!("   five steps {:.1e}", worst_error(&truth, &five_steps(&multibody)));
+            assert!(worst_error(&truth, &motions) < 1e-9, "n = {n}, seed {seed}");
+            assert!(worst_error(&truth, &five_steps(&multibody)) < 1e-6, "n = {n}, seed {seed}");
+        }
+    }
+}
+
+#[test]
+fn the_whole_paper_recovers_motions_and_segmentation_in_pixels() {
+    for n in 1..=4 {
+        let mut random = Random::from_seed(20 + n as u64);
+        let (truth, data) = pixel_data(n, &mut random);
+        for method in [Method::Paper, Method::Best] {
+            let found = fit(&data, method, MotionCount::Given(n)).unwrap();
+            let motions: Vec<AffineMotion> = found.motions.iter().map(|m| m.matrix).collect();
+            assert_eq!((found.count, motions.len(), found.labels.len()), (n, n, data.len()));
+            assert!(worst_error(&truth, &motions) < 1e-8, "n = {n}, {method:?}: {:e}", worst_error(&truth, &motions));
+            let wrong = found
+                .labels
+                .iter()
+                .enumerate()
+                .filter(|&(j, &label)| truth[j % n].relative_error(&motions[usize::from(label)]) > 1e-6);
+            // A measurement may by chance lie on two motions: their planes meet in a line.
+            assert!(wrong.count() <= data.len() / 100);
+            assert!(found.motions.iter().all(|m| m.determined == 6));
+        }
+    }
+}
+
+#[test]
+fn the_stages_of_the_paper_are_reported() {
+    let mut random = Random::from_seed(9);
+    let (truth, data) = pixel_data(2, &mut random);
+    let mut begun = Vec::new();
+    let options = FitOptions { method: Method::Paper, ..FitOptions::default() };
+    let found = fit_motions(&data, &options, &mut |stage| begun.push(stage.name)).unwrap();
+    assert_eq!(begun, ["embedding", "factorisation", "refinement", "labels"]);
+    let stages = found.stages.unwrap();
+    assert_eq!(stages.rank_rule_fired, Some(true));
+    assert_eq!(stages.ranks.iter().map(|r| r.motions).collect::<Vec<_>>(), [1, 2]);
+    assert_eq!(found.evidence.singular_values.len(), 25);
+    assert!(found.evidence.candidates[0].score > 0.0 && found.evidence.candidates[1].score == 0.0);
+    assert!(worst_error(&truth, &stages.factorisation) < 1e-6 && worst_error(&truth, &stages.refined) < 1e-8);
+    for (k, motion) in found.motions.iter().enumerate() {
+        assert_eq!(motion.matrix, stages.refined[k]);
+        assert!(motion.matrix.relative_error(&stages.factorisation[k]) < 1e-6, "the stages keep one order");
+    }
+    assert!(stages.refinement.final_cost <= stages.refinement.initial_cost);
+}
+
+#[test]
+fn labels_are_numbered_by_decreasing_count() {
+    let mut random = Random::from_seed(10);
+    let truth = random_motions(3, &mut random);
+    // Motion 2 three times as often as motion 0, motion 1 twice.
+    let chances = [truth[0], truth[1], truth[1], truth[2], truth[2], truth[2]];
+    let data = Protocol::B1.measurements(&chances, 600, 0.0, &mut random);
+    for method in [Method::Paper, Method::Best] {
+        let found = fit(&data, method, MotionCount::Given(3)).unwrap();
+        for (k, expected) in [truth[2], truth[1], truth[0]].iter().enumerate() {
+            assert_eq!(usize::from(found.motions[k].label), k);
+            assert!(expected.relative_error(&found.motions[k].matrix) < 1e-6);
+            let labelled = found.labels.iter().filter(|&&label| usize::from(label) == k).count();
+            assert_eq!(labelled, found.motions[k].measurements);
+        }
+    }
+}
+
+/// How many of 20 trials fail: the worst motion is wrong by more than `limit`.
+fn failures(special: fn(&mut [AffineMotion]), n: usize, noise: f64, limit: f64, by: Solver) -> usize {
+    let failed = |seed: u64| {
+        let mut random = Random::from_seed(7000 + seed);
+        let mut truth = random_motions(n, &mut random);
+        special(&mut truth);
+        let data = Protocol::B1.measurements(&truth, 600, noise, &mut random);
+        worst_error(&truth, &by(&data, n, &mut random)) > limit
+    };
+    (0..20).filter(|&seed| failed(seed)).count()
+}
+
+type Solver = fn(&Measurements, usize, &mut Random) -> Vec<AffineMotion>;
+
+fn by_differentiation(data: &Measurements, n: usize, random: &mut Random) -> Vec<AffineMotion> {
+    motions_from_points(&MultibodyMotion::estimate(data, n).unwrap(), data, POINTS, random)
+}
+
+fn by_taubin(data: &Measurements, n: usize, random: &mut Random) -> Vec<AffineMotion> {
+    motions_from_points(&taubin_motion(data, n).unwrap(), data, POINTS, random)
+}
+
+fn by_the_five_steps(data: &Measurements, n: usize, _: &mut Random) -> Vec<AffineMotion> {
+    five_steps(&MultibodyMotion::estimate(data, n).unwrap())
+}
+
+#[test]
+fn the_open_problem_is_solved_every_special_configuration_is_recovered() {
+    for (name, special) in CONFIGURATIONS {
+        for n in [2, 3] {
+            assert_eq!(failures(special, n, 0.0, 1e-6, by_differentiation), 0, "{name}, n = {n}");
+        }
+    }
+}
+
+#[test]
+fn every_special_configuration_is_recovered_with_noise() {
+    for (name, special) in CONFIGURATIONS {
+        for n in [2, 3] {
+            for by in [by_differentiation as Solver, by_taubin] {
+                let failed = failures(special, n, 0.02, 0.2, by);
+                assert!(failed == 0, "{name}, n = {n}: {failed} of 20");
+            }
+        }
+    }
+}
+
+/// P̃_3 of two motions has many null vectors; each is the product of the two constraints and another one.
+#[test]
+fn the_true_motions_are_among_those_of_a_number_that_is_too_large() {
+    for seed in 0..10 {
+        let mut random = Random::from_seed(8000 + seed);
+        let truth = random_motions(2, &mut random);
+        let data = Protocol::B1.measurements(&truth, 600, 0.0, &mut random);
+        for by in [by_differentiation as Solver, by_taubin] {
+            let found = by(&data, 3, &mut random);
+            for motion in &truth {
+                assert!(found.iter().any(|a| motion.relative_error(a) < 1e-6), "seed {seed}: {truth:?} {found:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn taubins_motion_is_exact_without_noise() {
+    for (name, special) in CONFIGURATIONS {
+        assert_eq!(failures(special, 2, 0.0, 1e-6, by_taubin), 0, "{name}");
+    }
+    assert_eq!(failures(|_| {}, 4, 0.0, 1e-6, by_taubin), 0);
+}
+
+#[test]
+fn the_five_steps_have_the_limits_that_they_are_said_to_have() {
+    let mut table = Vec::new();
+    for (name, special) in CONFIGURATIONS {
+        table.push((name, [2, 3].map(|n| 20 - failures(special, n, 0.0, 1e-4, by_the_five_steps))));
+    }
+    let recovered = |name: &str| table.iter().find(|row| row.0 == name).unwrap().1;
+    assert_eq!(recovered("generic"), [20, 20]);
+    assert_eq!(recovered("rank 2"), [20, 20]);
+    assert_eq!(recovered("all similarities"), [20, 20]);
+    // Step 5 has nothing to go by, and guesses.
+    assert!(recovered("equal (1,3)").iter().all(|&r| (1..20).contains(&r)));
+    assert!(recovered("equal (2,3)").iter().all(|&r| (1..20).contains(&r)));
+    // Zero rows.
+    assert_eq!(recovered("static background"), [0, 0]);
+    assert_eq!(recovered("one zero row"), [0, 0]);
+}
+
+#[test]
+fn equation_19_the_refinement_lowers_the_error_and_says_how_it_ended() {
+    for n in 1..=4 {
+        let mut random = Random::from_seed(40 + n as u64);
+        let truth = random_motions(n, &mut random);
+        let data = Protocol::B1.measurements(&truth, 600, 0.01, &mut random);
+        let (refined, report) = product::refine(&truth, &data);
+        assert_eq!(report.initial_cost, product::cost(&truth, &data));
+        assert_eq!(report.final_cost, product::cost(&refined, &data));
+        assert!(report.final_cost < report.initial_cost && report.was_successful());
+        assert!(report.iterations > 0 && report.iterations <= product::MAX_ITERATIONS);
+        // At a minimum the gradient vanishes.
+        let gradient = |motions: &[AffineMotion]| {
+            let mut sum = vec![0.0; 6 * n];
+            let mut row = vec![0.0; 6 * n];
+            for (x, y) in data.iter() {
+                let residual = product::residual_and_gradient(motions, x, y, &mut row);
+                sum.iter_mut().zip(&row).for_each(|(s, g)| *s += residual * g);
+            }
+            sum.into_iter().fold(0.0, |m: f64, g| m.max(g.abs()))
+        };
+        assert!(gradient(&refined) < 1e-4 * gradient(&truth), "n = {n}");
+    }
+}
+
+#[test]
+fn equation_19_for_one_motion_is_linear_least_squares() {
+    let mut random = Random::from_seed(50);
+    let truth = random_motions(1, &mut random);
+    let data = Protocol::B1.measurements(&truth, 100, 0.05, &mut random);
+    let features = nalgebra::DMatrix::from_fn(100, 6, |j, k| {
+        let ([x, y], [ix, iy, _]) = (data.positions()[j], data.derivatives()[j]);
+        [ix * x, ix * y, ix, iy * x, iy * y, iy][k]
+    });
+    let right = nalgebra::DVector::from_fn(100, |j, _| -data.derivatives()[j][2]);
+    let expected = features.svd(true, true).solve(&right, 1e-12).unwrap();
+    let (found, report) = product::refine(&[AffineMotion::STATIC], &data);
+    assert_eq!(report.termination, Termination::Converged);
+    for k in 0..6 {
+        assert!((found[0].matrix[k] - expected[k]).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn the_order_of_the_rows_and_the_intensity_scale_do_not_matter() {
+    let mut random = Random::from_seed(60);
+    let truth = random_motions(2, &mut random);
+    let data = Protocol::B1.measurements(&truth, 300, 0.01, &mut random);
+    let order = random.choose(300, 300);
+    let shuffled = data.subset(&order);
+    let brighter = |factor: f64| {
+        let derivatives = data.derivatives().iter().map(|y| y.map(|d| factor * d)).collect();
+        Measurements::new(data.positions().to_vec(), derivatives).unwrap()
+    };
+    let reference = fit(&data, Method::Paper, MotionCount::Given(2)).unwrap();
+    for other in [&shuffled, &brighter(250.0), &brighter(-1e-3)] {
+        let found = fit(other, Method::Paper, MotionCount::Given(2)).unwrap();
+        for (a, b) in reference.motions.iter().zip(&found.motions) {
+            assert!(a.matrix.relative_error(&b.matrix) < 1e-6, "{a:?} {b:?}");
+        }
+    }
+    let found = fit(&shuffled, Method::Paper, MotionCount::Given(2)).unwrap();
+    assert!(order.iter().enumerate().all(|(j, &old)| found.labels[j] == reference.labels[old]));
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits() {
+    let mut random = Random::from_seed(61);
+    let truth = random_motions(3, &mut random);
+    let data = Protocol::B1.measurements(&truth, 300, 0.02, &mut random);
+    for method in [Method::Paper, Method::Best] {
+        let [a, b] = [0, 1].map(|_| fit(&data, method, MotionCount::Given(3)).unwrap());
+        assert_eq!(a.labels, b.labels);
+        for (p, q) in a.motions.iter().zip(&b.motions) {
+            assert_eq!(p.matrix.matrix.map(f64::to_bits), q.matrix.matrix.map(f64::to_bits));
+        }
+    }
+}
+
+/// FNV-1a over the bits of all numbers.
+fn fingerprint(values: impl Iterator<Item = f64>) -> u64 {
+    let bytes = values.flat_map(|value| value.to_bits().to_le_bytes());
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+}
+
+/// The same constants for both targets: a change of the numerics changes them, and then must change them for both alike.
+#[test]
+fn the_results_have_the_same_bits_natively_and_in_webassembly() {
+    let mut random = Random::from_seed(62);
+    let truth = random_motions(3, &mut random);
+    let data = Protocol::B1.measurements(&truth, 400, 0.02, &mut random);
+    let found = fit(&data, Method::Paper, MotionCount::Given(3)).unwrap();
+    let stages = found.stages.unwrap();
+    let start = algebraic_start(&data, 3, &mut random, POINTS).unwrap();
+    assert!(start.len() > 2 * POINTS);
+    let [factorised, refined, start] =
+        [stages.factorisation, stages.refined, start].map(|motions| fingerprint(motions.iter().flat_map(|a| a.matrix)));
+    assert_eq!(factorised, 0xd5b9_3d6c_57c4_315c, "factorisation: {factorised:#x}");
+    assert_eq!(refined, 0x6ab4_f96e_1af5_56e3, "refinement: {refined:#x}");
+    assert_eq!(start, 0x2362_80b8_f0f8_3254, "differentiation: {start:#x}");
+    let values = fingerprint(found.evidence.singular_values.into_iter());
+    assert_eq!(values, 0x6bb8_c1cf_8944_92a1, "singular values: {values:#x}");
+}
+
+#[test]
+fn too_few_measurements_are_an_error_that_says_how_many_are_needed() {
+    let mut random = Random::from_seed(70);
+    let truth = random_motions(2, &mut random);
+    for (n, needed) in [(1, 6), (2, 24), (3, 64), (10, 2430)] {
+        let data = Protocol::B1.measurements(&truth, needed - 1, 0.0, &mut random);
+        let expected = Error::TooFewMeasurements { motions: n, needed, found: needed - 1 };
+        assert_eq!(fit(&data, Method::Paper, MotionCount::Given(n)).unwrap_err(), expected);
+        assert_eq!(MultibodyMotion::estimate(&data, n).unwrap_err(), expected);
+        assert_eq!(taubin_motion(&data, n).unwrap_err(), expected);
+    }
+    let empty = Measurements::new(Vec::new(), Vec::new()).unwrap();
+    let expected = Error::TooFewMeasurements { motions: 1, needed: 6, found: 0 };
+    assert_eq!(fit(&empty, Method::Paper, MotionCount::Auto).unwrap_err(), expected);
+    let exactly = Protocol::B1.measurements(&truth, 24, 0.0, &mut random);
+    assert!(fit(&exactly, Method::Paper, MotionCount::Given(2)).is_ok());
+}
+
+#[test]
+fn numbers_of_motions_outside_one_to_ten_are_refused() {
+    let data = Measurements::new(vec![[0.0; 2]; 10], vec![[1.0; 3]; 10]).unwrap();
+    for n in [0, 11, usize::MAX] {
+        for method in [Method::Paper, Method::Best] {
+            assert_eq!(fit(&data, method, MotionCount::Given(n)).unwrap_err().code(), "invalid-option");
+        }
+    }
+}
+
+#[test]
+fn data_without_information_give_a_finite_answer_that_says_so() {
+    let grid: Vec<[f64; 2]> = (0..400).map(|j| [f64::from(j % 20), f64::from(j / 20)]).collect();
+    let mut random = Random::from_seed(80);
+    // Name, positions, derivatives, and how many entries of a motion they can determine at most.
+    type Case = (&'static str, Vec<[f64; 2]>, Vec<[f64; 3]>, usize);
+    let cases: [Case; 5] = [
+        ("all derivatives zero", grid.clone(), vec![[0.0; 3]; 400], 0),
+        ("the same derivatives everywhere", grid.clone(), vec![[3.0, -1.0, 2.0]; 400], 3),
+        ("no spatial gradient", grid.clone(), vec![[0.0, 0.0, 5.0]; 400], 0),
+        ("one pixel", vec![[7.0, 9.0]; 400], (0..400).map(|_| [random.normal(), random.normal(), 0.5]).collect(), 2),
+        ("tiny values", grid, vec![[1e-200, 1e-200, 1e-200]; 400], 3),
+    ];
+    for (name, positions, derivatives, determined) in cases {
+        let data = Measurements::new(positions, derivatives).unwrap();
+        for method in [Method::Paper, Method::Best] {
+            for motions in [MotionCount::Auto, MotionCount::Given(1), MotionCount::Given(3)] {
+                let found = fit(&data, method, motions).unwrap();
+                assert!(found.motions.iter().all(|m| m.matrix.is_finite()), "{name}, {method:?}, {motions:?}");
+                assert!(found.motions.iter().all(|m| m.determined <= determined), "{name}: {:?}", found.motions);
+                assert!(found.labels.iter().all(|&l| l == UNLABELLED || usize::from(l) < found.count));
+            }
         }
     }
 }

@@ -67,4 +67,11 @@ impl EmbeddedData {
     pub fn singular_values(&self) -> Option<Vec<f64>> {
         self.triangle.singular_values()
     }
+
+    /// Singular values of P̃_n with its columns scaled to unit length, decreasing (`None` for n > 6).
+    pub fn scaled_singular_values(&self) -> Option<Vec<f64>> {
+        let mut triangle = self.triangle.clone();
+        triangle.scale_columns();
+        triangle.singular_values()
+    }
 }

@@ -6,6 +6,7 @@ use super::multibody::{MultibodyMotion, measurements_needed};
 use super::veronese::{derivative_columns, embed_columns};
 use crate::error::{Error, Result};
 use crate::linear::Triangle;
+use crate::linear::kernels::{add_multiple, dot, normalise, squared_sine};
 use crate::measurements::Measurements;
 
 /// Bound of the inverse iteration.
@@ -44,8 +45,7 @@ pub fn taubin_motion(measurements: &Measurements, degree: usize) -> Result<Multi
     normalise(&mut vector);
     for _ in 0..MAX_STEPS {
         let Some(next) = step(&triangle, &gradients, &scale, &vector) else { break };
-        let same: f64 = next.iter().zip(&vector).map(|(a, b)| a * b).sum();
-        let moved: f64 = next.iter().zip(&vector).map(|(a, b)| (a - same * b) * (a - same * b)).sum();
+        let moved = squared_sine(&next, &vector);
         vector = next;
         if moved < TOLERANCE * TOLERANCE {
             break;
@@ -66,18 +66,6 @@ fn step(triangle: &Triangle, gradients: &Gradients, scale: &[f64], vector: &[f64
     }
     triangle.solve_normal(&mut next, SMALLEST_PIVOT * triangle.largest_pivot());
     normalise(&mut next).then_some(next)
-}
-
-/// Scales to unit length; false where that is not possible.
-fn normalise(vector: &mut [f64]) -> bool {
-    let largest = vector.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY });
-    if !(largest > 0.0 && largest.is_finite()) {
-        return false;
-    }
-    vector.iter_mut().for_each(|v| *v /= largest);
-    let length = vector.iter().map(|v| v * v).sum::<f64>().sqrt();
-    vector.iter_mut().for_each(|v| *v /= length);
-    true
 }
 
 /// The matrices D_k = ∂P̃_n/∂y_k, k = 1, 2, 3, in blocks of rows, column-major.
@@ -105,7 +93,7 @@ impl Gradients {
         let mut squares = vec![0.0; self.columns];
         for (rows, block) in &self.blocks {
             for (sum, column) in squares.iter_mut().zip(block.chunks_exact(*rows)) {
-                *sum += column.iter().map(|d| d * d).sum::<f64>();
+                *sum += dot(column, column);
             }
         }
         squares
@@ -117,10 +105,10 @@ impl Gradients {
         for (rows, block) in &self.blocks {
             let mut image = vec![0.0; *rows];
             for (column, factor) in block.chunks_exact(*rows).zip(v) {
-                image.iter_mut().zip(column).for_each(|(sum, d)| *sum += factor * d);
+                add_multiple(&mut image, *factor, column);
             }
             for (sum, column) in result.iter_mut().zip(block.chunks_exact(*rows)) {
-                *sum += column.iter().zip(&image).map(|(d, p)| d * p).sum::<f64>();
+                *sum += dot(column, &image);
             }
         }
         result

@@ -41,8 +41,6 @@ pub fn jacobian(degree: usize, v: [f64; 3]) -> DMatrix<f64> {
 pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
     let rows = vectors.len();
     let mut result = vec![0.0; rows * count(degree)];
-    // Each monomial is an earlier one of a lower degree times a variable; by degrees this would need all lower degrees, so
-    // the powers are tabulated instead.
     let all = exponents(degree);
     for (j, v) in vectors.iter().enumerate() {
         let [p, q, r] = v.map(|value| powers(value, degree));

@@ -12,7 +12,7 @@
 //! translations need no special care. All it takes is that the n flows differ at some x_0.
 //!
 //! With noise single points are poor (where two flows nearly meet, it divides by almost zero); many points and the choice
-//! by residuals ([`choose`](super::choose)) are what makes it good.
+//! by residuals ([`choose`]) are what makes it good.
 
 use super::greedy::choose;
 use super::roots::roots;
@@ -25,8 +25,7 @@ use crate::random::Random;
 
 /// Number of points for [`motions_from_points`] that we measured to be enough.
 pub const POINTS: usize = 60;
-/// Largest size of an entry of a hypothesis in normalised coordinates (flow in half frames… per frame): beyond, the division
-/// went wrong.
+/// Largest size of an entry of a hypothesis in normalised coordinates: beyond, a division by almost zero went wrong.
 const LARGEST_ENTRY: f64 = 50.0;
 /// Measurements on which hypotheses are compared.
 const COMPARED: usize = 1500;
@@ -110,7 +109,7 @@ pub fn motions_from_points(
 }
 
 /// The algebraic start for noisy data: Taubin's multibody motion of degree `motions` and hypotheses from it at `points` pixels
-/// ([`POINTS`] is a good number). `measurements` must be normalised; choose among the result with [`choose`](super::choose).
+/// ([`POINTS`] is a good number). `measurements` must be normalised; choose among the result with [`choose`].
 ///
 /// # Errors
 /// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) where N < M_n² − Z_n − 1.

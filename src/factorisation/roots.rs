@@ -147,3 +147,78 @@ fn conjugate_symmetric(mut z: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
     }
     result
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+
+    /// Ascending coefficients of Π (t − root), real roots.
+    fn from_roots(values: &[f64]) -> Vec<f64> {
+        let mut c = vec![1.0];
+        for r in values {
+            c.insert(0, 0.0);
+            for k in 0..c.len() - 1 {
+                c[k] -= r * c[k + 1];
+            }
+        }
+        c
+    }
+
+    fn sorted_real_parts(c: &[f64]) -> Vec<f64> {
+        let mut found: Vec<f64> = roots(c).finite.iter().map(|z| z.re).collect();
+        found.sort_by(f64::total_cmp);
+        found
+    }
+
+    #[test]
+    fn separated_roots_of_every_degree_are_found() {
+        let mut random = Random::from_seed(2);
+        for degree in 1..=10 {
+            for _ in 0..50 {
+                let expected: Vec<f64> = (0..degree).map(|k| k as f64 - 4.0 + random.uniform(-0.3, 0.3)).collect();
+                for (a, b) in sorted_real_parts(&from_roots(&expected)).iter().zip(&expected) {
+                    assert!((a - b).abs() < 1e-8, "degree {degree}: {a} for {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn roots_of_very_different_sizes_keep_their_relative_accuracy() {
+        let expected = [-3e6, 1e-7, 2e-3, 5.0, 8e4];
+        for (a, b) in sorted_real_parts(&from_roots(&expected)).iter().zip(&expected) {
+            assert!((a / b - 1.0).abs() < 1e-12, "{a} for {b}");
+        }
+    }
+
+    #[test]
+    fn multiple_roots_are_found_to_what_rounding_allows() {
+        for (a, b) in sorted_real_parts(&from_roots(&[0.7, 0.7, 0.7, -2.0])).iter().zip(&[-2.0, 0.7, 0.7, 0.7]) {
+            assert!((a - b).abs() < 1e-4, "{a} for {b}");
+        }
+    }
+
+    #[test]
+    fn complex_roots_come_in_exact_pairs() {
+        // (t² + 1)(t² − 2t + 5)(t − 3)
+        let found = roots(&[-15.0, 11.0, -20.0, 12.0, -5.0, 1.0]).finite;
+        assert_eq!(found.len(), 5);
+        for root in &found {
+            assert!(found.contains(&root.conj()));
+        }
+        for expected in [Complex::new(0.0, 1.0), Complex::new(1.0, 2.0), Complex::new(3.0, 0.0)] {
+            assert!(found.iter().any(|z| (z - expected).norm_sqr() < 1e-20), "{expected} in {found:?}");
+        }
+    }
+
+    #[test]
+    fn zero_and_infinite_roots_are_counted() {
+        let found = roots(&[0.0, 0.0, -2.0, 1.0, 0.0]);
+        assert_eq!((found.finite.len(), found.infinite), (3, 1));
+        assert_eq!(sorted_real_parts(&[0.0, 0.0, -2.0, 1.0, 0.0]), [0.0, 0.0, 2.0]);
+        assert_eq!(roots(&[0.0, 0.0, 0.0]), Roots { finite: Vec::new(), infinite: 2 });
+        assert_eq!(roots(&[1.0, f64::NAN]), Roots { finite: Vec::new(), infinite: 1 });
+        assert_eq!(roots(&[]), Roots { finite: Vec::new(), infinite: 0 });
+    }
+}

@@ -7,9 +7,10 @@
 //! **Limits**: f must not vanish for z_1 = 0, and the pairs (b_i2, b_i3) must differ between factors, or the linear
 //! system does not determine the first entries (the solution of least length is taken).
 
-use nalgebra::{DMatrix, DVector, SVD};
+use nalgebra::{DMatrix, DVector};
 
 use super::roots::roots;
+use crate::linear::least_squares;
 
 /// Singular values of the linear system below this share of the largest count as zero.
 const RANK_TOLERANCE: f64 = 1e-13;
@@ -35,7 +36,7 @@ pub fn factorise(coefficients: &[f64], degree: usize) -> Option<Vec<[f64; 3]>> {
         let others: Vec<[f64; 2]> = (0..degree).filter(|&j| j != i).map(|j| pairs[j]).collect();
         scale * expand(&others)[row]
     });
-    let first = least_squares(system, DVector::from_column_slice(linear))?;
+    let first = least_squares(&system, &DVector::from_column_slice(linear), RANK_TOLERANCE);
     Some(pairs.iter().zip(first.iter()).map(|(b, &b1)| [b1, b[0], b[1]]).collect())
 }
 
@@ -72,14 +73,6 @@ fn expand(factors: &[[f64; 2]]) -> Vec<f64> {
         product = next;
     }
     product
-}
-
-/// The solution of least squares and of least length.
-fn least_squares(system: DMatrix<f64>, right: DVector<f64>) -> Option<DVector<f64>> {
-    let bound = 100 * system.nrows().max(10);
-    let svd = SVD::try_new(system, true, true, f64::EPSILON, bound)?;
-    let largest = svd.singular_values.iter().fold(0.0, |m: f64, s| m.max(*s));
-    svd.solve(&right, RANK_TOLERANCE * largest).ok()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {

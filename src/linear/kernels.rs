@@ -13,7 +13,7 @@ fn multiply_add(sum: Pair, a: Pair, b: Pair) -> Pair {
 }
 
 /// aᵀb over the common length, in eight lanes.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let length = a.len().min(b.len());
     let (a, a_rest) = a[..length].as_chunks::<8>();
     let (b, b_rest) = b[..length].as_chunks::<8>();
@@ -29,10 +29,29 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// y ← y + factor·x over the common length.
-pub(super) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
+pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * x;
     }
+}
+
+/// Scales to unit length; false, and nothing useful in `vector`, where that is not possible (zero or not finite).
+pub(crate) fn normalise(vector: &mut [f64]) -> bool {
+    let largest = vector.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY });
+    if !(largest > 0.0 && largest.is_finite()) {
+        return false;
+    }
+    // First by the largest entry: squares of 1e200 would overflow.
+    vector.iter_mut().for_each(|v| *v /= largest);
+    let length = dot(vector, vector).sqrt();
+    vector.iter_mut().for_each(|v| *v /= length);
+    true
+}
+
+/// |a − (aᵀb) b|² of two unit vectors: how far they are from parallel.
+pub(crate) fn squared_sine(a: &[f64], b: &[f64]) -> f64 {
+    let same = dot(a, b);
+    a.iter().zip(b).map(|(a, b)| (a - same * b) * (a - same * b)).sum()
 }
 
 /// The eight dot products of four columns `v` with two columns `b`, all of one even length: `result[i][j] = v_iᵀ b_j`.

@@ -1,6 +1,6 @@
 //! The vector that a triangle R maps closest to zero, by inverse iteration.
 
-use super::kernels::dot;
+use super::kernels::{normalise, squared_sine};
 use super::{RowQr, Triangle};
 
 /// Bound of the inverse iteration; each step gains the factor (σ_m / σ_{m−1})².
@@ -50,8 +50,7 @@ fn iterate(solver: &Triangle, triangle: &Triangle, floor: f64) -> NullVector {
             if !normalise(&mut next) {
                 break;
             }
-            let same = dot(&next, &vector);
-            let moved: f64 = next.iter().zip(&vector).map(|(a, b)| (a - same * b) * (a - same * b)).sum();
+            let moved = squared_sine(&next, &vector);
             vector = next;
             if moved < TOLERANCE * TOLERANCE {
                 break;
@@ -60,19 +59,6 @@ fn iterate(solver: &Triangle, triangle: &Triangle, floor: f64) -> NullVector {
     }
     let residual = triangle.image_length(&vector);
     NullVector { vector, residual }
-}
-
-/// Scales to unit length; false where that is not possible.
-fn normalise(vector: &mut [f64]) -> bool {
-    // First by the largest entry: squares of 1e200 would overflow.
-    let largest = vector.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    if !(largest > 0.0 && largest.is_finite()) || vector.iter().any(|v| v.is_nan()) {
-        return false;
-    }
-    vector.iter_mut().for_each(|v| *v /= largest);
-    let length = dot(vector, vector).sqrt();
-    vector.iter_mut().for_each(|v| *v /= length);
-    true
 }
 
 /// R of `[R; δI]`: no direction is mapped below δ, so that solving with several zero pivots cannot overflow.

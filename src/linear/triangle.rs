@@ -1,8 +1,9 @@
 //! An upper triangular matrix: R of the QR decomposition, its scaling, its singular values.
 
-use nalgebra::{DMatrix, SVD};
+use nalgebra::DMatrix;
 
 use super::kernels::{add_multiple, dot};
+use super::singular_values::singular_values;
 
 /// An upper triangular m×m matrix, column-major with its zeros.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,17 +69,9 @@ impl Triangle {
         lengths
     }
 
-    /// Singular values, decreasing; `None` where m exceeds [`LARGEST_DECOMPOSED`](Self::LARGEST_DECOMPOSED) or the bounded
-    /// iteration does not end.
+    /// Singular values, decreasing; `None` where m exceeds [`LARGEST_DECOMPOSED`](Self::LARGEST_DECOMPOSED).
     pub fn singular_values(&self) -> Option<Vec<f64>> {
-        if self.size > Self::LARGEST_DECOMPOSED {
-            return None;
-        }
-        let bound = 100 * self.size.max(10);
-        let decomposition = SVD::try_new(self.to_matrix(), false, false, f64::EPSILON, bound)?;
-        let mut values: Vec<f64> = decomposition.singular_values.iter().copied().collect();
-        values.sort_by(|a, b| b.total_cmp(a));
-        Some(values)
+        (self.size <= Self::LARGEST_DECOMPOSED).then(|| singular_values(self.to_matrix()))
     }
 
     /// The same triangle with every column multiplied by a factor.

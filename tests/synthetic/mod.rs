@@ -1,24 +1,24 @@
 //! Measurements with known motions: protocol B1, after the paper's Figure 1.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used, reason = "each test file uses its part; test code may panic")]
 
 use veronese::factorisation::assignment::assign;
 use veronese::{AffineMotion, Measurements, Random};
 
 /// How measurements are drawn.
-pub enum Protocol {
+pub(crate) enum Protocol {
     /// Positions uniform in [−1, 1]²; motions in turn; y of unit length, uniform on the circle orthogonal to A x; then uniform
     /// noise on every component.
     B1,
 }
 
 /// Motions whose six entries are uniform in [−1, 1].
-pub fn random_motions(n: usize, random: &mut Random) -> Vec<AffineMotion> {
+pub(crate) fn random_motions(n: usize, random: &mut Random) -> Vec<AffineMotion> {
     (0..n).map(|_| AffineMotion::new(std::array::from_fn(|_| random.uniform(-1.0, 1.0)))).collect()
 }
 
 impl Protocol {
     /// `count` measurements of the motions; measurement j belongs to motion j mod n.
-    pub fn measurements(
+    pub(crate) fn measurements(
         &self,
         motions: &[AffineMotion],
         count: usize,
@@ -42,13 +42,55 @@ impl Protocol {
 }
 
 /// Relative errors of eq. (20) of each true motion, in the order of the best permutation.
-pub fn errors(truth: &[AffineMotion], found: &[AffineMotion]) -> Vec<f64> {
+pub(crate) fn errors(truth: &[AffineMotion], found: &[AffineMotion]) -> Vec<f64> {
     let costs: Vec<Vec<f64>> = truth.iter().map(|a| found.iter().map(|b| a.relative_error(b)).collect()).collect();
     let partner = assign(&costs);
     partner.iter().enumerate().map(|(i, &k)| costs[i].get(k).copied().unwrap_or(f64::INFINITY)).collect()
 }
 
 /// The largest of [`errors`].
-pub fn worst_error(truth: &[AffineMotion], found: &[AffineMotion]) -> f64 {
+pub(crate) fn worst_error(truth: &[AffineMotion], found: &[AffineMotion]) -> f64 {
     errors(truth, found).into_iter().fold(0.0, f64::max)
+}
+
+/// A special configuration of motions, as in the table of degenerate cases: what it is called and how it is made.
+pub(crate) type Configuration = (&'static str, fn(&mut [AffineMotion]));
+
+/// The configurations on which the paper's factorisation is undefined, ambiguous or unproven, and the generic one.
+pub(crate) const CONFIGURATIONS: [Configuration; 13] = [
+    ("generic", |_| {}),
+    ("equal (1,3)", |motions| share(motions, &[2])),
+    ("equal (2,3)", |motions| share(motions, &[5])),
+    ("equal (1,3) and (2,3)", |motions| share(motions, &[2, 5])),
+    ("equal linear parts", |motions| share(motions, &[0, 1, 3, 4])),
+    ("one translation", |motions| clear(&mut motions[0], &[0, 1, 3, 4])),
+    ("static background", |motions| motions[0] = AffineMotion::STATIC),
+    ("static and translation", |motions| {
+        motions[0] = AffineMotion::STATIC;
+        clear(&mut motions[1], &[0, 1, 3, 4]);
+    }),
+    ("rank 1", |motions| clear(&mut motions[0], &[0, 1, 2, 3, 4])),
+    ("rank 2", |motions| {
+        let first = motions[0].matrix;
+        (motions[0].matrix[3], motions[0].matrix[4]) = (0.5 * first[0], 0.5 * first[1]);
+    }),
+    ("one zero row", |motions| clear(&mut motions[0], &[3, 4, 5])),
+    ("all translations", |motions| motions.iter_mut().for_each(|a| clear(a, &[0, 1, 3, 4]))),
+    ("all similarities", |motions| {
+        for a in motions {
+            (a.matrix[3], a.matrix[4]) = (-a.matrix[1], a.matrix[0]);
+        }
+    }),
+];
+
+/// Gives all motions the entries of the first.
+fn share(motions: &mut [AffineMotion], entries: &[usize]) {
+    let first = motions[0].matrix;
+    for a in motions {
+        entries.iter().for_each(|&k| a.matrix[k] = first[k]);
+    }
+}
+
+fn clear(motion: &mut AffineMotion, entries: &[usize]) {
+    entries.iter().for_each(|&k| motion.matrix[k] = 0.0);
 }
