@@ -10,6 +10,8 @@ import { Stop, longStep, run } from './run.mjs';
 const TARGET = 'wasm32-unknown-unknown';
 const WASM_PACK = '0.15.1';
 const RUSTUP = 'https://rustup.rs';
+// One for both tools, which share packages; removed at the end, so that an interrupted installation goes on where it stopped.
+const COMPILE_FOLDER = join(toolsFolder, 'build');
 
 /** The version of wasm-bindgen in Cargo.lock: the program that writes the glue must be the same. */
 export function wasmBindgenVersion() {
@@ -57,15 +59,14 @@ export async function prepareCompiler({ checks }) {
 export async function prepareWasmTools() {
   await cargoInstall('wasm-bindgen', 'wasm-bindgen-cli', wasmBindgenVersion(), ['wasm-bindgen-test-runner']);
   await cargoInstall('wasm-pack', 'wasm-pack', WASM_PACK);
+  rmSync(COMPILE_FOLDER, { recursive: true, force: true });
 }
 
 async function cargoInstall(program, crate, version, companions = []) {
   const { code, text } = await run(program, ['--version'], { output: 'collect' });
   const present = code === 0 && text.trim().split(' ')[1] === version;
   if (present && companions.every(which)) return;
-  // One compile folder for both, kept until the end, so that an interrupted installation goes on where it stopped.
   // The tools run for seconds: quick compilation matters more than fast code.
-  const build = join(toolsFolder, 'build');
   await longStep(
     `Installing ${crate} ${version} into .tools (some minutes; once)`,
     `${crate} ${version} could not be installed. See above; if it is the network, run the command again.`,
@@ -73,7 +74,7 @@ async function cargoInstall(program, crate, version, companions = []) {
     ['install', '--locked', '--force', '--root', toolsFolder, `${crate}@${version}`],
     {
       env: {
-        CARGO_TARGET_DIR: build,
+        CARGO_TARGET_DIR: COMPILE_FOLDER,
         CARGO_PROFILE_RELEASE_OPT_LEVEL: '1',
         CARGO_PROFILE_RELEASE_LTO: 'off',
         CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
@@ -82,7 +83,6 @@ async function cargoInstall(program, crate, version, companions = []) {
       },
     },
   );
-  rmSync(build, { recursive: true, force: true });
 }
 
 async function rustup(args, lack) {
