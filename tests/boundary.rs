@@ -1,5 +1,6 @@
 //! What only the boundary to JavaScript can show, run under Node: the rest of it is tested by the package, from outside.
 #![cfg(target_arch = "wasm32")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "clippy knows #[test] only, not #[wasm_bindgen_test]")]
 
 use js_sys::{Function, Reflect};
 use wasm_bindgen::prelude::*;
