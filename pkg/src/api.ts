@@ -77,8 +77,7 @@ export class Api {
     try {
       const report = await this.#core.call((glue) => {
         watch.start();
-        const found = work(glue, onStage);
-        return Object.assign(found as Omit<T, 'milliseconds'>, { milliseconds: watch.end() });
+        return { ...(work(glue, onStage) as Omit<T, 'milliseconds'>), milliseconds: watch.end() };
       });
       return report as T;
     } catch (thrown) {

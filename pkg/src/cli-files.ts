@@ -1,42 +1,30 @@
 // Files of the command line: read with a limit, written whole or not at all.
 
 import { readdirSync, renameSync, rmSync, statSync } from 'node:fs';
-import { type FileHandle, mkdir, open, writeFile } from 'node:fs/promises';
+import { mkdir, readFile, stat, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { VeroneseError } from './errors.js';
 
 /** Largest input, bytes: more than the largest frame needs in the most wasteful of the formats. */
 const LARGEST = 512 * 1024 * 1024;
 
-/** Throws `file-not-found` or `unreadable-file`. */
+/**
+ * Throws `file-not-found` or `unreadable-file`. Only whole files are read: a read that waits for a pipe would keep the
+ * process from ending when it is told to.
+ */
 export async function readInput(path: string): Promise<Uint8Array> {
-  let file: FileHandle | undefined;
   try {
-    file = await open(path, 'r');
-    const status = await file.stat();
+    const status = await stat(path);
     if (status.isDirectory()) throw new VeroneseError('unreadable-file', `'${path}' is a folder`);
+    if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${path}' is a pipe or a device, not a file`);
     if (status.size > LARGEST) throw tooLarge(path);
-    return await readUpToLimit(path, file);
+    return new Uint8Array(await readFile(path));
   } catch (thrown) {
     if (thrown instanceof VeroneseError) throw thrown;
     const { code, message } = thrown as NodeJS.ErrnoException;
     if (code === 'ENOENT' || code === 'ENOTDIR') throw new VeroneseError('file-not-found', `there is no file '${path}'`);
     throw new VeroneseError('unreadable-file', `'${path}' cannot be read: ${message}`);
-  } finally {
-    await file?.close();
   }
-}
-
-/** A pipe or a device has no size to believe. */
-async function readUpToLimit(path: string, file: FileHandle): Promise<Uint8Array> {
-  const chunks: Uint8Array[] = [];
-  let total = 0;
-  for await (const chunk of file.createReadStream({ autoClose: false }) as AsyncIterable<Uint8Array>) {
-    total += chunk.length;
-    if (total > LARGEST) throw tooLarge(path);
-    chunks.push(chunk);
-  }
-  return new Uint8Array(Buffer.concat(chunks));
 }
 
 function tooLarge(path: string): VeroneseError {
@@ -45,8 +33,17 @@ function tooLarge(path: string): VeroneseError {
 
 /** Throws `write-failed` early, before the work, where the output folder cannot be one. */
 export function checkFolder(folder: string): void {
-  const status = statSync(folder, { throwIfNoEntry: false });
-  if (status && !status.isDirectory()) throw new VeroneseError('write-failed', `'${folder}' is not a folder`);
+  let problem: string | undefined;
+  try {
+    if (statSync(folder, { throwIfNoEntry: false })?.isDirectory() === false) problem = 'it is a file';
+  } catch (thrown) {
+    problem = thrown instanceof Error ? thrown.message : String(thrown);
+  }
+  if (problem) throw writeFailed(folder, problem);
+}
+
+function writeFailed(folder: string, reason: string): VeroneseError {
+  return new VeroneseError('write-failed', `the results cannot be written into '${folder}': ${reason}`);
 }
 
 export interface OutputFile {
@@ -76,7 +73,7 @@ export class Output {
       this.#replace(folder, moves, new Set(files.map(({ name }) => name)));
     } catch (thrown) {
       const reason = thrown instanceof Error ? thrown.message : String(thrown);
-      throw new VeroneseError('write-failed', `the results cannot be written into '${folder}': ${reason}`);
+      throw writeFailed(folder, reason);
     } finally {
       this.discard();
     }

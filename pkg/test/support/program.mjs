@@ -9,10 +9,14 @@ import { fileURLToPath } from 'node:url';
 const program = fileURLToPath(new URL('../../bin/veronese.js', import.meta.url));
 
 /** Starts it; `onStart(child)` may send it signals. Resolves to exit code, signal, output and seconds. */
-export function veronese(args, { onStart, stdout = 'pipe', cwd } = {}) {
+export function veronese(args, { onStart, stdout = 'pipe', env = {} } = {}) {
   return new Promise((resolve, reject) => {
     const started = performance.now();
-    const child = spawn(process.execPath, [program, ...args], { cwd, stdio: ['ignore', stdout, 'pipe'] });
+    const child = spawn(process.execPath, [program, ...args], {
+      stdio: ['ignore', stdout, 'pipe'],
+      env: { ...process.env, ...env },
+      timeout: 60_000,
+    });
     const text = { stdout: '', stderr: '' };
     child.stdout?.setEncoding('utf8').on('data', (chunk) => (text.stdout += chunk));
     child.stderr.setEncoding('utf8').on('data', (chunk) => (text.stderr += chunk));

@@ -1,0 +1,74 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { dirname, join } from 'node:path';
+import { describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+import { segmentPair, version } from 'veronese';
+import { pair } from './support/frames.mjs';
+
+const folder = fileURLToPath(new URL('..', import.meta.url));
+const read = (path) => readFileSync(join(folder, path));
+const manifest = JSON.parse(read('package.json'));
+
+test('one version everywhere', async () => {
+  assert.equal(version, manifest.version);
+  assert.equal(read('../Cargo.toml').toString().match(/^version = "([^"]+)"/m)[1], version);
+  assert.equal((await segmentPair(...pair())).settings.software, `veronese ${version}`);
+});
+
+describe('npm pack', () => {
+  const { stdout, stderr } = spawnSync('npm', ['pack', '--dry-run', '--json', '--ignore-scripts'], {
+    cwd: folder,
+    encoding: 'utf8',
+    shell: process.platform === 'win32',
+  });
+  const [{ files }] = JSON.parse(stdout || `[{"files": [], "error": ${JSON.stringify(stderr)}}]`);
+  const names = files.map(({ path }) => path);
+
+  test('holds everything that package.json names', () => {
+    const targets = (entry) => (typeof entry === 'string' ? [entry] : Object.values(entry).flatMap(targets));
+    const wanted = [...targets(manifest.exports), ...targets(manifest.bin), manifest.types];
+    for (const path of wanted) assert.ok(names.includes(path.replace(/^\.\//, '')), path);
+    for (const path of ['README.md', 'dist/worker.js', 'dist/worker-node.js', 'dist/cli-work.js', 'dist/glue.js']) {
+      assert.ok(names.includes(path), path);
+    }
+    assert.ok(names.includes('wasm/codecs/veronese_codecs_bg.wasm'));
+  });
+
+  test('holds every file that another one imports or points to', () => {
+    for (const name of names.filter((path) => /^(dist|bin)\/.*\.js$/.test(path))) {
+      const text = read(name).toString();
+      const places = [...text.matchAll(/(?:from |import\(|new URL\()'(\.[^']+)'/g)].map(([, place]) => join(dirname(name), place));
+      for (const place of places) assert.ok(names.includes(place.replaceAll('\\', '/')), `${name} names ${place}`);
+    }
+  });
+
+  test('holds nothing else', () => {
+    for (const name of names) assert.match(name, /^(package\.json|README\.md|LICENSE[-A-Z]*|(bin|dist)\/[\w-]+\.js|types\/[\w.]+\.d\.ts|wasm\/.*_bg\.wasm)$/);
+  });
+});
+
+test('sizes stay within their budgets', () => {
+  const zipped = (path) => gzipSync(read(path), { level: 9 }).length;
+  const script = ['web', 'api', 'core', 'errors', 'labels', 'loading', 'palette', 'segmenter', 'version', 'glue'];
+  assert.ok(zipped('wasm/veronese_bg.wasm') <= 120 * 1024);
+  assert.ok(script.reduce((sum, name) => sum + zipped(`dist/${name}.js`), 0) <= 12 * 1024);
+});
+
+test("the modules do not hold the builder's folders", () => {
+  const home = process.env.HOME;
+  for (const path of ['wasm/veronese_bg.wasm', 'wasm/codecs/veronese_codecs_bg.wasm']) {
+    const text = read(path).toString('latin1');
+    assert.ok(!text.includes('/.cargo/'), path);
+    if (home && home.length > 1) assert.ok(!text.includes(`${home}/`), path);
+  }
+});
+
+test('the types hold: samples compile under strict settings, mistakes do not', () => {
+  const tsc = join(dirname(createRequire(import.meta.url).resolve('typescript/package.json')), 'bin', 'tsc');
+  const { status, stdout } = spawnSync(process.execPath, [tsc, '-p', join(folder, 'test', 'types')], { encoding: 'utf8' });
+  assert.equal(status, 0, stdout);
+});

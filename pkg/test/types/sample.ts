@@ -1,0 +1,61 @@
+// What a user writes; compiled under strict settings, never run.
+
+import {
+  davisPalette,
+  type ErrorCode,
+  fitMotions,
+  groupLabels,
+  init,
+  type MotionFit,
+  paintLabels,
+  type Pixels,
+  type Segmentation,
+  Segmenter,
+  segmentPair,
+  VeroneseError,
+  version,
+} from 'veronese';
+import { decodeImage } from 'veronese/codecs';
+
+export async function browser(canvas: HTMLCanvasElement, first: ImageData, second: ImageData): Promise<string> {
+  await init(new URL('/veronese_bg.wasm', location.href));
+  const controller = new AbortController();
+  const segmentation: Segmentation = await segmentPair(first, second, {
+    motions: 3,
+    quality: 'fast',
+    signal: controller.signal,
+    onProgress: ({ stage, index, of }) => console.log(stage, index / of),
+  });
+  const context = canvas.getContext('2d');
+  if (context) await paintLabels(context, segmentation, { palette: davisPalette(), opacity: 0.4 });
+  const [dominant] = segmentation.motions;
+  const groups: Uint8Array = groupLabels(segmentation);
+  return `${version} ${dominant?.matrix[2]} ${groups.length}`;
+}
+
+export async function node(first: Uint8Array, second: Uint8Array): Promise<MotionFit | ErrorCode> {
+  const segmenter = new Segmenter(WebAssembly.compile(new Uint8Array(8)));
+  try {
+    const frames: Pixels[] = [await decodeImage(first), await decodeImage(second)];
+    await segmenter.segmentPair(frames[0] as Pixels, frames[1] as Pixels);
+    return await fitMotions({ positions: new Float64Array(2), derivatives: new Float64Array(3) }, { method: 'paper' });
+  } catch (error) {
+    if (error instanceof VeroneseError) return error.code;
+    throw error;
+  } finally {
+    segmenter.close();
+  }
+}
+
+export function mistakes(frame: ImageData): void {
+  // @ts-expect-error a misspelt option
+  void segmentPair(frame, frame, { motion: 2 });
+  // @ts-expect-error an unknown quality
+  void segmentPair(frame, frame, { quality: 'good' });
+  // @ts-expect-error no frame
+  void segmentPair(frame);
+  // @ts-expect-error lists instead of arrays of doubles
+  void fitMotions({ positions: [1, 2], derivatives: [1, 2, 3] });
+  // @ts-expect-error a code that does not exist
+  void new VeroneseError('broken', 'a sentence');
+}
