@@ -59,21 +59,21 @@ export function outlinesOf(segmentation: Segmentation, painting: Painting, thick
   const rims = words.map((word, label) => (classes[label] === 0 && painting.solo === null ? 0 : lighter(word)));
   const { labels, width, height } = segmentation;
   const pixels = new Uint32Array(labels.length);
+  /** Paints from `start` on, as long as the colour stays and `limit` allows. */
+  const paint = (start: number, step: number, limit: number): void => {
+    const own = classes[labels[start]!];
+    for (let k = 0, i = start; k < limit && classes[labels[i]!] === own; k++, i += step) pixels[i] = rims[labels[i]!]!;
+  };
   for (let y = 0, i = 0; y < height; y++) {
     for (let x = 0; x < width; x++, i++) {
-      const word = rims[labels[i]!]!;
-      if (word === 0) continue;
       const own = classes[labels[i]!];
-      for (let d = 1; d <= thickness; d++) {
-        const differs =
-          (x >= d && classes[labels[i - d]!] !== own) ||
-          (x + d < width && classes[labels[i + d]!] !== own) ||
-          (y >= d && classes[labels[i - d * width]!] !== own) ||
-          (y + d < height && classes[labels[i + d * width]!] !== own);
-        if (differs) {
-          pixels[i] = word;
-          break;
-        }
+      if (x > 0 && classes[labels[i - 1]!] !== own) {
+        paint(i, 1, Math.min(thickness, width - x));
+        paint(i - 1, -1, Math.min(thickness, x));
+      }
+      if (y > 0 && classes[labels[i - width]!] !== own) {
+        paint(i, width, Math.min(thickness, height - y));
+        paint(i - width, -width, Math.min(thickness, y));
       }
     }
   }

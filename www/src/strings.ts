@@ -69,9 +69,9 @@ export const strings = {
   unknownWords: 'no motion explains these pixels',
   entry: (value: number): string => (Math.abs(value) < 1 ? value.toFixed(6) : value.toFixed(3)),
   show: (name: string): string => `Show ${name}`,
-  soloOf: (name: string): string => `Show only ${name}`,
-  stillOf: (name: string): string => `Show the second frame with ${name} held still`,
-  copyOf: (name: string): string => `Copy the matrix of ${name}`,
+  soloOf: (name: string): string => `Solo: show only ${name}`,
+  stillOf: (name: string): string => `Hold still: show the second frame with ${name} held still`,
+  copyOf: (name: string): string => `Copy matrix of ${name}`,
   copied: (name: string): string => `The matrix of ${name} is on the clipboard.`,
 
   timings: {

@@ -1,0 +1,68 @@
+//! Fill and outlines against their definitions, without a browser.
+
+import { expect, test } from '@playwright/test';
+import type { Segmentation } from 'veronese';
+
+import { type Painting, classOf, fillOf, outlinesOf } from '../src/paint.js';
+
+const WIDTH = 23;
+const HEIGHT = 17;
+const EVERYTHING: Painting = { colouring: 'motions', hidden: new Set(), solo: null };
+
+/** Blobs of labels 0 to 3 and a few pixels without a label; motions 1 and 2 are one group. */
+function blobs(): Segmentation {
+  const labels = Uint8Array.from({ length: WIDTH * HEIGHT }, (_, i) => {
+    const [x, y] = [i % WIDTH, Math.floor(i / WIDTH)];
+    if (x === 11 && y < 4) return 255;
+    if ((x - 6) ** 2 + (y - 6) ** 2 < 20) return 1;
+    if ((x - 11) ** 2 + (y - 8) ** 2 < 16) return 2;
+    return x > 18 || y > 14 ? 3 : 0;
+  });
+  const motions = [0, 1, 2, 3].map((label) => ({
+    label,
+    matrix: [0, 0, 0, 0, 0, 0] as Segmentation['motions'][number]['matrix'],
+    pixels: labels.filter((other) => other === label).length,
+    share: 0,
+    residual: 0,
+    bbox: [0, 0, WIDTH, HEIGHT] as [number, number, number, number],
+    group: label < 2 ? label : label - 1,
+  }));
+  const settings = { motions: 'auto', quality: 'best', markUnknown: true, before: false, seed: 1, software: '' } as const;
+  return { version: 1, width: WIDTH, height: HEIGHT, count: 4, motions, labels, evidence: { candidates: [] }, unlabelled: 4, milliseconds: { total: 0 }, settings };
+}
+
+test('a label that is hidden is transparent, the others are opaque', () => {
+  const scene = blobs();
+  const fill = fillOf(scene, { ...EVERYTHING, hidden: new Set([2]) });
+  for (let i = 0; i < fill.length; i++) expect(fill[i]! >>> 24).toBe(scene.labels[i] === 2 ? 0 : 255);
+});
+
+test('motions of one group have one colour', () => {
+  const scene = blobs();
+  const fill = fillOf(scene, { ...EVERYTHING, colouring: 'groups' });
+  const coloursOf = (label: number): Set<number> => new Set(fill.filter((_, i) => scene.labels[i] === label));
+  expect(coloursOf(1)).toEqual(coloursOf(2));
+  expect(coloursOf(3)).not.toEqual(coloursOf(2));
+});
+
+for (const colouring of ['motions', 'groups'] as const) {
+  for (const thickness of [1, 2, 5]) {
+    test(`outlines of ${colouring}, ${thickness} thick, run where another colour is that near`, () => {
+      const scene = blobs();
+      const { labels } = scene;
+      const outlines = outlinesOf(scene, { ...EVERYTHING, colouring }, thickness);
+      const classAt = (x: number, y: number): number => classOf(labels[y * WIDTH + x]!, scene, colouring);
+      for (let y = 0; y < HEIGHT; y++) {
+        for (let x = 0; x < WIDTH; x++) {
+          const own = classAt(x, y);
+          let near = false;
+          for (let d = -thickness; d <= thickness; d++) {
+            if (x + d >= 0 && x + d < WIDTH) near ||= classAt(x + d, y) !== own;
+            if (y + d >= 0 && y + d < HEIGHT) near ||= classAt(x, y + d) !== own;
+          }
+          expect(outlines[y * WIDTH + x] !== 0, `(${x}, ${y})`).toBe(near && own !== 0);
+        }
+      }
+    });
+  }
+}
