@@ -14,6 +14,7 @@ mod literal;
 mod measurements;
 mod motion;
 mod options;
+mod order;
 pub mod paper;
 mod pipeline;
 mod points;

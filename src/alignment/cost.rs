@@ -13,6 +13,7 @@ use crate::frame::Plane;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{Footprint, RowPath};
 use crate::motion::AffineMotion;
+use crate::order::median;
 
 /// Change of brightness between the frames: `I2 ≈ I1 (1 + gain/128) + bias`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -137,8 +138,7 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const LARGEST: f32 = 8.0;
     let scaled = level.scaled(motion);
     let mut energies = level.energy.values().to_vec();
-    let half = energies.len() / 2;
-    let flat = *energies.select_nth_unstable_by(half, f32::total_cmp).1;
+    let flat = median(&mut energies).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
     for y in 0..level.height() {
         let path = RowPath::new(&scaled, 0, y);
@@ -152,14 +152,9 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
             }
         }
     }
-    if residuals.is_empty() {
-        return LARGEST;
-    }
-    let middle = residuals.len() / 2;
-    let median = *residuals.select_nth_unstable_by(middle, f32::total_cmp).1;
-    residuals.iter_mut().for_each(|r| *r = (*r - median).abs());
-    let deviation = *residuals.select_nth_unstable_by(middle, f32::total_cmp).1;
-    (1.4826 * deviation).clamp(SMALLEST, LARGEST)
+    let Some(centre) = median(&mut residuals) else { return LARGEST };
+    residuals.iter_mut().for_each(|r| *r = (*r - centre).abs());
+    (1.4826 * median(&mut residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Separable filters with replicated borders: blur, halving, gradients, median.
 
 use super::Plane;
+use crate::order::median;
 
 /// Weights of a normalised Gaussian, from the centre outwards, cut at 3σ.
 fn gaussian_weights(sigma: f32) -> Vec<f32> {
@@ -97,7 +98,7 @@ pub(crate) fn median5(plane: &Plane) -> Plane {
                 window[dy * 5 + dx] = row[(x + dx).saturating_sub(2).min(width - 1)];
             }
         }
-        *window.select_nth_unstable_by(12, f32::total_cmp).1
+        median(&mut window).unwrap_or(0.0)
     })
 }
 

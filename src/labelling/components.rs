@@ -1,5 +1,7 @@
 //! Connected components of a labelling: where they are, how large, and what becomes of those that are too small.
 
+use crate::order::ascending;
+
 /// Which pixels touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Connectivity {
@@ -80,10 +82,9 @@ pub(crate) fn absorb_small(labels: &mut [u8], width: usize, smallest: usize) {
 fn absorb_once(labels: &mut [u8], width: usize, smallest: usize) -> bool {
     let height = labels.len().checked_div(width).unwrap_or(0);
     let found = components(labels, width, Connectivity::Four);
-    let mut small: Vec<usize> = (0..found.list.len()).filter(|&c| found.list[c].size < smallest).collect();
-    small.sort_by_key(|&c| (found.list[c].size, c));
+    let small = ascending(found.list.iter().map(|c| c.size as f64));
     let mut changed = false;
-    for c in small {
+    for c in small.into_iter().filter(|&c| found.list[c].size < smallest) {
         let Component { label, bounds: [x0, y0, x1, y1], .. } = found.list[c];
         let inside = |x: usize, y: usize| found.of[y * width + x] == c as u32;
         let mut votes = [0usize; 256];

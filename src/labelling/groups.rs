@@ -2,6 +2,7 @@
 //! along their common border are one (a slanted plane, the layers of a rigid background).
 
 use crate::motion::AffineMotion;
+use crate::order::median_f64;
 
 /// A common border shorter than this many pixel pairs decides nothing.
 const SHORTEST_BORDER: usize = 12;
@@ -17,13 +18,11 @@ pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, redu
     let mut jumps: Vec<(f64, usize, usize)> = Vec::new();
     for (i, j, mut along) in borders(motions, labels, width) {
         if along.len() >= SHORTEST_BORDER {
-            let middle = along.len() / 2;
-            jumps.push((*along.select_nth_unstable_by(middle, f64::total_cmp).1, i, j));
+            jumps.extend(median_f64(&mut along).map(|jump| (jump, i, j)));
         }
     }
     let largest = jumps.iter().fold(0.0f64, |m, j| m.max(j.0));
     let tolerance = (TOLERANCE / reduction).max(RELATIVE_TOLERANCE * largest);
-    jumps.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
     let mut group: Vec<usize> = (0..n).collect();
     for (jump, i, j) in jumps {
         if jump < tolerance {

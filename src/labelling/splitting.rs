@@ -8,6 +8,7 @@ use crate::frame::Plane;
 use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
+use crate::order::descending;
 
 /// Smallest number of pixels of a part.
 const SMALLEST_PART: usize = 30;
@@ -35,15 +36,17 @@ fn aligned_on(level: &Level, motion: &AffineMotion, mask: &Plane, iterations: us
 pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let (width, height) = (level.width(), level.height());
     let found = components(labels, width, Connectivity::Eight);
+    let by_size = descending(found.list.iter().map(|c| c.size as f64));
     let mut changed = false;
     for label in 1..motions.len() {
-        let mut parts: Vec<usize> = (0..found.list.len())
+        let parts: Vec<usize> = by_size
+            .iter()
+            .copied()
             .filter(|&k| usize::from(found.list[k].label) == label && found.list[k].size >= smallest_part(labels.len()))
             .collect();
         if parts.len() < 2 {
             continue;
         }
-        parts.sort_by_key(|&k| (usize::MAX - found.list[k].size, k));
         let together = cost(level, &motions[label], CostModel::ESTIMATION);
         let mut fits = Vec::new();
         for &part in &parts {

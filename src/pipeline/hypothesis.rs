@@ -2,7 +2,7 @@
 
 use super::settings::Settings;
 use super::{STAGES, Work};
-use crate::alignment::cost::total;
+use crate::alignment::cost::{CostModel, cost, total};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::proposal::algebraic::from_algebra;
@@ -11,8 +11,9 @@ use crate::proposal::tiles::from_tiles;
 use crate::random::Random;
 use crate::selection::{Deflation, Layer, add_motions, fine_proposals, prune, refit, smallest_cost};
 
-/// A dominant motion that moves the frame's centre by less than this many pixels may be a mistake for none.
-const NEARLY_STATIC: f64 = 3.0;
+/// No motion is a hypothesis of its own as long as it costs no more than this many times what the dominant motion costs: where much
+/// of the frame is flat, one motion bent over several objects can explain more than the background that stands still.
+const PLAUSIBLE: f64 = 1.5;
 
 /// The cheapest set of motions, over the hypotheses "the dominant motion is as found" and "nothing but objects moves".
 pub(super) fn best(
@@ -22,12 +23,11 @@ pub(super) fn best(
     random: &mut Random,
     stages: &mut Stages<'_>,
 ) -> Vec<Layer> {
-    let (width, height) = (work.finest().width() as f64, work.finest().height() as f64);
-    let [u, v] = dominant.flow(0.5 * width, 0.5 * height);
-    let length = (u * u + v * v).sqrt();
     let (found, mut least) = with_dominant(work, dominant, None, settings, random, stages);
     let mut winner = found;
-    if dominant != AffineMotion::STATIC && length < NEARLY_STATIC {
+    let base = &work.levels[work.base];
+    let alone = |motion: &AffineMotion| total(&cost(base, motion, CostModel::ESTIMATION));
+    if dominant != AffineMotion::STATIC && alone(&AffineMotion::STATIC) < PLAUSIBLE * alone(&dominant) {
         let (found, cost) = with_dominant(work, AffineMotion::STATIC, Some(dominant), settings, random, stages);
         if cost < least {
             (winner, least) = (found, cost);

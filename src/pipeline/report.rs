@@ -13,6 +13,7 @@ use crate::labelling::groups::groups;
 use crate::labelling::upsampling::upsample;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
+use crate::order::descending;
 use crate::points::{Candidate, UNLABELLED};
 
 /// What [`segment_pair`](crate::segment_pair) found.
@@ -109,8 +110,7 @@ pub(super) fn report(
 /// Labels by decreasing number of pixels; those without pixels are left out, but the first stays.
 fn by_size(labels: &[u8], of: usize) -> Vec<usize> {
     let sizes = counts(labels, of);
-    let mut order: Vec<usize> = (0..of).collect();
-    order.sort_by_key(|&k| (usize::MAX - sizes[k], k));
+    let mut order = descending(sizes.iter().map(|&s| s as f64));
     order.retain(|&k| sizes[k] > 0);
     order
 }
@@ -253,8 +253,8 @@ fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
             None => totals.push((group, size)),
         }
     }
-    totals.sort_by_key(|&(group, size)| (usize::MAX - size, group));
-    grouping.iter().map(|g| totals.iter().position(|t| t.0 == *g).unwrap_or(0) as u8).collect()
+    let order = descending(totals.iter().map(|t| t.1 as f64));
+    grouping.iter().map(|g| order.iter().position(|&k| totals[k].0 == *g).unwrap_or(0) as u8).collect()
 }
 
 /// x, y, width, height of every label's pixels; zeros where it has none.

@@ -16,6 +16,7 @@ use crate::frame::pyramid::Level;
 use crate::frame::warp::{Footprint, RowPath};
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
+use crate::order::median_f64;
 use crate::random::Random;
 
 /// Gradients shorter than this (grey levels per pixel) say nothing.
@@ -94,8 +95,7 @@ fn unexplained(
     if found.len() < PER_UNKNOWN * monomials::unknowns(1) {
         return None;
     }
-    let mut chosen = random.choose(found.len(), most);
-    chosen.sort_unstable();
+    let chosen = random.choose(found.len(), most);
     let half = 0.5 * width as f64;
     let position = |x: usize, y: usize| [x as f64 / half - 1.0, (y as f64 - 0.5 * height as f64) / half];
     let derivatives = |x: usize, y: usize| {
@@ -124,8 +124,7 @@ fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
         };
         readings = read_off(&polynomial, &data.measurements);
         let mut distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
-        let middle = distances.len() / 2;
-        close = 1.5 * *distances.select_nth_unstable_by(middle, f64::total_cmp).1 + 1e-9;
+        close = 1.5 * median_f64(&mut distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
             let relative = r.distance / close;
@@ -185,8 +184,7 @@ fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize
             let member = || points.iter().zip(&assignment).filter(move |&(_, &a)| a == g).map(|(p, _)| p);
             let median = |k: usize| {
                 let mut values: Vec<f64> = member().map(|p| p[k]).collect();
-                let middle = values.len() / 2;
-                *values.select_nth_unstable_by(middle, f64::total_cmp).1
+                median_f64(&mut values).unwrap_or(0.0)
             };
             (member().count() >= SMALLEST_GROUP).then(|| [median(0), median(1)])
         })

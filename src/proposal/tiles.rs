@@ -4,6 +4,7 @@ use super::local_flow::LocalFlow;
 use super::{Proposal, distinct, translated};
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
+use crate::order::descending;
 
 /// Distance of the windows, pixels of the base level.
 const STRIDE: usize = 6;
@@ -26,11 +27,12 @@ pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlo
             }
         }
     }
-    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let order = descending(windows.iter().map(|w| f64::from(w.0)));
     let pixel = level.pixel();
-    let proposals: Vec<Proposal> = windows
-        .iter()
-        .map(|&(_, x, y)| Proposal {
+    let proposals: Vec<Proposal> = order
+        .into_iter()
+        .map(|k| windows[k])
+        .map(|(_, x, y)| Proposal {
             motion: translated(dominant, f64::from(flow.u.at(x, y)) * pixel, f64::from(flow.v.at(x, y)) * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         })

@@ -9,6 +9,7 @@ use crate::frame::filter::gaussian;
 use crate::frame::pyramid::Level;
 use crate::labelling::components::{Connectivity, components};
 use crate::motion::AffineMotion;
+use crate::order::descending;
 
 /// When to add a motion, and how hard to look.
 #[derive(Clone, Copy, Debug)]
@@ -84,12 +85,10 @@ pub(crate) fn add_motions(level: &Level, layers: &mut Vec<Layer>, proposals: &[A
     while layers.len() < how.most {
         let current = smallest_cost(layers);
         let current_blocks = blocks(&current);
-        let mut order: Vec<(f64, usize)> =
-            rough.iter().enumerate().map(|(k, cost)| (rough_gain(&current_blocks, cost), k)).collect();
-        order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost)).collect();
         let mut best: Option<(f64, Layer)> = None;
-        for &(roughly, k) in order.iter().take(how.tries) {
-            if roughly < WORTH_A_TRY * how.price {
+        for k in descending(gains.iter().copied()).into_iter().take(how.tries) {
+            if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
             let layer = sharpened(level, &current, proposals[k]);

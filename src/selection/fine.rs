@@ -7,6 +7,7 @@ use crate::frame::filter::gaussian;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::Footprint;
 use crate::motion::AffineMotion;
+use crate::order::descending;
 use crate::proposal::{Proposal, distinct, translated};
 
 /// Standard deviation of the window, pixels.
@@ -39,16 +40,17 @@ pub(crate) fn fine_proposals(level: &Level, layers: &[Layer]) -> Vec<AffineMotio
             windows.push((-(p * u + q * v), x, y, f64::from(u), f64::from(v)));
         }
     }
-    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let order = descending(windows.iter().map(|w| f64::from(w.0)));
     let pixel = level.pixel();
-    let proposals: Vec<Proposal> = windows
-        .iter()
+    let proposals: Vec<Proposal> = order
+        .into_iter()
         .take(WINDOWS)
-        .filter(|&&(_, _, _, u, v)| {
+        .map(|k| windows[k])
+        .filter(|&(_, _, _, u, v)| {
             let length = (u * u + v * v).sqrt();
             STEPS.0 < length && length < STEPS.1
         })
-        .map(|&(_, x, y, u, v)| Proposal {
+        .map(|(_, x, y, u, v)| Proposal {
             motion: translated(&layers[winners[y * width + x]].motion, u * pixel, v * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         })
