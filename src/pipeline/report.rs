@@ -87,7 +87,7 @@ pub(super) fn report(
 
     let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance());
     let order = by_size(&full, labelled.motions.len());
-    let mut rank = vec![0u8; order.len()];
+    let mut rank = vec![0u8; labelled.motions.len()];
     order.iter().enumerate().for_each(|(k, &old)| rank[old] = k as u8);
     let mut labels: Vec<u8> = full.iter().map(|&l| rank[usize::from(l)]).collect();
     if let Some(unknown) = unknown {

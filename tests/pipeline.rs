@@ -1,0 +1,276 @@
+//! Two frames in, masks out: generated scenes with known masks and motions, frames that cannot tell, and the same bits everywhere.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
+
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
+use veronese::{Error, Frame, MotionCount, Quality, SegmentOptions, Segmentation, UNLABELLED, segment_pair};
+
+fn segment(first: &Frame, second: &Frame, options: SegmentOptions) -> Segmentation {
+    let result = segment_pair(first, second, None, &options, &mut |_| {}).unwrap();
+    check(&result, &options);
+    result
+}
+
+/// What holds for every answer.
+fn check(result: &Segmentation, options: &SegmentOptions) {
+    let pixels = result.width * result.height;
+    assert_eq!(result.labels.len(), pixels);
+    assert_eq!(result.count, result.motions.len());
+    assert!(result.count >= 1);
+    let mut counted = 0;
+    for (k, motion) in result.motions.iter().enumerate() {
+        assert_eq!(usize::from(motion.label), k);
+        assert_eq!(motion.pixels, result.labels.iter().filter(|&&l| usize::from(l) == k).count());
+        assert!((motion.share - motion.pixels as f64 / pixels as f64).abs() < 1e-12);
+        assert!(motion.matrix.is_finite() && motion.residual.is_finite() && motion.residual >= 0.0);
+        assert!(motion.group <= motion.label);
+        if k > 0 && !options.mark_unknown {
+            assert!(motion.pixels <= result.motions[k - 1].pixels, "labels by decreasing size");
+        }
+        let [x, y, w, h] = motion.bbox;
+        assert!(x + w <= result.width && y + h <= result.height);
+        counted += motion.pixels;
+    }
+    assert_eq!(counted + result.unlabelled, pixels);
+    assert!(options.mark_unknown || result.unlabelled == 0);
+    assert!(result.evidence.candidates.iter().all(|c| c.score.is_finite()));
+    assert!(result.evidence.candidates.iter().any(|c| c.motions == result.count));
+}
+
+/// Intersection over union of each true label with the found label that overlaps it best.
+fn overlaps(scene: &Scene, labels: &[u8]) -> Vec<f64> {
+    let found = 1 + usize::from(*labels.iter().filter(|&&l| l != UNLABELLED).max().unwrap());
+    (0..scene.motions.len())
+        .map(|truth| {
+            (0..found)
+                .map(|k| {
+                    let (mut both, mut either) = (0usize, 0usize);
+                    for (&t, &l) in scene.labels.iter().zip(labels) {
+                        let (a, b) = (usize::from(t) == truth, usize::from(l) == k);
+                        both += usize::from(a && b);
+                        either += usize::from(a || b);
+                    }
+                    both as f64 / either.max(1) as f64
+                })
+                .fold(0.0, f64::max)
+        })
+        .collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+#[test]
+fn generated_scenes_are_segmented() {
+    let mut all = Vec::new();
+    let mut right = 0;
+    let series = SceneOptions::series(300, &[(200, 150)]);
+    for options in &series {
+        let scene = scene::generate(options).unwrap();
+        let result = segment(scene.first(), scene.second(), SegmentOptions::default());
+        right += usize::from(result.count == scene.motions.len());
+        all.push(mean(&overlaps(&scene, &result.labels)));
+    }
+    assert!(mean(&all) > 0.85, "mean overlaps {all:?}");
+    assert!(2 * right > series.len(), "{right} of {} numbers of motions right", series.len());
+}
+
+#[test]
+fn motions_are_measured_to_a_fraction_of_a_pixel() {
+    let options = SceneOptions {
+        width: 200,
+        height: 150,
+        objects: 1,
+        speed: Speed::Medium,
+        background: Background::Moving,
+        seed: 12,
+        ..SceneOptions::default()
+    };
+    let scene = scene::generate(&options).unwrap();
+    let result = segment(scene.first(), scene.second(), SegmentOptions::default());
+    assert_eq!(result.count, 2);
+    for (k, truth) in scene.motions.iter().enumerate() {
+        let mut errors = Vec::new();
+        for p in (0..scene.labels.len()).step_by(7).filter(|&p| usize::from(scene.labels[p]) == k) {
+            let (x, y) = ((p % 200) as f64, (p / 200) as f64);
+            let ([u, v], [a, b]) = (truth.flow(x, y), result.motions[k].matrix.flow(x, y));
+            errors.push(((u - a) * (u - a) + (v - b) * (v - b)).sqrt());
+        }
+        assert!(mean(&errors) < 0.15, "motion {k}: mean error {} pixels", mean(&errors));
+    }
+}
+
+/// The scene of the paper's Figures 2 and 3: two small robots with nearly the same motion over a background that stands still.
+#[test]
+fn the_leader_and_the_follower_are_two() {
+    let mut told_apart = 0;
+    for seed in 1..=5 {
+        let scene = scene::leader_follower(seed).unwrap();
+        let result = segment(scene.first(), scene.second(), SegmentOptions::default());
+        told_apart += usize::from(result.count == 3 && mean(&overlaps(&scene, &result.labels)) > 0.85);
+    }
+    assert!(told_apart >= 4, "{told_apart} of 5");
+}
+
+fn textured(width: usize, height: usize, shift: f64) -> Frame {
+    let mut rgba = Vec::with_capacity(width * height * 4);
+    for y in 0..height {
+        for x in 0..width {
+            let (x, y) = (x as f64 - shift, y as f64);
+            let v = 128.0 + 50.0 * libm::sin(0.4 * x + 0.2 * y) + 40.0 * libm::sin(0.23 * x - 0.5 * y);
+            rgba.extend([v as u8, v as u8, v as u8, 255]);
+        }
+    }
+    Frame::from_rgba(width, height, &rgba).unwrap()
+}
+
+fn constant(width: usize, height: usize, value: u8) -> Frame {
+    Frame::from_rgba(width, height, &[value, value, value, 255].repeat(width * height)).unwrap()
+}
+
+#[test]
+fn frames_that_cannot_tell_are_one_motion_that_stands_still() {
+    let (frame, flat) = (textured(64, 48, 0.0), constant(64, 48, 90));
+    for (first, second) in [(&frame, &frame), (&flat, &flat), (&flat, &constant(64, 48, 97))] {
+        for motions in [MotionCount::Auto, MotionCount::Given(3)] {
+            let result = segment(first, second, SegmentOptions { motions, ..SegmentOptions::default() });
+            assert_eq!(result.count, 1);
+            let moved = result.motions[0].matrix.flow(32.0, 24.0);
+            assert!(moved.iter().all(|f| f.abs() < 0.01), "{moved:?}");
+        }
+    }
+}
+
+#[test]
+fn one_motion_of_the_whole_frame_is_one() {
+    let result = segment(&textured(120, 90, 0.0), &textured(120, 90, 2.3), SegmentOptions::default());
+    assert_eq!(result.count, 1);
+    let [u, v] = result.motions[0].matrix.flow(60.0, 45.0);
+    assert!((u - 2.3).abs() < 0.1 && v.abs() < 0.1, "({u}, {v})");
+}
+
+#[test]
+fn any_allowed_size_works() {
+    for (width, height) in [(16, 16), (17, 61), (16, 300), (333, 16), (449, 40), (1000, 20)] {
+        for quality in [Quality::Fast, Quality::Best] {
+            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            segment(&textured(width, height, 0.0), &textured(width, height, 0.7), options);
+        }
+    }
+}
+
+#[test]
+fn frames_that_share_nothing_are_an_answer_too() {
+    let other = scene::generate(&SceneOptions { width: 96, height: 72, seed: 77, ..SceneOptions::default() }).unwrap();
+    for options in [
+        SegmentOptions::default(),
+        SegmentOptions { mark_unknown: true, ..SegmentOptions::default() },
+        SegmentOptions { motions: MotionCount::Given(10), quality: Quality::Fast, ..SegmentOptions::default() },
+    ] {
+        segment(&textured(96, 72, 0.0), other.second(), options);
+    }
+}
+
+#[test]
+fn the_number_of_motions_can_be_given() {
+    let scene = scene::generate(&SceneOptions {
+        width: 200,
+        height: 150,
+        objects: 2,
+        speed: Speed::Medium,
+        background: Background::Static,
+        seed: 5,
+        ..SceneOptions::default()
+    })
+    .unwrap();
+    for n in 1..=3 {
+        let options = SegmentOptions { motions: MotionCount::Given(n), ..SegmentOptions::default() };
+        assert_eq!(segment(scene.first(), scene.second(), options).count, n);
+    }
+}
+
+#[test]
+fn unknown_pixels_are_marked_on_request_only() {
+    let options = SceneOptions { width: 200, height: 150, speed: Speed::Large, seed: 9, ..SceneOptions::default() };
+    let scene = scene::generate(&options).unwrap();
+    let marked = SegmentOptions { mark_unknown: true, ..SegmentOptions::default() };
+    let result = segment(scene.first(), scene.second(), marked);
+    assert!(result.unlabelled > 0);
+    let occluded = scene.occluded.iter().filter(|&&o| o).count();
+    let hit = result.labels.iter().zip(&scene.occluded).filter(|&(&l, &o)| l == UNLABELLED && o).count();
+    // Marks gather where the truth says that nothing can be seen, well above chance.
+    let share_of_marks = hit as f64 / result.unlabelled as f64;
+    let chance = occluded as f64 / scene.labels.len() as f64;
+    assert!(share_of_marks > 3.0 * chance, "{share_of_marks} of the marks are occluded, by chance {chance}");
+}
+
+#[test]
+fn a_third_view_is_taken_and_checked() {
+    let scene =
+        scene::generate(&SceneOptions { width: 200, height: 150, seed: 21, ..SceneOptions::default() }).unwrap();
+    let options = SegmentOptions::default();
+    let [before, first, second] = &scene.frames;
+    let result = segment_pair(first, second, Some(before), &options, &mut |_| {}).unwrap();
+    check(&result, &options);
+    assert!(mean(&overlaps(&scene, &result.labels)) > 0.7);
+    let small = constant(32, 32, 0);
+    assert_eq!(
+        segment_pair(first, second, Some(&small), &options, &mut |_| {}).unwrap_err(),
+        Error::FrameSizeMismatch { first: (200, 150), second: (32, 32) }
+    );
+}
+
+#[test]
+fn sizes_and_numbers_out_of_range_are_errors() {
+    let options = SegmentOptions::default();
+    let (a, b) = (constant(32, 32, 0), constant(32, 33, 0));
+    assert_eq!(segment_pair(&a, &b, None, &options, &mut |_| {}).unwrap_err().code(), "frame-size-mismatch");
+    assert_eq!(Frame::from_rgba(1, 1, &[0; 4]).unwrap_err().code(), "frame-size-unsupported");
+    assert_eq!(Frame::from_rgba(4097, 16, &[]).unwrap_err().code(), "frame-size-unsupported");
+    assert_eq!(Frame::from_rgba(16, 16, &[0; 1023]).unwrap_err().code(), "pixel-count-mismatch");
+    for n in [0, 11] {
+        let options = SegmentOptions { motions: MotionCount::Given(n), ..options };
+        assert_eq!(segment_pair(&a, &a, None, &options, &mut |_| {}).unwrap_err().code(), "invalid-option");
+    }
+}
+
+#[test]
+fn stages_are_reported_in_order() {
+    let mut seen = Vec::new();
+    let (first, second) = (textured(64, 48, 0.0), textured(64, 48, 1.0));
+    segment_pair(&first, &second, None, &SegmentOptions::default(), &mut |stage| seen.push(stage)).unwrap();
+    assert_eq!(seen.first().unwrap().name, "frames");
+    assert_eq!(seen.last().unwrap().name, "masks");
+    assert!(seen.iter().all(|s| s.index < s.of));
+}
+
+/// FNV-1a over all bits of an answer.
+fn fingerprint(result: &Segmentation) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    let mut take = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    result.labels.iter().for_each(|&l| take(l));
+    for motion in &result.motions {
+        for a in motion.matrix.matrix {
+            a.to_bits().to_le_bytes().into_iter().for_each(&mut take);
+        }
+    }
+    hash
+}
+
+/// The same constants hold natively and in WebAssembly: a change of the numerics changes both.
+#[test]
+fn the_same_bits_on_every_target() {
+    let expected: [u64; 3] = [0x7e2f3d287293f8a1, 0x70002c074d7d8329, 0xc9542675733057ad];
+    let options = [
+        SegmentOptions::default(),
+        SegmentOptions { quality: Quality::Fast, ..SegmentOptions::default() },
+        SegmentOptions { motions: MotionCount::Given(4), mark_unknown: true, seed: 7, ..SegmentOptions::default() },
+    ];
+    let scene =
+        scene::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
+    let found = options.map(|o| fingerprint(&segment(scene.first(), scene.second(), o)));
+    assert_eq!(found, expected, "found {found:#018x?}");
+}
