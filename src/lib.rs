@@ -1,5 +1,8 @@
 //! How many things move between two video frames, how each moves, and which pixels belong to it.
 
+#[cfg(test)]
+extern crate self as veronese;
+
 mod best;
 pub mod embedding;
 mod error;
