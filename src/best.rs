@@ -1,37 +1,128 @@
-//! Our own solution of Problem 1 on points.
+//! Our own solution of Problem 1 on points: the most likely mixture of motions.
 
-use crate::embedding::rank::{MAX_TRIED, number_of_motions};
-use crate::error::Result;
-use crate::factorisation::choose;
-use crate::factorisation::differentiation::{POINTS, algebraic_start};
-use crate::measurements::Measurements;
+use crate::error::{Error, Result};
+use crate::factorisation::algebraic_start;
+use crate::measurements::{Measurements, Normalisation};
 use crate::motion::AffineMotion;
-use crate::options::{FitOptions, MotionCount};
-use crate::paper::nearest_by;
-use crate::points::{FitEvidence, MotionFit, ordered_motions};
+use crate::options::{FitOptions, MAX_MOTIONS, MotionCount};
+use crate::points::{Candidate, FitEvidence, FittedMotion, MotionFit, UNLABELLED};
 use crate::progress::{Progress, Stages};
 use crate::random::Random;
+use crate::refinement::{Matrix6, Mixture, Samples, Search, covariance, determined, score, select};
 
-const STAGES: &[&str] = &["number", "motions", "labels"];
+const STAGES: &[&str] = &["search", "labels"];
 
-/// Differentiation of the multibody motion at many points, the best choice of hypotheses, labels by the smallest distance.
+/// Measurements that one motion needs at least: one for each entry.
+const PER_MOTION: usize = 6;
+/// Up to this many motions the search starts from the algebra (differentiation of the multibody motion at points), which is exact without
+/// noise and saves time; beyond, its cost grows with the sixth power of n and random starts do as well.
+const ALGEBRAIC: usize = 2;
+/// Points at which the multibody motion is differentiated, and the measurements it is estimated from.
+const POINTS: usize = 20;
+const ESTIMATED_FROM: usize = 1000;
+
+/// The most likely motions, their number where it is not given, outliers, labels and covariances.
+///
+/// # Errors
+/// [`Error::TooFewMeasurements`] for fewer than six per motion.
 pub(crate) fn best_fit(measurements: &Measurements, options: &FitOptions, progress: Progress<'_>) -> Result<MotionFit> {
     let mut stages = Stages::new(STAGES, progress);
-    let (normalised, normalisation) = measurements.normalised();
-    stages.begin("number");
-    let count = match options.motions {
-        MotionCount::Given(n) => n,
-        MotionCount::Auto => number_of_motions(&normalised, MAX_TRIED)?.motions,
+    let (least, largest) = match options.motions {
+        MotionCount::Given(n) => (n, n),
+        MotionCount::Auto => (1, MAX_MOTIONS.min(measurements.len() / PER_MOTION)),
     };
-    stages.begin("motions");
+    let (needed, found) = (PER_MOTION * least, measurements.len());
+    if found < needed {
+        return Err(Error::TooFewMeasurements { motions: least, needed, found });
+    }
+    stages.begin("search");
+    let (normalised, normalisation) = measurements.normalised();
+    let samples = Samples::new(&normalised);
+    let mut search = Search::new(&samples, options.seed);
     let mut random = Random::from_seed(options.seed);
-    let pool = algebraic_start(&normalised, count, &mut random, POINTS)?;
-    let choice = choose(&pool, &normalised, count, f64::INFINITY);
-    let mut found: Vec<AffineMotion> = choice.indices.iter().map(|&k| pool[k]).collect();
-    found.resize(count, AffineMotion::STATIC);
+    let mut hypotheses = |n| algebraic_hypotheses(&normalised, n, &mut random);
+    let (fit, tried) = match options.motions {
+        MotionCount::Given(n) => {
+            let fit = search.fit(n, &hypotheses(n));
+            let score = score(&mut search, &fit);
+            (fit, vec![(n, score)])
+        }
+        MotionCount::Auto => {
+            let selection = select(&mut search, largest, hypotheses);
+            (selection.fit, selection.tried)
+        }
+    };
     stages.begin("labels");
-    let nearest = nearest_by(&normalised, &found, |a, x, y| a.distance(x, y).abs());
-    let restored: Vec<AffineMotion> = found.iter().map(|a| normalisation.restore(a)).collect();
-    let (motions, labels) = ordered_motions(measurements, &restored, &nearest);
-    Ok(MotionFit { count, motions, labels, evidence: FitEvidence::default(), stages: None })
+    let (motions, labels) = labelled_motions(&mut search, &samples, fit, &normalisation);
+    let candidates = tried.into_iter().map(|(motions, score)| Candidate { motions, score }).collect();
+    let evidence = FitEvidence { candidates, singular_values: Vec::new() };
+    Ok(MotionFit { count: motions.len(), motions, labels, evidence, stages: None })
+}
+
+/// Motions worth trying; none where the algebra is not asked or has too few measurements.
+fn algebraic_hypotheses(normalised: &Measurements, n: usize, random: &mut Random) -> Vec<[f64; 6]> {
+    if n > ALGEBRAIC {
+        return Vec::new();
+    }
+    let pool = if normalised.len() > ESTIMATED_FROM {
+        algebraic_start(&normalised.subset(&random.choose(normalised.len(), ESTIMATED_FROM)), n, random, POINTS)
+    } else {
+        algebraic_start(normalised, n, random, POINTS)
+    };
+    pool.unwrap_or_default().iter().filter(|motion| motion.is_finite()).map(|motion| motion.matrix).collect()
+}
+
+/// The motions of a fit by decreasing number of measurements (ties by the share, then the entries), in the input's coordinates.
+fn labelled_motions(
+    search: &mut Search<'_>,
+    samples: &Samples,
+    mut fit: Mixture,
+    normalisation: &Normalisation,
+) -> (Vec<FittedMotion>, Vec<u8>) {
+    let nearest = fit.labels(samples);
+    let normals = search.evaluate(&mut fit);
+    let mut counts = vec![0_usize; fit.motions.len()];
+    nearest.iter().flatten().for_each(|&i| counts[i] += 1);
+    let mut order: Vec<usize> = (0..counts.len()).collect();
+    order.sort_by(|&a, &b| {
+        let entries = || fit.motions[a].iter().zip(&fit.motions[b]).map(|(p, q)| p.total_cmp(q));
+        let by_entries = || entries().find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal);
+        let by_share = || fit.shares[b].total_cmp(&fit.shares[a]);
+        counts[b].cmp(&counts[a]).then_with(by_share).then_with(by_entries)
+    });
+    let mut label_of = vec![UNLABELLED; counts.len()];
+    let mut motions = Vec::with_capacity(counts.len());
+    for (&i, label) in order.iter().zip(0_u8..) {
+        label_of[i] = label;
+        let own = (0..nearest.len()).filter(|&j| nearest[j] == Some(i));
+        motions.push(FittedMotion {
+            label,
+            matrix: normalisation.restore(&AffineMotion::new(fit.motions[i])),
+            measurements: counts[i],
+            determined: determined(&normals[i], samples, own, fit.sigma),
+            covariance: Some(restored_covariance(&covariance(&normals[i], fit.sigma), normalisation)),
+        });
+    }
+    let labels = nearest.iter().map(|label| label.map_or(UNLABELLED, |i| label_of[i])).collect();
+    (motions, labels)
+}
+
+/// The covariance of the entries in the input's coordinates: restoring a motion is linear, so its columns are the restored unit motions.
+fn restored_covariance(normalised: &Matrix6, normalisation: &Normalisation) -> Matrix6 {
+    let columns: [[f64; 6]; 6] = std::array::from_fn(|k| {
+        let mut unit = [0.0; 6];
+        unit[k] = 1.0;
+        normalisation.restore(&AffineMotion::new(unit)).matrix
+    });
+    std::array::from_fn(|r| {
+        std::array::from_fn(|c| {
+            let mut sum = 0.0;
+            for p in 0..6 {
+                for q in 0..6 {
+                    sum += columns[p][r] * normalised[p][q] * columns[q][c];
+                }
+            }
+            sum
+        })
+    })
 }

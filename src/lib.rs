@@ -1,6 +1,9 @@
 //! How many things move between two video frames, how each moves, and which pixels belong to it.
 
 mod alignment;
+#[cfg(test)]
+extern crate self as veronese;
+
 mod best;
 #[cfg(feature = "codecs")]
 pub mod codecs;

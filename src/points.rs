@@ -49,6 +49,10 @@ pub struct FittedMotion {
     pub measurements: usize,
     /// How many of the six entries its measurements determine (the rank of their constraints): below 6 the rest is a choice.
     pub determined: usize,
+    /// Covariance of the six entries, in the squared units of the entries, where the labels are taken as known; only with
+    /// [`Method::Best`](crate::Method::Best).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub covariance: Option<[[f64; 6]; 6]>,
 }
 
 /// Evidence for the number of motions.
@@ -139,7 +143,7 @@ pub(crate) fn ordered_motions(
         label_of[i] = label;
         let own: Vec<usize> = (0..nearest.len()).filter(|&j| nearest[j] == i).collect();
         let determined = determined_entries(&measurements.subset(&own));
-        motions.push(FittedMotion { label, matrix: found[i], measurements: own.len(), determined });
+        motions.push(FittedMotion { label, matrix: found[i], measurements: own.len(), determined, covariance: None });
     }
     let labels = nearest.iter().map(|&i| label_of.get(i).copied().unwrap_or(UNLABELLED)).collect();
     (motions, labels)

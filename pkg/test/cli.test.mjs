@@ -176,7 +176,7 @@ describe('veronese points', () => {
   });
 
   // The one who merges the estimator takes the mark away.
-  test('gives every field of the contract', { todo: 'needs the estimator' }, async (t) => {
+  test('gives every field of the contract', async (t) => {
     const path = temporaryFolder(t).file('points.json', file(points(80, 1.25, -0.5)));
     const found = json(await veronese(['points', path, '--method', 'paper', '--motions', '1']));
     checkPoints(found, 80);

@@ -1,6 +1,23 @@
-//! From the algebraic start to the best motions.
+//! From a start to the statistical limit: the paper's nonlinear refinement ([`product`]), and the likelihood of a mixture of motions.
 
+mod estimator;
+mod exponential;
+#[cfg(test)]
+mod limit;
+mod mixture;
+mod precision;
 pub mod product;
 mod report;
+mod samples;
+mod selection;
+mod subset;
+mod symmetric;
+mod untangling;
 
+pub(crate) use estimator::Search;
+pub(crate) use mixture::Mixture;
+pub(crate) use precision::{covariance, determined};
 pub use report::{Report, Termination};
+pub(crate) use samples::Samples;
+pub(crate) use selection::{score, select};
+pub(crate) use symmetric::Matrix6;

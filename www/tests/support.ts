@@ -12,7 +12,7 @@ import { PALETTE, UNKNOWN_COLOUR } from '../src/palette.js';
 export { expect };
 
 /** The bundled pair shows two cars on a road: at least so many motions are found in it. */
-export const MOTIONS_IN_SAMPLE = 1;
+export const MOTIONS_IN_SAMPLE = 3;
 
 /** A file as Playwright takes it. */
 export interface Upload {

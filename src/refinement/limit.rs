@@ -1,0 +1,58 @@
+//! Tests that the search ends where EM ends that starts from the true motions: a lower likelihood would be a loss of the search,
+//! anything else is what the data say.
+
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use super::mixture::{Mixture, Stop, Workspace};
+use super::{Samples, Search};
+
+#[path = "../../tests/support/protocol.rs"]
+#[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests of the public functions")]
+mod protocol;
+
+use protocol::{Protocol, Relation, SPECIAL};
+
+const LONG: Stop = Stop { iterations: 100, gain: 1e-9, step: 1e-7 };
+
+/// In how many trials the fit is less likely than what EM reaches from the truth.
+fn losses(protocol: &Protocol, trials: u64) -> u64 {
+    let lost = |seed: &u64| {
+        let problem = protocol.problem(40_000_000 + seed);
+        let (normalised, normalisation) = problem.measurements.normalised();
+        let samples = Samples::new(&normalised);
+        let truth = problem.motions.iter().map(|motion| normalisation.apply(motion).matrix).collect();
+        let limit = Workspace::default().maximise(&samples, Mixture::new(truth, 0.03), LONG);
+        let found = Search::new(&samples, 1).fit(protocol.motions, &[]);
+        found.log_likelihood < limit.log_likelihood - 0.5
+    };
+    (0..trials).filter(lost).count() as u64
+}
+
+#[test]
+fn the_search_reaches_the_likelihood_of_the_truth() {
+    let general = Protocol::new(4, 0.05);
+    for protocol in [
+        general.clone(),
+        Protocol { first_share: Some(0.05), ..general },
+        Protocol { outliers: 0.3, ..Protocol::new(4, 0.02) },
+        Protocol { relation: Relation::Near(0.2), ..Protocol::new(2, 0.05) },
+    ] {
+        assert_eq!(losses(&protocol, 10), 0, "{protocol:?}");
+    }
+}
+
+#[test]
+#[ignore = "a table, for reading"]
+fn table_of_losses() {
+    let table = |protocol: &Protocol| println!("{} of 200 lost: {protocol:?}", losses(protocol, 200));
+    (2..=6).for_each(|n| table(&Protocol::new(n, 0.05)));
+    (2..=5).for_each(|n| table(&Protocol { outliers: 0.3, ..Protocol::new(n, 0.02) }));
+    (2..=5).for_each(|n| table(&Protocol { first_share: Some(0.05), ..Protocol::new(n, 0.05) }));
+    for distance in [0.2, 0.1] {
+        (2..=3).for_each(|n| table(&Protocol { relation: Relation::Near(distance), ..Protocol::new(n, 0.05) }));
+    }
+    for relation in SPECIAL {
+        (2..=4).for_each(|n| table(&Protocol { relation, ..Protocol::new(n, 0.05) }));
+    }
+}

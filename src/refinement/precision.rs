@@ -1,0 +1,100 @@
+//! How well a motion is known: the covariance of its entries, and how many of them its measurements determine at all.
+
+use super::mixture::Normal;
+use super::samples::Samples;
+use super::symmetric::{Matrix6, cholesky, inverse};
+
+/// A direction of the six entries counts as determined if the gradients along it are stronger than this many noise variances …
+const ABOVE_NOISE: f64 = 2.0;
+/// … and than this, where there is no noise (derivatives have unit root mean square).
+const ABOVE_ROUNDING: f64 = 1e-9;
+/// Positions whose spread in a direction is below this share of the whole lie in line.
+const IN_LINE: f64 = 1e-10;
+/// Sweeps of Jacobi's method: convergence is quadratic, 6×6 matrices need about five.
+const SWEEPS: usize = 12;
+
+/// `σ² H⁻¹` with `H = Σ w J Jᵀ`: the covariance of the entries where the labels are taken as known. What nothing determines has a
+/// huge but finite variance.
+pub(crate) fn covariance(normal: &Normal, sigma: f64) -> Matrix6 {
+    inverse(&cholesky(&normal.ridged())).map(|row| row.map(|entry| entry * sigma * sigma))
+}
+
+/// The rank of the constraints on the entries, noise taken into account: `H` is compared with the energy `Σ X Xᵀ`, X = (x, y, 1), that
+/// a flow has at the positions of the motion's measurements, so that the ratio is the mean squared gradient along the flow.
+pub(crate) fn determined(normal: &Normal, samples: &Samples, own: impl Iterator<Item = usize>, sigma: f64) -> usize {
+    let mut energy = [[0.0; 3]; 3];
+    for j in own {
+        let [x, y] = samples.position(j);
+        let position = [x, y, 1.0];
+        (0..3).for_each(|r| (0..3).for_each(|c| energy[r][c] += position[r] * position[c]));
+    }
+    let (values, vectors) = eigen(energy);
+    let trace: f64 = values.iter().sum();
+    let mut whitening = [[0.0; 3]; 3];
+    for k in (0..3).filter(|&k| values[k] > IN_LINE * trace) {
+        (0..3).for_each(|r| whitening[r][k] = vectors[r][k] / values[k].sqrt());
+    }
+    let mut ratio = [[0.0; 6]; 6];
+    for (r, row) in ratio.iter_mut().enumerate() {
+        for (c, entry) in row.iter_mut().enumerate() {
+            for p in 0..3 {
+                for q in 0..3 {
+                    let between = normal.matrix[r / 3 * 3 + p][c / 3 * 3 + q];
+                    *entry += whitening[p][r % 3] * between * whitening[q][c % 3];
+                }
+            }
+        }
+    }
+    let threshold = ABOVE_NOISE * sigma * sigma + ABOVE_ROUNDING;
+    eigen(ratio).0.iter().filter(|&&value| value > threshold).count()
+}
+
+/// Eigenvalues and eigenvectors (columns) of a symmetric matrix by Jacobi's rotations.
+fn eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
+    let mut vectors = [[0.0; N]; N];
+    (0..N).for_each(|k| vectors[k][k] = 1.0);
+    for _ in 0..SWEEPS {
+        for p in 0..N {
+            for q in p + 1..N {
+                if a[p][q] == 0.0 {
+                    continue;
+                }
+                let half = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+                let tangent = half.signum() / (half.abs() + (half * half + 1.0).sqrt());
+                let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
+                let sine = tangent * cosine;
+                for k in 0..N {
+                    (a[k][p], a[k][q]) = (cosine * a[k][p] - sine * a[k][q], sine * a[k][p] + cosine * a[k][q]);
+                }
+                for k in 0..N {
+                    (a[p][k], a[q][k]) = (cosine * a[p][k] - sine * a[q][k], sine * a[p][k] + cosine * a[q][k]);
+                }
+                for row in &mut vectors {
+                    (row[p], row[q]) = (cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]);
+                }
+            }
+        }
+    }
+    (std::array::from_fn(|k| a[k][k]), vectors)
+}
+
+#[cfg(test)]
+mod tests {
+    #[cfg(target_arch = "wasm32")]
+    use wasm_bindgen_test::wasm_bindgen_test as test;
+
+    use super::*;
+
+    #[test]
+    fn eigenvectors_put_the_matrix_together_again() {
+        let matrix: [[f64; 4]; 4] =
+            std::array::from_fn(|r| std::array::from_fn(|c| 1.0 / (1.0 + (r + c) as f64) + f64::from(r == c)));
+        let (values, vectors) = eigen(matrix);
+        for r in 0..4 {
+            for c in 0..4 {
+                let sum: f64 = (0..4).map(|k| vectors[r][k] * values[k] * vectors[c][k]).sum();
+                assert!((sum - matrix[r][c]).abs() < 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! The choice of n motions out of many hypotheses: each measurement pays its distance to the nearest of them, up to a cap.
+
+use super::mixture::capped_distances;
+use super::samples::Samples;
+
+/// Passes of exchanging one member at a time; rarely more than two change anything.
+const EXCHANGES: usize = 3;
+/// Independent partial sums.
+const LANES: usize = 8;
+
+/// The indices of `n` hypotheses (fewer where there are fewer) that together leave the least `Σ_j min(cap, min_i |d_ij|)`: one after
+/// another, then every member exchanged for the best other one while that helps.
+pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: f64) -> Vec<usize> {
+    let width = samples.len();
+    let n = n.min(hypotheses.len());
+    let mut table = Vec::with_capacity(hypotheses.len() * width);
+    hypotheses.iter().for_each(|motion| capped_distances(samples, motion, cap, &mut table));
+    let row = |k: usize| &table[k * width..(k + 1) * width];
+    let best_beside = |others: &[f32]| {
+        let mut best = (f64::INFINITY, 0);
+        for k in 0..hypotheses.len() {
+            let cost = joint_cost(others, row(k));
+            if cost < best.0 {
+                best = (cost, k);
+            }
+        }
+        best
+    };
+    let mut chosen = Vec::with_capacity(n);
+    let mut nearest = vec![cap as f32; width];
+    let mut cost = f64::INFINITY;
+    for _ in 0..n {
+        let (least, k) = best_beside(&nearest);
+        chosen.push(k);
+        cost = least;
+        nearest.iter_mut().zip(row(k)).for_each(|(a, &b)| *a = a.min(b));
+    }
+    for _ in 0..if n > 1 { EXCHANGES } else { 0 } {
+        let before = cost;
+        for i in 0..n {
+            nearest.fill(cap as f32);
+            for (_, &k) in chosen.iter().enumerate().filter(|&(j, _)| j != i) {
+                nearest.iter_mut().zip(row(k)).for_each(|(a, &b)| *a = a.min(b));
+            }
+            let (least, k) = best_beside(&nearest);
+            if least < cost * (1.0 - 1e-9) {
+                chosen[i] = k;
+                cost = least;
+            }
+        }
+        if cost >= before {
+            break;
+        }
+    }
+    chosen
+}
+
+/// `Σ_j min(a_j, b_j)`.
+fn joint_cost(a: &[f32], b: &[f32]) -> f64 {
+    let mut sums = [0.0_f32; LANES];
+    let (a_rows, b_rows) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest: f32 = a_rows.remainder().iter().zip(b_rows.remainder()).map(|(p, q)| p.min(*q)).sum();
+    for (p, q) in a_rows.zip(b_rows) {
+        for l in 0..LANES {
+            sums[l] += if p[l] < q[l] { p[l] } else { q[l] };
+        }
+    }
+    sums.iter().map(|&s| f64::from(s)).sum::<f64>() + f64::from(rest)
+}

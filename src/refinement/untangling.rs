@@ -1,0 +1,68 @@
+//! Two motions that are close to each other, taken apart anew.
+//!
+//! Where two motions differ by a few σ only, EM of all n motions ends in one of many maxima that cut their common measurements in
+//! different ways. On these measurements alone two motions are restarted from both sides of their mean: that is cheap, and
+//! finds the better cut.
+
+use super::estimator::Search;
+use super::mixture::{Mixture, Stop, nearest_distances};
+use super::samples::{Samples, median};
+
+/// A pair is close if at least half of its measurements are within this many σ of both motions.
+const CLOSE_SIGMAS: f64 = 8.0;
+/// Restarts of a pair.
+const TRIES: usize = 8;
+/// Half the distance of the restarted motions, per entry, in σ; one after another.
+const SPREADS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+/// σ at a restart, in units of the fit's.
+const WIDER: f64 = 2.0;
+/// A gain in log-likelihood that counts.
+const GAIN: f64 = 0.1;
+const STOP: Stop = Stop { iterations: 40, gain: 1e-6, step: 1e-4 };
+
+impl Search<'_> {
+    /// Restarts close pairs; returns at the first that makes the whole fit more likely, and says whether there was one.
+    pub(super) fn untangle(&mut self, best: &mut Mixture) -> bool {
+        let labels = best.labels(&self.sample);
+        for i in 0..best.motions.len() {
+            for k in i + 1..best.motions.len() {
+                let Some(own) = self.labelled(&labels, &[i, k]) else { continue };
+                let pair = [best.motions[i], best.motions[k]];
+                if farther_distance(&own, &pair) > CLOSE_SIGMAS * best.sigma {
+                    continue;
+                }
+                let mut motions = best.motions.clone();
+                [motions[i], motions[k]] = self.restart(&own, pair, best.sigma);
+                let candidate = self.workspace.maximise(&self.sample, Mixture::new(motions, best.sigma), STOP);
+                if candidate.log_likelihood > best.log_likelihood + GAIN {
+                    *best = candidate;
+                    return true;
+                }
+            }
+        }
+        false
+    }
+
+    /// The most likely two motions in the measurements of a pair.
+    fn restart(&mut self, own: &Samples, pair: [[f64; 6]; 2], sigma: f64) -> [[f64; 6]; 2] {
+        let mut best = self.workspace.maximise(own, Mixture::new(pair.to_vec(), sigma), STOP);
+        for spread in SPREADS.iter().cycle().take(TRIES) {
+            let offset: [f64; 6] = std::array::from_fn(|_| spread * sigma * self.random.normal());
+            let side = |sign: f64| std::array::from_fn(|e| 0.5 * (pair[0][e] + pair[1][e]) + sign * offset[e]);
+            let start = Mixture::new(vec![side(1.0), side(-1.0)], WIDER * sigma);
+            let found = self.workspace.maximise(own, start, STOP);
+            if found.log_likelihood > best.log_likelihood {
+                best = found;
+            }
+        }
+        [best.motions[0], best.motions[1]]
+    }
+}
+
+/// Median over the measurements of the larger of the two distances.
+fn farther_distance(own: &Samples, pair: &[[f64; 6]; 2]) -> f64 {
+    let mut first = nearest_distances(own, &pair[..1]);
+    let second = nearest_distances(own, &pair[1..]);
+    first.iter_mut().zip(&second).for_each(|(a, &b)| *a = a.max(b));
+    median(&mut first)
+}

@@ -1,0 +1,210 @@
+//! The paper's experiment (Figure 1) as problems with known answers, and the oracle that knows the segmentation.
+//!
+//! Positions uniform in [−1, 1]²; the six entries of each motion uniform in [−1, 1]; labels in turn; `y` uniform on the unit circle
+//! orthogonal to `A x`; every component of y gets noise uniform in [−p, p]; an outlier's `y` is uniform on the unit sphere.
+
+use veronese::{AffineMotion, Measurements, Random};
+
+/// What to make.
+#[derive(Clone, Debug)]
+pub struct Protocol {
+    /// Number of motions.
+    pub motions: usize,
+    /// Number of measurements.
+    pub count: usize,
+    /// Half width p of the noise.
+    pub noise: f64,
+    /// Share of outliers.
+    pub outliers: f64,
+    /// Share of the first motion (the others are equal); `None`: all equal.
+    pub first_share: Option<f64>,
+    /// How the motions are related.
+    pub relation: Relation,
+}
+
+/// Configurations of motions, general and special.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Relation {
+    /// Entries independent.
+    General,
+    /// The second motion has this Euclidean distance (of the six entries) from the first.
+    Near(f64),
+    /// Equal entries (1, 3).
+    EqualA13,
+    /// Equal entries (2, 3).
+    EqualA23,
+    /// Equal translations.
+    EqualTranslation,
+    /// Equal linear parts.
+    EqualLinear,
+    /// One motion is a translation.
+    OneTranslation,
+    /// One motion is none.
+    Static,
+    /// One motion is none, one a translation.
+    StaticAndTranslation,
+    /// One motion has u = 0 and v constant.
+    RankOne,
+    /// One motion has u = 0.
+    RankTwo,
+    /// All motions are translations.
+    Translations,
+    /// All motions are similarities.
+    Similarities,
+}
+
+/// All special configurations.
+pub const SPECIAL: [Relation; 11] = [
+    Relation::EqualA13,
+    Relation::EqualA23,
+    Relation::EqualTranslation,
+    Relation::EqualLinear,
+    Relation::OneTranslation,
+    Relation::Static,
+    Relation::StaticAndTranslation,
+    Relation::RankOne,
+    Relation::RankTwo,
+    Relation::Translations,
+    Relation::Similarities,
+];
+
+/// A problem with its answer.
+pub struct Problem {
+    pub measurements: Measurements,
+    pub motions: Vec<AffineMotion>,
+    /// The motion of every measurement, `None` for an outlier.
+    pub labels: Vec<Option<usize>>,
+}
+
+impl Protocol {
+    /// n motions, N = 600, noise p; no outliers, equal shares, general motions.
+    pub fn new(motions: usize, noise: f64) -> Self {
+        Protocol { motions, count: 600, noise, outliers: 0.0, first_share: None, relation: Relation::General }
+    }
+
+    pub fn problem(&self, seed: u64) -> Problem {
+        let random = &mut Random::from_seed(seed);
+        let motions = self.draw_motions(random);
+        let first = self.first_share.map(|share| (share * self.count as f64) as usize);
+        let (mut positions, mut derivatives, mut labels) = (Vec::new(), Vec::new(), Vec::new());
+        for j in 0..self.count {
+            let label = match first {
+                Some(first) if self.motions > 1 => {
+                    if j < first {
+                        0
+                    } else {
+                        1 + j % (self.motions - 1)
+                    }
+                }
+                _ => j % self.motions,
+            };
+            let (x, y) = (random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+            let [u, v] = motions[label].flow(x, y);
+            let mut direction: [f64; 3] = std::array::from_fn(|_| random.normal());
+            let outlier = random.unit() < self.outliers;
+            if !outlier {
+                let along = (direction[0] * u + direction[1] * v + direction[2]) / (u * u + v * v + 1.0);
+                direction = [direction[0] - along * u, direction[1] - along * v, direction[2] - along];
+            }
+            let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+            positions.push([x, y]);
+            derivatives.push(direction.map(|d| d / length + random.uniform(-self.noise, self.noise)));
+            labels.push((!outlier).then_some(label));
+        }
+        let measurements = Measurements::new(positions, derivatives).expect("finite numbers");
+        Problem { measurements, motions, labels }
+    }
+
+    fn draw_motions(&self, random: &mut Random) -> Vec<AffineMotion> {
+        let mut a: Vec<[f64; 6]> =
+            (0..self.motions).map(|_| std::array::from_fn(|_| random.uniform(-1.0, 1.0))).collect();
+        let first = a[0];
+        match self.relation {
+            Relation::General => {}
+            Relation::Near(distance) => {
+                let step: [f64; 6] = std::array::from_fn(|_| random.normal());
+                let length = step.iter().map(|s| s * s).sum::<f64>().sqrt();
+                a[1] = std::array::from_fn(|k| first[k] + distance * step[k] / length);
+            }
+            Relation::EqualA13 => a.iter_mut().for_each(|m| m[2] = first[2]),
+            Relation::EqualA23 => a.iter_mut().for_each(|m| m[5] = first[5]),
+            Relation::EqualTranslation => a.iter_mut().for_each(|m| (m[2], m[5]) = (first[2], first[5])),
+            Relation::EqualLinear => a.iter_mut().for_each(|m| {
+                *m = [first[0], first[1], m[2], first[3], first[4], m[5]];
+            }),
+            Relation::OneTranslation => a[0] = [0.0, 0.0, first[2], 0.0, 0.0, first[5]],
+            Relation::Static => a[0] = [0.0; 6],
+            Relation::StaticAndTranslation => {
+                a[0] = [0.0; 6];
+                if let Some(second) = a.get_mut(1) {
+                    *second = [0.0, 0.0, second[2], 0.0, 0.0, second[5]];
+                }
+            }
+            Relation::RankOne => a[0] = [0.0, 0.0, 0.0, 0.0, 0.0, first[5]],
+            Relation::RankTwo => a[0] = [0.0, 0.0, 0.0, first[3], first[4], first[5]],
+            Relation::Translations => a.iter_mut().for_each(|m| *m = [0.0, 0.0, m[2], 0.0, 0.0, m[5]]),
+            Relation::Similarities => a.iter_mut().for_each(|m| *m = [m[0], m[1], m[2], -m[1], m[0], m[5]]),
+        }
+        a.into_iter().map(AffineMotion::new).collect()
+    }
+}
+
+impl Problem {
+    /// Each motion by maximum likelihood from its own measurements.
+    pub fn oracle(&self) -> Vec<AffineMotion> {
+        (0..self.motions.len())
+            .map(|i| {
+                let own: Vec<usize> = (0..self.labels.len()).filter(|&j| self.labels[j] == Some(i)).collect();
+                fit_one(&self.measurements.subset(&own), self.motions[i])
+            })
+            .collect()
+    }
+
+    /// Mean and largest relative error (eq. 20) under the best assignment.
+    pub fn errors(&self, found: &[AffineMotion]) -> (f64, f64) {
+        if found.len() != self.motions.len() {
+            return (f64::INFINITY, f64::INFINITY);
+        }
+        let n = found.len();
+        let cost: Vec<Vec<f64>> =
+            self.motions.iter().map(|a| found.iter().map(|b| a.relative_error(b)).collect()).collect();
+        // The cheapest assignment by dynamic programming over the sets of found motions that are used up.
+        let mut best = vec![(f64::INFINITY, 0.0_f64); 1 << n];
+        best[0] = (0.0, 0.0);
+        for used in 0..1_usize << n {
+            let row = used.count_ones() as usize;
+            if row == n {
+                continue;
+            }
+            for i in (0..n).filter(|i| used & (1 << i) == 0) {
+                let sum = best[used].0 + cost[row][i];
+                if sum < best[used | (1 << i)].0 {
+                    best[used | (1 << i)] = (sum, best[used].1.max(cost[row][i]));
+                }
+            }
+        }
+        let (sum, largest) = best[(1 << n) - 1];
+        (sum / n as f64, largest)
+    }
+}
+
+/// Gauss-Newton on the orthogonal distances of one motion, from the truth.
+fn fit_one(own: &Measurements, start: AffineMotion) -> AffineMotion {
+    let mut a = start.matrix;
+    for _ in 0..10 {
+        let mut normal = nalgebra::Matrix6::<f64>::zeros();
+        let mut right = nalgebra::Vector6::<f64>::zeros();
+        for ([x, y], [ix, iy, it]) in own.iter() {
+            let [u, v] = AffineMotion::new(a).flow(x, y);
+            let (r, s) = (ix * u + iy * v + it, u * u + v * v + 1.0);
+            let m = s.sqrt();
+            let (gx, gy) = ((ix - r * u / s) / m, (iy - r * v / s) / m);
+            let j = nalgebra::Vector6::new(gx * x, gx * y, gx, gy * x, gy * y, gy);
+            normal += j * j.transpose();
+            right -= j * (r / m);
+        }
+        let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else { break };
+        (0..6).for_each(|k| a[k] += step[k]);
+    }
+    AffineMotion::new(a)
+}
