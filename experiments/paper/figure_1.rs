@@ -1,0 +1,127 @@
+//! Figure 1: the error of the motions against the noise, for two, three and four motions in 600 measurements.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use veronese::embedding::rank::{MAX_TRIED, number_of_motions};
+use veronese::paper::paper_fit;
+use veronese::{AffineMotion, FitOptions, MotionCount, fit_motions};
+
+use crate::protocol::{Problem, Protocol};
+
+/// The methods compared, in the order of [`Cell::methods`].
+pub(crate) const METHODS: [&str; 4] = ["paper, factorisation", "paper, nonlinear", "ours", "oracle"];
+
+/// A motion that is wrong by more than this (eq. 20) is not found.
+const GROSS: f64 = 0.2;
+
+/// What was measured at one number of motions and one noise level.
+pub(crate) struct Cell {
+    /// Number of motions.
+    pub(crate) motions: usize,
+    /// Half width of the noise, per cent of the length of y.
+    pub(crate) noise: usize,
+    /// The errors of each of [`METHODS`].
+    pub(crate) methods: [Errors; METHODS.len()],
+    /// Shares of trials, per cent, in which the number of motions is right: by the paper's rule (12), and by ours.
+    pub(crate) count_right: [f64; 2],
+}
+
+/// The errors of one method, per cent.
+pub(crate) struct Errors {
+    /// Mean over the trials of (20).
+    pub(crate) mean: f64,
+    /// Median over the trials of (20).
+    pub(crate) median: f64,
+    /// Share of the trials with a motion that is wrong by more than 20 %.
+    pub(crate) gross: f64,
+}
+
+struct Trial {
+    /// Mean and largest relative error of the motions, for each method.
+    errors: [(f64, f64); METHODS.len()],
+    count_right: [bool; 2],
+}
+
+/// All cells of the figure.
+pub(crate) fn measure(trials: usize, seed: u64) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for motions in [2, 3, 4] {
+        for noise in 0..=5 {
+            let start = Instant::now();
+            // Every trial has a seed of its own, so that the threads have no influence.
+            let first_seed = (seed << 32) + ((motions * 10 + noise) as u64) * 1_000_000;
+            let results = in_parallel(trials, |k| trial(motions, 0.01 * noise as f64, first_seed + k as u64));
+            let seconds = start.elapsed().as_secs_f64();
+            eprintln!("Figure 1: {motions} motions, {noise} % noise: {trials} trials in {seconds:.1} s");
+            cells.push(summary(motions, noise, &results));
+        }
+    }
+    cells
+}
+
+fn trial(motions: usize, noise: f64, seed: u64) -> Trial {
+    let problem = Protocol::new(motions, noise).problem(seed);
+    let data = &problem.measurements;
+    let paper = paper_fit(data, MotionCount::Given(motions), &mut |_| {}).ok();
+    let given = FitOptions { motions: MotionCount::Given(motions), ..FitOptions::default() };
+    let ours = fit_motions(data, &given, &mut |_| {}).ok();
+    let rule = number_of_motions(&data.normalised().0, MAX_TRIED).ok();
+    let count = fit_motions(data, &FitOptions::default(), &mut |_| {}).ok();
+    let ours = ours.map(|fit| fit.motions.iter().map(|motion| motion.matrix).collect());
+    Trial {
+        errors: [
+            errors(&problem, paper.as_ref().map(|fit| fit.factorisation.clone())),
+            errors(&problem, paper.map(|fit| fit.refined)),
+            errors(&problem, ours),
+            errors(&problem, Some(problem.oracle())),
+        ],
+        count_right: [rule.is_some_and(|rule| rule.motions == motions), count.is_some_and(|fit| fit.count == motions)],
+    }
+}
+
+fn errors(problem: &Problem, found: Option<Vec<AffineMotion>>) -> (f64, f64) {
+    problem.errors(&found.unwrap_or_default())
+}
+
+fn summary(motions: usize, noise: usize, trials: &[Trial]) -> Cell {
+    let share = |right: &dyn Fn(&Trial) -> bool| {
+        100.0 * trials.iter().filter(|trial| right(trial)).count() as f64 / trials.len() as f64
+    };
+    Cell {
+        motions,
+        noise,
+        methods: std::array::from_fn(|m| {
+            let mut means: Vec<f64> = trials.iter().map(|trial| 100.0 * trial.errors[m].0).collect();
+            means.sort_by(f64::total_cmp);
+            Errors {
+                mean: means.iter().sum::<f64>() / means.len() as f64,
+                median: 0.5 * (means[(means.len() - 1) / 2] + means[means.len() / 2]),
+                gross: share(&|trial| trial.errors[m].1 > GROSS),
+            }
+        }),
+        count_right: std::array::from_fn(|k| share(&|trial| trial.count_right[k])),
+    }
+}
+
+/// `work(0)` … `work(count − 1)`, in that order, on all cores.
+fn in_parallel<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let mut own = Vec::new();
+        loop {
+            let k = next.fetch_add(1, Ordering::Relaxed);
+            if k >= count {
+                return own;
+            }
+            own.push((k, work(k)));
+        }
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut results: Vec<(usize, T)> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(worker)).collect();
+        threads.into_iter().flat_map(|thread| thread.join().unwrap_or_default()).collect()
+    });
+    results.sort_by_key(|(k, _)| *k);
+    results.into_iter().map(|(_, result)| result).collect()
+}

@@ -1,0 +1,81 @@
+//! The paper's experiments: Figure 1 as tables and a plot, Figures 2 and 3 as pictures. `npm run paper` runs it.
+
+#[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
+#[path = "../../tests/support/protocol.rs"]
+mod protocol;
+
+mod figure_1;
+mod pictures;
+mod plot;
+mod tables;
+
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+
+const HELP: &str = "\
+The paper's experiments beside ours.
+
+  --trials N   trials at every noise level of Figure 1, 1 to 100000; default 1000
+  --seed N     seed of the trials and of the generated scene, a whole number below 2^32; default 1
+  --out DIR    where the results go; default out/paper
+";
+
+struct Options {
+    trials: usize,
+    seed: u64,
+    out: PathBuf,
+}
+
+fn main() {
+    match options(std::env::args().skip(1)).map(|options| options.map(|options| run(&options))) {
+        Ok(None) => print!("{HELP}"),
+        Ok(Some(Ok(()))) => {}
+        Ok(Some(Err(error))) => stop(&error.to_string(), 1),
+        Err(message) => stop(&format!("{message}\n\n{HELP}"), 2),
+    }
+}
+
+fn stop(message: &str, code: i32) {
+    eprintln!("{message}");
+    std::process::exit(code);
+}
+
+/// What was asked for; `None` where help was.
+fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options>, String> {
+    let mut options = Options { trials: 1000, seed: 1, out: PathBuf::from("out/paper") };
+    while let Some(name) = arguments.next() {
+        if name == "--help" || name == "-h" {
+            return Ok(None);
+        }
+        if !["--trials", "--seed", "--out"].contains(&name.as_str()) {
+            return Err(format!("There is no option '{name}'."));
+        }
+        let value = arguments.next().ok_or(format!("{name} needs a value."))?;
+        let number = |low: u64, high: u64| match value.parse() {
+            Ok(number) if (low..=high).contains(&number) => Ok(number),
+            _ => Err(format!("{name} must be a whole number from {low} to {high}, not '{value}'.")),
+        };
+        match name.as_str() {
+            "--trials" => options.trials = number(1, 100_000)? as usize,
+            "--seed" => options.seed = number(0, u64::from(u32::MAX))?,
+            _ => options.out = PathBuf::from(&value),
+        }
+    }
+    Ok(Some(options))
+}
+
+fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    let out = &options.out;
+    let cannot = |error: std::io::Error| format!("{} cannot be written: {error}", out.display());
+    fs::create_dir_all(out).map_err(cannot)?;
+    for (name, file) in pictures::pictures(options.seed)? {
+        fs::write(out.join(name), file).map_err(cannot)?;
+    }
+    let cells = figure_1::measure(options.trials, options.seed);
+    fs::write(out.join("figure-1.csv"), tables::csv(&cells)).map_err(cannot)?;
+    fs::write(out.join("figure-1.md"), tables::markdown(&cells, options.trials, options.seed)).map_err(cannot)?;
+    fs::write(out.join("figure-1.svg"), plot::svg(&cells)?).map_err(cannot)?;
+    eprintln!("The results are in {}.", out.display());
+    Ok(())
+}

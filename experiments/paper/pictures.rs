@@ -1,0 +1,165 @@
+//! Figures 2 and 3: the paper's own pipeline beside ours, on a real pair and on a generated scene like the paper's.
+//!
+//! A picture shows panels on a grid: the first frame, the paper's pipeline, ours, and the truth where it is known. Pixels
+//! without a label are grey and dark, those with one have its colour.
+
+use std::error::Error;
+use std::fs;
+
+use veronese::codecs::{decode_image, encode_indexed_png};
+use veronese::scene::leader_follower;
+use veronese::{
+    Frame, KeptPixels, MotionCount, Quality, SegmentOptions, Segmentation, UNLABELLED, literal_pair, segment_pair,
+};
+
+/// Share of the pixels that the paper keeps: 1995 of 150 × 200.
+const KEPT: KeptPixels = KeptPixels::Strongest(0.0665);
+/// In both scenes two things move before a background that stands still, whose pixels the paper leaves out.
+const MOVING: MotionCount = MotionCount::Given(2);
+
+/// Colours of the moving things: orange, blue, green.
+const COLOURS: [[u8; 3]; 3] = [[255, 140, 0], [60, 150, 255], [60, 200, 90]];
+/// Steps of grey; with the plain greys, the dark ones and the colours they fill a palette.
+const STEPS: usize = 51;
+/// Width of the white lines between panels, pixels.
+const GAP: usize = 4;
+
+/// How a panel shows a pixel.
+#[derive(Clone, Copy, PartialEq)]
+enum Look {
+    Plain,
+    Dark,
+    Coloured(usize),
+}
+
+struct Panel(Vec<Look>);
+
+/// The pictures by file name.
+pub(crate) fn pictures(seed: u64) -> Result<Vec<(&'static str, Vec<u8>)>, Box<dyn Error>> {
+    let [before, first, second] = ["first", "second", "third"].map(bundled);
+    let (before, first, second) = (before?, first?, second?);
+    let panels = panels("two cars", [&before, &first, &second], None)?;
+    let cars = picture(&first, &panels, 2, 1)?;
+
+    let scene = leader_follower(seed)?;
+    let [before, first, second] = &scene.frames;
+    let panels = self::panels("leader and follower", [before, first, second], Some(&scene.labels))?;
+    let robots = picture(first, &panels, 2, 2)?;
+    Ok(vec![("two-cars.png", cars), ("leader-follower.png", robots)])
+}
+
+/// A frame of the pair that the project brings.
+fn bundled(name: &str) -> Result<Frame, Box<dyn Error>> {
+    let path = format!("{}/www/public/samples/intel-two-cars/{name}.png", env!("CARGO_MANIFEST_DIR"));
+    let bytes = fs::read(&path).map_err(|error| format!("{path} cannot be read: {error}"))?;
+    Ok(decode_image(&bytes)?.frame()?)
+}
+
+/// What the panels show. `truth` has label 0 for the background.
+fn panels(name: &str, frames: [&Frame; 3], truth: Option<&[u8]>) -> Result<Vec<Panel>, Box<dyn Error>> {
+    let [before, first, second] = frames;
+    let paper = literal_pair(first, second, Some(before), KEPT, MOVING)?;
+    let rule = literal_pair(first, second, Some(before), KEPT, MotionCount::Auto)?;
+    let options = SegmentOptions { quality: Quality::Best, ..SegmentOptions::default() };
+    let ours = segment_pair(first, second, Some(before), &options, &mut |_| {})?;
+    let threshold = literal_pair(first, second, Some(before), KeptPixels::default(), MOVING);
+    eprintln!(
+        "{name}: the paper's pipeline keeps {} pixels ({}), its rule finds {} motions in them; ours finds {}, \
+         the background among them",
+        paper.kept,
+        threshold.map_or_else(|error| error.code().into(), |found| format!("{} above 0.115", found.kept)),
+        rule.fit.count,
+        ours.count,
+    );
+    let plain = Panel(vec![Look::Plain; paper.labels.len()]);
+    let labels = Panel(paper.labels.iter().map(|&label| look((label != UNLABELLED).then_some(label))).collect());
+    let mut panels = vec![plain, labels, moving(&ours)];
+    if let Some(truth) = truth {
+        panels.push(Panel(truth.iter().map(|label| look(label.checked_sub(1))).collect()));
+        eprintln!("{name}: {}", score(truth, &paper.labels, &ours.labels));
+    }
+    Ok(panels)
+}
+
+fn look(label: Option<u8>) -> Look {
+    label.map_or(Look::Dark, |label| Look::Coloured(usize::from(label) % COLOURS.len()))
+}
+
+/// Everything but the largest motion has a colour.
+fn moving(found: &Segmentation) -> Panel {
+    Panel(found.labels.iter().map(|label| look(label.checked_sub(1).filter(|_| *label != UNLABELLED))).collect())
+}
+
+/// How far labels agree with the truth: of the pixels that the paper's pipeline keeps on the things that move, and the
+/// overlap of our masks with those things; labels of things may be numbered either way.
+fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> String {
+    let of = |labels: &[u8], label: u8, thing: u8| {
+        labels.iter().zip(truth).filter(|&(&l, &t)| l == label && t == thing).count() as f64
+    };
+    let kept = paper.iter().zip(truth).filter(|&(&label, &thing)| label != UNLABELLED && thing != 0).count() as f64;
+    let beside = paper.iter().zip(truth).filter(|&(&label, &thing)| label != UNLABELLED && thing == 0).count();
+    let right = f64::max(of(paper, 0, 1) + of(paper, 1, 2), of(paper, 0, 2) + of(paper, 1, 1));
+    let overlap = |thing: u8| {
+        let size = truth.iter().filter(|&&t| t == thing).count() as f64;
+        let of_label = |label: u8| {
+            let both = of(ours, label, thing);
+            both / (size + ours.iter().filter(|&&l| l == label).count() as f64 - both)
+        };
+        (1..=ours.iter().copied().max().unwrap_or(0)).map(of_label).fold(0.0, f64::max)
+    };
+    format!(
+        "the paper's pipeline labels {:.1} % of the {kept} pixels it keeps on the robots rightly, and keeps {beside} of the \
+         background; intersection over union of our masks {:.3} and {:.3}",
+        100.0 * right / kept,
+        overlap(1),
+        overlap(2)
+    )
+}
+
+/// The panels on a grid of `columns`, every side reduced `reduction` times, as an indexed PNG.
+fn picture(frame: &Frame, panels: &[Panel], columns: usize, enlargement: usize) -> Result<Vec<u8>, Box<dyn Error>> {
+    let (width, height) = (frame.width() * enlargement, frame.height() * enlargement);
+    let rows = panels.len().div_ceil(columns);
+    let (full_width, full_height) = (columns * (width + GAP) - GAP, rows * (height + GAP) - GAP);
+    let mut indices = vec![WHITE; full_width * full_height];
+    for (k, panel) in panels.iter().enumerate() {
+        let (left, top) = (k % columns * (width + GAP), k / columns * (height + GAP));
+        for y in 0..height {
+            for x in 0..width {
+                let (from_x, from_y) = (x / enlargement, y / enlargement);
+                let look = panel.0[from_y * frame.width() + from_x];
+                indices[(top + y) * full_width + left + x] = index(look, frame.luminance().at(from_x, from_y));
+            }
+        }
+    }
+    Ok(encode_indexed_png(full_width, full_height, &indices, &palette())?)
+}
+
+/// The brightest plain grey.
+const WHITE: u8 = STEPS as u8 - 1;
+
+fn index(look: Look, luminance: f32) -> u8 {
+    let step = (luminance / 255.0 * (STEPS - 1) as f32).round() as usize;
+    let group = match look {
+        Look::Plain => 0,
+        Look::Dark => 1,
+        Look::Coloured(label) => 2 + label,
+    };
+    (group * STEPS + step.min(STEPS - 1)) as u8
+}
+
+fn palette() -> Vec<u8> {
+    let mut palette = Vec::with_capacity(3 * 5 * STEPS);
+    for group in 0..2 + COLOURS.len() {
+        for step in 0..STEPS {
+            let grey = step as f64 * 255.0 / (STEPS - 1) as f64;
+            let colour = match group.checked_sub(2) {
+                None if group == 0 => [grey; 3],
+                None => [0.45 * grey; 3],
+                Some(label) => COLOURS[label].map(|c| 0.7 * f64::from(c) + 0.3 * grey),
+            };
+            palette.extend(colour.map(|value| value.round() as u8));
+        }
+    }
+    palette
+}
