@@ -1,5 +1,6 @@
 //! The linear step up to n = 10 without noise: accuracy and time. A measurement rather than a test:
 //! `cargo test --release --test degrees -- --ignored --nocapture`.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]
 
 mod synthetic;

@@ -1,4 +1,5 @@
 //! The paper's image experiment on scenes for which its assumptions hold, and what it leaves alone.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

@@ -1,4 +1,5 @@
 //! Properties of the algebra on arbitrary input.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]
 
 use proptest::prelude::*;

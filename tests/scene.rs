@@ -1,4 +1,5 @@
 //! The truth of generated scenes agrees with their pictures, and the same options give the same bytes everywhere.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

@@ -82,7 +82,6 @@ describe('segmentPair', () => {
     }
   });
 
-  // The one who merges the pipeline takes the mark away.
   test('a textured square that moves over a still background is found', async () => {
     const result = await segmentPair(...pair({ width: 128, height: 96, background: [0, 0], square: [3, 2] }));
     assert.ok(result.count >= 2, `found ${result.count} motion(s)`);
@@ -140,7 +139,6 @@ describe('segmentPair refuses', () => {
 });
 
 describe('fitMotions', () => {
-  // The one who merges the estimator takes the mark away.
   test('gives every field of the contract', async () => {
     for (const method of ['paper', 'best']) {
       const result = await fitMotions(points(60, 1.5, -0.5), { motions: 1, method });
@@ -192,7 +190,6 @@ describe('fitMotions', () => {
     });
   }
 
-  // The one who merges the estimator takes the mark away.
   test('refuses fewer measurements than motions need', async () => {
     const none = { positions: new Float64Array(0), derivatives: new Float64Array(0) };
     assert.equal((await failure(fitMotions(none))).code, 'too-few-measurements');

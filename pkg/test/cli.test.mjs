@@ -171,11 +171,11 @@ describe('veronese points', () => {
       const found = json(await veronese(['points', path, ...args]));
       assert.ok(Array.isArray(found.labels));
       const direct = await fitMotions(measurements, options);
-      assert.deepEqual(timeless(found), timeless({ ...direct, labels: [...direct.labels] }));
+      // Through JSON, where −0 is 0.
+      assert.deepEqual(timeless(found), timeless(JSON.parse(JSON.stringify({ ...direct, labels: [...direct.labels] }))));
     }
   });
 
-  // The one who merges the estimator takes the mark away.
   test('gives every field of the contract', async (t) => {
     const path = temporaryFolder(t).file('points.json', file(points(80, 1.25, -0.5)));
     const found = json(await veronese(['points', path, '--method', 'paper', '--motions', '1']));

@@ -69,13 +69,14 @@ impl<'a> Support<'a> {
 
     /// The pixels of positive weight.
     pub(crate) fn weighted(weights: &'a Plane) -> Support<'a> {
-        let (mut columns, mut rows) = (usize::MAX..0, usize::MAX..0);
+        let (mut left, mut right) = (usize::MAX, 0);
+        let (mut top, mut bottom) = (usize::MAX, 0);
         let (mut sum, mut sx, mut sy) = (0.0, 0.0, 0.0);
         for y in 0..weights.height() {
             for (x, &w) in weights.row(y).iter().enumerate() {
                 if w > 1e-3 {
-                    columns = columns.start.min(x)..columns.end.max(x + 1);
-                    rows = rows.start.min(y)..y + 1;
+                    (left, right) = (left.min(x), right.max(x + 1));
+                    (top, bottom) = (top.min(y), y + 1);
                     let w = f64::from(w);
                     sum += w;
                     sx += w * x as f64;
@@ -83,10 +84,8 @@ impl<'a> Support<'a> {
                 }
             }
         }
-        if sum == 0.0 {
-            (columns, rows) = (0..0, 0..0);
-        }
         let n = sum.max(1e-9);
+        let (columns, rows) = (left.min(right)..right, top.min(bottom)..bottom);
         Support { weights: Some(weights), columns, rows, centre: [sx / n, sy / n], sum }
     }
 }
