@@ -34,18 +34,20 @@ enum Look {
 
 struct Panel(Vec<Look>);
 
-/// The pictures by file name.
-pub(crate) fn pictures(seed: u64) -> Result<Vec<(&'static str, Vec<u8>)>, Box<dyn Error>> {
-    let [before, first, second] = ["first", "second", "third"].map(bundled);
-    let (before, first, second) = (before?, first?, second?);
-    let panels = panels("two cars", [&before, &first, &second], None)?;
-    let cars = picture(&first, &panels, 2, 1)?;
+/// A file's name and what is in it.
+type File = (&'static str, Vec<u8>);
+
+/// The pictures as PNG files.
+pub(crate) fn pictures(seed: u64) -> Result<[File; 2], Box<dyn Error>> {
+    let (first, second) = (bundled("first")?, bundled("second")?);
+    let cars = panels("two cars", &first, &second, None, None)?;
+    let cars = picture(&first, &cars, Layout { columns: 3, enlargement: 1, reduction: 2 })?;
 
     let scene = leader_follower(seed)?;
-    let [before, first, second] = &scene.frames;
-    let panels = self::panels("leader and follower", [before, first, second], Some(&scene.labels))?;
-    let robots = picture(first, &panels, 2, 2)?;
-    Ok(vec![("two-cars.png", cars), ("leader-follower.png", robots)])
+    let (first, second, before) = (scene.first(), scene.second(), scene.before());
+    let robots = panels("leader and follower", first, second, Some(before), Some(&scene.labels))?;
+    let robots = picture(first, &robots, Layout { columns: 2, enlargement: 2, reduction: 1 })?;
+    Ok([("two-cars.png", cars), ("leader-follower.png", robots)])
 }
 
 /// A frame of the pair that the project brings.
@@ -56,13 +58,18 @@ fn bundled(name: &str) -> Result<Frame, Box<dyn Error>> {
 }
 
 /// What the panels show. `truth` has label 0 for the background.
-fn panels(name: &str, frames: [&Frame; 3], truth: Option<&[u8]>) -> Result<Vec<Panel>, Box<dyn Error>> {
-    let [before, first, second] = frames;
-    let paper = literal_pair(first, second, Some(before), KEPT, MOVING)?;
-    let rule = literal_pair(first, second, Some(before), KEPT, MotionCount::Auto)?;
+fn panels(
+    name: &str,
+    first: &Frame,
+    second: &Frame,
+    before: Option<&Frame>,
+    truth: Option<&[u8]>,
+) -> Result<Vec<Panel>, Box<dyn Error>> {
+    let paper = literal_pair(first, second, before, KEPT, MOVING)?;
+    let rule = literal_pair(first, second, before, KEPT, MotionCount::Auto)?;
     let options = SegmentOptions { quality: Quality::Best, ..SegmentOptions::default() };
-    let ours = segment_pair(first, second, Some(before), &options, &mut |_| {})?;
-    let threshold = literal_pair(first, second, Some(before), KeptPixels::default(), MOVING);
+    let ours = segment_pair(first, second, before, &options, &mut |_| {})?;
+    let threshold = literal_pair(first, second, before, KeptPixels::default(), MOVING);
     eprintln!(
         "{name}: the paper's pipeline keeps {} pixels ({}), its rule finds {} motions in them; ours finds {}, \
          the background among them",
@@ -116,9 +123,19 @@ fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> String {
     )
 }
 
-/// The panels on a grid of `columns`, every side reduced `reduction` times, as an indexed PNG.
-fn picture(frame: &Frame, panels: &[Panel], columns: usize, enlargement: usize) -> Result<Vec<u8>, Box<dyn Error>> {
-    let (width, height) = (frame.width() * enlargement, frame.height() * enlargement);
+/// How panels are put together.
+struct Layout {
+    columns: usize,
+    /// Picture pixels for a frame pixel, on each side.
+    enlargement: usize,
+    /// Frame pixels for a picture pixel, on each side; their luminance is averaged.
+    reduction: usize,
+}
+
+/// The panels on a grid, as an indexed PNG.
+fn picture(frame: &Frame, panels: &[Panel], layout: Layout) -> Result<Vec<u8>, Box<dyn Error>> {
+    let Layout { columns, enlargement, reduction } = layout;
+    let [width, height] = [frame.width(), frame.height()].map(|side| side * enlargement / reduction);
     let rows = panels.len().div_ceil(columns);
     let (full_width, full_height) = (columns * (width + GAP) - GAP, rows * (height + GAP) - GAP);
     let mut indices = vec![WHITE; full_width * full_height];
@@ -126,9 +143,12 @@ fn picture(frame: &Frame, panels: &[Panel], columns: usize, enlargement: usize) 
         let (left, top) = (k % columns * (width + GAP), k / columns * (height + GAP));
         for y in 0..height {
             for x in 0..width {
-                let (from_x, from_y) = (x / enlargement, y / enlargement);
+                let [from_x, from_y] = [x, y].map(|place| place * reduction / enlargement);
+                let square = (0..reduction * reduction).map(|i| [from_x + i % reduction, from_y + i / reduction]);
+                let sum: f32 = square.map(|[x, y]| frame.luminance().at(x, y)).sum();
+                let luminance = sum / (reduction * reduction) as f32;
                 let look = panel.0[from_y * frame.width() + from_x];
-                indices[(top + y) * full_width + left + x] = index(look, frame.luminance().at(from_x, from_y));
+                indices[(top + y) * full_width + left + x] = index(look, luminance);
             }
         }
     }

@@ -49,7 +49,7 @@ pub(crate) fn markdown(cells: &[Cell], trials: usize, seed: u64) -> String {
 fn short(value: f64) -> String {
     match value {
         value if value == 0.0 || !value.is_finite() => value.to_string(),
-        value if value < 1e-3 || value >= 1e4 => format!("{value:.0e}"),
+        value if !(1e-3..1e4).contains(&value) => format!("{value:.0e}"),
         value if value < 1.0 => format!("{value:.3}"),
         value if value < 10.0 => format!("{value:.2}"),
         value => format!("{value:.1}"),

@@ -1,0 +1,83 @@
+//! The native half of `npm run bench:ratio`: `native inputs DIR` writes the inputs of every case to files that both halves
+//! read, `native times DIR` prints how many milliseconds each took, as JSON.
+
+#[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
+#[path = "../../tests/support/protocol.rs"]
+mod protocol;
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use protocol::Protocol;
+use veronese::scene::{SceneOptions, generate};
+use veronese::{FitOptions, Frame, Measurements, MotionCount, Quality, SegmentOptions, fit_motions, segment_pair};
+
+/// Problems of each number of motions.
+const PROBLEMS: u64 = 8;
+const MOTIONS: [usize; 3] = [2, 3, 4];
+const WIDTH: usize = 320;
+const HEIGHT: usize = 240;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["inputs", folder] => write_inputs(Path::new(folder)),
+        ["times", folder] => print_times(Path::new(folder)),
+        _ => Err("usage: native inputs|times DIR".into()),
+    }
+}
+
+fn write_inputs(folder: &Path) -> Result<(), Box<dyn Error>> {
+    for n in MOTIONS {
+        for seed in 0..PROBLEMS {
+            let data = Protocol::new(n, 0.05).problem(seed).measurements;
+            let numbers = data.iter().flat_map(|(p, d)| [p[0], p[1], d[0], d[1], d[2]]);
+            fs::write(
+                folder.join(format!("points-{n}-{seed}")),
+                numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>(),
+            )?;
+        }
+    }
+    let scene = generate(&SceneOptions { width: WIDTH, height: HEIGHT, ..SceneOptions::default() })?;
+    fs::write(folder.join("first"), &scene.rgba[1])?;
+    fs::write(folder.join("second"), &scene.rgba[2])?;
+    Ok(())
+}
+
+fn print_times(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let mut cases = Vec::new();
+    for n in MOTIONS {
+        let options = FitOptions { motions: MotionCount::Given(n), ..FitOptions::default() };
+        let mut times = Vec::new();
+        for seed in 0..PROBLEMS {
+            let data = read_points(&folder.join(format!("points-{n}-{seed}")))?;
+            times.push(milliseconds(|| fit_motions(&data, &options, &mut |_| {}).map(|fit| fit.count))?);
+        }
+        cases.push(format!("\"points {n}\": {times:?}"));
+    }
+    let frame = |name: &str| Ok::<_, Box<dyn Error>>(Frame::from_rgba(WIDTH, HEIGHT, &fs::read(folder.join(name))?)?);
+    let (first, second) = (frame("first")?, frame("second")?);
+    for (name, quality) in [("fast", Quality::Fast), ("best", Quality::Best)] {
+        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let time =
+            milliseconds(|| segment_pair(&first, &second, None, &options, &mut |_| {}).map(|found| found.count))?;
+        cases.push(format!("\"pair {name}\": [{time}]"));
+    }
+    println!("{{{}}}", cases.join(", "));
+    Ok(())
+}
+
+fn read_points(path: &Path) -> Result<Measurements, Box<dyn Error>> {
+    let bytes = fs::read(path)?;
+    let numbers: Vec<f64> = bytes.as_chunks::<8>().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+    let rows = numbers.as_chunks::<5>().0.iter();
+    Ok(Measurements::new(rows.clone().map(|r| [r[0], r[1]]).collect(), rows.map(|r| [r[2], r[3], r[4]]).collect())?)
+}
+
+fn milliseconds<T>(work: impl FnOnce() -> veronese::Result<T>) -> veronese::Result<f64> {
+    let start = Instant::now();
+    std::hint::black_box(work()?);
+    Ok(1e3 * start.elapsed().as_secs_f64())
+}

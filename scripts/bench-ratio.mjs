@@ -1,0 +1,111 @@
+// npm run bench:ratio: how much longer WebAssembly takes than native code, on the same problems, as a table.
+// Native and WebAssembly runs take turns, so that whatever else the machine does slows both; medians are compared.
+
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { cpus, tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+import { buildModules, buildPackage } from './lib/builds.mjs';
+import { prepare } from './lib/prepare.mjs';
+import { root } from './lib/project.mjs';
+import { command, must } from './lib/run.mjs';
+
+const ROUNDS = 7;
+const PROBLEMS = 8;
+const SIZE = { width: 320, height: 240 };
+const CARGO = ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--'];
+const TITLES = {
+  'points 2': '`fitMotions`, n = 2, 600 measurements, 5 % noise',
+  'points 3': '`fitMotions`, n = 3',
+  'points 4': '`fitMotions`, n = 4',
+  'pair fast': '`segmentPair`, 320 × 240, fast',
+  'pair best': '`segmentPair`, 320 × 240, best',
+};
+
+await command(async () => {
+  await prepare();
+  await buildModules();
+  await buildPackage();
+  const folder = mkdtempSync(join(tmpdir(), 'veronese-'));
+  try {
+    console.error('Building the native program if it has changed …');
+    await native('inputs', folder);
+    const wasm = await wasmTimes(folder);
+    const times = {};
+    for (let round = 0; round < ROUNDS; round += 1) {
+      console.error(`Round ${round + 1} of ${ROUNDS}`);
+      gather(times, 'native', JSON.parse(await native('times', folder)));
+      gather(times, 'wasm', await wasm());
+    }
+    print(times);
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+});
+
+async function native(what, folder) {
+  const result = await must('The native program failed.', 'cargo', [...CARGO, what, folder], { output: 'collect' });
+  return result.stdout;
+}
+
+/** A function that runs every case once, in this process, and returns milliseconds by case. */
+async function wasmTimes(folder) {
+  const { fitMotions, segmentPair } = await import(join(root, 'pkg/dist/node.js'));
+  const file = (name) => readFileSync(join(folder, name));
+  const points = (name) => {
+    const bytes = file(name);
+    const rows = new Float64Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+    const columns = (from, to) => rows.filter((_, k) => k % 5 >= from && k % 5 < to);
+    return { positions: columns(0, 2), derivatives: columns(2, 5) };
+  };
+  const [first, second] = ['first', 'second'].map((name) => ({ data: new Uint8Array(file(name)), ...SIZE }));
+  return async () => {
+    const times = {};
+    for (const n of [2, 3, 4]) {
+      times[`points ${n}`] = [];
+      for (let k = 0; k < PROBLEMS; k += 1) {
+        const data = points(`points-${n}-${k}`);
+        times[`points ${n}`].push(await milliseconds(() => fitMotions(data, { motions: n })));
+      }
+    }
+    for (const quality of ['fast', 'best']) {
+      times[`pair ${quality}`] = [await milliseconds(() => segmentPair(first, second, { quality }))];
+    }
+    return times;
+  };
+}
+
+async function milliseconds(work) {
+  const start = performance.now();
+  await work();
+  return performance.now() - start;
+}
+
+function gather(times, target, found) {
+  for (const [name, values] of Object.entries(found)) {
+    times[name] ??= { native: [], wasm: [] };
+    times[name][target].push(...values);
+  }
+}
+
+function print(times) {
+  console.log(`${cpus()[0].model}, Node ${process.versions.node}, ${ROUNDS} rounds in turn, milliseconds: median [quartiles]\n`);
+  console.log('| call | native | WebAssembly in Node | ratio |\n|---|---|---|---|');
+  for (const [name, { native, wasm }] of Object.entries(times)) {
+    const ratio = (quantile(wasm, 0.5) / quantile(native, 0.5)).toFixed(2);
+    console.log(`| ${TITLES[name]} | ${spread(native)} | ${spread(wasm)} | ${ratio} |`);
+  }
+}
+
+function spread(values) {
+  const [low, middle, high] = [0.25, 0.5, 0.75].map((share) => quantile(values, share).toFixed(1));
+  return `${middle} [${low}, ${high}]`;
+}
+
+function quantile(values, share) {
+  const sorted = [...values].sort((a, b) => a - b);
+  const place = share * (sorted.length - 1);
+  const below = Math.floor(place);
+  const above = Math.ceil(place);
+  return sorted[below] + (place - below) * (sorted[above] - sorted[below]);
+}

@@ -1,0 +1,66 @@
+//! The examples do what they say: each is run as a reader runs it, and its output is compared.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
+#![cfg(not(target_arch = "wasm32"))]
+
+use std::process::Command;
+
+/// What an example prints. Cargo has built it already where all tests run, with the features they run with.
+fn output(example: &str) -> String {
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["run", "--quiet", "--locked", "--example", example]);
+    if cfg!(feature = "codecs") {
+        cargo.args(["--features", "codecs"]);
+    }
+    let output = cargo.output().unwrap();
+    assert!(output.status.success(), "{example}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The number before `unit` in a line.
+fn number_before(line: &str, unit: &str) -> f64 {
+    line.split(unit).next().unwrap().split_whitespace().last().unwrap().parse().unwrap()
+}
+
+#[test]
+fn a_union_of_lines_is_factored() {
+    let text = output("1_union_of_lines");
+    for line in
+        ["[1.000000, 2.000000, -1.000000]", "[0.500000, -1.000000, 2.000000]", "[-2.000000, 1.000000, 1.000000]"]
+    {
+        assert!(text.contains(&format!("the line {line}\n")), "{line} is missing in\n{text}");
+    }
+    assert_eq!(text.lines().count(), 4, "{text}");
+}
+
+#[test]
+fn two_motions_are_found_from_points() {
+    let text = output("2_two_motions");
+    assert_eq!(text.matches("without noise: wrong by less than 1e-9: true").count(), 2, "{text}");
+    let noisy: Vec<&str> = text.lines().filter(|line| line.starts_with("with 5 % noise")).collect();
+    assert_eq!(noisy.len(), 2, "{text}");
+    for line in noisy {
+        let count = number_before(line, " measurements");
+        assert!((190.0..=210.0).contains(&count), "{line}");
+        assert!(line.ends_with(" %") && number_before(line.trim_end_matches(" %"), "\0") < 3.0, "{line}");
+    }
+}
+
+#[test]
+fn the_number_of_motions_is_found_by_the_likelihood_and_not_always_by_the_rank() {
+    let text = output("3_number_of_motions");
+    assert_eq!(text.lines().count(), 12, "{text}");
+    for line in text.lines() {
+        assert!(line.ends_with(&format!("the likelihood {}", &line[..1])), "{line}");
+    }
+    assert!(text.contains("2 motions, noise    0: the rank says 2,"), "{text}");
+    assert!(text.contains("4 motions, noise  0.1: the rank says 3,"), "{text}");
+}
+
+#[test]
+fn a_pair_of_frames_is_segmented() {
+    let text = output("4_pair_of_frames");
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("3 motions"), "{text}");
+    assert_eq!(lines.filter(|line| line.starts_with("motion ")).count(), 3, "{text}");
+    assert!(number_before(text.lines().last().unwrap(), " % of the pixels agree") > 97.0, "{text}");
+}
