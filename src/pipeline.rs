@@ -15,6 +15,7 @@ use crate::frame::Frame;
 use crate::frame::Plane;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::pyramid::{Level, PRE_BLUR, build};
+use crate::labelling::appearance::Palette;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
@@ -70,6 +71,8 @@ pub(crate) struct Work {
     base: usize,
     /// Luminance of the first frame at working size, unblurred: its edges are where labels may change.
     edges: Plane,
+    /// Coarse colour of every working pixel.
+    palette: Palette,
     /// Full-size pixels per working pixel.
     reduction: f64,
 }
@@ -84,13 +87,14 @@ impl Work {
             reduction *= 2.0;
         }
         let edges = planes[0].clone();
+        let palette = Palette::new(first, edges.width(), edges.height());
         let mut blurred = planes.iter().map(|p| gaussian(p, PRE_BLUR));
         let empty = || Plane::filled(1, 1, 0.0);
         let (one, two) = (blurred.next().unwrap_or_else(empty), blurred.next().unwrap_or_else(empty));
         let levels = build(one, two, blurred.next(), settings.smallest_side);
         let base =
             levels.iter().position(|l| l.width().max(l.height()) <= settings.base_side).unwrap_or(levels.len() - 1);
-        Work { levels, base, edges, reduction }
+        Work { levels, base, edges, palette, reduction }
     }
 
     /// Finds the dominant motion, takes the change of brightness out of the second frame, measures the noise.

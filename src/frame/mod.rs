@@ -16,10 +16,12 @@ pub const MIN_SIDE: usize = 16;
 /// Largest side of a frame, pixels.
 pub const MAX_SIDE: usize = 4096;
 
-/// One video frame: its luminance, 0…255.
+/// One video frame: its luminance, 0…255, and its colours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     luminance: Plane,
+    /// Red, green, blue of every pixel, row by row.
+    colours: Vec<[u8; 3]>,
 }
 
 impl Frame {
@@ -41,7 +43,8 @@ impl Frame {
             .chunks_exact(4)
             .map(|p| 0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2]))
             .collect();
-        Ok(Frame { luminance: Plane::from_vec(width, height, luminance) })
+        let colours = rgba.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect();
+        Ok(Frame { luminance: Plane::from_vec(width, height, luminance), colours })
     }
 
     /// Width in pixels.
@@ -52,6 +55,11 @@ impl Frame {
     /// Height in pixels.
     pub fn height(&self) -> usize {
         self.luminance.height()
+    }
+
+    /// Red, green, blue of every pixel, row by row.
+    pub(crate) fn colours(&self) -> &[[u8; 3]] {
+        &self.colours
     }
 
     /// Luminance in grey levels, 0…255.

@@ -4,6 +4,7 @@ use super::Work;
 use super::settings::Settings;
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;
+use crate::labelling::appearance::appearance_costs;
 use crate::labelling::components::absorb_small;
 use crate::labelling::description::{SMALLEST_SHARE, counts, worth};
 use crate::labelling::energy::{Borders, label_cost};
@@ -56,6 +57,7 @@ pub(super) fn label(work: &Work, motions: Vec<AffineMotion>, settings: &Settings
     if draft.split() {
         draft.thin_out();
     }
+    draft.look();
     draft.finish();
     draft.clean();
     Labelled { motions: draft.motions, labels: draft.labels }
@@ -76,6 +78,17 @@ impl Draft<'_> {
 
     fn solve(&mut self) {
         self.labels = self.borders.solve(&self.costs, self.settings.coherence.draft_solver);
+    }
+
+    /// Adds what the colours say.
+    fn look(&mut self) {
+        if self.motions.len() < 2 {
+            return;
+        }
+        let said = appearance_costs(&self.work.palette, &self.costs, &self.labels);
+        for (cost, said) in self.costs.iter_mut().zip(said) {
+            cost.values_mut().iter_mut().zip(said.values()).for_each(|(c, s)| *c += s);
+        }
     }
 
     /// Solves with care: exactly where there are two labels, close to it otherwise.

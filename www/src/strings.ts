@@ -19,16 +19,13 @@ function amount(value: number): string {
 
 const STAGES: Readonly<Record<string, string>> = {
   frames: 'Reading the frames',
-  pyramid: 'Building the pyramids',
-  derivatives: 'Differentiating',
-  measurements: 'Measuring',
   dominant: 'Finding the largest motion',
+  measurements: 'Measuring',
   algebra: 'Solving the multibody polynomial',
-  estimation: 'Estimating the motions',
+  selection: 'Choosing the motions',
   refinement: 'Refining the motions',
-  alignment: 'Aligning each motion',
-  labelling: 'Labelling the pixels',
-  grouping: 'Grouping the motions',
+  labels: 'Labelling the pixels',
+  masks: 'Enlarging the masks',
 };
 
 /** A stage's name in words; one not in the table has its camelCase name taken apart. */

@@ -1,0 +1,148 @@
+//! What the colours say: a pixel that motion alone cannot place goes with what looks like it.
+//!
+//! Where the costs of two motions differ, that difference is evidence. A histogram of coarse colours, weighted by evidence, says
+//! how likely a colour belongs to each label. Whether that can be trusted is measured: blocks of the frame form two halves, and
+//! the histograms of one half are asked about the other. Where textures of several labels share their colours the halves say
+//! nothing about each other, and the colours have no say.
+
+use crate::frame::{Frame, Plane};
+
+/// Steps per colour channel.
+const STEPS: usize = 8;
+const COLOURS: usize = STEPS * STEPS * STEPS;
+/// Probability that every label gives every colour beforehand.
+const DOUBT: f32 = 1e-3;
+/// Price of a colour per nat of its improbability, where colours can be trusted entirely.
+const STRENGTH: f32 = 0.5;
+/// Largest price of a colour.
+const LARGEST: f32 = 2.0;
+/// Side of the blocks that form the two halves, working pixels.
+const BLOCK: usize = 12;
+
+/// The coarse colour of every working pixel.
+#[derive(Clone, Debug)]
+pub(crate) struct Palette {
+    size: [usize; 2],
+    indices: Vec<u16>,
+}
+
+impl Palette {
+    /// Mean colours over the pixels that a working pixel stands for, in steps.
+    pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
+        let step = frame.width().div_ceil(width).next_power_of_two();
+        let mut indices = Vec::with_capacity(width * height);
+        for y in 0..height {
+            for x in 0..width {
+                let (mut sum, mut count) = ([0usize; 3], 0);
+                for v in y * step..((y + 1) * step).min(frame.height()) {
+                    for u in x * step..((x + 1) * step).min(frame.width()) {
+                        let colour = frame.colours()[v * frame.width() + u];
+                        sum.iter_mut().zip(colour).for_each(|(s, c)| *s += usize::from(c));
+                        count += 1;
+                    }
+                }
+                let [r, g, b] = sum.map(|s| s * STEPS / (256 * count.max(1)));
+                indices.push(((r * STEPS + g) * STEPS + b) as u16);
+            }
+        }
+        Palette { size: [width, height], indices }
+    }
+}
+
+/// Prices of the labels at every pixel, learned from the pixels that the motions place.
+pub(crate) fn appearance_costs(palette: &Palette, costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
+    let n = costs.len();
+    let [width, height] = palette.size;
+    let weights = evidence(costs, labels);
+    let trust = trust(palette, labels, &weights, n);
+    let table = posterior(palette, labels, &weights, n, |_| true);
+    (0..n)
+        .map(|label| {
+            let price =
+                |&c: &u16| (-STRENGTH * trust * trust * libm::logf(table[usize::from(c) * n + label])).min(LARGEST);
+            Plane::from_vec(width, height, palette.indices.iter().map(price).collect())
+        })
+        .collect()
+}
+
+/// How well the colours of one half of the blocks tell the labels of the other: information per pixel as a share of what the
+/// labels would need, averaged over the labels; 0…1.
+fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
+    let width = palette.size[0];
+    let half = |p: usize| (p % width / BLOCK + p / width / BLOCK) % 2;
+    let tables = [0, 1].map(|which| posterior(palette, labels, weights, n, |p| half(p) == which));
+    let mut information = vec![(0.0f32, 0.0f32); n];
+    for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
+        let believed = tables[1 - half(p)][usize::from(palette.indices[p]) * n + usize::from(label)];
+        let (sum, count) = &mut information[usize::from(label)];
+        *sum += weight * libm::logf(believed * n as f32);
+        *count += weight;
+    }
+    let needed = libm::logf(n as f32);
+    let shares = information.iter().map(|(sum, count)| (sum / count.max(1e-9) / needed).clamp(0.0, 1.0));
+    shares.sum::<f32>() / n as f32
+}
+
+/// By how much each pixel's own motion is cheaper than the next.
+fn evidence(costs: &[Plane], labels: &[u8]) -> Vec<f32> {
+    let next = |p: usize, own: usize| {
+        (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min)
+    };
+    let gap = |(p, &own): (usize, &u8)| next(p, usize::from(own)) - costs[usize::from(own)].values()[p];
+    labels.iter().enumerate().map(gap).map(|gap| gap.max(0.0)).collect()
+}
+
+/// Probability of every label for every colour, all labels equally likely beforehand; from the pixels that `counts` admits.
+fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, counts: impl Fn(usize) -> bool) -> Vec<f32> {
+    let mut table = vec![0.0f32; n * COLOURS];
+    let mut totals = vec![1e-9f32; n];
+    for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate().filter(|&(p, _)| counts(p)) {
+        table[usize::from(palette.indices[p]) * n + usize::from(label)] += weight;
+        totals[usize::from(label)] += weight;
+    }
+    for of_colour in table.chunks_exact_mut(n) {
+        let mut sum = 0.0;
+        for (share, total) in of_colour.iter_mut().zip(&totals) {
+            *share = *share / total + DOUBT;
+            sum += *share;
+        }
+        of_colour.iter_mut().for_each(|share| *share /= sum);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Left and right half of the frame have a motion each; only every third column knows which.
+    fn costs(width: usize, height: usize) -> ([Plane; 2], Vec<u8>) {
+        let cost = |label: bool| {
+            Plane::from_fn(width, height, |x, _| if x % 3 == 0 && (x < width / 2) == label { 2.0 } else { 0.0 })
+        };
+        let labels = (0..width * height).map(|p| u8::from(p % width >= width / 2)).collect();
+        ([cost(false), cost(true)], labels)
+    }
+
+    fn frame(colour: impl Fn(usize, usize) -> [u8; 3]) -> Frame {
+        let rgba: Vec<u8> = (0..72 * 48)
+            .flat_map(|p| colour(p % 72, p / 72))
+            .collect::<Vec<_>>()
+            .chunks(3)
+            .flat_map(|c| [c[0], c[1], c[2], 255])
+            .collect();
+        Frame::from_rgba(72, 48, &rgba).unwrap()
+    }
+
+    #[test]
+    fn colours_that_tell_the_labels_apart_are_heard_and_others_are_not() {
+        let (costs, labels) = costs(72, 48);
+        let telling = frame(|x, _| if x < 36 { [200, 30, 30] } else { [30, 30, 200] });
+        let said = appearance_costs(&Palette::new(&telling, 72, 48), &costs, &labels);
+        assert!(said[1].at(10, 20) > said[0].at(10, 20) + 0.5);
+        assert!(said[0].at(60, 20) > said[1].at(60, 20) + 0.5);
+        let shared = frame(|x, y| if (x / 2 + y / 2) % 2 == 0 { [200, 30, 30] } else { [30, 30, 200] });
+        let said = appearance_costs(&Palette::new(&shared, 72, 48), &costs, &labels);
+        assert!((said[0].at(10, 20) - said[1].at(10, 20)).abs() < 0.01);
+    }
+}
