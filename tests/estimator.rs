@@ -258,15 +258,15 @@ fn the_same_input_gives_the_same_bits_everywhere() {
     let mut eat = |value: u64| {
         value.to_le_bytes().iter().for_each(|&b| hash = (hash ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
     };
-    for seed in 0..50 {
+    for seed in 0..200 {
         let n = 1 + seed as usize % 5;
         let protocol = Protocol {
-            count: 200 + 7 * seed as usize,
+            count: 150 + 3 * seed as usize,
             outliers: [0.0, 0.1, 0.3][seed as usize % 3],
             ..Protocol::new(n, [0.0, 0.02, 0.05, 0.1][seed as usize % 4])
         };
         let problem = protocol.problem(seed);
-        let motions = if seed % 5 == 4 { MotionCount::Auto } else { MotionCount::Given(n) };
+        let motions = if seed % 20 == 4 { MotionCount::Auto } else { MotionCount::Given(n) };
         let fit = fit(&problem.measurements, motions).unwrap();
         for motion in &fit.motions {
             motion.matrix.matrix.iter().for_each(|v| eat(v.to_bits()));
@@ -280,7 +280,7 @@ fn the_same_input_gives_the_same_bits_everywhere() {
 }
 
 /// Changes with every change of the arithmetic; then take the number that the failing test prints.
-const GOLDEN: u64 = 0x1eb7_b915_17f9_2871;
+const GOLDEN: u64 = 0x88b9_419d_f1b7_bdce;
 
 #[cfg(not(target_arch = "wasm32"))]
 mod tables {
