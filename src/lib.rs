@@ -34,10 +34,11 @@
 //!
 //! The same input gives the same bits natively and in WebAssembly; ARCHITECTURE.md says what that takes.
 
-mod alignment;
+// Unit tests share generators with the integration tests, which know the crate by its name.
 #[cfg(test)]
 extern crate self as veronese;
 
+mod alignment;
 mod best;
 #[cfg(feature = "codecs")]
 pub mod codecs;
