@@ -30,8 +30,8 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
     winner
 }
 
-/// Bilinear enlargement by a power of two: full pixel X lies at X / 2^k.
-fn enlarged(mask: &Plane, width: usize, height: usize) -> Plane {
+/// Bilinear enlargement by a power of two, of a mask or anything else: full pixel X lies at X / 2^k.
+pub(crate) fn enlarged(mask: &Plane, width: usize, height: usize) -> Plane {
     let (scale_x, scale_y) = (factor(mask.width(), width), factor(mask.height(), height));
     let scale = scale_x.max(scale_y) as f32;
     let (right, lower) = (mask.width() - 1, mask.height() - 1);
