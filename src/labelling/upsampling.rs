@@ -53,6 +53,13 @@ fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner
     }
 }
 
+/// A plane of the working size at full size, enlarged bilinearly without looking at the frame.
+pub(crate) fn enlarged(small: &Plane, width: usize, height: usize) -> Plane {
+    let size = (small.width(), small.height());
+    let scale = factor(size.0, width).max(factor(size.1, height)) as f32;
+    Plane::from_fn(width, height, |x, y| between(size, scale, (x, y), |x, y| small.at(x, y)))
+}
+
 /// The power of two between two sizes of one side.
 fn factor(small: usize, large: usize) -> usize {
     let mut factor = 1;
@@ -89,19 +96,27 @@ impl Coarse<'_> {
 
     /// One label's mask, enlarged bilinearly: full pixel X lies at X / 2^k.
     fn mask(&self, label: u8, area: Area) -> Patch {
-        let scale = self.scale as f32;
-        let (right, lower) = (self.width - 1, self.height - 1);
         let at = |x: usize, y: usize| if self.labels[y * self.width + x] == label { 1.0 } else { 0.0 };
-        Patch::from_fn(area, |x, y| {
-            let (px, py) = ((x as f32 / scale).min(right as f32), (y as f32 / scale).min(lower as f32));
-            let (ix, iy) = (px as usize, py as usize);
-            let (fx, fy) = (px - ix as f32, py - iy as f32);
-            let (jx, jy) = ((ix + 1).min(right), (iy + 1).min(lower));
-            let top: f32 = at(ix, iy) + fx * (at(jx, iy) - at(ix, iy));
-            let bottom = at(ix, jy) + fx * (at(jx, jy) - at(ix, jy));
-            top + fy * (bottom - top)
-        })
+        let size = (self.width, self.height);
+        Patch::from_fn(area, |x, y| between(size, self.scale as f32, (x, y), at))
     }
+}
+
+/// The value between the four of a small grid that are nearest to a full-size pixel: X lies at X / scale.
+fn between(
+    (width, height): (usize, usize),
+    scale: f32,
+    (x, y): (usize, usize),
+    at: impl Fn(usize, usize) -> f32,
+) -> f32 {
+    let (right, lower) = (width - 1, height - 1);
+    let (px, py) = ((x as f32 / scale).min(right as f32), (y as f32 / scale).min(lower as f32));
+    let (ix, iy) = (px as usize, py as usize);
+    let (fx, fy) = (px - ix as f32, py - iy as f32);
+    let (jx, jy) = ((ix + 1).min(right), (iy + 1).min(lower));
+    let top: f32 = at(ix, iy) + fx * (at(jx, iy) - at(ix, iy));
+    let bottom = at(ix, jy) + fx * (at(jx, jy) - at(ix, jy));
+    top + fy * (bottom - top)
 }
 
 /// A rectangle of the full-size frame.
