@@ -282,3 +282,40 @@ pub fn leader_follower(seed: u64) -> Result<Scene> {
     }
     render::render(&layers, &SceneOptions { objects: 2, ..options }, &mut random)
 }
+
+/// A camera that moves sideways past a still scene: the nearer a thing, the faster it goes by. Three things before a wall, nearer
+/// and nearer; 400 × 300 pixels, colour. `labels` are 0 the wall, 1… the things from far to near.
+///
+/// # Errors
+/// None that could happen; the signature is that of [`generate`].
+pub fn parallax(seed: u64) -> Result<Scene> {
+    let options = SceneOptions {
+        width: 400,
+        height: 300,
+        objects: 3,
+        background: Background::Moving,
+        noise: 0.8,
+        colour: true,
+        seed,
+        ..SceneOptions::default()
+    };
+    let mut random = Random::from_seed(seed);
+    // Inverse depths of wall and things; the camera also goes a little forward, towards the middle of the frame.
+    let depths = [0.35, 0.8, 1.3, 2.0];
+    let (sideways, forward) = (-4.0, 0.004);
+    let moved = |inverse_depth: f64, centre: [f64; 2]| {
+        let zoom = forward * inverse_depth;
+        let [x, y] = [centre[0] - 200.0, centre[1] - 150.0];
+        about(centre, [sideways * inverse_depth + zoom * x, zoom * y], [zoom, 0.0, 0.0, zoom])
+    };
+    let mut layers = vec![background(&mut random, &options, moved(depths[0], [200.0, 150.0]), 16, &Style::WALLS)];
+    let places = [[105.0, 95.0], [285.0, 115.0], [190.0, 225.0]];
+    for ((place, &depth), (kind, radius)) in
+        places.iter().zip(&depths[1..]).zip([(Kind::Rectangle, 40.0), (Kind::Blob, 48.0), (Kind::Ellipse, 56.0)])
+    {
+        let centre = place.map(|middle| middle + random.uniform(-12.0, 12.0));
+        let shape = Shape::draw(&mut random, kind, radius);
+        layers.push(object(&mut random, &options, moved(depth, centre), shape, centre, &Style::THINGS));
+    }
+    render::render(&layers, &options, &mut random)
+}

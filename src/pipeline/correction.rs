@@ -32,8 +32,10 @@ const STRENGTH: f32 = 4.0;
 const REACH: f32 = 24.0;
 /// A stroke with less than this share of its price left has no say.
 const SMALLEST_SAY: f32 = 0.02;
-/// Length of a step where the frames agree with what is said; 1 more where they cannot tell.
+/// Length of a step where the frames agree with what is said …
 const FREE_STEP: f32 = 0.25;
+/// … and by how much it is longer where they cannot tell.
+const DOUBTFUL_STEP: f32 = 2.0;
 /// A step over a strong edge where they cannot tell, and one where they say the contrary, is longer by this.
 const WALL: f32 = 40.0;
 /// Intensity step, grey levels, at which an edge is strong (to 1 − 1/e).
@@ -290,7 +292,7 @@ fn distances(edges: &Plane, agreement: &[f32], starts: impl Fn(usize) -> bool) -
     let step = |p: usize, q: usize| {
         let agreed = agreement[p].min(agreement[q]);
         let edge = 1.0 - libm::expf(-(values[p] - values[q]).abs() / EDGE);
-        FREE_STEP + (1.0 - agreed.abs()) * (1.0 + WALL * edge) + WALL * (-agreed).max(0.0)
+        FREE_STEP + (1.0 - agreed.abs()) * (DOUBTFUL_STEP + WALL * edge) + WALL * (-agreed).max(0.0)
     };
     let right: Vec<f32> = (0..values.len()).map(|p| if (p + 1) % width == 0 { 0.0 } else { step(p, p + 1) }).collect();
     let down: Vec<f32> = (0..(height - 1) * width).map(|p| step(p, p + width)).collect();
@@ -330,7 +332,7 @@ mod tests {
     #[test]
     fn where_the_frames_cannot_tell_distance_goes_around_an_edge() {
         let distance = distances(&walled(), &[0.0; 45], |p| p == 0);
-        let step = 1.0 + FREE_STEP;
+        let step = DOUBTFUL_STEP + FREE_STEP;
         assert_eq!(distance[3], 3.0 * step);
         // Down, through the gap, up again.
         assert_eq!(distance[8], 16.0 * step);
