@@ -7,7 +7,7 @@ use super::masks::Labelled;
 use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::filter::gaussian;
-use crate::frame::warp::{Footprint, RowPath};
+use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::description::{counts, length, price_of_motion, worth};
@@ -247,39 +247,52 @@ fn describe(
     first: &Plane,
     second: &Plane,
 ) -> Vec<SegmentedMotion> {
-    let (width, height) = (first.width(), first.height());
     let sizes = counts(labels, motions.len());
     let group_numbers = number_groups(grouping, &sizes);
-    let boxes = bounding_boxes(labels, motions.len(), width);
+    let boxes = bounding_boxes(labels, motions.len(), first.width());
+    let residuals = residuals(motions, &boxes, labels, first, second);
     motions
         .iter()
         .enumerate()
-        .map(|(k, motion)| {
-            let (mut sum, mut count) = (0.0, 0usize);
-            let [left, top, box_width, box_height] = boxes[k];
-            for y in top..top + box_height {
-                let path = RowPath::new(motion, left, y);
-                for x in left..left + box_width {
-                    let (px, py) = path.at(x - left);
-                    let at = Footprint::new(px, py, width, height);
-                    if usize::from(labels[y * width + x]) == k && at.inside {
-                        let difference = f64::from(at.sample(second.values()) - first.at(x, y));
-                        sum += difference * difference;
-                        count += 1;
-                    }
-                }
-            }
-            SegmentedMotion {
-                label: k as u8,
-                matrix: *motion,
-                pixels: sizes[k],
-                share: sizes[k] as f64 / labels.len() as f64,
-                residual: (sum / count.max(1) as f64).sqrt(),
-                bbox: boxes[k],
-                group: group_numbers[k],
-            }
+        .map(|(k, motion)| SegmentedMotion {
+            label: k as u8,
+            matrix: *motion,
+            pixels: sizes[k],
+            share: sizes[k] as f64 / labels.len() as f64,
+            residual: residuals[k],
+            bbox: boxes[k],
+            group: group_numbers[k],
         })
         .collect()
+}
+
+/// Root mean square of the intensity difference along each motion over its pixels.
+fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], first: &Plane, second: &Plane) -> Vec<f64> {
+    let (width, height) = (first.width(), first.height());
+    let mut sums = vec![(0.0, 0usize); motions.len()];
+    let mut samples = [0.0; CHUNK];
+    for (y, row) in labels.chunks_exact(width).enumerate() {
+        let mut start = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let k = usize::from(run[0]);
+            let columns = start..start + run.len();
+            start = columns.end;
+            let (Some(motion), Some((sum, count))) = (motions.get(k), sums.get_mut(k)) else { continue };
+            let left = boxes[k][0];
+            let path = RowPath::new(motion, left, y);
+            for (part, values) in first.row(y)[columns.clone()].chunks(CHUNK).enumerate() {
+                let at = Footprints::along(&path, columns.start - left + part * CHUNK, width, height);
+                at.sample(second.values(), &mut samples[..values.len()]);
+                let seen = values.iter().zip(&samples).zip(&at.inside);
+                for ((value, sample), _) in seen.filter(|(_, inside)| **inside) {
+                    let difference = f64::from(sample - value);
+                    *sum += difference * difference;
+                    *count += 1;
+                }
+            }
+        }
+    }
+    sums.into_iter().map(|(sum, count)| (sum / count.max(1) as f64).sqrt()).collect()
 }
 
 /// Groups numbered by decreasing number of pixels.
@@ -298,11 +311,15 @@ fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
 /// x, y, width, height of every label's pixels; zeros where it has none.
 fn bounding_boxes(labels: &[u8], of: usize, width: usize) -> Vec<[usize; 4]> {
     let mut corners = vec![[usize::MAX, usize::MAX, 0, 0]; of];
-    for (p, &label) in labels.iter().enumerate() {
-        if let Some([left, top, right, bottom]) = corners.get_mut(usize::from(label)) {
-            let (x, y) = (p % width, p / width);
-            (*left, *top) = ((*left).min(x), (*top).min(y));
-            (*right, *bottom) = ((*right).max(x + 1), (*bottom).max(y + 1));
+    for (y, row) in labels.chunks_exact(width).enumerate() {
+        let mut start = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let end = start + run.len();
+            if let Some([left, top, right, bottom]) = corners.get_mut(usize::from(run[0])) {
+                (*left, *top) = ((*left).min(start), (*top).min(y));
+                (*right, *bottom) = ((*right).max(end), (*bottom).max(y + 1));
+            }
+            start = end;
         }
     }
     corners.into_iter().map(|[l, t, r, b]| if r == 0 { [0; 4] } else { [l, t, r - l, b - t] }).collect()
