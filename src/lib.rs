@@ -71,6 +71,11 @@ pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair
 pub use measurements::{Measurements, Normalisation};
 pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
+#[doc(hidden)]
+pub use pipeline::Part;
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub use pipeline::segment_pair_without;
 pub use pipeline::{
     Correction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel, segment_pair,
 };

@@ -36,6 +36,8 @@ pub const MAX_OBJECTS: usize = 8;
 /// How fast objects move relative to the background, and the camera, if it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Speed {
+    /// Objects 0.3 pixels per frame, camera 0.1.
+    Creeping,
     /// Objects 0.5 to 1.5 pixels per frame, camera 0.2 to 1.
     SubPixel,
     /// Objects 1.5 to 5 pixels per frame, camera 0.5 to 3.
@@ -179,6 +181,7 @@ struct Ranges {
 
 fn ranges(options: &SceneOptions) -> Ranges {
     let (object, camera, camera_linear, object_linear) = match options.speed {
+        Speed::Creeping => ([0.3, 0.3], [0.1, 0.1], 0.1, 0.1),
         Speed::SubPixel => ([0.5, 1.5], [0.2, 1.0], 0.3, 0.5),
         Speed::Medium => ([1.5, 5.0], [0.5, 3.0], 0.8, 1.5),
         Speed::Large => ([5.0, if options.width < 240 { 10.0 } else { 20.0 }], [2.0, 10.0], 1.5, 3.0),

@@ -8,7 +8,7 @@
 
 use super::Work;
 use super::report::{SegmentedMotion, describe, reduced};
-use super::settings::Settings;
+use super::settings::{Part, Settings};
 use crate::error::{Error, Result};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
@@ -104,7 +104,7 @@ pub fn relabel(
         stages.begin("frames");
         let mut work = Work::new(first, second, before, &settings);
         stages.begin("dominant");
-        work.find_dominant();
+        work.find_dominant(settings.has(Part::Brightness));
         stages.begin("labels");
         let draft = Draft::new(&work, correction, first.width());
         let solved = draft.solve(&work, &settings);
