@@ -157,6 +157,7 @@ export const strings = {
       look: 'Look',
       brush: 'Brush: this mask',
       eraser: 'Eraser: not this mask',
+      stroke: 'With the picture in focus: begin or end a stroke; arrow keys move the brush',
       thinner: 'Smaller brush',
       thicker: 'Larger brush',
       undo: 'Undo',

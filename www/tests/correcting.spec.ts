@@ -85,3 +85,20 @@ test('a stroke with a merged mask means any of its motions', async ({ page }) =>
   const painted = await labelsOnCanvas(page);
   expect(differences(painted, merged) / painted.length).toBeLessThan(0.03);
 });
+
+test('a stroke is drawn by keyboard alone', async ({ page }) => {
+  await open(page, 'groups');
+  const found = await labelsOnCanvas(page);
+  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+  await page.keyboard.press('p');
+  await page.locator('.layers').focus();
+  for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Space');
+  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Space');
+  await expect(page.locator('#status')).toHaveText(/^Solved again/);
+  const painted = await labelsOnCanvas(page);
+  // From the middle 20 radii of 8 pixels to the right, then 6.
+  for (let x = 384 + 160; x <= 384 + 208; x++) expect(painted[216 * 768 + x]).toBe(1);
+  expect(differences(painted, found)).toBeGreaterThan(0);
+});

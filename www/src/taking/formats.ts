@@ -9,6 +9,7 @@ import type { Look, Result } from '../state.js';
 import { overlayPicture } from './overlay.js';
 import { pngFromGrey, pngFromLabels } from './png.js';
 import { atSize } from './full-size.js';
+import { zipped } from './zip.js';
 
 /** A result as it is taken away. */
 export interface Taking {
@@ -105,13 +106,6 @@ export const OVERLAY: Format = {
   hint: 'The first frame with its masks as they are shown.',
   make: ({ result, look }) => overlayPicture(result, look),
 };
-
-/** Files in one; what is a PNG already is only stored. */
-export async function zipped(files: Record<string, Uint8Array>): Promise<Uint8Array<ArrayBuffer>> {
-  const { zipSync } = await import('fflate');
-  const entries = Object.entries(files).map(([name, bytes]) => [name, [bytes, { level: name.endsWith('.png') ? 0 : 6 }]]);
-  return new Uint8Array(zipSync(Object.fromEntries(entries)));
-}
 
 /** In the order of the menu. */
 export const FORMATS: readonly Format[] = [LABELS, MASK, MASKS, OVERLAY, RESULT];
