@@ -3,7 +3,7 @@ import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join, relative, sep } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-import { type Plugin, defineConfig } from 'vite';
+import { type HtmlTagDescriptor, type Plugin, defineConfig } from 'vite';
 // @ts-expect-error: plain JavaScript, shared with the demonstration server
 import { CONTENT_SECURITY_POLICY, HEADERS } from '../scripts/lib/policy.mjs';
 
@@ -17,6 +17,26 @@ function policy(): Plugin {
     configResolved: ({ command }) => void (building = command === 'build'),
     transformIndexHtml: (html) =>
       building ? html.replace('%POLICY%', CONTENT_SECURITY_POLICY) : html.replace(/\s*<meta http-equiv="Content-Security-Policy"[^>]*>/, ''),
+  };
+}
+
+/** Has the browser fetch the WebAssembly module while it reads the page, not when the first frames are decoded. */
+function preload(): Plugin {
+  return {
+    name: 'preload',
+    apply: 'build',
+    transformIndexHtml: {
+      order: 'post',
+      handler: (_html, { bundle, path }) => {
+        const names = path.endsWith('/index.html') ? Object.keys(bundle ?? {}) : [];
+        const link = (name: string, as: string): HtmlTagDescriptor => ({
+          tag: 'link',
+          attrs: { rel: 'preload', as, href: `./${name}`, crossorigin: true },
+          injectTo: 'head',
+        });
+        return names.filter((name) => name.endsWith('.wasm')).map((name) => link(name, 'fetch'));
+      },
+    },
   };
 }
 
@@ -43,7 +63,7 @@ function serviceWorker(): Plugin {
 export default defineConfig({
   // Relative addresses: the built page works in any folder of any host.
   base: './',
-  plugins: [policy(), serviceWorker()],
+  plugins: [policy(), preload(), serviceWorker()],
   worker: { format: 'es' },
   build: {
     target: 'es2023',
