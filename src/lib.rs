@@ -71,7 +71,14 @@ pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair
 pub use measurements::{Measurements, Normalisation};
 pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
-pub use pipeline::{PairEvidence, Segmentation, SegmentedMotion, segment_pair};
+#[doc(hidden)]
+pub use pipeline::Part;
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub use pipeline::segment_pair_without;
+pub use pipeline::{
+    Correction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel, segment_pair,
+};
 pub use points::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED, fit_motions};
 pub use progress::{Progress, Stage};
 pub use random::Random;

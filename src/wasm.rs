@@ -13,8 +13,8 @@ use wasm_bindgen::prelude::*;
 use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
 
 use crate::{
-    Error, FitOptions, Frame, MAX_MOTIONS, MAX_SIDE, MIN_SIDE, Measurements, Method, MotionCount, MotionFit, Quality,
-    SegmentOptions, Segmentation, Stage,
+    AffineMotion, Correction, Error, FitOptions, Frame, MAX_MOTIONS, MAX_SIDE, MIN_SIDE, Measurements, Method,
+    MotionCount, MotionFit, Quality, SegmentOptions, Segmentation, SegmentedMotion, Stage,
 };
 
 /// Version of the JSON.
@@ -35,7 +35,8 @@ pub fn start() {
 /// Segments two frames (and, as a third view, the frame before the first). A frame is anything of the shape of `ImageData`:
 /// `{ data, width, height }` with RGBA bytes. `on_stage(name, index, of)` is called when a stage begins.
 ///
-/// Returns the JSON of a pair, without `milliseconds` (the caller has the clock), with `labels: Uint8Array`.
+/// Returns the JSON of a pair, without `milliseconds` (the caller has the clock), with `labels: Uint8Array` and, where the
+/// options ask for it, `confidence: Uint8Array`.
 ///
 /// # Errors
 /// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape.
@@ -68,7 +69,11 @@ pub fn segment_pair(
             software: SOFTWARE,
         },
     };
-    plain(&report, &segmentation.labels)
+    let object = plain(&report, &segmentation.labels)?;
+    if let Some(confidence) = &segmentation.confidence {
+        Reflect::set(&object, &"confidence".into(), &Uint8Array::from(&confidence[..]))?;
+    }
+    Ok(object)
 }
 
 /// [`segment_pair`] for two `ImageData`, as `getImageData` gives them.
@@ -78,6 +83,42 @@ pub fn segment_pair(
 #[wasm_bindgen(js_name = segmentImageData)]
 pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsValue) -> Result<JsValue, JsValue> {
     segment_pair(first, second, &JsValue::UNDEFINED, options, None)
+}
+
+/// Solves the labels of a segmentation again under what is said about single pixels (see [`crate::Correction`]): `matrices` holds
+/// six entries of each motion, `groups` its group, `labels` and `evidence` one entry per pixel; `options` has the `quality`.
+///
+/// Returns `{ motions, unlabelled, labels: Uint8Array }`, shaped as in [`segment_pair`].
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape or matrices of another number.
+#[wasm_bindgen]
+#[allow(clippy::too_many_arguments, reason = "flat arrays are copied once; objects entry by entry")]
+pub fn relabel(
+    first: &JsValue,
+    second: &JsValue,
+    before: &JsValue,
+    matrices: &[f64],
+    groups: &[u8],
+    labels: &[u8],
+    evidence: &[u16],
+    options: &JsValue,
+    on_stage: Option<Function>,
+) -> Result<JsValue, JsValue> {
+    let options = segment_options(options)?;
+    let first = frame_from_pixels("the first frame", first)?;
+    let second = frame_from_pixels("the second frame", second)?;
+    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    let (entries, rest) = matrices.as_chunks::<6>();
+    if !rest.is_empty() {
+        return Err(Failure::input(format!("the matrices must hold 6 numbers each, found {}", matrices.len())).into());
+    }
+    let motions: Vec<AffineMotion> = entries.iter().map(|&entries| AffineMotion::new(entries)).collect();
+    let correction = Correction { motions: &motions, groups, labels, allowed: evidence };
+    let progress = &mut listener(on_stage);
+    let relabelled = crate::relabel(&first, &second, before.as_ref(), &correction, &options, progress);
+    let relabelled = relabelled.map_err(Failure::from)?;
+    plain(&RelabelReport { motions: &relabelled.motions, unlabelled: relabelled.unlabelled }, &relabelled.labels)
 }
 
 /// Solves the paper's Problem 1 on measurements: `positions` holds x, y of each, `derivatives` I_x, I_y, I_t.
@@ -341,12 +382,10 @@ fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
             "quality" => {
                 options.quality = choice("quality", &value, &[("fast", Quality::Fast), ("best", Quality::Best)])?;
             }
-            "markUnknown" => {
-                options.mark_unknown =
-                    value.as_bool().ok_or_else(|| invalid("markUnknown", "true or false", &value))?;
-            }
+            "markUnknown" => options.mark_unknown = flag("markUnknown", &value)?,
+            "confidence" => options.confidence = flag("confidence", &value)?,
             "seed" => options.seed = seed(&value)?,
-            _ => return Err(unknown(&name, "motions, quality, markUnknown, seed")),
+            _ => return Err(unknown(&name, "motions, quality, markUnknown, confidence, seed")),
         }
     }
     Ok(options)
@@ -363,6 +402,10 @@ fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
         }
     }
     Ok(options)
+}
+
+fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
+    value.as_bool().ok_or_else(|| invalid(name, "true or false", value))
 }
 
 fn motions(value: &JsValue) -> Result<MotionCount, Failure> {
@@ -420,6 +463,12 @@ struct PairReport<'a> {
     #[serde(flatten)]
     segmentation: &'a Segmentation,
     settings: PairSettings,
+}
+
+#[derive(Serialize)]
+struct RelabelReport<'a> {
+    motions: &'a [SegmentedMotion],
+    unlabelled: usize,
 }
 
 #[derive(Serialize)]

@@ -13,6 +13,7 @@ export const HELP = `veronese finds how many things move between two frames, how
       --mark-unknown         label 255 where no motion explains a pixel
       --seed N               seed of every random choice (default: 1)
       --out DIR              write labels.png, result.json and mask-K.png into DIR
+      --confidence           and confidence.png: how sure every pixel's label is, 255 times its probability
       --overlay              and overlay.png: the first frame with every motion in its colour
 
   veronese points FILE.json [options]    {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
@@ -33,7 +34,7 @@ export type Command =
       first: string;
       second: string;
       before?: string;
-      options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; seed: number };
+      options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; confidence: boolean; seed: number };
       grouped: boolean;
       overlay: boolean;
       out?: string;
@@ -63,13 +64,14 @@ const OPTIONS = {
   method: { type: 'string', default: 'best' },
   grouped: { type: 'boolean', default: false },
   'mark-unknown': { type: 'boolean', default: false },
+  confidence: { type: 'boolean', default: false },
   seed: { type: 'string', default: '1' },
   out: { type: 'string' },
   overlay: { type: 'boolean', default: false },
 } as const;
 
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
-  pair: ['before', 'motions', 'quality', 'grouped', 'mark-unknown', 'seed', 'out', 'overlay'],
+  pair: ['before', 'motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'],
   points: ['motions', 'method', 'seed'],
 };
 
@@ -93,7 +95,9 @@ export function parseCommand(args: string[]): Command {
     return { name, file: file as string, options: { ...shared, method: choice('method', values.method, 'paper', 'best') } };
   }
   const [first, second] = exactly(2, files, "'pair' takes two files");
-  if (values.overlay && values.out === undefined) throw usage("'--overlay' needs '--out DIR'");
+  for (const name of ['overlay', 'confidence'] as const) {
+    if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
+  }
   return {
     name: 'pair',
     first: first as string,
@@ -103,6 +107,7 @@ export function parseCommand(args: string[]): Command {
       ...shared,
       quality: choice('quality', values.quality, 'fast', 'best'),
       markUnknown: values['mark-unknown'],
+      confidence: values.confidence,
     },
     grouped: values.grouped,
     overlay: values.overlay,

@@ -29,7 +29,7 @@ async function pair(command: PairCommand, contents: Uint8Array[]): Promise<Outco
   for (const [index, bytes] of contents.entries()) pictures.push(await decoded(paths[index] ?? '', bytes));
   const [first, second, before] = pictures as [Picture, Picture, Picture | undefined];
   const segmentation = await api.segmentPair(first, second, { ...command.options, before });
-  const { labels: _, ...report } = segmentation;
+  const { labels: _, confidence: __, ...report } = segmentation;
   const json = jsonLine(report);
   if (command.out === undefined) return { json, files: [] };
   return { json, files: [...(await images(command, segmentation, first)), { name: 'result.json', bytes: Buffer.from(json) }] };
@@ -42,6 +42,9 @@ async function images(command: PairCommand, segmentation: Segmentation, first: P
   const files = [{ name: 'labels.png', bytes: await encodeIndexedPng(width, height, labels, davisPalette()) }];
   for (const number of numbers) {
     files.push({ name: `mask-${number}.png`, bytes: await encodeGreyPng(width, height, maskOf(labels, number)) });
+  }
+  if (segmentation.confidence) {
+    files.push({ name: 'confidence.png', bytes: await encodeGreyPng(width, height, segmentation.confidence) });
   }
   if (command.overlay) {
     const rgb = overlay(first.data, labels);

@@ -16,7 +16,7 @@ export { version } from './version.js';
 
 const newCore = () => new Core(glue, read, new URL('../wasm/veronese_bg.wasm', import.meta.url));
 
-export const { init, segmentPair, fitMotions, paintLabels } = new Api(newCore());
+export const { init, segmentPair, relabel, fitMotions, paintLabels } = new Api(newCore());
 
 const spawn: Spawn = (onReply, onDeath) => {
   const worker = new Worker(new URL('./worker-node.js', import.meta.url), { name: 'veronese' });

@@ -1,7 +1,7 @@
 // The same calls in a worker: one after another, each cancelled at once by ending the worker.
 
-import type { CallOptions, FitOptions, MotionFit, Pixels, PointMeasurements, Segmentation, SegmentOptions } from '../types/index.js';
-import { checkedMeasurements, checkedPixels, splitOptions } from './api.js';
+import type { CallOptions, FitOptions, MotionFit, Pixels, PointMeasurements, RelabelOptions, Segmentation, SegmentOptions } from '../types/index.js';
+import { checkedCorrection, checkedMeasurements, checkedPixels, splitOptions } from './api.js';
 import { cancelled, VeroneseError } from './errors.js';
 import type { Reply, Request, Task } from './messages.js';
 
@@ -41,6 +41,20 @@ export class WorkerSegmenter {
     const settings = rest.before === undefined ? rest : { ...rest, before: checkedPixels('the frame before', rest.before) };
     const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
     return (await this.#enqueue({ call: 'segmentPair', ...frames, options: settings }, call)) as Segmentation;
+  }
+
+  async relabel(
+    first: Pixels,
+    second: Pixels,
+    segmentation: Segmentation,
+    evidence: Uint16Array,
+    options?: RelabelOptions,
+  ): Promise<Segmentation> {
+    const { call, rest } = splitOptions(options);
+    const settings = rest.before === undefined ? rest : { before: checkedPixels('the frame before', rest.before) };
+    const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
+    checkedCorrection(segmentation, evidence);
+    return (await this.#enqueue({ call: 'relabel', ...frames, segmentation, evidence, options: settings }, call)) as Segmentation;
   }
 
   async fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {

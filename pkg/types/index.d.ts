@@ -35,9 +35,16 @@ export interface SegmentOptions extends CallOptions {
   quality?: 'fast' | 'best' | undefined;
   /** Label 255 where no motion explains a pixel; default `false`. */
   markUnknown?: boolean | undefined;
+  /** Say for every pixel how sure its label is, in `confidence` of the result; default `false`. */
+  confidence?: boolean | undefined;
   /** Seed of every random choice, a whole number from 0; default 1. */
   seed?: number | undefined;
   /** The frame before the first: a third view that helps where something is hidden in the second. */
+  before?: Pixels | undefined;
+}
+
+export interface RelabelOptions extends CallOptions {
+  /** The frame before the first, if the segmentation was made with one. */
   before?: Pixels | undefined;
 }
 
@@ -93,6 +100,10 @@ export interface Segmentation {
   count: number;
   /** By decreasing number of pixels: `motions[i].label === i`. */
   motions: SegmentedMotion[];
+  /**
+   * Description lengths of both frames in nats, of one motion up to one more than were found, each with labels of its own. The
+   * number found need not have the smallest: the stages decide one after another, not by this list alone.
+   */
   evidence: { candidates: Candidate[] };
   /** Number of pixels with label 255. */
   unlabelled: number;
@@ -108,6 +119,12 @@ export interface Segmentation {
   };
   /** One label per pixel, row by row; 255 is unlabelled. */
   labels: Uint8Array;
+  /**
+   * Only with `confidence: true`: how sure the label of every pixel is, row by row. 255 times the probability that its motion
+   * is the right one, given how well all motions explain the pixel and its surroundings: of the pixels with probability P about
+   * the share P is right. 0 where the pixel is unlabelled.
+   */
+  confidence?: Uint8Array;
 }
 
 /** One motion of a {@link MotionFit}. */
@@ -202,6 +219,22 @@ export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 /** Finds how many things move between two frames, how each moves, and which pixels belong to it. */
 export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
 
+/**
+ * Solves the labels of a segmentation again under what a person says about single pixels, with its motions as they are.
+ *
+ * `evidence` holds a set of labels for each pixel, row by row: bit k is set where label k is possible, 0 says nothing. "This is
+ * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. What is said
+ * holds on its pixels and spreads from there as far as the picture looks alike; far from it every label stays. Numbering and groups
+ * stay too, so a label may be left without pixels. The same arguments give the same answer: to undo, ask without.
+ */
+export function relabel(
+  first: Pixels,
+  second: Pixels,
+  segmentation: Segmentation,
+  evidence: Uint16Array,
+  options?: RelabelOptions,
+): Promise<Segmentation>;
+
 /** Solves the paper's Problem 1 on measurements of your own. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
 
@@ -229,6 +262,13 @@ export class Segmenter {
   /** `source` as in {@link init}; by default the file beside the package's code. */
   constructor(source?: WasmSource | Promise<WasmSource>);
   segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
+  relabel(
+    first: Pixels,
+    second: Pixels,
+    segmentation: Segmentation,
+    evidence: Uint16Array,
+    options?: RelabelOptions,
+  ): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
   /** Ends the worker; calls under way reject with code `cancelled`. The next call starts a fresh one. */
   close(): void;
