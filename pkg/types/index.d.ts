@@ -33,7 +33,10 @@ export interface SegmentOptions extends CallOptions {
   motions?: 'auto' | number | undefined;
   /** Work to spend: `'fast'` for live use, `'best'` (the default) for keeping. */
   quality?: 'fast' | 'best' | undefined;
-  /** Label 255 where no motion explains a pixel; default `false`. */
+  /**
+   * Label 255 where a pixel is hidden or outside in the second frame, where there is no texture around it, and where its label
+   * would more likely be wrong than right; default `false`.
+   */
   markUnknown?: boolean | undefined;
   /** Say for every pixel how sure its label is, in `confidence` of the result; default `false`. */
   confidence?: boolean | undefined;
