@@ -181,7 +181,7 @@ export type ErrorCode =
   | 'unreadable-file'
   | 'invalid-json'
   | 'write-failed'
-  | 'nothing-to-do'
+  | 'too-few-frames'
   | 'pairs-failed'
   | 'ffmpeg-missing'
   | 'unreadable-video';
