@@ -71,6 +71,11 @@ pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair
 pub use measurements::{Measurements, Normalisation};
 pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
+#[doc(hidden)]
+pub use pipeline::Part;
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub use pipeline::segment_pair_without;
 pub use pipeline::{PairEvidence, Segmentation, SegmentedMotion, segment_pair};
 pub use points::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED, fit_motions};
 pub use progress::{Progress, Stage};

@@ -75,12 +75,20 @@ pub struct SegmentOptions {
     pub quality: Quality,
     /// Label 255 where no motion explains a pixel; default off.
     pub mark_unknown: bool,
+    /// Say for every pixel how sure its label is ([`Segmentation::confidence`](crate::Segmentation::confidence)); default off.
+    pub confidence: bool,
     /// Seed of every random choice; default 1.
     pub seed: u64,
 }
 
 impl Default for SegmentOptions {
     fn default() -> Self {
-        SegmentOptions { motions: MotionCount::Auto, quality: Quality::Best, mark_unknown: false, seed: 1 }
+        SegmentOptions {
+            motions: MotionCount::Auto,
+            quality: Quality::Best,
+            mark_unknown: false,
+            confidence: false,
+            seed: 1,
+        }
     }
 }

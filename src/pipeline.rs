@@ -6,6 +6,8 @@ mod report;
 mod settings;
 
 pub use report::{PairEvidence, Segmentation, SegmentedMotion};
+#[doc(hidden)]
+pub use settings::Part;
 
 use crate::alignment::cost::noise;
 use crate::alignment::dominant::dominant_motion;
@@ -39,6 +41,37 @@ pub fn segment_pair(
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
+    segment_with(first, second, before, options, Settings::of(options), progress)
+}
+
+/// [`segment_pair`] without one part of the pipeline, for measuring what it is worth.
+///
+/// # Errors
+/// As [`segment_pair`].
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub fn segment_pair_without(
+    part: Part,
+    first: &Frame,
+    second: &Frame,
+    before: Option<&Frame>,
+    options: &SegmentOptions,
+) -> Result<Segmentation> {
+    let mut settings = Settings { without: Some(part), ..Settings::of(options) };
+    if part == Part::Coherence {
+        settings.coherence.smoothness = 0.0;
+    }
+    segment_with(first, second, before, options, settings, &mut |_| {})
+}
+
+fn segment_with(
+    first: &Frame,
+    second: &Frame,
+    before: Option<&Frame>,
+    options: &SegmentOptions,
+    settings: Settings,
+    progress: Progress<'_>,
+) -> Result<Segmentation> {
     options.motions.validate()?;
     let size = (first.width(), first.height());
     for other in [Some(second), before].into_iter().flatten() {
@@ -46,21 +79,20 @@ pub fn segment_pair(
             return Err(Error::FrameSizeMismatch { first: size, second: (other.width(), other.height()) });
         }
     }
-    let settings = Settings::of(options);
     let mut stages = Stages::new(STAGES, progress);
     let mut random = Random::from_seed(options.seed);
 
     stages.begin("frames");
     let mut work = Work::new(first, second, before, &settings);
     stages.begin("dominant");
-    let dominant = work.find_dominant();
+    let dominant = work.find_dominant(settings.has(Part::Brightness));
     let found = hypothesis::best(&work, dominant, &settings, &mut random, &mut stages);
     stages.begin("refinement");
-    let (motions, left_over) = hypothesis::refine(&work, found, &settings);
+    let found = hypothesis::refine(&work, found, &settings);
     stages.begin("labels");
-    let labelled = masks::label(&work, motions, &settings);
+    let labelled = masks::label(&work, found, &settings);
     stages.begin("masks");
-    Ok(report::report(&work, labelled, left_over, first, second, options))
+    Ok(report::report(&work, labelled, &settings, first, second, options))
 }
 
 /// The frames at working size and below.
@@ -97,9 +129,9 @@ impl Work {
         Work { levels, base, edges, palette, reduction }
     }
 
-    /// Finds the dominant motion, takes the change of brightness out of the second frame, measures the noise.
-    fn find_dominant(&mut self) -> AffineMotion {
-        let (mut motion, photometric) = dominant_motion(&self.levels, self.base);
+    /// Finds the dominant motion, takes the change of brightness (if there may be one) out of the second frame, measures the noise.
+    fn find_dominant(&mut self, brightness: bool) -> AffineMotion {
+        let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
         for level in &mut self.levels {
             level.compensate(photometric.bias, photometric.gain);
             level.noise = noise(level, &motion);

@@ -35,7 +35,8 @@ pub fn start() {
 /// Segments two frames (and, as a third view, the frame before the first). A frame is anything of the shape of `ImageData`:
 /// `{ data, width, height }` with RGBA bytes. `on_stage(name, index, of)` is called when a stage begins.
 ///
-/// Returns the JSON of a pair, without `milliseconds` (the caller has the clock), with `labels: Uint8Array`.
+/// Returns the JSON of a pair, without `milliseconds` (the caller has the clock), with `labels: Uint8Array` and, where the
+/// options ask for it, `confidence: Uint8Array`.
 ///
 /// # Errors
 /// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape.
@@ -68,7 +69,11 @@ pub fn segment_pair(
             software: SOFTWARE,
         },
     };
-    plain(&report, &segmentation.labels)
+    let object = plain(&report, &segmentation.labels)?;
+    if let Some(confidence) = &segmentation.confidence {
+        Reflect::set(&object, &"confidence".into(), &Uint8Array::from(&confidence[..]))?;
+    }
+    Ok(object)
 }
 
 /// [`segment_pair`] for two `ImageData`, as `getImageData` gives them.
@@ -341,12 +346,10 @@ fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
             "quality" => {
                 options.quality = choice("quality", &value, &[("fast", Quality::Fast), ("best", Quality::Best)])?;
             }
-            "markUnknown" => {
-                options.mark_unknown =
-                    value.as_bool().ok_or_else(|| invalid("markUnknown", "true or false", &value))?;
-            }
+            "markUnknown" => options.mark_unknown = flag("markUnknown", &value)?,
+            "confidence" => options.confidence = flag("confidence", &value)?,
             "seed" => options.seed = seed(&value)?,
-            _ => return Err(unknown(&name, "motions, quality, markUnknown, seed")),
+            _ => return Err(unknown(&name, "motions, quality, markUnknown, confidence, seed")),
         }
     }
     Ok(options)
@@ -363,6 +366,10 @@ fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
         }
     }
     Ok(options)
+}
+
+fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
+    value.as_bool().ok_or_else(|| invalid(name, "true or false", value))
 }
 
 fn motions(value: &JsValue) -> Result<MotionCount, Failure> {

@@ -5,7 +5,9 @@
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
-use veronese::{Error, Frame, MotionCount, Quality, SegmentOptions, Segmentation, UNLABELLED, segment_pair};
+use veronese::{
+    Error, Frame, MAX_MOTIONS, MotionCount, Quality, SegmentOptions, Segmentation, UNLABELLED, segment_pair,
+};
 
 fn segment(first: &Frame, second: &Frame, options: SegmentOptions) -> Segmentation {
     let result = segment_pair(first, second, None, &options, &mut |_| {}).unwrap();
@@ -37,6 +39,11 @@ fn check(result: &Segmentation, options: &SegmentOptions) {
     assert!(options.mark_unknown || result.unlabelled == 0);
     assert!(result.evidence.candidates.iter().all(|c| c.score.is_finite()));
     assert!(result.evidence.candidates.iter().any(|c| c.motions == result.count));
+    assert!(result.evidence.candidates.windows(2).all(|c| c[0].motions + 1 == c[1].motions));
+    assert!(result.evidence.candidates.iter().all(|c| (1..=MAX_MOTIONS).contains(&c.motions)));
+    assert_eq!(result.confidence.as_ref().map(Vec::len), options.confidence.then_some(pixels));
+    let sure = result.confidence.iter().flatten().zip(&result.labels);
+    assert!(sure.filter(|&(_, &l)| l == UNLABELLED).all(|(&c, _)| c == 0), "what has no label is not sure");
 }
 
 /// Intersection over union of each true label with the found label that overlaps it best.
@@ -205,6 +212,56 @@ fn unknown_pixels_are_marked_on_request_only() {
     let share_of_marks = hit as f64 / result.unlabelled as f64;
     let chance = occluded as f64 / scene.labels.len() as f64;
     assert!(share_of_marks > 3.0 * chance, "{share_of_marks} of the marks are occluded, by chance {chance}");
+}
+
+/// Number and rightness of the pixels of each of five ranges of confidence, from unsure to sure, over some scenes.
+fn calibration(quality: Quality) -> [(usize, usize); 5] {
+    let mut bins = [(0, 0); 5];
+    for options in SceneOptions::series(1200, &[(200, 150)]) {
+        let scene = scene::generate(&options).unwrap();
+        let options = SegmentOptions { confidence: true, quality, ..SegmentOptions::default() };
+        let result = segment(scene.first(), scene.second(), options);
+        // A label means the layer that most of its pixels show.
+        let meaning: Vec<u8> = (0..result.count)
+            .map(|k| {
+                let mut votes = [0usize; 16];
+                let own = result.labels.iter().zip(&scene.labels).filter(|&(&l, _)| usize::from(l) == k);
+                own.for_each(|(_, &t)| votes[usize::from(t)] += 1);
+                (0..16u8).max_by_key(|&t| votes[usize::from(t)]).unwrap()
+            })
+            .collect();
+        for ((&sure, &label), &truth) in result.confidence.iter().flatten().zip(&result.labels).zip(&scene.labels) {
+            let probability = f64::from(sure) / 255.0;
+            let bin = &mut bins[[0.6, 0.8, 0.95, 0.99].iter().filter(|&&edge| probability >= edge).count()];
+            *bin = (bin.0 + 1, bin.1 + usize::from(meaning[usize::from(label)] == truth));
+        }
+    }
+    bins
+}
+
+#[test]
+fn the_surer_a_label_the_more_often_it_is_right() {
+    for quality in [Quality::Fast, Quality::Best] {
+        let bins = calibration(quality);
+        let right = bins.map(|(all, right)| right as f64 / all as f64);
+        assert!(bins.iter().all(|bin| bin.0 > 100), "{bins:?}");
+        assert!(right.is_sorted(), "{right:?} of {bins:?}");
+        assert!(right[4] > 0.99 && right[3] > 0.95 && right[0] < 0.9, "{right:?}");
+    }
+}
+
+#[test]
+fn confidence_changes_nothing_else_and_fewer_and_more_motions_cost_more() {
+    let scene =
+        scene::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
+    let plain = segment(scene.first(), scene.second(), SegmentOptions::default());
+    let asked = SegmentOptions { confidence: true, ..SegmentOptions::default() };
+    let sure = segment(scene.first(), scene.second(), asked);
+    assert_eq!(fingerprint(&plain), fingerprint(&sure));
+    let n = scene.motions.len();
+    assert_eq!(plain.count, n);
+    let score = |motions| plain.evidence.candidates.iter().find(|c| c.motions == motions).unwrap().score;
+    assert!(score(n - 1) > score(n) && score(n + 1) > score(n), "{:?}", plain.evidence);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The native half of `npm run bench:ratio`: `native inputs DIR` writes the inputs of every case to files that both halves
-//! read, `native times DIR` prints how many milliseconds each took, as JSON.
+//! read, `native times DIR` prints how many milliseconds each took, as JSON. `native scenes DIR 640x480 …` writes the pairs of
+//! frames of `npm run bench:browser`.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../../tests/support/protocol.rs"]
@@ -17,6 +18,8 @@ use veronese::{FitOptions, Frame, Measurements, MotionCount, Quality, SegmentOpt
 /// Problems of each number of motions.
 const PROBLEMS: u64 = 8;
 const MOTIONS: [usize; 3] = [2, 3, 4];
+/// Seed of the scenes that the browser sees.
+const SCENE: u64 = 7;
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;
 
@@ -25,7 +28,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["inputs", folder] => write_inputs(Path::new(folder)),
         ["times", folder] => print_times(Path::new(folder)),
-        _ => Err("usage: native inputs|times DIR".into()),
+        ["scenes", folder, ref sizes @ ..] => sizes.iter().try_for_each(|size| write_scene(Path::new(folder), size)),
+        _ => Err("usage: native inputs|times DIR | scenes DIR WIDTHxHEIGHT…".into()),
     }
 }
 
@@ -43,6 +47,17 @@ fn write_inputs(folder: &Path) -> Result<(), Box<dyn Error>> {
     let scene = generate(&SceneOptions { width: WIDTH, height: HEIGHT, ..SceneOptions::default() })?;
     fs::write(folder.join("first"), &scene.rgba[1])?;
     fs::write(folder.join("second"), &scene.rgba[2])?;
+    Ok(())
+}
+
+/// RGBA bytes of both frames and one label per pixel of the first.
+fn write_scene(folder: &Path, size: &str) -> Result<(), Box<dyn Error>> {
+    let (width, height) = size.split_once('x').ok_or("a size looks like 640x480")?;
+    let options = SceneOptions { width: width.parse()?, height: height.parse()?, ..SceneOptions::default() };
+    let scene = generate(&SceneOptions { seed: SCENE, ..options })?;
+    for (name, bytes) in [("first", &scene.rgba[1]), ("second", &scene.rgba[2]), ("labels", &scene.labels)] {
+        fs::write(folder.join(format!("{name}-{size}")), bytes)?;
+    }
     Ok(())
 }
 

@@ -15,6 +15,7 @@ export const HELP = `veronese finds how many things move between two frames, how
       --mark-unknown         label 255 where no motion explains a pixel
       --seed N               seed of every random choice (default: 1)
       --out DIR              write labels.png, result.json and mask-K.png into DIR
+      --confidence           and confidence.png: how sure every pixel's label is, 255 times its probability
       --overlay              and overlay.png: the first frame with every motion in its colour
 
   veronese batch FRAMES... [options]     every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
@@ -24,7 +25,7 @@ export const HELP = `veronese finds how many things move between two frames, how
       --out DIR              a folder for each pair in DIR, with the files of pair; pairs finished before are skipped
       --jobs N               pairs at the same time (default: as many as the machine has processors)
       --shard I/N            only the I-th of N parts of the pairs, for N machines
-      --motions, --quality, --grouped, --mark-unknown, --seed, --overlay as for pair
+      --motions, --quality, --grouped, --mark-unknown, --confidence, --seed, --overlay as for pair
 
   veronese video FILE [options]          the same on the frames of a video, which the program ffmpeg reads
       options as for batch, without --list
@@ -90,6 +91,7 @@ const OPTIONS = {
   method: { type: 'string', default: 'best' },
   grouped: { type: 'boolean', default: false },
   'mark-unknown': { type: 'boolean', default: false },
+  confidence: { type: 'boolean', default: false },
   seed: { type: 'string', default: '1' },
   out: { type: 'string' },
   overlay: { type: 'boolean', default: false },
@@ -100,7 +102,7 @@ const OPTIONS = {
   shard: { type: 'string', default: '1/1' },
 } as const;
 
-const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'seed', 'out', 'overlay'];
+const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
 const OF_SEQUENCES = [...OF_PAIRS, 'every', 'with-before', 'jobs', 'shard'];
 
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
@@ -129,12 +131,15 @@ export function parseCommand(args: string[]): Command {
     const [file] = exactly(1, files, "'points' takes one file");
     return { name, file: file as string, options: { ...shared, method: choice('method', values.method, 'paper', 'best') } };
   }
-  if (values.overlay && values.out === undefined) throw usage("'--overlay' needs '--out DIR'");
+  for (const name of ['overlay', 'confidence'] as const) {
+    if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
+  }
   const settings: PairSettings & { out?: string } = {
     options: {
       ...shared,
       quality: choice('quality', values.quality, 'fast', 'best'),
       markUnknown: values['mark-unknown'],
+      confidence: values.confidence,
     },
     grouped: values.grouped,
     overlay: values.overlay,

@@ -52,7 +52,7 @@ export interface OutputFile {
 }
 
 /** What this program writes; files of an earlier run that this one did not make would be mistaken for its own. */
-export const OURS = /^(mask-\d+|overlay)\.png$/;
+export const OURS = /^(mask-\d+|overlay|confidence)\.png$/;
 
 /** A set of files that appears as a whole: all are written under temporary names, then renamed in one go. */
 export class Output {

@@ -9,7 +9,7 @@ import { groupLabels, maskOf, overlay } from './labels.js';
 import { davisPalette } from './palette.js';
 
 export interface PairSettings {
-  options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; seed: number };
+  options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; confidence: boolean; seed: number };
   /** Whether the images show groups instead of motions. */
   grouped: boolean;
   overlay: boolean;
@@ -20,7 +20,7 @@ export interface InputFile {
   bytes: Uint8Array;
 }
 
-export type Report = Omit<Segmentation, 'labels'>;
+export type Report = Omit<Segmentation, 'labels' | 'confidence'>;
 
 /** Segments first and second (and the frame before); `withImages` also makes the image files. */
 export async function segmentFiles(
@@ -32,7 +32,7 @@ export async function segmentFiles(
   for (const input of inputs) pictures.push(await decoded(input));
   const [first, second, before] = pictures as [Picture, Picture, Picture | undefined];
   const segmentation = await api.segmentPair(first, second, { ...settings.options, before });
-  const { labels: _, ...report } = segmentation;
+  const { labels: _, confidence: __, ...report } = segmentation;
   return { report, images: withImages ? await images(settings, segmentation, first) : [] };
 }
 
@@ -43,6 +43,9 @@ async function images({ grouped, overlay: wanted }: PairSettings, segmentation: 
   const files = [{ name: 'labels.png', bytes: await encodeIndexedPng(width, height, labels, davisPalette()) }];
   for (const number of numbers) {
     files.push({ name: `mask-${number}.png`, bytes: await encodeGreyPng(width, height, maskOf(labels, number)) });
+  }
+  if (segmentation.confidence) {
+    files.push({ name: 'confidence.png', bytes: await encodeGreyPng(width, height, segmentation.confidence) });
   }
   if (wanted) {
     const rgb = overlay(first.data, labels);

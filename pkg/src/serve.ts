@@ -20,7 +20,8 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
         task.call === 'segmentPair'
           ? await api.segmentPair(task.first, task.second, options)
           : await api.fitMotions(task.measurements, options);
-      post({ kind: 'done', result }, [result.labels.buffer as ArrayBuffer]);
+      const arrays = [result.labels, ...('confidence' in result && result.confidence ? [result.confidence] : [])];
+      post({ kind: 'done', result }, arrays.map(({ buffer }) => buffer as ArrayBuffer));
     } catch (thrown) {
       // An exception in an asynchronous handler would not reach the page by itself.
       post({ kind: 'failed', error: errorMessage(thrown) }, []);

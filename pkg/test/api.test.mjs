@@ -29,6 +29,18 @@ describe('segmentPair', () => {
     assert.equal(result.count, 1);
   });
 
+  test('says how sure every label is where it is asked, by an array of its own', async () => {
+    const without = await segmentPair(...pair());
+    assert.equal('confidence' in without, false);
+    const { confidence, ...rest } = await segmentPair(...pair(), { confidence: true });
+    assert.deepEqual(timeless(rest), timeless(without));
+    assert.equal(Object.getPrototypeOf(confidence), Uint8Array.prototype);
+    assert.deepEqual([confidence.length, confidence.buffer.byteLength], [64 * 48, 64 * 48]);
+    const mean = confidence.reduce((sum, sure) => sum + sure, 0) / confidence.length;
+    assert.ok(mean > 128, `mean confidence ${mean}`);
+    assert.equal((await segmentPair(...pair(), { confidence: false })).confidence, undefined);
+  });
+
   test('an option that is undefined is an option not given', async () => {
     const options = { motions: undefined, quality: undefined, markUnknown: undefined, seed: undefined, before: undefined };
     const result = await segmentPair(...pair(), { ...options, signal: undefined, onProgress: undefined });
@@ -123,6 +135,7 @@ describe('segmentPair refuses', () => {
     ]),
     ...['slow', 1, null].map((quality) => [`quality: ${quality}`, 'invalid-option', [first, second, { quality }]]),
     ...[1, 'yes', null].map((markUnknown) => [`markUnknown: ${markUnknown}`, 'invalid-option', [first, second, { markUnknown }]]),
+    ...[0, 'no', null].map((confidence) => [`confidence: ${confidence}`, 'invalid-option', [first, second, { confidence }]]),
     ...[-1, 0.5, 2 ** 53, NaN, '1', null, 1n].map((seed) => [`seed: ${seed}`, 'invalid-option', [first, second, { seed }]]),
     ['a signal that is none', 'invalid-option', [first, second, { signal: true }]],
     ['a listener that is none', 'invalid-option', [first, second, { onProgress: 'log' }]],

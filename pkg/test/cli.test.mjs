@@ -88,6 +88,18 @@ describe('veronese pair', () => {
     });
   }
 
+  test('--confidence writes how sure the labels are, and changes nothing else', async (t) => {
+    const { folder, first, second } = frames(t);
+    const out = folder.path('out');
+    const found = json(await veronese(['pair', first, second, '--out', out, '--confidence']));
+    const direct = await segmentPair(...pair(), { confidence: true });
+    const { labels, confidence, ...report } = direct;
+    assert.deepEqual(timeless(found), timeless(report));
+    const bytes = readFileSync(`${out}/confidence.png`);
+    assert.deepEqual([bytes[24], bytes[25]], [8, 0], '8 bits, grey');
+    assert.deepEqual(new Uint8Array(decode(bytes).data), confidence);
+  });
+
   test('reads PNG, BMP, PNM, WebP and JPEG', async (t) => {
     const folder = temporaryFolder(t);
     const [first, second] = pair();
@@ -118,7 +130,7 @@ describe('veronese pair', () => {
     const { folder, first, second } = frames(t);
     const out = folder.path('out');
     mkdirSync(out);
-    for (const name of ['mask-0.png', 'mask-7.png', 'mask-12.png', 'overlay.png', 'mask-x.png', 'mine.txt']) writeFileSync(`${out}/${name}`, 'old');
+    for (const name of ['mask-0.png', 'mask-7.png', 'mask-12.png', 'overlay.png', 'confidence.png', 'mask-x.png', 'mine.txt']) writeFileSync(`${out}/${name}`, 'old');
     const found = json(await veronese(['pair', first, second, '--out', out]));
     const masks = found.motions.map(({ label }) => `mask-${label}.png`);
     assert.deepEqual(readdirSync(out).sort(), ['labels.png', ...masks, 'mask-x.png', 'mine.txt', 'result.json'].sort());
@@ -301,6 +313,7 @@ describe('usage', () => {
     'an empty name': ['usage', ['pair', '', 'b']],
     'a value for a flag': ['usage', ['pair', 'a', 'b', '--grouped=yes']],
     '--overlay without --out': ['usage', ['pair', 'a', 'b', '--overlay']],
+    '--confidence without --out': ['usage', ['pair', 'a', 'b', '--confidence']],
     'no motions': ['invalid-option', ['pair', 'a', 'b', '--motions', '0']],
     'eleven motions': ['invalid-option', ['pair', 'a', 'b', '--motions', '11']],
     'two and a half motions': ['invalid-option', ['points', 'a', '--motions', '2.5']],
@@ -319,7 +332,7 @@ describe('usage', () => {
       const { code, stdout, stderr } = await veronese(args);
       assert.equal(code, 0);
       assert.equal(stderr, '');
-      for (const word of ['pair', 'points', '--before', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--overlay', '--method']) {
+      for (const word of ['pair', 'points', '--before', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--confidence', '--overlay', '--method']) {
         assert.ok(stdout.includes(word), word);
       }
     }

@@ -17,7 +17,7 @@ function segmenter(t, source) {
 describe('Segmenter', () => {
   test('gives the same bits as the direct calls', async (t) => {
     const worker = segmenter(t);
-    const options = { motions: 'auto', seed: 3, before: frame(-1), markUnknown: true };
+    const options = { motions: 'auto', seed: 3, before: frame(-1), markUnknown: true, confidence: true };
     assert.deepEqual(timeless(await worker.segmentPair(...pair(), options)), timeless(await segmentPair(...pair(), options)));
     const measurements = points(80, 1, 2);
     assert.deepEqual(timeless(await worker.fitMotions(measurements)), timeless(await fitMotions(measurements)));

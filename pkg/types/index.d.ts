@@ -35,6 +35,8 @@ export interface SegmentOptions extends CallOptions {
   quality?: 'fast' | 'best' | undefined;
   /** Label 255 where no motion explains a pixel; default `false`. */
   markUnknown?: boolean | undefined;
+  /** Say for every pixel how sure its label is, in `confidence` of the result; default `false`. */
+  confidence?: boolean | undefined;
   /** Seed of every random choice, a whole number from 0; default 1. */
   seed?: number | undefined;
   /** The frame before the first: a third view that helps where something is hidden in the second. */
@@ -93,6 +95,10 @@ export interface Segmentation {
   count: number;
   /** By decreasing number of pixels: `motions[i].label === i`. */
   motions: SegmentedMotion[];
+  /**
+   * Description lengths of both frames in nats, of one motion up to one more than were found, each with labels of its own. The
+   * number found need not have the smallest: the stages decide one after another, not by this list alone.
+   */
   evidence: { candidates: Candidate[] };
   /** Number of pixels with label 255. */
   unlabelled: number;
@@ -108,6 +114,12 @@ export interface Segmentation {
   };
   /** One label per pixel, row by row; 255 is unlabelled. */
   labels: Uint8Array;
+  /**
+   * Only with `confidence: true`: how sure the label of every pixel is, row by row. 255 times the probability that its motion
+   * is the right one, given how well all motions explain the pixel and its surroundings: of the pixels with probability P about
+   * the share P is right. 0 where the pixel is unlabelled.
+   */
+  confidence?: Uint8Array;
 }
 
 /** One motion of a {@link MotionFit}. */

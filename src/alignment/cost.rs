@@ -11,7 +11,7 @@
 
 use crate::frame::Plane;
 use crate::frame::pyramid::Level;
-use crate::frame::warp::{Footprint, RowPath};
+use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::motion::AffineMotion;
 use crate::order::median;
 
@@ -95,18 +95,21 @@ fn view_cost(level: &Level, view: &Plane, scaled: &AffineMotion, photometric: Ph
     let (noise, looseness) = (level.noise * level.noise, model.looseness * model.looseness);
     let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
     let correlation = level.noise_correlation();
-    let mut out = Plane::filled(width, height, model.outside());
+    let mut out = Plane::filled(width, height, 0.0);
+    let mut samples = [0.0; CHUNK];
     for y in 0..height {
         let path = RowPath::new(scaled, 0, y);
-        let (first, energy) = (level.first.row(y), level.energy.row(y));
-        for (k, o) in out.row_mut(y).iter_mut().enumerate() {
-            let (px, py) = path.at(k);
-            let footprint = Footprint::new(px, py, width, height);
-            if footprint.inside {
-                let residual = footprint.sample(view.values()) - first[k] * (1.0 + gain) - bias;
-                let (fx, fy) = footprint.fractions();
-                let variance = noise * interpolation_variance(fx, fy, correlation) + looseness * energy[k];
-                *o = model.of(residual, variance);
+        let rows = out.row_mut(y).chunks_mut(CHUNK).zip(level.first.row(y).chunks(CHUNK));
+        for (k, ((out, first), energy)) in rows.zip(level.energy.row(y).chunks(CHUNK)).enumerate() {
+            let at = Footprints::along(&path, k * CHUNK, width, height);
+            at.sample(view.values(), &mut samples[..out.len()]);
+            let seen = samples.iter().zip(&at.inside).zip(at.fx.iter().zip(&at.fy));
+            let pixels = out.iter_mut().zip(first).zip(energy).zip(seen);
+            for (((o, first), energy), ((sample, inside), (fx, fy))) in pixels {
+                let residual = sample - first * (1.0 + gain) - bias;
+                let variance = noise * interpolation_variance(*fx, *fy, correlation) + looseness * energy;
+                let cost = model.of(residual, variance);
+                *o = if *inside { cost } else { model.outside() };
             }
         }
     }
@@ -140,15 +143,16 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     let mut energies = level.energy.values().to_vec();
     let flat = median(&mut energies).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
+    let mut samples = [0.0; CHUNK];
     for y in 0..level.height() {
         let path = RowPath::new(&scaled, 0, y);
-        for x in 0..level.width() {
-            let (px, py) = path.at(x);
-            let footprint = Footprint::new(px, py, level.width(), level.height());
-            if footprint.inside && level.energy.at(x, y) <= flat {
-                let (fx, fy) = footprint.fractions();
-                let q = interpolation_variance(fx, fy, level.noise_correlation());
-                residuals.push((footprint.sample(level.second.values()) - level.first.at(x, y)) / q.sqrt());
+        let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
+        for (k, (first, energy)) in rows.enumerate() {
+            let at = Footprints::along(&path, k * CHUNK, level.width(), level.height());
+            at.sample(level.second.values(), &mut samples[..first.len()]);
+            for x in (0..first.len()).filter(|&x| at.inside[x] && energy[x] <= flat) {
+                let q = interpolation_variance(at.fx[x], at.fy[x], level.noise_correlation());
+                residuals.push((samples[x] - first[x]) / q.sqrt());
             }
         }
     }

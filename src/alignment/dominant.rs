@@ -14,18 +14,19 @@ const STATIC_BONUS: f64 = 20.0;
 /// Gain between the frames is looked for between these factors.
 const GAINS: (f64, f64) = (0.7, 1.4);
 
-/// The dominant motion of the working frame and the change of brightness, from the levels `base` and coarser.
-pub(crate) fn dominant_motion(levels: &[Level], base: usize) -> (AffineMotion, Photometric) {
-    let start = brightness_start(levels);
+/// The dominant motion of the working frame and the change of brightness (none unless `brightness` allows it), from the levels
+/// `base` and coarser.
+pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -> (AffineMotion, Photometric) {
+    let start = if brightness { brightness_start(levels) } else { Photometric::default() };
     let coarsest = &levels[levels.len() - 1];
     let mut candidates = vec![AffineMotion::STATIC];
     let shift = best_shift(coarsest, start);
     if shift != AffineMotion::STATIC {
         candidates.push(shift);
     }
-    let mut best = static_candidate(&levels[base], start);
+    let mut best = static_candidate(&levels[base], start, brightness);
     for candidate in candidates {
-        let (motion, photometric) = descend(levels, base, candidate, start);
+        let (motion, photometric) = descend(levels, base, candidate, start, brightness);
         let sum = total(&cost_with(&levels[base], &motion, photometric, CostModel::ESTIMATION));
         if sum < best.0 {
             best = (sum, motion, photometric);
@@ -74,8 +75,10 @@ fn descend(
     base: usize,
     mut motion: AffineMotion,
     mut photometric: Photometric,
+    brightness: bool,
 ) -> (AffineMotion, Photometric) {
-    let affine = Alignment { freedom: Freedom::Affine, iterations: 5, robustness: 6.0, ridge: 1e-3, photometric: true };
+    let affine =
+        Alignment { freedom: Freedom::Affine, iterations: 5, robustness: 6.0, ridge: 1e-3, photometric: brightness };
     let translation = Alignment { freedom: Freedom::Translation, iterations: 6, robustness: 9.0, ..affine };
     for (index, level) in levels.iter().enumerate().skip(base).rev() {
         let support = Support::everything(level);
@@ -91,8 +94,8 @@ fn descend(
 }
 
 /// No motion: only the brightness is fitted.
-fn static_candidate(level: &Level, mut photometric: Photometric) -> (f64, AffineMotion, Photometric) {
-    for _ in 0..3 {
+fn static_candidate(level: &Level, mut photometric: Photometric, brightness: bool) -> (f64, AffineMotion, Photometric) {
+    for _ in 0..if brightness { 3 } else { 0 } {
         photometric = refit_brightness(level, photometric);
     }
     let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::ESTIMATION));

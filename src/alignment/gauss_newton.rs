@@ -6,10 +6,10 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::cost::{CostModel, Photometric, lane_sum};
+use super::cost::{CostModel, Photometric};
 use crate::frame::Plane;
 use crate::frame::pyramid::Level;
-use crate::frame::warp::{Footprint, RowPath};
+use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::motion::AffineMotion;
 
 /// Which entries of the motion are free.
@@ -166,13 +166,12 @@ struct RowBuffers {
     gy: Vec<f32>,
     residual: Vec<f32>,
     weight: Vec<f32>,
-    product: Vec<f32>,
 }
 
 impl RowBuffers {
     fn new(length: usize) -> RowBuffers {
         let row = || vec![0.0; length];
-        RowBuffers { x: row(), gx: row(), gy: row(), residual: row(), weight: row(), product: row() }
+        RowBuffers { x: row(), gx: row(), gy: row(), residual: row(), weight: row() }
     }
 
     fn normal_equations(
@@ -221,29 +220,41 @@ impl RowBuffers {
         let energy = &level.energy.row(y)[columns.clone()];
         let (dx, dy) = (&level.first_dx.row(y)[columns.clone()], &level.first_dy.row(y)[columns.clone()]);
         let weights = support.weights.map(|w| &w.row(y)[columns]);
-        for k in 0..first.len() {
-            let given = weights.map_or(1.0, |w| w[k]);
-            let (px, py) = path.at(k);
-            let at = Footprint::new(px, py, width, height);
-            if given <= 1e-3 || !at.inside {
-                (self.weight[k], self.gx[k], self.gy[k], self.residual[k]) = (0.0, 0.0, 0.0, 0.0);
-                continue;
+        let (mut given, mut second) = ([1.0; CHUNK], [0.0; CHUNK]);
+        let (mut second_dx, mut second_dy) = ([0.0; CHUNK], [0.0; CHUNK]);
+        for start in (0..first.len()).step_by(CHUNK) {
+            let chunk = start..(start + CHUNK).min(first.len());
+            let n = chunk.len();
+            let at = Footprints::along(&path, start, width, height);
+            at.sample(level.second.values(), &mut second[..n]);
+            at.sample(level.second_dx.values(), &mut second_dx[..n]);
+            at.sample(level.second_dy.values(), &mut second_dy[..n]);
+            if let Some(weights) = weights {
+                given[..n].copy_from_slice(&weights[chunk.clone()]);
             }
-            let residual = at.sample(level.second.values()) - first[k] * (1.0 + gain) - bias;
-            let variance = noise + looseness * energy[k];
-            let robust = how.robustness / (how.robustness + residual * residual / variance);
-            self.weight[k] = given / variance * robust * robust;
-            self.gx[k] = 0.5 * (dx[k] + at.sample(level.second_dx.values()));
-            self.gy[k] = 0.5 * (dy[k] + at.sample(level.second_dy.values()));
-            self.residual[k] = residual;
+            let (first, energy) = (&first[chunk.clone()], &energy[chunk.clone()]);
+            let (dx, dy) = (&dx[chunk.clone()], &dy[chunk.clone()]);
+            let (weight, residuals) = (&mut self.weight[chunk.clone()], &mut self.residual[chunk.clone()]);
+            let (gx, gy) = (&mut self.gx[chunk.clone()], &mut self.gy[chunk]);
+            for k in 0..n {
+                let residual = second[k] - first[k] * (1.0 + gain) - bias;
+                let variance = noise + looseness * energy[k];
+                let robust = how.robustness / (how.robustness + residual * residual / variance);
+                let counts = (given[k] > 1e-3) & at.inside[k];
+                let counted = |value: f32| if counts { value } else { 0.0 };
+                weight[k] = counted(given[k] / variance * robust * robust);
+                gx[k] = counted(0.5 * (dx[k] + second_dx[k]));
+                gy[k] = counted(0.5 * (dy[k] + second_dy[k]));
+                residuals[k] = counted(residual);
+            }
         }
     }
 
     /// The blocks `Σ w g gᵀ ⊗ (x, y, 1)(x, y, 1)ᵀ` and the right side of a row at height `y`.
     fn accumulate(&mut self, normal: &mut Normal, right: &mut Right, y: f64) {
-        let RowBuffers { x, gx, gy, residual, weight, product } = self;
+        let RowBuffers { x, gx, gy, residual, weight } = self;
         for (row, column, a, b) in [(0, 0, &*gx, &*gx), (3, 0, gy, gx), (3, 3, gy, gy)] {
-            let [s0, s1, s2] = moments(product, weight, a, b, x);
+            let [s0, s1, s2] = moments(weight, a, b, x);
             let block = [[s2, s1 * y, s1], [s1 * y, s0 * y * y, s0 * y], [s1, s0 * y, s0]];
             for i in 0..3 {
                 for j in 0..3 {
@@ -252,7 +263,7 @@ impl RowBuffers {
             }
         }
         for (row, g) in [(0, &*gx), (3, gy)] {
-            let [s0, s1, _] = moments(product, weight, g, residual, x);
+            let [s0, s1, _] = moments(weight, g, residual, x);
             right[row] += s1;
             right[row + 1] += s0 * y;
             right[row + 2] += s0;
@@ -291,19 +302,32 @@ impl RowBuffers {
     }
 }
 
-/// Moments `Σ p, Σ p x, Σ p x²` of the products `p = weight · a · b`.
-fn moments(product: &mut [f32], weight: &[f32], a: &[f32], b: &[f32], x: &[f32]) -> [f64; 3] {
-    for (((p, w), a), b) in product.iter_mut().zip(weight).zip(a).zip(b) {
-        *p = w * a * b;
-    }
-    let mut sums = [0.0; 3];
-    for sum in &mut sums {
-        *sum = f64::from(lane_sum(product));
-        for (p, x) in product.iter_mut().zip(x) {
-            *p *= x;
+/// Moments `Σ p, Σ p x, Σ p x²` of the products `p = weight · a · b`, in eight lanes like [`lane_sum`](super::cost::lane_sum).
+fn moments(weight: &[f32], a: &[f32], b: &[f32], x: &[f32]) -> [f64; 3] {
+    const LANES: usize = 8;
+    let mut lanes = [[0.0f32; LANES]; 3];
+    let ((weight, weights), (a, as_)) = (weight.as_chunks::<LANES>(), a.as_chunks::<LANES>());
+    let ((b, bs), (x, xs)) = (b.as_chunks::<LANES>(), x.as_chunks::<LANES>());
+    for (((weight, a), b), x) in weight.iter().zip(a).zip(b).zip(x) {
+        for k in 0..LANES {
+            let mut p = weight[k] * a[k] * b[k];
+            for lane in &mut lanes {
+                lane[k] += p;
+                p *= x[k];
+            }
         }
     }
-    sums
+    let mut sums = lanes.map(|lane| lane.iter().sum::<f32>());
+    let mut rest = [0.0f32; 3];
+    for (((weight, a), b), x) in weights.iter().zip(as_).zip(bs).zip(xs) {
+        let mut p = weight * a * b;
+        for sum in &mut rest {
+            *sum += p;
+            p *= x;
+        }
+    }
+    sums.iter_mut().zip(rest).for_each(|(sum, rest)| *sum += rest);
+    sums.map(f64::from)
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! Separable filters with replicated borders: blur, halving, gradients, median.
 
 use super::Plane;
-use crate::order::median;
 
 /// Weights of a normalised Gaussian, from the centre outwards, cut at 3σ.
 fn gaussian_weights(sigma: f32) -> Vec<f32> {
@@ -20,44 +19,93 @@ pub(crate) fn gaussian(plane: &Plane, sigma: f32) -> Plane {
 
 /// Separable symmetric filter; `weights[k]` belongs to the two neighbours at distance k.
 fn symmetric(plane: &Plane, weights: &[f32]) -> Plane {
-    let (width, height, radius) = (plane.width(), plane.height(), weights.len() - 1);
-    let mut vertical = Plane::filled(width, height, 0.0);
-    for y in 0..height {
-        let out = vertical.row_mut(y);
-        for (o, v) in out.iter_mut().zip(plane.row(y)) {
-            *o = weights[0] * v;
+    let mut out = Plane::filled(plane.width(), plane.height(), 0.0);
+    let mut filter = RowFilter::new(plane.width(), weights);
+    for y in 0..plane.height() {
+        filter.row(plane, y, out.row_mut(y));
+    }
+    out
+}
+
+/// A separable symmetric filter, a row at a time.
+struct RowFilter<'a> {
+    weights: &'a [f32],
+    /// Where the values at distance k on both sides begin.
+    places: Vec<[usize; 2]>,
+    /// A row after the vertical filter, continued on both sides.
+    padded: Vec<f32>,
+}
+
+impl<'a> RowFilter<'a> {
+    fn new(width: usize, weights: &'a [f32]) -> Self {
+        let radius = weights.len() - 1;
+        RowFilter { weights, places: vec![[0; 2]; radius], padded: vec![0.0; width + 2 * radius] }
+    }
+
+    /// Row y of the filtered plane.
+    fn row(&mut self, plane: &Plane, y: usize, out: &mut [f32]) {
+        let (width, height, radius) = (plane.width(), plane.height(), self.weights.len() - 1);
+        for (k, place) in self.places.iter_mut().enumerate() {
+            *place = [y.saturating_sub(k + 1) * width, (y + k + 1).min(height - 1) * width];
         }
-        for k in 1..=radius {
-            let (above, below) = (plane.row(y.saturating_sub(k)), plane.row((y + k).min(height - 1)));
-            for ((o, a), b) in out.iter_mut().zip(above).zip(below) {
-                *o += weights[k] * (a + b);
-            }
+        let middle = &mut self.padded[radius..radius + width];
+        weighted_sums(plane.values(), y * width, &self.places, self.weights, middle);
+        let (first, last) = (middle[0], middle[width - 1]);
+        self.padded[..radius].fill(first);
+        self.padded[radius + width..].fill(last);
+        for (k, place) in self.places.iter_mut().enumerate() {
+            *place = [radius - k - 1, radius + k + 1];
+        }
+        weighted_sums(&self.padded, radius, &self.places, self.weights, out);
+    }
+}
+
+/// `out[x] = weights[0] v[centre + x] + Σ_k weights[k] (v[places[k−1][0] + x] + v[places[k−1][1] + x])`, the nearest first.
+fn weighted_sums(values: &[f32], centre: usize, places: &[[usize; 2]], weights: &[f32], out: &mut [f32]) {
+    let (blocks, rest) = out.as_chunks_mut::<BLOCK>();
+    let done = blocks.len() * BLOCK;
+    for (x, block) in blocks.iter_mut().enumerate() {
+        *block = weighted_block(values, centre + x * BLOCK, x * BLOCK, places, weights);
+    }
+    for (x, o) in rest.iter_mut().enumerate() {
+        [*o] = weighted_block(values, centre + done + x, done + x, places, weights);
+    }
+}
+
+/// Values summed together: as many as fit the registers with room for their terms.
+const BLOCK: usize = 16;
+
+#[inline(always)]
+fn weighted_block<const N: usize>(
+    values: &[f32],
+    centre: usize,
+    x: usize,
+    places: &[[usize; 2]],
+    weights: &[f32],
+) -> [f32; N] {
+    let mut sums = [0.0; N];
+    for (s, v) in sums.iter_mut().zip(&values[centre..centre + N]) {
+        *s = weights[0] * v;
+    }
+    for (&[a, b], w) in places.iter().zip(&weights[1..]) {
+        let pairs = values[a + x..a + x + N].iter().zip(&values[b + x..b + x + N]);
+        for (s, (a, b)) in sums.iter_mut().zip(pairs) {
+            *s += w * (a + b);
         }
     }
-    let mut padded = vec![0.0; width + 2 * radius];
-    for y in 0..height {
-        let row = vertical.row_mut(y);
-        padded[..radius].fill(row[0]);
-        padded[radius..radius + width].copy_from_slice(row);
-        padded[radius + width..].fill(row[width - 1]);
-        for (o, v) in row.iter_mut().zip(&padded[radius..]) {
-            *o = weights[0] * v;
-        }
-        for k in 1..=radius {
-            let (left, right) = (&padded[radius - k..], &padded[radius + k..]);
-            for ((o, a), b) in row.iter_mut().zip(left).zip(right) {
-                *o += weights[k] * (a + b);
-            }
-        }
-    }
-    vertical
+    sums
 }
 
 /// Every second pixel after the 5-tap filter [1 4 6 4 1]/16: pixel (x, y) of the result lies at (2x, 2y) of the source.
 pub(crate) fn halve(plane: &Plane) -> Plane {
-    let smooth = symmetric(plane, &[6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);
-    let (width, height) = (plane.width().div_ceil(2), plane.height().div_ceil(2));
-    Plane::from_fn(width, height, |x, y| smooth.at(2 * x, 2 * y))
+    let mut half = Plane::filled(plane.width().div_ceil(2), plane.height().div_ceil(2), 0.0);
+    let mut filter = RowFilter::new(plane.width(), &[6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);
+    let mut smooth = vec![0.0; plane.width()];
+    for y in 0..half.height() {
+        filter.row(plane, 2 * y, &mut smooth);
+        half.row_mut(y).iter_mut().zip(smooth.iter().step_by(2)).for_each(|(h, s)| *h = *s);
+    }
+    half
 }
 
 /// Scharr gradients (∂/∂x, ∂/∂y) per pixel: central differences, smoothed by [3 10 3]/16 across.
@@ -88,32 +136,130 @@ pub(crate) fn gradients(plane: &Plane) -> (Plane, Plane) {
 }
 
 /// Median over 5×5 windows.
+///
+/// Each column of a window is sorted once and serves five windows. Of the smallest in each column only the two largest can
+/// be the median, of the second smallest the three largest, and so on: 13 of 25 remain.
 pub(crate) fn median5(plane: &Plane) -> Plane {
     let (width, height) = (plane.width(), plane.height());
-    let mut window = [0.0f32; 25];
-    Plane::from_fn(width, height, |x, y| {
-        for dy in 0..5 {
-            let row = plane.row((y + dy).saturating_sub(2).min(height - 1));
-            for dx in 0..5 {
-                window[dy * 5 + dx] = row[(x + dx).saturating_sub(2).min(width - 1)];
-            }
+    let mut out = Plane::filled(width, height, 0.0);
+    let mut columns: [Vec<f32>; 5] = std::array::from_fn(|_| vec![0.0; width + 4]);
+    for y in 0..height {
+        let rows: [&[f32]; 5] = std::array::from_fn(|k| plane.row((y + k).saturating_sub(2).min(height - 1)));
+        sort_columns(rows, columns.each_mut().map(|c| &mut c[2..width + 2]));
+        for column in &mut columns {
+            let (first, last) = (column[2], column[width + 1]);
+            column[..2].fill(first);
+            column[width + 2..].fill(last);
         }
-        median(&mut window).unwrap_or(0.0)
-    })
+        medians(columns.each_ref().map(Vec::as_slice), out.row_mut(y));
+    }
+    out
+}
+
+/// The five values of each column by size: `sorted[0]` gets the smallest.
+fn sort_columns(rows: [&[f32]; 5], sorted: [&mut [f32]; 5]) {
+    let [a, b, c, d, e] = rows;
+    let [p, q, r, s, t] = sorted;
+    let n = p.len();
+    let (a, b, c, d, e) = (&a[..n], &b[..n], &c[..n], &d[..n], &e[..n]);
+    let (q, r, s, t) = (&mut q[..n], &mut r[..n], &mut s[..n], &mut t[..n]);
+    for x in 0..n {
+        let mut v = [a[x], b[x], c[x], d[x], e[x]];
+        for (i, j) in [(0, 1), (3, 4), (2, 4), (2, 3), (0, 3), (0, 2), (1, 4), (1, 3), (1, 2)] {
+            order(&mut v, i, j);
+        }
+        [p[x], q[x], r[x], s[x], t[x]] = v;
+    }
+}
+
+/// Medians of windows of five neighbouring columns.
+fn medians(columns: [&[f32]; 5], out: &mut [f32]) {
+    let n = out.len();
+    let window: [[&[f32]; 5]; 5] = columns.map(|column| std::array::from_fn(|k| &column[k..k + n]));
+    for (x, o) in out.iter_mut().enumerate() {
+        let [a, b, c, d, e] = window.map(|row| row.map(|column| column[x]));
+        let ([.., a0, a1], [.., b0, b1, b2]) = (largest_last::<2>(a), largest_last::<3>(b));
+        let [_, c0, c1, c2, _] = extremes_apart(c);
+        let ([d0, d1, d2, ..], [e0, e1, ..]) = (smallest_first::<3>(d), smallest_first::<2>(e));
+        *o = median_of_13([a0, a1, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1]);
+    }
+}
+
+/// Puts the smaller of two values first. The same comparison decides both, so that nothing is lost, whatever the values.
+#[inline(always)]
+fn order<const N: usize>(v: &mut [f32; N], i: usize, j: usize) {
+    let (a, b) = (v[i], v[j]);
+    v[i] = if a < b { a } else { b };
+    v[j] = if a < b { b } else { a };
+}
+
+/// The `KEPT` largest at the end, in no order: the smallest of those still there goes to the front again and again.
+#[inline(always)]
+fn largest_last<const KEPT: usize>(mut v: [f32; 5]) -> [f32; 5] {
+    for front in 0..5 - KEPT {
+        for k in front + 1..5 {
+            order(&mut v, front, k);
+        }
+    }
+    v
+}
+
+/// The `KEPT` smallest at the beginning, in no order.
+#[inline(always)]
+fn smallest_first<const KEPT: usize>(mut v: [f32; 5]) -> [f32; 5] {
+    for back in (KEPT..5).rev() {
+        for k in 0..back {
+            order(&mut v, k, back);
+        }
+    }
+    v
+}
+
+/// The smallest first, the largest last, the others in no order.
+#[inline(always)]
+fn extremes_apart<const N: usize>(mut v: [f32; N]) -> [f32; N] {
+    for k in 1..N {
+        order(&mut v, 0, k);
+    }
+    for k in 1..N - 1 {
+        order(&mut v, k, N - 1);
+    }
+    v
+}
+
+/// Of eight values neither the smallest nor the largest is the median of thirteen; what is left and one more is the same
+/// question with two values less.
+#[inline(always)]
+fn median_of_13(v: [f32; 13]) -> f32 {
+    let [_, a, b, c, d, e, f, _] = extremes_apart([v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]]);
+    let [_, a, b, c, d, e, _] = extremes_apart([a, b, c, d, e, f, v[8]]);
+    let [_, a, b, c, d, _] = extremes_apart([a, b, c, d, e, v[9]]);
+    let [_, a, b, c, _] = extremes_apart([a, b, c, d, v[10]]);
+    let [_, a, b, _] = extremes_apart([a, b, c, v[11]]);
+    let [_, a, _] = extremes_apart([a, b, v[12]]);
+    a
 }
 
 /// The smallest of each 3×3 neighbourhood; outside the plane counts as inside the region.
 pub(crate) fn eroded(mask: &Plane) -> Plane {
     let (width, height) = (mask.width(), mask.height());
-    Plane::from_fn(width, height, |x, y| {
-        let mut smallest = f32::INFINITY;
-        for ny in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-            for nx in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                smallest = smallest.min(mask.at(nx, ny));
-            }
+    let mut out = Plane::filled(width, height, 0.0);
+    let mut padded = vec![f32::INFINITY; width + 2];
+    for y in 0..height {
+        let (above, below) = (mask.row(y.saturating_sub(1)), mask.row((y + 1).min(height - 1)));
+        for (((p, a), b), c) in padded[1..=width].iter_mut().zip(above).zip(mask.row(y)).zip(below) {
+            *p = smaller(smaller(*a, *b), *c);
         }
-        smallest
-    })
+        for (((o, a), b), c) in out.row_mut(y).iter_mut().zip(&padded).zip(&padded[1..]).zip(&padded[2..]) {
+            *o = smaller(smaller(*a, *b), *c);
+        }
+    }
+    out
+}
+
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// Bilinear enlargement to `width` × `height`: pixel (x, y) takes the value at (x/2, y/2).
@@ -148,6 +294,38 @@ mod tests {
         let sum: f32 = blurred.values().iter().sum();
         assert!((sum - 1.0).abs() < 1e-5);
         assert!((blurred.at(17, 20) - blurred.at(20, 23)).abs() < 1e-8, "isotropic");
+    }
+
+    #[test]
+    fn the_median_of_every_window_is_the_middle_of_its_sorted_values() {
+        let mut random = crate::random::Random::from_seed(3);
+        for (width, height, steps) in [(37, 21, 1000.0), (5, 30, 3.0), (1, 7, 2.0), (24, 2, 5.0)] {
+            // Few steps make many equals.
+            let plane = Plane::from_fn(width, height, |_, _| (random.uniform(0.0, steps) as i32) as f32);
+            let found = median5(&plane);
+            for y in 0..height {
+                for x in 0..width {
+                    let at = |k: usize, length: usize, p: usize| (p + k).saturating_sub(2).min(length - 1);
+                    let mut window: Vec<f32> =
+                        (0..25).map(|k| plane.at(at(k % 5, width, x), at(k / 5, height, y))).collect();
+                    window.sort_by(f32::total_cmp);
+                    assert_eq!(found.at(x, y), window[12], "({x}, {y}) of {width} × {height}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn erosion_takes_the_smallest_of_nine() {
+        let mask = Plane::from_fn(9, 7, |x, y| if (x, y) == (4, 3) { 0.0 } else { 1.0 });
+        let inner = eroded(&mask);
+        for y in 0..7 {
+            for x in 0..9 {
+                let near = (3..6).contains(&x) && (2..5).contains(&y);
+                assert_eq!(inner.at(x, y), if near { 0.0 } else { 1.0 });
+            }
+        }
+        assert!(eroded(&Plane::filled(3, 1, 1.0)).values().iter().all(|&v| v == 1.0));
     }
 
     #[test]

@@ -1,4 +1,7 @@
 //! Looking at a plane along a motion: bilinear samples at x + A x, a row at a time.
+//!
+//! [`Footprints`] does for [`CHUNK`] pixels at once what [`Footprint`] does for one, with the same bits: all but the reading
+//! of the four neighbours is then done for several pixels by one instruction.
 
 use super::Plane;
 use crate::motion::AffineMotion;
@@ -56,12 +59,6 @@ impl Footprint {
         }
     }
 
-    /// Fractional parts of the position: the weights of the right and lower neighbours.
-    #[inline(always)]
-    pub(crate) fn fractions(&self) -> (f32, f32) {
-        (self.fx, self.fy)
-    }
-
     /// The bilinear sample of a plane of the size that the footprint was made for.
     #[inline(always)]
     pub(crate) fn sample(&self, values: &[f32]) -> f32 {
@@ -73,15 +70,88 @@ impl Footprint {
     }
 }
 
+/// Pixels of a row that are looked at together.
+pub(crate) const CHUNK: usize = 64;
+
+/// [`Footprint`]s of neighbouring pixels.
+pub(crate) struct Footprints {
+    index: [u32; CHUNK],
+    width: usize,
+    /// Weights of the right and lower neighbours.
+    pub(crate) fx: [f32; CHUNK],
+    pub(crate) fy: [f32; CHUNK],
+    /// Whether each position lies within the plane.
+    pub(crate) inside: [bool; CHUNK],
+}
+
+impl Footprints {
+    /// Footprints of the pixels `from`, `from + 1`, … of a path in a plane of the given size.
+    pub(crate) fn along(path: &RowPath, from: usize, width: usize, height: usize) -> Footprints {
+        let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
+        for (k, (x, y)) in x.iter_mut().zip(&mut y).enumerate() {
+            let k = f64::from((from + k) as u32 as i32);
+            (*x, *y) = ((path.start[0] + path.step[0] * k) as f32, (path.start[1] + path.step[1] * k) as f32);
+        }
+        Footprints::new(&x, &y, width, height)
+    }
+
+    /// Footprints of positions in a plane of the given size.
+    pub(crate) fn new(x: &[f32; CHUNK], y: &[f32; CHUNK], width: usize, height: usize) -> Footprints {
+        let (right_edge, lower_edge) = ((width - 1) as f32, (height - 1) as f32);
+        let mut all =
+            Footprints { index: [0; CHUNK], width, fx: [0.0; CHUNK], fy: [0.0; CHUNK], inside: [false; CHUNK] };
+        for k in 0..CHUNK {
+            let (cx, cy) = (clamped(x[k], right_edge), clamped(y[k], lower_edge));
+            let ((ix, left), (iy, upper)) = (floor(cx), floor(cy));
+            all.index[k] = iy * width as u32 + ix;
+            (all.fx[k], all.fy[k]) = (cx - left, cy - upper);
+            all.inside[k] = (cx == x[k]) & (cy == y[k]);
+        }
+        all
+    }
+
+    /// Bilinear samples of a plane of the size that the footprints were made for, into as many places as there are, at most
+    /// [`CHUNK`].
+    #[inline(always)]
+    pub(crate) fn sample(&self, values: &[f32], out: &mut [f32]) {
+        // On the last column and row a neighbour is missing; its weight is zero there, so that any value will do.
+        let Some(last) = values.len().checked_sub(1) else { return };
+        for (((o, &index), fx), fy) in out.iter_mut().zip(&self.index).zip(&self.fx).zip(&self.fy) {
+            let index = index as usize;
+            let (a, b) = (values[index.min(last)], values[(index + 1).min(last)]);
+            let (c, d) = (values[(index + self.width).min(last)], values[(index + self.width + 1).min(last)]);
+            let top = a + fx * (b - a);
+            let bottom = c + fx * (d - c);
+            *o = top + fy * (bottom - top);
+        }
+    }
+}
+
+/// Between 0 and `edge`; NaN becomes 0.
+#[inline(always)]
+fn clamped(v: f32, edge: f32) -> f32 {
+    let v = if v > 0.0 { v } else { 0.0 };
+    if v < edge { v } else { edge }
+}
+
+/// The largest whole number up to `v`, 0 ≤ v < 2²², as both types. Adding 2²³ leaves no bits for a fraction: the sum is
+/// rounded, its low bits are the number. The language's own conversion has cases to tell apart and is done one by one.
+#[inline(always)]
+fn floor(v: f32) -> (u32, f32) {
+    const SHIFT: f32 = 8_388_608.0;
+    let shifted = v + SHIFT;
+    let (rounded, bits) = (shifted - SHIFT, shifted.to_bits() & 0x007f_ffff);
+    if rounded > v { (bits.wrapping_sub(1), rounded - 1.0) } else { (bits, rounded) }
+}
+
 /// The plane seen along the motion: value at (x, y) is the sample at (x, y) + A (x, y), replicated outside.
 pub(crate) fn warp(plane: &Plane, motion: &AffineMotion) -> Plane {
     let (width, height) = (plane.width(), plane.height());
     let mut out = Plane::filled(width, height, 0.0);
     for y in 0..height {
         let path = RowPath::new(motion, 0, y);
-        for (k, o) in out.row_mut(y).iter_mut().enumerate() {
-            let (px, py) = path.at(k);
-            *o = Footprint::new(px, py, width, height).sample(plane.values());
+        for (k, out) in out.row_mut(y).chunks_mut(CHUNK).enumerate() {
+            Footprints::along(&path, k * CHUNK, width, height).sample(plane.values(), out);
         }
     }
     out
@@ -97,6 +167,35 @@ mod tests {
         let moved = warp(&ramp, &AffineMotion::translation(1.5, -0.25));
         assert!((moved.at(10, 10) - (2.0 * 11.5 + 5.0 * 9.75)).abs() < 1e-4);
         assert_eq!(warp(&ramp, &AffineMotion::STATIC), ramp);
+    }
+
+    #[test]
+    fn many_footprints_are_those_of_each() {
+        let (width, height) = (23, 17);
+        let plane = Plane::from_fn(width, height, |x, y| libm::sinf((7 * x + 3 * y * y) as f32) * 100.0);
+        let mut random = crate::random::Random::from_seed(5);
+        let mut places =
+            vec![[0.0, 0.0], [22.0, 16.0], [22.0, 0.0], [21.999_998, 15.999_999], [22.000_002, 3.0], [-1e-9, 0.5]];
+        places.extend([[f32::NAN, 2.0], [f32::INFINITY, -f32::INFINITY], [1e30, -1e30], [8_388_607.5, 4.0]]);
+        while places.len() < CHUNK {
+            places.push([random.uniform(-3.0, 26.0) as f32, random.uniform(-3.0, 20.0) as f32]);
+        }
+        let (x, y) = (std::array::from_fn(|k| places[k][0]), std::array::from_fn(|k| places[k][1]));
+        let many = Footprints::new(&x, &y, width, height);
+        let mut samples = [0.0; CHUNK];
+        many.sample(plane.values(), &mut samples);
+        for (k, &[x, y]) in places.iter().enumerate() {
+            let one = Footprint::new(x, y, width, height);
+            assert_eq!((many.fx[k], many.fy[k], many.inside[k]), (one.fx, one.fy, one.inside), "({x}, {y})");
+            assert_eq!(samples[k].to_bits(), one.sample(plane.values()).to_bits(), "({x}, {y})");
+        }
+        let path = RowPath::new(&AffineMotion::new([0.03, 0.2, -4.0, -0.1, 0.05, 9.0]), 2, 7);
+        let along = Footprints::along(&path, 3, width, height);
+        for k in 0..CHUNK {
+            let (x, y) = path.at(3 + k);
+            let one = Footprint::new(x, y, width, height);
+            assert_eq!((along.fx[k], along.fy[k], along.inside[k]), (one.fx, one.fy, one.inside));
+        }
     }
 
     #[test]

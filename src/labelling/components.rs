@@ -30,41 +30,80 @@ pub(crate) struct Components {
     pub(crate) list: Vec<Component>,
 }
 
+/// Neighbouring pixels of a row with one label.
+struct Run {
+    columns: std::ops::Range<usize>,
+    row: usize,
+    label: u8,
+    /// An earlier run of the same component, or the run itself.
+    earlier: usize,
+}
+
 /// The components of `labels`, rows of `width` pixels.
 pub(crate) fn components(labels: &[u8], width: usize, connectivity: Connectivity) -> Components {
-    const UNSEEN: u32 = u32::MAX;
-    let height = labels.len().checked_div(width).unwrap_or(0);
-    let mut of = vec![UNSEEN; labels.len()];
-    let mut list = Vec::new();
-    let mut stack = Vec::new();
-    for start in 0..width * height {
-        if of[start] != UNSEEN {
-            continue;
+    let mut runs: Vec<Run> = Vec::new();
+    let mut above = 0..0;
+    for (row, line) in labels.chunks_exact(width.max(1)).enumerate() {
+        let begin = runs.len();
+        let mut start = 0;
+        for part in line.chunk_by(|a, b| a == b) {
+            let columns = start..start + part.len();
+            start = columns.end;
+            runs.push(Run { columns, row, label: part[0], earlier: runs.len() });
         }
-        let number = list.len() as u32;
-        let label = labels[start];
-        let mut component = Component { label, size: 0, bounds: [width, height, 0, 0] };
-        of[start] = number;
-        stack.push(start);
-        while let Some(p) = stack.pop() {
-            let (x, y) = (p % width, p / width);
-            let [x0, y0, x1, y1] = component.bounds;
-            component.bounds = [x0.min(x), y0.min(y), x1.max(x), y1.max(y)];
-            component.size += 1;
-            for v in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-                for u in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                    let q = v * width + u;
-                    let touches = connectivity == Connectivity::Eight || u == x || v == y;
-                    if touches && of[q] == UNSEEN && labels[q] == label {
-                        of[q] = number;
-                        stack.push(q);
-                    }
-                }
-            }
+        join(&mut runs, above, begin, connectivity);
+        above = begin..runs.len();
+    }
+    let mut of = vec![0; labels.len()];
+    let mut list: Vec<Component> = Vec::new();
+    let mut numbers = vec![0; runs.len()];
+    for k in 0..runs.len() {
+        let first = first_of(&mut runs, k);
+        let Run { columns, row, label, .. } = &runs[k];
+        if first == k {
+            numbers[k] = list.len();
+            let bounds = [columns.start, *row, columns.start, *row];
+            list.push(Component { label: *label, size: 0, bounds });
         }
-        list.push(component);
+        let component = &mut list[numbers[first]];
+        component.size += columns.len();
+        let [x0, y0, x1, _] = component.bounds;
+        component.bounds = [x0.min(columns.start), y0, x1.max(columns.end - 1), *row];
+        of[row * width..][columns.clone()].fill(numbers[first] as u32);
     }
     Components { of, list }
+}
+
+/// Joins the runs of the last row, from `begin`, with those of the row above that they touch.
+fn join(runs: &mut [Run], above: std::ops::Range<usize>, begin: usize, connectivity: Connectivity) {
+    let reach = usize::from(connectivity == Connectivity::Eight);
+    let mut from = above.start;
+    for k in begin..runs.len() {
+        let columns = runs[k].columns.clone();
+        // What ends before this run begins touches no later run either.
+        while from < above.end && runs[from].columns.end + reach <= columns.start {
+            from += 1;
+        }
+        for other in from..above.end {
+            if runs[other].columns.start >= columns.end + reach {
+                break;
+            }
+            if runs[other].label == runs[k].label {
+                let (a, b) = (first_of(runs, other), first_of(runs, k));
+                runs[a.max(b)].earlier = a.min(b);
+                runs[k].earlier = a.min(b);
+            }
+        }
+    }
+}
+
+/// The first run of a run's component, as far as it is known. Shortens the way for the next who asks.
+fn first_of(runs: &mut [Run], mut k: usize) -> usize {
+    while runs[k].earlier != k {
+        runs[k].earlier = runs[runs[k].earlier].earlier;
+        k = runs[k].earlier;
+    }
+    k
 }
 
 /// Gives every 4-connected component of fewer than `smallest` pixels the label most frequent around it (the smaller label
@@ -149,6 +188,50 @@ mod tests {
         assert_eq!(four.list.iter().map(|c| c.size).sum::<usize>(), 20);
         for (p, &c) in four.of.iter().enumerate() {
             assert_eq!(four.list[c as usize].label, PICTURE[p]);
+        }
+    }
+
+    /// By flooding, pixel after pixel.
+    fn flooded(labels: &[u8], width: usize, connectivity: Connectivity) -> Components {
+        let height = labels.len() / width;
+        let (mut of, mut list) = (vec![u32::MAX; labels.len()], Vec::new());
+        for start in 0..labels.len() {
+            if of[start] != u32::MAX {
+                continue;
+            }
+            let number = list.len() as u32;
+            let mut component = Component { label: labels[start], size: 0, bounds: [width, height, 0, 0] };
+            let mut stack = vec![start];
+            of[start] = number;
+            while let Some(p) = stack.pop() {
+                let (x, y) = (p % width, p / width);
+                let [x0, y0, x1, y1] = component.bounds;
+                component.bounds = [x0.min(x), y0.min(y), x1.max(x), y1.max(y)];
+                component.size += 1;
+                for q in 0..labels.len() {
+                    let (dx, dy) = (x.abs_diff(q % width), y.abs_diff(q / width));
+                    let near = dx.max(dy) == 1 && (connectivity == Connectivity::Eight || dx + dy == 1);
+                    if near && of[q] == u32::MAX && labels[q] == labels[start] {
+                        of[q] = number;
+                        stack.push(q);
+                    }
+                }
+            }
+            list.push(component);
+        }
+        Components { of, list }
+    }
+
+    #[test]
+    fn components_are_those_that_flooding_finds() {
+        let mut random = crate::random::Random::from_seed(11);
+        for (width, height, kinds) in [(19, 14, 2), (1, 9, 2), (12, 1, 3), (13, 13, 4), (25, 8, 2)] {
+            let labels: Vec<u8> = (0..width * height).map(|_| random.uniform(0.0, f64::from(kinds)) as u8).collect();
+            for connectivity in [Connectivity::Four, Connectivity::Eight] {
+                let (found, expected) =
+                    (components(&labels, width, connectivity), flooded(&labels, width, connectivity));
+                assert_eq!((found.of, found.list), (expected.of, expected.list));
+            }
         }
     }
 

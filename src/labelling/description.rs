@@ -13,6 +13,16 @@ pub(crate) fn price_of_motion(pixels: usize) -> f64 {
     3.0 * libm::log(pixels as f64)
 }
 
+/// Nats that describe both frames by n motions and labels: what the motions leave over, six numbers for each, the borders.
+///
+/// `raw` as in [`worth`].
+pub(crate) fn length(raw: &[Plane], labels: &[u8], width: usize) -> f64 {
+    let left_over: f64 = labels.iter().enumerate().map(|(p, &l)| f64::from(raw[usize::from(l)].values()[p])).sum();
+    // Every pair of neighbours is counted by both of its labels.
+    let borders = border_lengths(labels, raw.len(), width).iter().sum::<usize>() / 2;
+    0.5 * left_over + raw.len() as f64 * price_of_motion(labels.len()) + PER_BORDER_PIXEL * borders as f64
+}
+
 /// Nats that each object's mask is worth, beyond its price; element 0 (the dominant motion) is infinite.
 ///
 /// `raw[k]` are the estimation costs of motion k, half of which are nats.

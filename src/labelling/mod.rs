@@ -2,6 +2,7 @@
 
 pub(crate) mod appearance;
 pub(crate) mod components;
+pub(crate) mod confidence;
 pub(crate) mod description;
 pub(crate) mod energy;
 mod expansion;

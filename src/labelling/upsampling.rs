@@ -1,13 +1,17 @@
 //! Labels of the working size at full size: each label's mask, enlarged, follows the edges of the full-size frame by the guided
 //! filter (He, Sun, Tang, PAMI 35(6), 2013); the strongest label wins.
+//!
+//! The work is done tile by tile: a label that is nowhere near a tile has no strength in it, and where only one label is near,
+//! there is nothing to decide. Most tiles are such.
 
-use super::mask_of;
 use crate::frame::Plane;
 
 /// Radius of the filter's windows, full-size pixels.
 const RADIUS: usize = 4;
 /// Variance (grey levels²) below which the frame has no edge to follow.
 const FLAT_VARIANCE: f32 = 40.0;
+/// Side of a tile, full-size pixels.
+const TILE: usize = 32;
 
 /// Labels at the size of `guide`, from labels at a 2^k-th of it.
 pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, guide: &Plane) -> Vec<u8> {
@@ -15,35 +19,45 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
     if (width, height) == (full_width, full_height) {
         return labels.to_vec();
     }
-    let mut best = vec![f32::NEG_INFINITY; full_width * full_height];
+    let scale = factor(width, full_width).max(factor(height, full_height));
+    let coarse = Coarse { labels, width, height, scale };
     let mut winner = vec![0u8; full_width * full_height];
-    let filter = GuidedFilter::new(guide);
-    for label in 0..of as u8 {
-        let mask = enlarged(&mask_of(labels, label, width, height), full_width, full_height);
-        let strength = filter.apply(guide, &mask);
-        for ((b, w), s) in best.iter_mut().zip(&mut winner).zip(strength.values()) {
-            if *s > *b {
-                (*b, *w) = (*s, label);
+    for top in (0..full_height).step_by(TILE) {
+        for left in (0..full_width).step_by(TILE) {
+            let tile = Area::new(left, top, full_width, full_height);
+            let present = coarse.present(&tile.grown(2 * RADIUS), of);
+            match present[..] {
+                [only] => tile.rows().for_each(|y| winner[y * full_width..][tile.x.clone()].fill(only)),
+                _ => decide(&coarse, &present, guide, &tile, &mut winner),
             }
         }
     }
     winner
 }
 
-/// Bilinear enlargement by a power of two: full pixel X lies at X / 2^k.
-fn enlarged(mask: &Plane, width: usize, height: usize) -> Plane {
-    let (scale_x, scale_y) = (factor(mask.width(), width), factor(mask.height(), height));
-    let scale = scale_x.max(scale_y) as f32;
-    let (right, lower) = (mask.width() - 1, mask.height() - 1);
-    Plane::from_fn(width, height, |x, y| {
-        let (px, py) = ((x as f32 / scale).min(right as f32), (y as f32 / scale).min(lower as f32));
-        let (ix, iy) = (px as usize, py as usize);
-        let (fx, fy) = (px - ix as f32, py - iy as f32);
-        let (jx, jy) = ((ix + 1).min(right), (iy + 1).min(lower));
-        let top = mask.at(ix, iy) + fx * (mask.at(jx, iy) - mask.at(ix, iy));
-        let bottom = mask.at(ix, jy) + fx * (mask.at(jx, jy) - mask.at(ix, jy));
-        top + fy * (bottom - top)
-    })
+/// Gives every pixel of a tile to the strongest of the labels, the first of equals.
+fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8]) {
+    let guide = Patch::from_fn(tile.grown(2 * RADIUS), |x, y| guide.at(x, y));
+    let filter = GuidedFilter::new(&guide, tile);
+    let mut best = Patch::from_fn(tile.clone(), |_, _| f32::NEG_INFINITY);
+    for &label in labels {
+        let strength = filter.apply(&guide, &coarse.mask(label, guide.area.clone()), tile);
+        for y in tile.rows() {
+            let winner = &mut winner[y * tile.full.0..][tile.x.clone()];
+            for ((b, w), s) in best.row_mut(y).iter_mut().zip(winner).zip(strength.row(y)) {
+                if *s > *b {
+                    (*b, *w) = (*s, label);
+                }
+            }
+        }
+    }
+}
+
+/// A plane of the working size at full size, enlarged bilinearly without looking at the frame.
+pub(crate) fn enlarged(small: &Plane, width: usize, height: usize) -> Plane {
+    let size = (small.width(), small.height());
+    let scale = factor(size.0, width).max(factor(size.1, height)) as f32;
+    Plane::from_fn(width, height, |x, y| between(size, scale, (x, y), |x, y| small.at(x, y)))
 }
 
 /// The power of two between two sizes of one side.
@@ -55,71 +69,182 @@ fn factor(small: usize, large: usize) -> usize {
     factor
 }
 
+/// Labels at a fraction of the full size.
+struct Coarse<'a> {
+    labels: &'a [u8],
+    width: usize,
+    height: usize,
+    scale: usize,
+}
+
+impl Coarse<'_> {
+    /// The labels, below `of`, that have any weight in an area of the full size, in order.
+    fn present(&self, area: &Area, of: usize) -> Vec<u8> {
+        let mut found = vec![false; of];
+        let cells = |from: usize, to: usize, size: usize| {
+            (from / self.scale).min(size - 1)..((to - 1) / self.scale + 2).min(size)
+        };
+        for y in cells(area.y.start, area.y.end, self.height) {
+            for &label in &self.labels[y * self.width..][cells(area.x.start, area.x.end, self.width)] {
+                if let Some(slot) = found.get_mut(usize::from(label)) {
+                    *slot = true;
+                }
+            }
+        }
+        (0..of as u8).filter(|&label| found[usize::from(label)]).collect()
+    }
+
+    /// One label's mask, enlarged bilinearly: full pixel X lies at X / 2^k.
+    fn mask(&self, label: u8, area: Area) -> Patch {
+        let at = |x: usize, y: usize| if self.labels[y * self.width + x] == label { 1.0 } else { 0.0 };
+        let size = (self.width, self.height);
+        Patch::from_fn(area, |x, y| between(size, self.scale as f32, (x, y), at))
+    }
+}
+
+/// The value between the four of a small grid that are nearest to a full-size pixel: X lies at X / scale.
+fn between(
+    (width, height): (usize, usize),
+    scale: f32,
+    (x, y): (usize, usize),
+    at: impl Fn(usize, usize) -> f32,
+) -> f32 {
+    let (right, lower) = (width - 1, height - 1);
+    let (px, py) = ((x as f32 / scale).min(right as f32), (y as f32 / scale).min(lower as f32));
+    let (ix, iy) = (px as usize, py as usize);
+    let (fx, fy) = (px - ix as f32, py - iy as f32);
+    let (jx, jy) = ((ix + 1).min(right), (iy + 1).min(lower));
+    let top: f32 = at(ix, iy) + fx * (at(jx, iy) - at(ix, iy));
+    let bottom = at(ix, jy) + fx * (at(jx, jy) - at(ix, jy));
+    top + fy * (bottom - top)
+}
+
+/// A rectangle of the full-size frame.
+#[derive(Clone)]
+struct Area {
+    x: std::ops::Range<usize>,
+    y: std::ops::Range<usize>,
+    /// Width and height of the frame.
+    full: (usize, usize),
+}
+
+impl Area {
+    /// The tile whose top-left pixel is (left, top).
+    fn new(left: usize, top: usize, width: usize, height: usize) -> Area {
+        Area { x: left..(left + TILE).min(width), y: top..(top + TILE).min(height), full: (width, height) }
+    }
+
+    /// The area with a margin, as far as the frame goes.
+    fn grown(&self, by: usize) -> Area {
+        let grow = |r: &std::ops::Range<usize>, size: usize| r.start.saturating_sub(by)..(r.end + by).min(size);
+        Area { x: grow(&self.x, self.full.0), y: grow(&self.y, self.full.1), full: self.full }
+    }
+
+    fn rows(&self) -> std::ops::Range<usize> {
+        self.y.clone()
+    }
+}
+
+/// Values of the pixels of an area; rows and columns are addressed as in the frame.
+struct Patch {
+    area: Area,
+    values: Vec<f32>,
+}
+
+impl Patch {
+    fn from_fn(area: Area, f: impl Fn(usize, usize) -> f32) -> Patch {
+        let mut values = Vec::with_capacity(area.x.len() * area.y.len());
+        for y in area.rows() {
+            values.extend(area.x.clone().map(|x| f(x, y)));
+        }
+        Patch { area, values }
+    }
+
+    fn row(&self, y: usize) -> &[f32] {
+        &self.values[(y - self.area.y.start) * self.area.x.len()..][..self.area.x.len()]
+    }
+
+    fn row_mut(&mut self, y: usize) -> &mut [f32] {
+        let width = self.area.x.len();
+        &mut self.values[(y - self.area.y.start) * width..][..width]
+    }
+
+    /// Pixel by pixel product of two patches of one area.
+    fn times(&self, other: &Patch) -> Patch {
+        let values = self.values.iter().zip(&other.values).map(|(a, b)| a * b).collect();
+        Patch { area: self.area.clone(), values }
+    }
+
+    /// Means over (2·RADIUS + 1)² windows round the pixels of an area; the frame goes on beyond its border as its border. The
+    /// patch must reach RADIUS pixels beyond the area wherever the frame does.
+    fn box_mean(&self, area: Area) -> Patch {
+        const WEIGHT: f32 = 1.0 / (2 * RADIUS + 1) as f32;
+        let (width, height) = area.full;
+        // Columns of the patch that the area's windows touch.
+        let touched = area.grown(RADIUS).x;
+        let skipped = touched.start - self.area.x.start;
+        let left = RADIUS - (area.x.start - touched.start);
+        let right = (area.x.end + RADIUS).saturating_sub(width);
+        let mut padded = vec![0.0f32; left + touched.len() + right];
+        let mut mean = Patch { values: vec![0.0; area.x.len() * area.y.len()], area };
+        for y in mean.area.rows() {
+            let middle = &mut padded[left..left + touched.len()];
+            middle.fill(0.0);
+            for k in 0..=2 * RADIUS {
+                let row = &self.row((y + k).saturating_sub(RADIUS).min(height - 1))[skipped..];
+                middle.iter_mut().zip(row).for_each(|(m, v)| *m += v);
+            }
+            middle.iter_mut().for_each(|m| *m *= WEIGHT);
+            let (first, last) = (padded[left], padded[left + touched.len() - 1]);
+            padded[..left].fill(first);
+            padded[left + touched.len()..].fill(last);
+            let row = mean.row_mut(y);
+            for k in 0..=2 * RADIUS {
+                row.iter_mut().zip(&padded[k..]).for_each(|(m, v)| *m += v);
+            }
+            row.iter_mut().for_each(|m| *m *= WEIGHT);
+        }
+        mean
+    }
+}
+
+/// Mean and variance of the guide around the pixels of a tile with a margin.
 struct GuidedFilter {
-    mean: Plane,
-    variance: Plane,
+    mean: Patch,
+    variance: Patch,
 }
 
 impl GuidedFilter {
-    fn new(guide: &Plane) -> GuidedFilter {
-        let mean = box_mean(guide);
-        let mut variance = box_mean(&product(guide, guide));
-        for (v, m) in variance.values_mut().iter_mut().zip(mean.values()) {
+    fn new(guide: &Patch, tile: &Area) -> GuidedFilter {
+        let area = tile.grown(RADIUS);
+        let mean = guide.box_mean(area.clone());
+        let mut variance = guide.times(guide).box_mean(area);
+        for (v, m) in variance.values.iter_mut().zip(&mean.values) {
             *v -= m * m;
         }
         GuidedFilter { mean, variance }
     }
 
-    fn apply(&self, guide: &Plane, input: &Plane) -> Plane {
-        let input_mean = box_mean(input);
-        let mut slope = box_mean(&product(guide, input));
-        let mut offset = input_mean;
-        for k in 0..slope.values().len() {
-            let covariance = slope.values()[k] - self.mean.values()[k] * offset.values()[k];
-            let a = covariance / (self.variance.values()[k].max(0.0) + FLAT_VARIANCE);
-            slope.values_mut()[k] = a;
-            offset.values_mut()[k] -= a * self.mean.values()[k];
+    /// The input as the guide's edges have it, in a tile. Guide and input reach 2·RADIUS beyond the tile.
+    fn apply(&self, guide: &Patch, input: &Patch, tile: &Area) -> Patch {
+        let area = tile.grown(RADIUS);
+        let mut offset = input.box_mean(area.clone());
+        let mut slope = guide.times(input).box_mean(area);
+        let of_guide = self.mean.values.iter().zip(&self.variance.values);
+        for ((s, o), (mean, variance)) in slope.values.iter_mut().zip(&mut offset.values).zip(of_guide) {
+            let covariance = *s - mean * *o;
+            *s = covariance / (variance.max(0.0) + FLAT_VARIANCE);
+            *o -= *s * mean;
         }
-        let mut out = product(&box_mean(&slope), guide);
-        for (o, b) in out.values_mut().iter_mut().zip(box_mean(&offset).values()) {
-            *o += b;
+        let mut out = slope.box_mean(tile.clone());
+        let offset = offset.box_mean(tile.clone());
+        let skipped = tile.x.start - guide.area.x.start;
+        for y in tile.rows() {
+            let terms = guide.row(y)[skipped..].iter().zip(offset.row(y));
+            out.row_mut(y).iter_mut().zip(terms).for_each(|(o, (guide, offset))| *o = *o * guide + offset);
         }
         out
     }
-}
-
-fn product(a: &Plane, b: &Plane) -> Plane {
-    let mut out = a.clone();
-    out.values_mut().iter_mut().zip(b.values()).for_each(|(o, b)| *o *= b);
-    out
-}
-
-/// Mean over (2·RADIUS + 1)² windows, borders replicated.
-fn box_mean(plane: &Plane) -> Plane {
-    let (width, height) = (plane.width(), plane.height());
-    let weight = 1.0 / (2 * RADIUS + 1) as f32;
-    let mut vertical = Plane::filled(width, height, 0.0);
-    for y in 0..height {
-        let out = vertical.row_mut(y);
-        for k in 0..=2 * RADIUS {
-            let source = plane.row((y + k).saturating_sub(RADIUS).min(height - 1));
-            out.iter_mut().zip(source).for_each(|(o, s)| *o += s);
-        }
-        out.iter_mut().for_each(|o| *o *= weight);
-    }
-    let mut padded = vec![0.0; width + 2 * RADIUS];
-    for y in 0..height {
-        let row = vertical.row_mut(y);
-        padded[..RADIUS].fill(row[0]);
-        padded[RADIUS..RADIUS + width].copy_from_slice(row);
-        padded[RADIUS + width..].fill(row[width - 1]);
-        row.fill(0.0);
-        for k in 0..=2 * RADIUS {
-            row.iter_mut().zip(&padded[k..]).for_each(|(o, s)| *o += s);
-        }
-        row.iter_mut().for_each(|o| *o *= weight);
-    }
-    vertical
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The motions of a pair: proposals, their selection for each hypothesis about the dominant motion, and refinement level by level.
 
 use super::Work;
-use super::settings::Settings;
+use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost, total};
+use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::proposal::algebraic::from_algebra;
@@ -15,6 +16,18 @@ use crate::selection::{Deflation, Layer, add_motions, fine_proposals, prune, ref
 /// of the frame is flat, one motion bent over several objects can explain more than the background that stands still.
 const PLAUSIBLE: f64 = 1.5;
 
+impl Settings {
+    fn refit(&self, level: &Level, layers: &mut [Layer], rounds: usize) {
+        refit(level, layers, if self.has(Part::Refinement) { rounds } else { 0 });
+    }
+}
+
+/// Motions, and the best one that was proposed and is not among them.
+pub(super) struct Found {
+    pub(super) layers: Vec<Layer>,
+    pub(super) left_out: Option<AffineMotion>,
+}
+
 /// The cheapest set of motions, over the hypotheses "the dominant motion is as found" and "nothing but objects moves".
 pub(super) fn best(
     work: &Work,
@@ -22,11 +35,12 @@ pub(super) fn best(
     settings: &Settings,
     random: &mut Random,
     stages: &mut Stages<'_>,
-) -> Vec<Layer> {
+) -> Found {
     let (mut winner, least) = with_dominant(work, dominant, None, settings, random, stages);
     let base = &work.levels[work.base];
     let alone = |motion: &AffineMotion| total(&cost(base, motion, CostModel::ESTIMATION));
-    if dominant != AffineMotion::STATIC && alone(&AffineMotion::STATIC) < PLAUSIBLE * alone(&dominant) {
+    let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
+    if other && alone(&AffineMotion::STATIC) < PLAUSIBLE * alone(&dominant) {
         let (found, cost) = with_dominant(work, AffineMotion::STATIC, Some(dominant), settings, random, stages);
         if cost < least {
             winner = found;
@@ -35,7 +49,7 @@ pub(super) fn best(
     winner
 }
 
-/// Motions of the base level under one hypothesis, and their cost.
+/// Motions of the base level under one hypothesis, and what they cost.
 fn with_dominant(
     work: &Work,
     dominant: AffineMotion,
@@ -43,41 +57,45 @@ fn with_dominant(
     settings: &Settings,
     random: &mut Random,
     stages: &mut Stages<'_>,
-) -> (Vec<Layer>, f64) {
+) -> (Found, f64) {
     let level = &work.levels[work.base];
     stages.begin("measurements");
     let flow = local_flow(&work.levels, &dominant, work.base);
     stages.begin("algebra");
-    let mut proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements, random);
-    proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
+    let mut proposals = Vec::new();
+    if settings.has(Part::Algebra) {
+        proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements, random);
+    }
+    if settings.has(Part::Windows) {
+        proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
+    }
     proposals.extend(rival);
     stages.begin("selection");
     let mut layers = vec![Layer::new(level, dominant)];
     let how = Deflation { price: settings.price[0], most: settings.most, tries: settings.tries };
-    add_motions(level, &mut layers, &proposals, how);
-    refit(level, &mut layers, 1);
+    let left_out = add_motions(level, &mut layers, &proposals, how);
+    settings.refit(level, &mut layers, 1);
     let cost = total(&smallest_cost(&layers)) + settings.hypothesis_price * layers.len() as f64;
-    (layers, cost)
+    (Found { layers, left_out }, cost)
 }
 
-/// Refines motions from the base level to the working size, adding what only shows there. Also returns the cost that the best
-/// motion that was *not* added would have saved.
-pub(super) fn refine(work: &Work, mut layers: Vec<Layer>, settings: &Settings) -> (Vec<AffineMotion>, f64) {
+/// Refines motions from the base level to the working size, adding what only shows there.
+pub(super) fn refine(work: &Work, found: Found, settings: &Settings) -> Found {
+    let Found { mut layers, mut left_out } = found;
     let base = &work.levels[work.base];
-    refit(base, &mut layers, 2);
+    settings.refit(base, &mut layers, 2);
     if settings.least == 1 {
         prune(&mut layers, settings.price[0]);
     }
-    let mut left_over = 0.0;
     for level in work.levels[..work.base].iter().rev() {
         layers = layers.iter().map(|l| Layer::new(level, l.motion)).collect();
         let look = level.index >= 1 || work.base == 1;
-        if look {
+        if look && settings.has(Part::FinerLevels) {
             let how = Deflation { price: settings.price[1], most: settings.most, tries: 2 };
             let proposals = fine_proposals(level, &layers);
-            left_over = add_motions(level, &mut layers, &proposals, how);
+            left_out = add_motions(level, &mut layers, &proposals, how).or(left_out);
         }
-        refit(level, &mut layers, 1);
+        settings.refit(level, &mut layers, 1);
     }
-    (layers.into_iter().map(|l| l.motion).collect(), left_over)
+    Found { layers, left_out }
 }

@@ -1,7 +1,8 @@
 //! Labels of the working size: solved, thinned out to what pays for itself, corrected for occlusion, split, cleaned.
 
 use super::Work;
-use super::settings::Settings;
+use super::hypothesis::Found;
+use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;
 use crate::labelling::appearance::appearance_costs;
@@ -20,10 +21,15 @@ const REACH_SHARE: f64 = 0.25;
 /// … and at least this many pixels.
 const SMALLEST_REACH: usize = 12;
 
-/// Motions (pixels of the working size) and the label of each pixel.
+/// Motions (pixels of the working size) and the label of each pixel, with what they were decided by.
 pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Vec<u8>,
+    /// What every motion costs at every pixel, everything considered.
+    pub(super) costs: Vec<Plane>,
+    pub(super) borders: Borders,
+    /// The best motion that is not among them: it did not pay for itself, here or when motions were selected.
+    pub(super) left_out: Option<AffineMotion>,
 }
 
 /// A labelling in the making: motions, what each costs, who has which pixel.
@@ -37,18 +43,26 @@ struct Draft<'a> {
     /// Estimation costs, for the description length.
     raw: Vec<Plane>,
     labels: Vec<u8>,
+    /// What was taken away last, else what the selection left out.
+    left_out: Option<AffineMotion>,
 }
 
-pub(super) fn label(work: &Work, motions: Vec<AffineMotion>, settings: &Settings) -> Labelled {
+pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled {
     let level = work.finest();
     let mut draft = Draft {
         work,
         settings,
-        borders: Borders::new(&work.edges, level.noise, settings.coherence),
+        borders: if settings.has(Part::Edges) {
+            Borders::new(&work.edges, level.noise, settings.coherence)
+        } else {
+            let no_edges = Plane::filled(level.width(), level.height(), 0.0);
+            Borders::new(&no_edges, level.noise, settings.coherence)
+        },
         costs: Vec::new(),
         raw: Vec::new(),
         labels: vec![0; level.width() * level.height()],
-        motions,
+        motions: found.layers.into_iter().map(|layer| layer.motion).collect(),
+        left_out: found.left_out,
     };
     draft.measure();
     draft.solve();
@@ -60,7 +74,8 @@ pub(super) fn label(work: &Work, motions: Vec<AffineMotion>, settings: &Settings
     draft.look();
     draft.finish();
     draft.clean();
-    Labelled { motions: draft.motions, labels: draft.labels }
+    let Draft { motions, labels, costs, borders, left_out, .. } = draft;
+    Labelled { motions, labels, costs, borders, left_out }
 }
 
 impl Draft<'_> {
@@ -82,7 +97,7 @@ impl Draft<'_> {
 
     /// Adds what the colours say.
     fn look(&mut self) {
-        if self.motions.len() < 2 {
+        if self.motions.len() < 2 || !self.settings.has(Part::Colour) {
             return;
         }
         let said = appearance_costs(&self.work.palette, &self.costs, &self.labels);
@@ -102,12 +117,16 @@ impl Draft<'_> {
 
     /// Takes away the motion that is worth least, while that is less than nothing, and solves again.
     fn thin_out(&mut self) {
-        while self.motions.len() > self.settings.least {
+        let most = self.settings.most;
+        while self.motions.len() > self.settings.least
+            && (self.settings.has(Part::ModelSelection) || self.motions.len() > most)
+        {
             let worths = worth(&self.raw, &self.labels, self.size().0);
             let Some((weakest, value)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
-            if *value > 0.0 && self.motions.len() <= self.settings.most {
+            if *value > 0.0 && self.motions.len() <= most {
                 break;
             }
+            self.left_out = Some(self.motions[weakest]);
             self.remove(weakest);
             self.solve();
         }
@@ -121,7 +140,7 @@ impl Draft<'_> {
 
     /// Corrects for occlusion, twice: what is hidden depends on the masks.
     fn see(&mut self) {
-        if self.motions.len() < 2 {
+        if self.motions.len() < 2 || !self.settings.has(Part::Visibility) {
             return;
         }
         let unhidden = self.costs.clone();
@@ -135,7 +154,7 @@ impl Draft<'_> {
 
     /// Splits regions that are several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
-        if self.motions.len() < 2 || self.settings.least > 1 {
+        if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
             return false;
         }
         let level = self.work.finest();

@@ -4,15 +4,19 @@ use serde::Serialize;
 
 use super::Work;
 use super::masks::Labelled;
-use crate::alignment::cost::{CostModel, cost, total};
+use super::settings::{Part, Settings};
+use crate::alignment::cost::{CostModel, cost};
 use crate::frame::filter::gaussian;
-use crate::frame::warp::{Footprint, RowPath};
+use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
-use crate::labelling::description::{counts, price_of_motion, worth};
+use crate::labelling::confidence::probabilities;
+use crate::labelling::description::{counts, length, price_of_motion, worth};
+use crate::labelling::energy::label_cost;
 use crate::labelling::groups::groups;
-use crate::labelling::upsampling::upsample;
+use crate::labelling::potts::Solver;
+use crate::labelling::upsampling::{enlarged, upsample};
 use crate::motion::AffineMotion;
-use crate::options::SegmentOptions;
+use crate::options::{MAX_MOTIONS, SegmentOptions};
 use crate::order::descending;
 use crate::points::{Candidate, UNLABELLED};
 
@@ -35,6 +39,11 @@ pub struct Segmentation {
     pub evidence: PairEvidence,
     /// Number of unlabelled pixels.
     pub unlabelled: usize,
+    /// How sure the label of every pixel is, row by row, where it was asked for: 255 times the probability of its motion, given
+    /// how well all motions explain the pixel and its surroundings and how the labels around are. 255 is certain, 0 unlabelled.
+    /// Of the pixels with probability P about the share P is right; what all motions leave unexplained is not sure.
+    #[serde(skip)]
+    pub confidence: Option<Vec<u8>>,
 }
 
 /// One motion of a [`Segmentation`].
@@ -62,7 +71,10 @@ pub struct SegmentedMotion {
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PairEvidence {
-    /// Description lengths, nats at the working size, of one motion up to one more than were found; smaller is better.
+    /// Description lengths in nats of both frames at the working size, of one motion up to one more than were found; smaller is
+    /// better. Every number was tried: for fewer motions the least worthy are taken away one by one, for one more the best
+    /// motion that was left out is added, and labels are solved for those that there are, all by the same costs. The stages
+    /// decide one after another and not by this list alone, so that the number found need not be its least.
     pub candidates: Vec<Candidate>,
 }
 
@@ -74,18 +86,27 @@ const UNKNOWN_COST: f32 = 0.7;
 pub(super) fn report(
     work: &Work,
     labelled: Labelled,
-    left_over: f64,
+    settings: &Settings,
     first: &Frame,
     second: &Frame,
     options: &SegmentOptions,
 ) -> Segmentation {
     let level = work.finest();
     let size = [level.width(), level.height()];
-    let candidates = evidence(work, &labelled, left_over);
+    let candidates = evidence(work, &labelled, settings);
     let unknown = options.mark_unknown.then(|| unexplained(work, &labelled));
+    let sure = options.confidence.then(|| {
+        let cost = |motion| cost(level, motion, CostModel::LABELS);
+        probabilities(&labelled.motions.iter().map(cost).collect::<Vec<_>>(), &labelled.labels)
+    });
     let grouping = groups(&labelled.motions, &labelled.labels, size[0], work.reduction);
 
-    let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance());
+    let full = if settings.has(Part::GuidedEnlarging) {
+        upsample(&labelled.labels, size, labelled.motions.len(), first.luminance())
+    } else {
+        nearest(&labelled.labels, size, first, work.reduction)
+    };
+    let mut confidence = sure.map(|sure| confidence(&sure, &full, first.width()));
     let order = by_size(&full, labelled.motions.len());
     let mut rank = vec![0u8; labelled.motions.len()];
     order.iter().enumerate().for_each(|(k, &old)| rank[old] = k as u8);
@@ -93,7 +114,11 @@ pub(super) fn report(
     if let Some(unknown) = unknown {
         mark(&mut labels, first.width(), &unknown, size, work.reduction);
     }
-    let matrices: Vec<AffineMotion> = order.iter().map(|&k| enlarged(&labelled.motions[k], work.reduction)).collect();
+    for (sure, _) in confidence.iter_mut().flatten().zip(&labels).filter(|(_, label)| **label == UNLABELLED) {
+        *sure = 0;
+    }
+    let matrices: Vec<AffineMotion> =
+        order.iter().map(|&k| at_full_size(&labelled.motions[k], work.reduction)).collect();
     let groups: Vec<usize> = order.iter().map(|&k| grouping[k]).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
@@ -104,7 +129,22 @@ pub(super) fn report(
         motions,
         labels,
         evidence: PairEvidence { candidates },
+        confidence,
     }
+}
+
+/// The probability of each pixel's label at full size, in steps of 1/255.
+fn confidence(probabilities: &[Plane], labels: &[u8], width: usize) -> Vec<u8> {
+    let mut confidence = vec![0; labels.len()];
+    for (k, of_motion) in probabilities.iter().enumerate() {
+        let full = enlarged(of_motion, width, labels.len() / width);
+        for ((c, p), _) in
+            confidence.iter_mut().zip(full.values()).zip(labels).filter(|(_, label)| usize::from(**label) == k)
+        {
+            *c = (255.0 * p + 0.5) as u8;
+        }
+    }
+    confidence
 }
 
 /// Labels by decreasing number of pixels; those without pixels are left out, but the first stays.
@@ -116,7 +156,7 @@ fn by_size(labels: &[u8], of: usize) -> Vec<usize> {
 }
 
 /// A motion of the working size in pixels of the full size.
-fn enlarged(motion: &AffineMotion, reduction: f64) -> AffineMotion {
+fn at_full_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
     let mut a = motion.matrix;
     a[2] *= reduction;
     a[5] *= reduction;
@@ -146,59 +186,57 @@ fn unexplained(work: &Work, labelled: &Labelled) -> Vec<bool> {
     unknown
 }
 
-fn mark(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], reduction: f64) {
+/// Labels enlarged without looking at the frame.
+fn nearest(labels: &[u8], size: [usize; 2], frame: &Frame, reduction: f64) -> Vec<u8> {
+    (0..frame.width() * frame.height()).map(|p| labels[working_pixel(p, frame.width(), size, reduction)]).collect()
+}
+
+/// The working pixel that a full-size pixel belongs to.
+fn working_pixel(p: usize, width: usize, size: [usize; 2], reduction: f64) -> usize {
     let step = reduction as usize;
+    (p / width / step).min(size[1] - 1) * size[0] + (p % width / step).min(size[0] - 1)
+}
+
+fn mark(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], reduction: f64) {
     for (p, label) in labels.iter_mut().enumerate() {
-        let (x, y) = ((p % width / step).min(size[0] - 1), (p / width / step).min(size[1] - 1));
-        if unknown[y * size[0] + x] {
+        if unknown[working_pixel(p, width, size, reduction)] {
             *label = UNLABELLED;
         }
     }
 }
 
 /// Description lengths: of what was found, of what remains as the least worthy motions are taken away, and of one more.
-fn evidence(work: &Work, labelled: &Labelled, left_over: f64) -> Vec<Candidate> {
+fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
     let level = work.finest();
-    let pixels = labelled.labels.len();
+    let width = level.width();
     let mut raw: Vec<Plane> = labelled.motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
+    let mut costs = labelled.costs.clone();
     let mut labels = labelled.labels.clone();
-    let n = raw.len();
-    let mut own = Plane::filled(level.width(), level.height(), 0.0);
-    for (p, slot) in own.values_mut().iter_mut().enumerate() {
-        *slot = raw[usize::from(labels[p])].values()[p];
+    let mut candidates = Vec::new();
+    let found = length(&raw, &labels, width);
+    if raw.len() < MAX_MOTIONS {
+        // A motion that no pixel takes costs its six numbers.
+        let mut one_more = found + price_of_motion(labels.len());
+        if let Some(motion) = &labelled.left_out {
+            raw.push(cost(level, motion, CostModel::ESTIMATION));
+            costs.push(label_cost(level, motion, true, settings.coherence));
+            one_more = one_more.min(length(&raw, &labelled.borders.solve(&costs, Solver::FAST), width));
+            raw.pop();
+            costs.pop();
+        }
+        candidates.push(Candidate { motions: raw.len() + 1, score: one_more });
     }
-    let mut length = 0.5 * total(&own) + n as f64 * price_of_motion(pixels);
-    let one_more = length + price_of_motion(pixels) - 0.5 * left_over;
-    let mut candidates = vec![Candidate { motions: n + 1, score: one_more }, Candidate { motions: n, score: length }];
+    candidates.push(Candidate { motions: raw.len(), score: found });
     while raw.len() > 1 {
-        let worths = worth(&raw, &labels, level.width());
-        let Some((weakest, value)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
-        length += value.max(-price_of_motion(pixels));
+        let worths = worth(&raw, &labels, width);
+        let Some((weakest, _)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
         raw.remove(weakest);
-        reassign(&mut labels, weakest as u8, &raw);
-        candidates.push(Candidate { motions: raw.len(), score: length });
+        costs.remove(weakest);
+        labels = labelled.borders.solve(&costs, Solver::FAST);
+        candidates.push(Candidate { motions: raw.len(), score: length(&raw, &labels, width) });
     }
     candidates.reverse();
     candidates
-}
-
-/// Gives a removed label's region to the remaining motion that explains it best.
-fn reassign(labels: &mut [u8], removed: u8, raw: &[Plane]) {
-    let sums: Vec<f64> = raw
-        .iter()
-        .map(|plane| {
-            let costs = plane.values().iter().zip(labels.iter());
-            costs.filter(|&(_, &l)| l == removed).map(|(&c, _)| f64::from(c)).sum()
-        })
-        .collect();
-    let best = sums.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(k, _)| k) as u8;
-    for label in labels {
-        if *label == removed {
-            *label = best;
-        } else if *label > removed {
-            *label -= 1;
-        }
-    }
 }
 
 /// Pixels, residuals, boxes and group numbers of the motions.
@@ -209,39 +247,52 @@ fn describe(
     first: &Plane,
     second: &Plane,
 ) -> Vec<SegmentedMotion> {
-    let (width, height) = (first.width(), first.height());
     let sizes = counts(labels, motions.len());
     let group_numbers = number_groups(grouping, &sizes);
-    let boxes = bounding_boxes(labels, motions.len(), width);
+    let boxes = bounding_boxes(labels, motions.len(), first.width());
+    let residuals = residuals(motions, &boxes, labels, first, second);
     motions
         .iter()
         .enumerate()
-        .map(|(k, motion)| {
-            let (mut sum, mut count) = (0.0, 0usize);
-            let [left, top, box_width, box_height] = boxes[k];
-            for y in top..top + box_height {
-                let path = RowPath::new(motion, left, y);
-                for x in left..left + box_width {
-                    let (px, py) = path.at(x - left);
-                    let at = Footprint::new(px, py, width, height);
-                    if usize::from(labels[y * width + x]) == k && at.inside {
-                        let difference = f64::from(at.sample(second.values()) - first.at(x, y));
-                        sum += difference * difference;
-                        count += 1;
-                    }
-                }
-            }
-            SegmentedMotion {
-                label: k as u8,
-                matrix: *motion,
-                pixels: sizes[k],
-                share: sizes[k] as f64 / labels.len() as f64,
-                residual: (sum / count.max(1) as f64).sqrt(),
-                bbox: boxes[k],
-                group: group_numbers[k],
-            }
+        .map(|(k, motion)| SegmentedMotion {
+            label: k as u8,
+            matrix: *motion,
+            pixels: sizes[k],
+            share: sizes[k] as f64 / labels.len() as f64,
+            residual: residuals[k],
+            bbox: boxes[k],
+            group: group_numbers[k],
         })
         .collect()
+}
+
+/// Root mean square of the intensity difference along each motion over its pixels.
+fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], first: &Plane, second: &Plane) -> Vec<f64> {
+    let (width, height) = (first.width(), first.height());
+    let mut sums = vec![(0.0, 0usize); motions.len()];
+    let mut samples = [0.0; CHUNK];
+    for (y, row) in labels.chunks_exact(width).enumerate() {
+        let mut start = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let k = usize::from(run[0]);
+            let columns = start..start + run.len();
+            start = columns.end;
+            let (Some(motion), Some((sum, count))) = (motions.get(k), sums.get_mut(k)) else { continue };
+            let left = boxes[k][0];
+            let path = RowPath::new(motion, left, y);
+            for (part, values) in first.row(y)[columns.clone()].chunks(CHUNK).enumerate() {
+                let at = Footprints::along(&path, columns.start - left + part * CHUNK, width, height);
+                at.sample(second.values(), &mut samples[..values.len()]);
+                let seen = values.iter().zip(&samples).zip(&at.inside);
+                for ((value, sample), _) in seen.filter(|(_, inside)| **inside) {
+                    let difference = f64::from(sample - value);
+                    *sum += difference * difference;
+                    *count += 1;
+                }
+            }
+        }
+    }
+    sums.into_iter().map(|(sum, count)| (sum / count.max(1) as f64).sqrt()).collect()
 }
 
 /// Groups numbered by decreasing number of pixels.
@@ -260,11 +311,15 @@ fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
 /// x, y, width, height of every label's pixels; zeros where it has none.
 fn bounding_boxes(labels: &[u8], of: usize, width: usize) -> Vec<[usize; 4]> {
     let mut corners = vec![[usize::MAX, usize::MAX, 0, 0]; of];
-    for (p, &label) in labels.iter().enumerate() {
-        if let Some([left, top, right, bottom]) = corners.get_mut(usize::from(label)) {
-            let (x, y) = (p % width, p / width);
-            (*left, *top) = ((*left).min(x), (*top).min(y));
-            (*right, *bottom) = ((*right).max(x + 1), (*bottom).max(y + 1));
+    for (y, row) in labels.chunks_exact(width).enumerate() {
+        let mut start = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let end = start + run.len();
+            if let Some([left, top, right, bottom]) = corners.get_mut(usize::from(run[0])) {
+                (*left, *top) = ((*left).min(start), (*top).min(y));
+                (*right, *bottom) = ((*right).max(end), (*bottom).max(y + 1));
+            }
+            start = end;
         }
     }
     corners.into_iter().map(|[l, t, r, b]| if r == 0 { [0; 4] } else { [l, t, r - l, b - t] }).collect()

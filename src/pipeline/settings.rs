@@ -5,6 +5,38 @@ use crate::labelling::energy::Coherence;
 use crate::labelling::potts::Solver;
 use crate::options::{MotionCount, Quality, SegmentOptions};
 
+/// Parts of the pipeline that can be left out one at a time, to measure what each is worth. Only for that: without the feature
+/// `ablation` all are there, and nothing promises that they stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Gain and bias between the frames.
+    Brightness,
+    /// The hypothesis that nothing but objects moves.
+    StaticHypothesis,
+    /// Proposals from the multibody constraint.
+    Algebra,
+    /// Proposals from single windows.
+    Windows,
+    /// Proposals and selection on levels finer than the base level.
+    FinerLevels,
+    /// Motions refined on the pixels where they win, after each stage of the selection.
+    Refinement,
+    /// Cheaper borders along edges of the image.
+    Edges,
+    /// Borders that cost anything at all.
+    Coherence,
+    /// Costs corrected for occlusion.
+    Visibility,
+    /// Regions split into the bodies they consist of.
+    Splitting,
+    /// Motions taken away that do not pay for their description.
+    ModelSelection,
+    /// What the colours say.
+    Colour,
+    /// Enlarging along the edges of the full frame.
+    GuidedEnlarging,
+}
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
     /// Longer side of the working size at most, pixels: frames are halved until it holds.
@@ -31,6 +63,9 @@ pub(crate) struct Settings {
     pub(crate) least: usize,
     /// How labels hold together.
     pub(crate) coherence: Coherence,
+    /// What is left out.
+    #[cfg(feature = "ablation")]
+    pub(crate) without: Option<Part>,
 }
 
 impl Settings {
@@ -48,6 +83,8 @@ impl Settings {
             most: 7,
             least: 1,
             coherence: Coherence { smoothness: 6.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
+            #[cfg(feature = "ablation")]
+            without: None,
         };
         let mut settings = match options.quality {
             Quality::Best => best,
@@ -69,5 +106,16 @@ impl Settings {
             settings.price = [1.0, 1.0];
         }
         settings
+    }
+
+    /// Whether a part takes part.
+    pub(crate) fn has(&self, part: Part) -> bool {
+        #[cfg(feature = "ablation")]
+        return self.without != Some(part);
+        #[cfg(not(feature = "ablation"))]
+        {
+            let _ = part;
+            true
+        }
     }
 }

@@ -78,16 +78,26 @@ fn rough_gain(current: &Plane, cost: &Plane) -> f64 {
     gain_of(&gaussian(&difference, WINDOW / BLOCK as f32)) * (BLOCK * BLOCK) as f64
 }
 
-/// Adds proposed motions to `layers` while each brings more than its price; refits all after each. Returns what the best motion
-/// that was not added would have brought.
-pub(crate) fn add_motions(level: &Level, layers: &mut Vec<Layer>, proposals: &[AffineMotion], how: Deflation) -> f64 {
+/// Adds proposed motions to `layers` while each brings more than its price; refits all after each. Returns the best motion that
+/// was not added: there is none where nothing was proposed.
+pub(crate) fn add_motions(
+    level: &Level,
+    layers: &mut Vec<Layer>,
+    proposals: &[AffineMotion],
+    how: Deflation,
+) -> Option<AffineMotion> {
     let rough: Vec<Plane> = proposals.iter().map(|&m| blocks(&Layer::new(level, m).cost)).collect();
-    while layers.len() < how.most {
+    loop {
         let current = smallest_cost(layers);
         let current_blocks = blocks(&current);
         let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost)).collect();
         let mut best: Option<(f64, Layer)> = None;
-        for k in descending(gains.iter().copied()).into_iter().take(how.tries) {
+        let order = descending(gains.iter().copied());
+        let next = order.first().map(|&k| proposals[k]);
+        if layers.len() >= how.most {
+            return next;
+        }
+        for k in order.into_iter().take(how.tries) {
             if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
@@ -99,11 +109,10 @@ pub(crate) fn add_motions(level: &Level, layers: &mut Vec<Layer>, proposals: &[A
         }
         match best {
             Some((brings, layer)) if brings >= how.price => layers.push(layer),
-            rejected => return rejected.map_or(0.0, |r| r.0),
+            rejected => return rejected.map(|r| r.1.motion).or(next),
         }
         refit(level, layers, 1);
     }
-    0.0
 }
 
 /// A proposal refined on the region where it beats what is there, twice.

@@ -1,0 +1,95 @@
+// The page of `npm run bench:browser`: everything that is timed runs here, on the main thread, and is called from outside.
+
+import { farneback, loadOpenCv, openCvPipeline } from './opencv.js';
+import { loadJsfeat, trackCorners } from './jsfeat.js';
+
+const frames = new Map();
+let veronese;
+
+/** What can be timed: `load` readies it, `run` is one call. */
+const CASES = {
+  fast: { load: loadVeronese, run: ({ first, second }) => veronese.segmentPair(first, second, { quality: 'fast' }) },
+  best: { load: loadVeronese, run: ({ first, second }) => veronese.segmentPair(first, second, { quality: 'best' }) },
+  farneback: { load: loadOpenCv, run: farneback },
+  opencvPipeline: { load: loadOpenCv, run: openCvPipeline },
+  jsfeat: { load: loadJsfeat, run: trackCorners },
+};
+
+globalThis.bench = {
+  /** Milliseconds until a case can be called. */
+  async load(name) {
+    const start = performance.now();
+    await CASES[name].load();
+    return performance.now() - start;
+  },
+
+  /** Fetches the frames of a size ("640x480") and their true labels. */
+  async prepare(size) {
+    const [width, height] = size.split('x').map(Number);
+    const bytes = async (what) => new Uint8Array(await (await fetch(`/out/bench/frames/${what}-${size}`)).arrayBuffer());
+    const image = async (what) => new ImageData(new Uint8ClampedArray((await bytes(what)).buffer), width, height);
+    frames.set(size, { first: await image('first'), second: await image('second'), truth: await bytes('labels') });
+  },
+
+  /** One call: its milliseconds, what the call itself says of its stages, how well its labels overlap the true ones. */
+  async run(name, size) {
+    const pair = frames.get(size);
+    const start = performance.now();
+    const result = await CASES[name].run(pair);
+    const milliseconds = performance.now() - start;
+    const overlap = result?.labels ? meanOverlap(pair.truth, result.labels) : undefined;
+    return { milliseconds, stages: result?.milliseconds, count: result?.count, overlap };
+  },
+
+  /** Bytes of memory of a fresh instance after one call. */
+  async memory(quality, size) {
+    const glue = await import('/pkg/dist/glue.js');
+    const response = await fetch('/pkg/wasm/veronese_bg.wasm');
+    const { memory } = await glue.default({ module_or_path: await WebAssembly.compileStreaming(response) });
+    const { first, second } = frames.get(size);
+    glue.segmentPair(first, second, undefined, { quality }, undefined);
+    return memory.buffer.byteLength;
+  },
+
+  /** Pairs per second of `workers` instances in workers of their own that do `pairs` pairs in all. */
+  async throughput(workers, pairs, size) {
+    await loadVeronese();
+    const { first, second } = frames.get(size);
+    const segmenters = Array.from({ length: workers }, () => new veronese.Segmenter());
+    const once = (segmenter) => segmenter.segmentPair(first, second, { quality: 'fast' });
+    // Ready and compiled to the end before the clock starts.
+    for (let k = 0; k < 3; k += 1) await Promise.all(segmenters.map(once));
+    const start = performance.now();
+    await Promise.all(Array.from({ length: pairs }, (_, k) => once(segmenters[k % workers])));
+    const seconds = (performance.now() - start) / 1000;
+    segmenters.forEach((segmenter) => segmenter.close());
+    return pairs / seconds;
+  },
+};
+
+async function loadVeronese() {
+  veronese ??= await import('/pkg/dist/web.js');
+  await veronese.init();
+}
+
+/** Intersection over union of each true label with the label that overlaps it best, averaged over the true labels. */
+function meanOverlap(truth, labels) {
+  const both = new Map();
+  const [ofTruth, ofLabels] = [new Map(), new Map()];
+  const count = (map, key) => map.set(key, (map.get(key) ?? 0) + 1);
+  for (let p = 0; p < truth.length; p += 1) {
+    count(both, truth[p] * 256 + labels[p]);
+    count(ofTruth, truth[p]);
+    count(ofLabels, labels[p]);
+  }
+  let sum = 0;
+  for (const [t, inTruth] of ofTruth) {
+    let best = 0;
+    for (const [l, inLabels] of ofLabels) {
+      const common = both.get(t * 256 + l) ?? 0;
+      best = Math.max(best, common / (inTruth + inLabels - common));
+    }
+    sum += best;
+  }
+  return sum / ofTruth.size;
+}
