@@ -13,8 +13,8 @@ use wasm_bindgen::prelude::*;
 use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
 
 use crate::{
-    Error, FitOptions, Frame, MAX_MOTIONS, MAX_SIDE, MIN_SIDE, Measurements, Method, MotionCount, MotionFit, Quality,
-    SegmentOptions, Segmentation, Stage,
+    AffineMotion, Correction, Error, FitOptions, Frame, MAX_MOTIONS, MAX_SIDE, MIN_SIDE, Measurements, Method,
+    MotionCount, MotionFit, Quality, SegmentOptions, Segmentation, SegmentedMotion, Stage,
 };
 
 /// Version of the JSON.
@@ -83,6 +83,42 @@ pub fn segment_pair(
 #[wasm_bindgen(js_name = segmentImageData)]
 pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsValue) -> Result<JsValue, JsValue> {
     segment_pair(first, second, &JsValue::UNDEFINED, options, None)
+}
+
+/// Solves the labels of a segmentation again under what is said about single pixels (see [`crate::Correction`]): `matrices` holds
+/// six entries of each motion, `groups` its group, `labels` and `evidence` one entry per pixel; `options` has the `quality`.
+///
+/// Returns `{ motions, unlabelled, labels: Uint8Array }`, shaped as in [`segment_pair`].
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape or matrices of another number.
+#[wasm_bindgen]
+#[allow(clippy::too_many_arguments, reason = "flat arrays are copied once; objects entry by entry")]
+pub fn relabel(
+    first: &JsValue,
+    second: &JsValue,
+    before: &JsValue,
+    matrices: &[f64],
+    groups: &[u8],
+    labels: &[u8],
+    evidence: &[u16],
+    options: &JsValue,
+    on_stage: Option<Function>,
+) -> Result<JsValue, JsValue> {
+    let options = segment_options(options)?;
+    let first = frame_from_pixels("the first frame", first)?;
+    let second = frame_from_pixels("the second frame", second)?;
+    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    let (entries, rest) = matrices.as_chunks::<6>();
+    if !rest.is_empty() {
+        return Err(Failure::input(format!("the matrices must hold 6 numbers each, found {}", matrices.len())).into());
+    }
+    let motions: Vec<AffineMotion> = entries.iter().map(|&entries| AffineMotion::new(entries)).collect();
+    let correction = Correction { motions: &motions, groups, labels, allowed: evidence };
+    let progress = &mut listener(on_stage);
+    let relabelled = crate::relabel(&first, &second, before.as_ref(), &correction, &options, progress);
+    let relabelled = relabelled.map_err(Failure::from)?;
+    plain(&RelabelReport { motions: &relabelled.motions, unlabelled: relabelled.unlabelled }, &relabelled.labels)
 }
 
 /// Solves the paper's Problem 1 on measurements: `positions` holds x, y of each, `derivatives` I_x, I_y, I_t.
@@ -427,6 +463,12 @@ struct PairReport<'a> {
     #[serde(flatten)]
     segmentation: &'a Segmentation,
     settings: PairSettings,
+}
+
+#[derive(Serialize)]
+struct RelabelReport<'a> {
+    motions: &'a [SegmentedMotion],
+    unlabelled: usize,
 }
 
 #[derive(Serialize)]

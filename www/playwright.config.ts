@@ -17,6 +17,9 @@ export default defineConfig({
       executablePath: process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium',
       args: [
         '--no-sandbox',
+        // A camera that is a drawing.
+        '--use-fake-device-for-media-stream',
+        '--use-fake-ui-for-media-stream',
         // A browser that asks nothing of the network by itself.
         '--disable-background-networking',
         '--disable-component-update',

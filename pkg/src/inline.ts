@@ -23,7 +23,7 @@ async function unpacked(): Promise<Uint8Array<ArrayBuffer>> {
 const newCore = () => new Core(glue, (place) => (String(place) === PLACE.href ? unpacked() : fetch(place)), PLACE);
 const PLACE = new URL('veronese:inline');
 
-export const { init, segmentPair, fitMotions, paintLabels } = new Api(newCore());
+export const { init, segmentPair, relabel, fitMotions, paintLabels } = new Api(newCore());
 
 export const { Segmenter, SegmenterPool, segmentPairs } = segmenters({
   newCore,

@@ -1,11 +1,28 @@
 // What the page and its worker say to each other.
 
-import type { FitOptions, MotionFit, Pixels, PointMeasurements, Progress, Segmentation, SegmentOptions } from '../types/index.js';
+import type {
+  FitOptions,
+  MotionFit,
+  Pixels,
+  PointMeasurements,
+  Progress,
+  RelabelOptions,
+  Segmentation,
+  SegmentOptions,
+} from '../types/index.js';
 import type { ErrorMessage } from './errors.js';
 
 /** A call with what can be copied of its options: a signal stays behind, and a listener becomes a flag. */
 export type Task =
   | { call: 'segmentPair'; first: Pixels; second: Pixels; options: SegmentOptions }
+  | {
+      call: 'relabel';
+      first: Pixels;
+      second: Pixels;
+      segmentation: Segmentation;
+      evidence: Uint16Array;
+      options: RelabelOptions;
+    }
   | { call: 'fitMotions'; measurements: PointMeasurements; options: FitOptions };
 
 /** What a task gives. */

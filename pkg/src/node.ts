@@ -15,7 +15,7 @@ export { version } from './version.js';
 
 const newCore = () => new Core(glue, read, new URL('../wasm/veronese_bg.wasm', import.meta.url));
 
-export const { init, segmentPair, fitMotions, paintLabels } = new Api(newCore());
+export const { init, segmentPair, relabel, fitMotions, paintLabels } = new Api(newCore());
 
 export const { Segmenter, SegmenterPool, segmentPairs } = segmenters({
   newCore,

@@ -10,13 +10,14 @@ import type {
   PointMeasurements,
   PoolOptions,
   Progress,
+  RelabelOptions,
   Segmentation,
   SegmenterOptions,
   SegmentOptions,
   WasmSource,
   WorkerLike,
 } from '../types/index.js';
-import { checkedMeasurements, checkedPixels, splitOptions } from './api.js';
+import { checkedCorrection, checkedMeasurements, checkedPixels, splitOptions } from './api.js';
 import type { Core, Glue } from './core.js';
 import { cancelled, VeroneseError, veroneseError } from './errors.js';
 import type { Result, Task } from './messages.js';
@@ -51,6 +52,20 @@ export function segmenters(host: Host) {
       const settings = rest.before === undefined ? rest : { ...rest, before: checkedPixels('the frame before', rest.before) };
       const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
       return (await this.#pool.run({ call: 'segmentPair', ...frames, options: settings }, call)) as Segmentation;
+    }
+
+    async relabel(
+      first: Pixels,
+      second: Pixels,
+      segmentation: Segmentation,
+      evidence: Uint16Array,
+      options?: RelabelOptions,
+    ): Promise<Segmentation> {
+      const { call, rest } = splitOptions(options);
+      const settings = rest.before === undefined ? rest : { before: checkedPixels('the frame before', rest.before) };
+      const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
+      checkedCorrection(segmentation, evidence);
+      return (await this.#pool.run({ call: 'relabel', ...frames, segmentation, evidence, options: settings }, call)) as Segmentation;
     }
 
     async fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {

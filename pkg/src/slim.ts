@@ -13,7 +13,7 @@ export { version } from './version.js';
 
 const newCore = () => new Core(glue, (place) => fetch(place));
 
-export const { init, segmentPair, fitMotions, paintLabels } = new Api(newCore());
+export const { init, segmentPair, relabel, fitMotions, paintLabels } = new Api(newCore());
 
 export const { Segmenter, SegmenterPool, segmentPairs } = segmenters({
   newCore,

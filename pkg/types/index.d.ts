@@ -43,6 +43,11 @@ export interface SegmentOptions extends CallOptions {
   before?: Pixels | undefined;
 }
 
+export interface RelabelOptions extends CallOptions {
+  /** The frame before the first, if the segmentation was made with one. */
+  before?: Pixels | undefined;
+}
+
 export interface FitOptions extends CallOptions {
   /** Number of motions, 1 to 10; default `'auto'`: find it. */
   motions?: 'auto' | number | undefined;
@@ -218,6 +223,22 @@ export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 /** Finds how many things move between two frames, how each moves, and which pixels belong to it. */
 export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
 
+/**
+ * Solves the labels of a segmentation again under what a person says about single pixels, with its motions as they are.
+ *
+ * `evidence` holds a set of labels for each pixel, row by row: bit k is set where label k is possible, 0 says nothing. "This is
+ * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. What is said
+ * holds on its pixels and spreads from there as far as the picture looks alike; far from it every label stays. Numbering and groups
+ * stay too, so a label may be left without pixels. The same arguments give the same answer: to undo, ask without.
+ */
+export function relabel(
+  first: Pixels,
+  second: Pixels,
+  segmentation: Segmentation,
+  evidence: Uint16Array,
+  options?: RelabelOptions,
+): Promise<Segmentation>;
+
 /** Solves the paper's Problem 1 on measurements of your own. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
 
@@ -284,6 +305,13 @@ export class Segmenter {
   /** `source` as in {@link init}; by default the file beside the package's code. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
   segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
+  relabel(
+    first: Pixels,
+    second: Pixels,
+    segmentation: Segmentation,
+    evidence: Uint16Array,
+    options?: RelabelOptions,
+  ): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
   /** Ends the worker; calls under way reject with code `cancelled`. The next call starts a fresh one. */
   close(): void;

@@ -163,6 +163,14 @@ fn at_full_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
     AffineMotion::new(a)
 }
 
+/// A motion of the full size in pixels of the working size.
+pub(super) fn reduced(motion: &AffineMotion, reduction: f64) -> AffineMotion {
+    let mut a = motion.matrix;
+    a[2] /= reduction;
+    a[5] /= reduction;
+    AffineMotion::new(a)
+}
+
 /// Working pixels that their own motion does not explain, or that leave the frame.
 fn unexplained(work: &Work, labelled: &Labelled) -> Vec<bool> {
     let level = work.finest();
@@ -240,7 +248,7 @@ fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candid
 }
 
 /// Pixels, residuals, boxes and group numbers of the motions.
-fn describe(
+pub(super) fn describe(
     motions: &[AffineMotion],
     grouping: &[usize],
     labels: &[u8],

@@ -155,16 +155,12 @@ struct Reading {
 }
 
 fn read_off(polynomial: &MultibodyMotion, measurements: &Measurements) -> Vec<Reading> {
-    measurements
-        .iter()
-        .map(|([x, y], derivatives)| {
-            let place = [x, y, 1.0];
-            let g = polynomial.gradient_y(place, derivatives);
-            let slope = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
-            let distance = polynomial.evaluate(place, derivatives).abs() / (slope + 1e-9);
-            Reading { flow: [g[0] / g[2], g[1] / g[2]], slope, distance }
-        })
-        .collect()
+    let all = polynomial.values_and_gradients(measurements).into_iter();
+    all.map(|(value, g)| {
+        let slope = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+        Reading { flow: [g[0] / g[2], g[1] / g[2]], slope, distance: value.abs() / (slope + 1e-9) }
+    })
+    .collect()
 }
 
 /// Median flows of groups of pixels that are alike in flow and place.

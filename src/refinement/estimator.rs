@@ -12,7 +12,7 @@
 //!
 //! Measured on the paper's experiment (general motions, n = 2…5, up to 30 % outliers, one motion with 5 % of the measurements),
 //! this ends at the maximum that EM reaches from the true motions. Pitfalls found by measurement: a start σ of 0.05 or 0.15
-//! freezes the random assignment; fewer motions in the residual search are worse, not better; without taking the weakest motion away, a
+//! freezes the random assignment; without taking the weakest motion away, a
 //! wrong motion hides half of the measurements of a small one that is missing; the σ from which EM starts must be that of the *worst* chosen
 //! motion, or the exact motions of noise-free data freeze the others.
 
@@ -27,14 +27,14 @@ const SEARCHED: usize = 1000;
 const SEED_SCALE: f64 = 1.2;
 /// Random motions per wanted motion: on all measurements, on the unexplained ones, on those of one motion.
 const OVER_COMPLETE: usize = 6;
-const UNEXPLAINED: usize = 10;
+const UNEXPLAINED: usize = 6;
 const SPLIT: usize = 4;
 /// σ at the start from random motions, of splitting one motion, and the largest at the start from a choice, all in units
 /// of the derivatives' root mean square.
 const WIDE: f64 = 0.3;
 const SPLIT_WIDE: f64 = 0.1;
 const CHOICE_WIDE: f64 = 0.1;
-/// Distances are cut at this many σ of the best fit in one choice and at this distance in the other.
+/// Distances count up to this many σ of the best fit in one choice and at this distance in the other.
 const CAP_SIGMAS: f64 = 4.0;
 const CAP: f64 = 0.1;
 /// A measurement further than this many σ from every motion is unexplained.

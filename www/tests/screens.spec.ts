@@ -3,25 +3,25 @@
 import { done, expect, open, sample, screen, square, test, upload } from './support.js';
 
 test('desktop', async ({ page }) => {
-  await open(page);
+  await open(page, 'groups');
   await page.screenshot({ path: screen('desktop') });
   await page.screenshot({ path: screen('desktop-whole'), fullPage: true });
 });
 
 test('dark', async ({ page }) => {
   await page.emulateMedia({ colorScheme: 'dark' });
-  await open(page);
+  await open(page, 'groups');
   await page.screenshot({ path: screen('dark') });
 });
 
 test('phone', async ({ page }) => {
   await page.setViewportSize({ width: 360, height: 740 });
-  await open(page);
+  await open(page, 'groups');
   await page.screenshot({ path: screen('phone'), fullPage: true });
 });
 
 test('error', async ({ page }) => {
-  await open(page);
+  await open(page, 'groups');
   await upload(page, [await sample('first'), await square('second.png', 640, 480, 0, 0)]);
   await expect(page.getByRole('alert')).toBeVisible();
   await page.screenshot({ path: screen('error') });

@@ -20,7 +20,7 @@ export function mountDownloads(root: ParentNode, store: Store): void {
     if (result === null) return;
     const { segmentation } = result;
     const { width, height } = segmentation;
-    const seen = look.colouring === 'groups' ? groupLabels(segmentation) : segmentation.labels;
+    const seen = look.kind === 'groups' ? groupLabels(segmentation) : segmentation.labels;
     void pngFromLabels(seen, width, height).then((file) => save(file, 'labels.png'));
   });
 }
