@@ -140,8 +140,7 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const SMALLEST: f32 = 0.5;
     const LARGEST: f32 = 8.0;
     let scaled = level.scaled(motion);
-    let mut energies = level.energy.values().to_vec();
-    let flat = median(&mut energies).unwrap_or(0.0);
+    let flat = median(level.energy.values()).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
     let mut samples = [0.0; CHUNK];
     for y in 0..level.height() {
@@ -156,9 +155,9 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
             }
         }
     }
-    let Some(centre) = median(&mut residuals) else { return LARGEST };
+    let Some(centre) = median(&residuals) else { return LARGEST };
     residuals.iter_mut().for_each(|r| *r = (*r - centre).abs());
-    (1.4826 * median(&mut residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
+    (1.4826 * median(&residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
 }
 
 #[cfg(test)]
