@@ -76,7 +76,9 @@ pub use pipeline::Part;
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
 pub use pipeline::segment_pair_without;
-pub use pipeline::{PairEvidence, Segmentation, SegmentedMotion, segment_pair};
+pub use pipeline::{
+    Correction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel, segment_pair,
+};
 pub use points::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED, fit_motions};
 pub use progress::{Progress, Stage};
 pub use random::Random;

@@ -1,10 +1,12 @@
 //! Two frames in, masks out: the image pipeline as its stages in order, and nothing else.
 
+mod correction;
 mod hypothesis;
 mod masks;
 mod report;
 mod settings;
 
+pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
 pub use report::{PairEvidence, Segmentation, SegmentedMotion};
 #[doc(hidden)]
 pub use settings::Part;
@@ -73,12 +75,7 @@ fn segment_with(
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
     options.motions.validate()?;
-    let size = (first.width(), first.height());
-    for other in [Some(second), before].into_iter().flatten() {
-        if (other.width(), other.height()) != size {
-            return Err(Error::FrameSizeMismatch { first: size, second: (other.width(), other.height()) });
-        }
-    }
+    check_sizes(first, second, before)?;
     let mut stages = Stages::new(STAGES, progress);
     let mut random = Random::from_seed(options.seed);
 
@@ -93,6 +90,16 @@ fn segment_with(
     let labelled = masks::label(&work, found, &settings);
     stages.begin("masks");
     Ok(report::report(&work, labelled, &settings, first, second, options))
+}
+
+fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<()> {
+    let size = (first.width(), first.height());
+    for other in [Some(second), before].into_iter().flatten() {
+        if (other.width(), other.height()) != size {
+            return Err(Error::FrameSizeMismatch { first: size, second: (other.width(), other.height()) });
+        }
+    }
+    Ok(())
 }
 
 /// The frames at working size and below.

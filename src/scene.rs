@@ -36,6 +36,8 @@ pub const MAX_OBJECTS: usize = 8;
 /// How fast objects move relative to the background, and the camera, if it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Speed {
+    /// Objects 0.3 pixels per frame, camera 0.1.
+    Creeping,
     /// Objects 0.5 to 1.5 pixels per frame, camera 0.2 to 1.
     SubPixel,
     /// Objects 1.5 to 5 pixels per frame, camera 0.5 to 3.
@@ -179,6 +181,7 @@ struct Ranges {
 
 fn ranges(options: &SceneOptions) -> Ranges {
     let (object, camera, camera_linear, object_linear) = match options.speed {
+        Speed::Creeping => ([0.3, 0.3], [0.1, 0.1], 0.1, 0.1),
         Speed::SubPixel => ([0.5, 1.5], [0.2, 1.0], 0.3, 0.5),
         Speed::Medium => ([1.5, 5.0], [0.5, 3.0], 0.8, 1.5),
         Speed::Large => ([5.0, if options.width < 240 { 10.0 } else { 20.0 }], [2.0, 10.0], 1.5, 3.0),
@@ -281,4 +284,41 @@ pub fn leader_follower(seed: u64) -> Result<Scene> {
         layers.push(object(&mut random, &options, motion, shape, centre, &Style::THINGS));
     }
     render::render(&layers, &SceneOptions { objects: 2, ..options }, &mut random)
+}
+
+/// A camera that moves sideways past a still scene: the nearer a thing, the faster it goes by. Three things before a wall, nearer
+/// and nearer; 400 × 300 pixels, colour. `labels` are 0 the wall, 1… the things from far to near.
+///
+/// # Errors
+/// None that could happen; the signature is that of [`generate`].
+pub fn parallax(seed: u64) -> Result<Scene> {
+    let options = SceneOptions {
+        width: 400,
+        height: 300,
+        objects: 3,
+        background: Background::Moving,
+        noise: 0.8,
+        colour: true,
+        seed,
+        ..SceneOptions::default()
+    };
+    let mut random = Random::from_seed(seed);
+    // Inverse depths of wall and things; the camera also goes a little forward, towards the middle of the frame.
+    let depths = [0.35, 0.8, 1.3, 2.0];
+    let (sideways, forward) = (-4.0, 0.004);
+    let moved = |inverse_depth: f64, centre: [f64; 2]| {
+        let zoom = forward * inverse_depth;
+        let [x, y] = [centre[0] - 200.0, centre[1] - 150.0];
+        about(centre, [sideways * inverse_depth + zoom * x, zoom * y], [zoom, 0.0, 0.0, zoom])
+    };
+    let mut layers = vec![background(&mut random, &options, moved(depths[0], [200.0, 150.0]), 16, &Style::WALLS)];
+    let places = [[105.0, 95.0], [285.0, 115.0], [190.0, 225.0]];
+    for ((place, &depth), (kind, radius)) in
+        places.iter().zip(&depths[1..]).zip([(Kind::Rectangle, 40.0), (Kind::Blob, 48.0), (Kind::Ellipse, 56.0)])
+    {
+        let centre = place.map(|middle| middle + random.uniform(-12.0, 12.0));
+        let shape = Shape::draw(&mut random, kind, radius);
+        layers.push(object(&mut random, &options, moved(depth, centre), shape, centre, &Style::THINGS));
+    }
+    render::render(&layers, &options, &mut random)
 }

@@ -13,8 +13,8 @@ use wasm_bindgen::prelude::*;
 use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
 
 use crate::{
-    Error, FitOptions, Frame, MAX_MOTIONS, MAX_SIDE, MIN_SIDE, Measurements, Method, MotionCount, MotionFit, Quality,
-    SegmentOptions, Segmentation, Stage,
+    AffineMotion, Correction, Error, FitOptions, Frame, MAX_MOTIONS, MAX_SIDE, MIN_SIDE, Measurements, Method,
+    MotionCount, MotionFit, Quality, SegmentOptions, Segmentation, SegmentedMotion, Stage,
 };
 
 /// Version of the JSON.
@@ -83,6 +83,42 @@ pub fn segment_pair(
 #[wasm_bindgen(js_name = segmentImageData)]
 pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsValue) -> Result<JsValue, JsValue> {
     segment_pair(first, second, &JsValue::UNDEFINED, options, None)
+}
+
+/// Solves the labels of a segmentation again under what is said about single pixels (see [`crate::Correction`]): `matrices` holds
+/// six entries of each motion, `groups` its group, `labels` and `evidence` one entry per pixel; `options` has the `quality`.
+///
+/// Returns `{ motions, unlabelled, labels: Uint8Array }`, shaped as in [`segment_pair`].
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape or matrices of another number.
+#[wasm_bindgen]
+#[allow(clippy::too_many_arguments, reason = "flat arrays are copied once; objects entry by entry")]
+pub fn relabel(
+    first: &JsValue,
+    second: &JsValue,
+    before: &JsValue,
+    matrices: &[f64],
+    groups: &[u8],
+    labels: &[u8],
+    evidence: &[u16],
+    options: &JsValue,
+    on_stage: Option<Function>,
+) -> Result<JsValue, JsValue> {
+    let options = segment_options(options)?;
+    let first = frame_from_pixels("the first frame", first)?;
+    let second = frame_from_pixels("the second frame", second)?;
+    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    let (entries, rest) = matrices.as_chunks::<6>();
+    if !rest.is_empty() {
+        return Err(Failure::input(format!("the matrices must hold 6 numbers each, found {}", matrices.len())).into());
+    }
+    let motions: Vec<AffineMotion> = entries.iter().map(|&entries| AffineMotion::new(entries)).collect();
+    let correction = Correction { motions: &motions, groups, labels, allowed: evidence };
+    let progress = &mut listener(on_stage);
+    let relabelled = crate::relabel(&first, &second, before.as_ref(), &correction, &options, progress);
+    let relabelled = relabelled.map_err(Failure::from)?;
+    plain(&RelabelReport { motions: &relabelled.motions, unlabelled: relabelled.unlabelled }, &relabelled.labels)
 }
 
 /// Solves the paper's Problem 1 on measurements: `positions` holds x, y of each, `derivatives` I_x, I_y, I_t.
@@ -168,7 +204,7 @@ fn image_from_labels(
         return Err(invalid("palette", reason).into());
     }
     if !(0.0..=1.0).contains(&opacity) {
-        return Err(invalid("opacity", format!("must be a number from 0 to 1, not {opacity}")).into());
+        return Err(invalid("opacity", format!("must be a number from 0 to 1, not {}", written(opacity))).into());
     }
     let colours: Vec<[u8; 4]> = (0..256)
         .map(|label| match palette.get(4 * label..4 * label + 4) {
@@ -402,12 +438,17 @@ fn choice<T: Copy>(name: &str, value: &JsValue, choices: &[(&str, T)]) -> Result
 fn invalid(name: &str, wanted: &str, found: &JsValue) -> Failure {
     let found = match (found.as_string(), found.as_f64(), found.as_bool()) {
         (Some(text), ..) => format!("'{text}'"),
-        (_, Some(number), _) => number.to_string(),
+        (_, Some(number), _) => written(number),
         (.., Some(flag)) => flag.to_string(),
         _ if found.is_null() => "null".into(),
         _ => format!("a value of type {}", found.js_typeof().as_string().unwrap_or_default()),
     };
     Failure::option(format!("option '{name}': must be {wanted}, not {found}"))
+}
+
+/// A number as JavaScript writes it: what Rust has for that is twelve kilobytes of the module.
+fn written(number: f64) -> String {
+    js_sys::Number::from(number).to_string_with_radix(10).map(String::from).unwrap_or_default()
 }
 
 fn unknown(name: &str, known: &str) -> Failure {
@@ -427,6 +468,12 @@ struct PairReport<'a> {
     #[serde(flatten)]
     segmentation: &'a Segmentation,
     settings: PairSettings,
+}
+
+#[derive(Serialize)]
+struct RelabelReport<'a> {
+    motions: &'a [SegmentedMotion],
+    unlabelled: usize,
 }
 
 #[derive(Serialize)]

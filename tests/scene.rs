@@ -205,3 +205,19 @@ fn the_same_seed_gives_the_same_bytes_on_every_machine() {
     assert_eq!(format!("{:016x}", hash_of(&scene)), "31adf922886e66fc");
     assert_eq!(format!("{:016x}", hash_of(&scene::leader_follower(1).unwrap())), "f0155a546e06d78a");
 }
+
+#[test]
+fn the_slowest_objects_move_a_third_of_a_pixel() {
+    for seed in 1..4 {
+        let slow = SceneOptions { objects: 1, speed: Speed::Creeping, seed, ..SceneOptions::default() };
+        let scene = scene::generate(&SceneOptions { width: 120, height: 90, ..slow }).unwrap();
+        assert_eq!(scene.motions.len(), 2);
+        let (background, object) = (scene.motions[0], scene.motions[1]);
+        let own: Vec<usize> = (0..scene.labels.len()).filter(|&p| scene.labels[p] == 1).collect();
+        let centre = |of: &dyn Fn(usize) -> usize| own.iter().map(|&p| of(p) as f64).sum::<f64>() / own.len() as f64;
+        let (x, y) = (centre(&|p| p % 120), centre(&|p| p / 120));
+        let ([u, v], [a, b]) = (background.flow(x, y), object.flow(x, y));
+        let relative = ((u - a) * (u - a) + (v - b) * (v - b)).sqrt();
+        assert!((relative - 0.3).abs() < 0.05, "{relative}");
+    }
+}

@@ -8,6 +8,7 @@ import type {
   PaintOptions,
   Pixels,
   PointMeasurements,
+  RelabelOptions,
   Segmentation,
   SegmentOptions,
   WasmSource,
@@ -34,6 +35,28 @@ export class Api {
     const frames = [checkedPixels('the first frame', first), checkedPixels('the second frame', second)] as const;
     const third = before === undefined ? undefined : checkedPixels('the frame before', before);
     return this.#run<Segmentation>(call, (glue, onStage) => glue.segmentPair(...frames, third, settings, onStage));
+  };
+
+  readonly relabel = async (
+    first: Pixels,
+    second: Pixels,
+    segmentation: Segmentation,
+    evidence: Uint16Array,
+    options?: RelabelOptions,
+  ): Promise<Segmentation> => {
+    const { call, rest } = splitOptions(options);
+    const { before, ...unknown } = rest;
+    const frames = [checkedPixels('the first frame', first), checkedPixels('the second frame', second)] as const;
+    const third = before === undefined ? undefined : checkedPixels('the frame before', before);
+    const { labels, matrices, groups, sets } = checkedCorrection(segmentation, evidence);
+    const settings = { ...unknown, quality: segmentation.settings.quality };
+    const corrected = await this.#run<Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>>(
+      call,
+      (glue, onStage) => glue.relabel(...frames, third, matrices, groups, labels, sets, settings, onStage),
+    );
+    // How sure the labels were says nothing about those of now.
+    const { confidence: _, ...kept } = segmentation;
+    return { ...kept, ...corrected };
   };
 
   readonly fitMotions = async (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> => {
@@ -129,6 +152,24 @@ export function checkedPixels(which: string, pixels: Pixels): Pixels {
     data: new Uint8Array(data.buffer, data.byteOffset, data.byteLength),
     width: width as number,
     height: height as number,
+  };
+}
+
+/** What the core needs of a segmentation, as flat arrays. Whether they fit each other is the core's question. */
+export function checkedCorrection(segmentation: Segmentation, evidence: Uint16Array) {
+  const { motions, labels, settings } = Object(segmentation) as Partial<Segmentation>;
+  const shaped = Array.isArray(motions) && motions.every((motion) => Array.isArray(motion?.matrix) && motion.matrix.length === 6);
+  if (!shaped || !isArray<Uint8Array>(labels, 'Uint8Array') || typeof settings !== 'object') {
+    throw new VeroneseError('invalid-input', 'the segmentation must be one that segmentPair or relabel gave');
+  }
+  if (!isArray<Uint16Array>(evidence, 'Uint16Array')) {
+    throw new VeroneseError('invalid-input', 'the evidence must be a Uint16Array of one set of labels for each pixel');
+  }
+  return {
+    labels,
+    matrices: Float64Array.from(motions.flatMap(({ matrix }) => matrix)),
+    groups: Uint8Array.from(motions, ({ group }) => group),
+    sets: evidence,
   };
 }
 

@@ -16,6 +16,18 @@ export function segmentPair(
   onStage: OnStage,
 ): unknown;
 
+export function relabel(
+  first: unknown,
+  second: unknown,
+  before: unknown,
+  matrices: Float64Array,
+  groups: Uint8Array,
+  labels: Uint8Array,
+  evidence: Uint16Array,
+  options: unknown,
+  onStage: OnStage,
+): unknown;
+
 export function fitMotions(
   positions: Float64Array,
   derivatives: Float64Array,

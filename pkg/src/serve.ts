@@ -4,7 +4,8 @@ import * as glue from './glue.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { errorMessage } from './errors.js';
-import type { Reply, Request } from './messages.js';
+import type { CallOptions } from '../types/index.js';
+import type { Reply, Request, Task } from './messages.js';
 
 /** Answers one request at a time: the page sends the next when it has the answer to the last. */
 export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (request: Request) => Promise<void> {
@@ -15,11 +16,7 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
       const onProgress = (progress: { stage: string; index: number; of: number }) => {
         post({ kind: 'progress', progress }, []);
       };
-      const options = { ...task.options, onProgress };
-      const result =
-        task.call === 'segmentPair'
-          ? await api.segmentPair(task.first, task.second, options)
-          : await api.fitMotions(task.measurements, options);
+      const result = await perform(api, task, { onProgress });
       const arrays = [result.labels, ...('confidence' in result && result.confidence ? [result.confidence] : [])];
       post({ kind: 'done', result }, arrays.map(({ buffer }) => buffer as ArrayBuffer));
     } catch (thrown) {
@@ -27,4 +24,15 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
       post({ kind: 'failed', error: errorMessage(thrown) }, []);
     }
   };
+}
+
+function perform(api: Api, task: Task, call: CallOptions) {
+  switch (task.call) {
+    case 'segmentPair':
+      return api.segmentPair(task.first, task.second, { ...task.options, ...call });
+    case 'relabel':
+      return api.relabel(task.first, task.second, task.segmentation, task.evidence, { ...task.options, ...call });
+    case 'fitMotions':
+      return api.fitMotions(task.measurements, { ...task.options, ...call });
+  }
 }

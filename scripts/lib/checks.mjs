@@ -6,6 +6,8 @@ import { run } from './run.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
+// The benchmark of masks alone has the other feature.
+const ALL = ['--features', 'codecs,ablation'];
 const DENY = ['--', '-D', 'warnings'];
 const DOC = ['doc', '--locked', '--no-deps'];
 const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
@@ -13,7 +15,7 @@ const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
 const CHECKS = [
   ['formatting', 'cargo', ['fmt', '--check']],
   ['clippy', 'cargo', ['clippy', '--locked', '--all-targets', ...DENY]],
-  ['clippy with codecs', 'cargo', ['clippy', '--locked', '--all-targets', ...CODECS, ...DENY]],
+  ['clippy with codecs and ablation', 'cargo', ['clippy', '--locked', '--all-targets', ...ALL, ...DENY]],
   // Benchmarks and examples are native programs.
   ['clippy for wasm', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...DENY]],
   ['clippy for wasm with codecs', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...CODECS, ...DENY]],

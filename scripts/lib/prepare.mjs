@@ -2,7 +2,7 @@
 // and nothing is recorded: each piece is looked at anew, which takes less than a second.
 
 import { prepareChromium } from './chromium.mjs';
-import { prepareNpmPackages } from './npm-packages.mjs';
+import { HOSTS, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
 import { preparePython } from './python-packages.mjs';
 import { Stop } from './run.mjs';
@@ -10,15 +10,18 @@ import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
  * Prepares compiler, wasm tools and npm packages; with `checks` formatter and clippy too, with `browser` Chromium, with
- * `python` the decoders of annotation tools.
- * Throws `Stop` with a sentence for every missing piece. Only a missing browser or Python is returned
- * instead, as `{ chromium: { problem } }` or `{ python: { problem } }`, because everything but their tests works without.
+ * `hosts` the bundlers and checkers that the packed package is tried in, with `python` the
+ * decoders of annotation tools.
+ * Throws `Stop` with a sentence for every missing piece. Only a missing browser or Python is returned instead,
+ * as `{ chromium: { problem } }` or `{ python: { problem } }`, because everything but their tests works without.
  */
-export async function prepare({ checks = false, browser = false, python = false } = {}) {
+export async function prepare({ checks = false, browser = false, hosts = false, python = false } = {}) {
   checkNode();
   await checkRust();
   const rust = prepareCompiler({ checks }).then(prepareWasmTools);
-  const javascript = prepareNpmPackages().then(() => (browser ? prepareChromium() : {}));
+  const javascript = prepareNpmPackages()
+    .then(() => (hosts ? prepareNpmPackages(HOSTS) : undefined))
+    .then(() => (browser ? prepareChromium() : {}));
   const decoders = python ? preparePython() : {};
   const outcomes = await Promise.allSettled([rust, javascript, decoders]);
   const failures = outcomes.filter(({ status }) => status === 'rejected').map(({ reason }) => reason);

@@ -42,9 +42,9 @@ struct Grid<const L: usize> {
     width: usize,
     height: usize,
     costs: Vec<[f32; L]>,
-    /// Weight of the edge from p to its right and to its lower neighbour.
+    /// Weight of the edge from p to its right and to its lower neighbour; 0 where there is none.
     weights: Vec<[f32; 2]>,
-    /// Message on the edge from p to its right neighbour and to its lower neighbour.
+    /// Message on the edge from p to its right neighbour and to its lower neighbour; all 0 where there is none.
     right: Vec<[f32; L]>,
     down: Vec<[f32; L]>,
 }
@@ -89,12 +89,46 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
         }
         bound = bound.max(reached);
     }
-    problem.descend(&mut best, 2);
+    grid.descend(&mut best, 2);
     Solution { labels: best, bound }
 }
 
 /// On the coarse levels the messages only have to point the right way.
 const COARSE_ITERATIONS: usize = 3;
+
+/// A row on which messages are under way. Each pixel waits for its neighbour's message, so two rows are worked on by turns, the
+/// second one pixel behind.
+struct Row<const L: usize> {
+    /// Index of its first pixel.
+    start: usize,
+    /// The message from the neighbour that was visited last, its label, and the weight of the edge to it.
+    message: [f32; L],
+    label: u8,
+    weight: f32,
+    /// Energy or bound.
+    sum: f64,
+    /// Shares of its first pixel, its last, and those between.
+    shares: [f32; 3],
+}
+
+impl<const L: usize> Row<L> {
+    fn new(grid: &Grid<L>, y: usize) -> Self {
+        let last = grid.width - 1;
+        let shares = [grid.share(0, y), grid.share(last, y), grid.share(last.min(1), y)];
+        Row { start: y * grid.width, message: [0.0; L], label: 0, weight: 0.0, sum: 0.0, shares }
+    }
+
+    #[inline(always)]
+    fn share(&self, x: usize, width: usize) -> f32 {
+        if x == 0 {
+            self.shares[0]
+        } else if x + 1 == width {
+            self.shares[1]
+        } else {
+            self.shares[2]
+        }
+    }
+}
 
 impl<const L: usize> Grid<L> {
     fn new(problem: &Potts<'_>) -> Self {
@@ -110,7 +144,11 @@ impl<const L: usize> Grid<L> {
         Self::with(width, height, costs, weights)
     }
 
-    fn with(width: usize, height: usize, costs: Vec<[f32; L]>, weights: Vec<[f32; 2]>) -> Self {
+    fn with(width: usize, height: usize, costs: Vec<[f32; L]>, mut weights: Vec<[f32; 2]>) -> Self {
+        for row in weights.chunks_exact_mut(width) {
+            row[width - 1][0] = 0.0;
+        }
+        weights[(height - 1) * width..].iter_mut().for_each(|w| w[1] = 0.0);
         let none = vec![[0.0; L]; width * height];
         Grid { width, height, costs, weights, right: none.clone(), down: none }
     }
@@ -138,8 +176,9 @@ impl<const L: usize> Grid<L> {
         for y in 0..self.height {
             for x in 0..self.width {
                 let (p, q) = (y * self.width + x, (y / 2) * coarser.width + x / 2);
-                self.right[p] = coarser.right[q].map(|m| 0.5 * m);
-                self.down[p] = coarser.down[q].map(|m| 0.5 * m);
+                let none = [0.0; L];
+                self.right[p] = if x + 1 < self.width { coarser.right[q].map(|m| 0.5 * m) } else { none };
+                self.down[p] = if y + 1 < self.height { coarser.down[q].map(|m| 0.5 * m) } else { none };
             }
         }
     }
@@ -155,42 +194,19 @@ impl<const L: usize> Grid<L> {
     /// given the labels before it and the messages from after it. Returns the energy of the labels.
     fn forward(&mut self, mut labels: Option<&mut [u8]>) -> f64 {
         let mut energy = 0.0;
-        for y in 0..self.height {
-            let mut row = 0.0;
-            for x in 0..self.width {
-                let p = y * self.width + x;
-                let none = [0.0; L];
-                let left = if x > 0 { self.right[p - 1] } else { none };
-                let up = if y > 0 { self.down[p - self.width] } else { none };
-                let right = if x + 1 < self.width { self.right[p] } else { none };
-                let down = if y + 1 < self.height { self.down[p] } else { none };
-                let ahead = sum3(&self.costs[p], &right, &down);
-                if let Some(labels) = labels.as_deref_mut() {
-                    let mut price = ahead;
-                    let mut fixed = [0.0; L];
-                    if x > 0 {
-                        add_change(&mut fixed, labels[p - 1], self.weights[p - 1][0]);
-                    }
-                    if y > 0 {
-                        add_change(&mut fixed, labels[p - self.width], self.weights[p - self.width][1]);
-                    }
-                    for l in 0..L {
-                        price[l] += fixed[l];
-                    }
-                    let l = first_lowest(&price);
-                    labels[p] = l as u8;
-                    row += f64::from(self.costs[p][l] + fixed[l]);
+        for y in (0..self.height).step_by(2) {
+            let (mut upper, mut lower) = (Row::new(self, y), Row::new(self, y + 1));
+            let both = y + 1 < self.height;
+            for x in 0..=self.width {
+                if x < self.width {
+                    self.send_on(&mut upper, x, labels.as_deref_mut());
                 }
-                let total = sum3(&ahead, &left, &up);
-                let share = self.share(x, y);
-                if x + 1 < self.width {
-                    (self.right[p], _) = message(&total, share, &right, self.weights[p][0]);
-                }
-                if y + 1 < self.height {
-                    (self.down[p], _) = message(&total, share, &down, self.weights[p][1]);
+                if both && x > 0 {
+                    self.send_on(&mut lower, x - 1, labels.as_deref_mut());
                 }
             }
-            energy += row;
+            energy += upper.sum;
+            energy += lower.sum;
         }
         energy
     }
@@ -198,34 +214,103 @@ impl<const L: usize> Grid<L> {
     /// Sends messages left and up; returns a lower bound of the energy.
     fn backward(&mut self) -> f64 {
         let mut bound = 0.0;
-        for y in (0..self.height).rev() {
-            for x in (0..self.width).rev() {
-                let p = y * self.width + x;
-                let none = [0.0; L];
-                let right = if x + 1 < self.width { self.right[p] } else { none };
-                let down = if y + 1 < self.height { self.down[p] } else { none };
-                let left = if x > 0 { self.right[p - 1] } else { none };
-                let up = if y > 0 { self.down[p - self.width] } else { none };
-                let mut total = sum3(&sum3(&self.costs[p], &right, &down), &left, &up);
-                let lowest = lowest(&total);
-                bound += f64::from(lowest);
-                for t in &mut total {
-                    *t -= lowest;
+        for y in (0..self.height.next_multiple_of(2)).rev().step_by(2) {
+            let (mut lower, mut upper) = (Row::new(self, y), Row::new(self, y - 1));
+            let both = y < self.height;
+            for x in (0..=self.width).rev() {
+                if both && x > 0 {
+                    self.send_back(&mut lower, x - 1);
                 }
-                let share = self.share(x, y);
-                if x > 0 {
-                    let (m, removed) = message(&total, share, &left, self.weights[p - 1][0]);
-                    self.right[p - 1] = m;
-                    bound += f64::from(removed);
-                }
-                if y > 0 {
-                    let (m, removed) = message(&total, share, &up, self.weights[p - self.width][1]);
-                    self.down[p - self.width] = m;
-                    bound += f64::from(removed);
+                if x < self.width {
+                    self.send_back(&mut upper, x);
                 }
             }
+            bound += lower.sum;
+            bound += upper.sum;
         }
         bound
+    }
+
+    /// A pixel's part of [`forward`](Self::forward). What comes from the left is in `row`.
+    #[inline(always)]
+    fn send_on(&mut self, row: &mut Row<L>, x: usize, labels: Option<&mut [u8]>) {
+        let p = row.start + x;
+        let (costs, right, down) = (&self.costs[p], self.right[p], self.down[p]);
+        let [to_right, to_below] = self.weights[p];
+        let up = if row.start > 0 { self.down[p - self.width] } else { [0.0; L] };
+        let ahead = sum3(costs, &right, &down);
+        if let Some(labels) = labels {
+            let mut fixed = [0.0; L];
+            add_change(&mut fixed, row.label, row.weight);
+            if row.start > 0 {
+                add_change(&mut fixed, labels[p - self.width], self.weights[p - self.width][1]);
+            }
+            let l = first_lowest::<L>(&std::array::from_fn(|l| ahead[l] + fixed[l]));
+            (row.label, row.weight) = (l as u8, to_right);
+            labels[p] = row.label;
+            row.sum += f64::from(costs[l] + fixed[l]);
+        }
+        let total = sum3(&ahead, &row.message, &up);
+        let share = row.share(x, self.width);
+        (row.message, _) = message(&total, share, &right, to_right);
+        self.right[p] = row.message;
+        (self.down[p], _) = message(&total, share, &down, to_below);
+    }
+
+    /// A pixel's part of [`backward`](Self::backward). What comes from the right is in `row`.
+    #[inline(always)]
+    fn send_back(&mut self, row: &mut Row<L>, x: usize) {
+        let p = row.start + x;
+        let left = if x > 0 { self.right[p - 1] } else { [0.0; L] };
+        let up = if row.start > 0 { self.down[p - self.width] } else { [0.0; L] };
+        let mut total = sum3(&sum3(&self.costs[p], &row.message, &self.down[p]), &left, &up);
+        let lowest = lowest(&total);
+        row.sum += f64::from(lowest);
+        total.iter_mut().for_each(|t| *t -= lowest);
+        let share = row.share(x, self.width);
+        if x > 0 {
+            let removed;
+            (row.message, removed) = message(&total, share, &left, self.weights[p - 1][0]);
+            self.right[p - 1] = row.message;
+            row.sum += f64::from(removed);
+        }
+        if row.start > 0 {
+            let (sent, removed) = message(&total, share, &up, self.weights[p - self.width][1]);
+            self.down[p - self.width] = sent;
+            row.sum += f64::from(removed);
+        }
+    }
+
+    /// Iterated conditional modes: every pixel takes the label that is cheapest given its four neighbours, until nothing
+    /// changes or for `sweeps` sweeps. Never raises the energy.
+    fn descend(&self, labels: &mut [u8], sweeps: usize) {
+        let width = self.width;
+        for _ in 0..sweeps {
+            let mut changed = false;
+            for p in 0..labels.len() {
+                let own = labels[p];
+                let mut price = self.costs[p];
+                let mut pay = |label: u8, weight: f32| add_change(&mut price, label, weight);
+                // Where there is no neighbour, the weight is zero (of p − 1 at the end of the row above, of p at the last).
+                let [to_right, to_below] = self.weights[p];
+                if p > 0 {
+                    pay(labels[p - 1], self.weights[p - 1][0]);
+                }
+                pay(labels.get(p + 1).copied().unwrap_or(own), to_right);
+                if p >= width {
+                    pay(labels[p - width], self.weights[p - width][1]);
+                }
+                pay(labels.get(p + width).copied().unwrap_or(own), to_below);
+                let best = first_lowest(&price);
+                if price[best] < price[usize::from(own) % L] {
+                    labels[p] = best as u8;
+                    changed = true;
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
     }
 }
 
@@ -259,13 +344,10 @@ fn lowest<const L: usize>(values: &[f32; L]) -> f32 {
 /// The first index of the smallest value.
 #[inline(always)]
 fn first_lowest<const L: usize>(values: &[f32; L]) -> usize {
-    let (mut best, mut value) = (0, values[0]);
-    for l in 1..L {
-        if values[l] < value {
-            (best, value) = (l, values[l]);
-        }
-    }
-    best
+    let value = lowest(values);
+    let places: [f32; L] = std::array::from_fn(|l| if values[l] == value { l as f32 } else { L as f32 });
+    // Whole numbers below L, unless nothing equals itself.
+    (lowest(&places) as usize).min(L - 1)
 }
 
 /// The new message along an edge whose old one (against the direction) was `old`, and what was taken off to make its

@@ -92,47 +92,6 @@ impl Potts<'_> {
             })
             .collect()
     }
-
-    /// Iterated conditional modes: every pixel takes the label that is cheapest given its four neighbours, until nothing
-    /// changes or for `sweeps` sweeps. Never raises the energy.
-    pub(super) fn descend(&self, labels: &mut [u8], sweeps: usize) {
-        let (width, height) = (self.width(), self.height());
-        let (horizontal, vertical) = (self.horizontal.values(), self.vertical.values());
-        for _ in 0..sweeps {
-            let mut changed = false;
-            for y in 0..height {
-                for x in 0..width {
-                    let p = y * width + x;
-                    let left = if x > 0 { Some((labels[p - 1], horizontal[p - 1])) } else { None };
-                    let right = if x + 1 < width { Some((labels[p + 1], horizontal[p])) } else { None };
-                    let up = if y > 0 { Some((labels[p - width], vertical[p - width])) } else { None };
-                    let down = if y + 1 < height { Some((labels[p + width], vertical[p])) } else { None };
-                    let neighbours = [left, right, up, down];
-                    let price = |l: u8| {
-                        let mut sum = self.cost(usize::from(l), p);
-                        for &(other, weight) in neighbours.iter().flatten() {
-                            if other != l {
-                                sum += weight;
-                            }
-                        }
-                        sum
-                    };
-                    let (mut best, mut lowest) = (labels[p], price(labels[p]));
-                    for l in 0..self.costs.len() as u8 {
-                        let value = price(l);
-                        if value < lowest {
-                            (best, lowest) = (l, value);
-                        }
-                    }
-                    changed |= best != labels[p];
-                    labels[p] = best;
-                }
-            }
-            if !changed {
-                break;
-            }
-        }
-    }
 }
 
 /// Minimises the energy: one label per pixel, row by row. `init`, where given, is where [`Solver::Expansion`] starts and

@@ -6,7 +6,7 @@
 use crate::frame::Plane;
 use crate::frame::filter::{double, gaussian, median5};
 use crate::frame::pyramid::Level;
-use crate::frame::warp::Footprint;
+use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
 
 /// Standard deviation of the window at the base level and at coarser ones, pixels.
@@ -40,15 +40,31 @@ pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Pla
     let scaled = level.scaled(dominant);
     let zero = || Plane::filled(width, height, 0.0);
     let mut out = Samples { gx: zero(), gy: zero(), residual: zero() };
+    let (mut px, mut py) = ([0.0; CHUNK], [0.0; CHUNK]);
+    let mut seen = [[0.0; CHUNK]; 3];
     for y in 0..height {
-        for x in 0..width {
-            let [du, dv] = scaled.flow(x as f64, y as f64);
-            let px = x as f32 + du as f32 + u.at(x, y);
-            let py = y as f32 + dv as f32 + v.at(x, y);
-            let at = Footprint::new(px, py, width, height);
-            out.gx.row_mut(y)[x] = 0.5 * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
-            out.gy.row_mut(y)[x] = 0.5 * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
-            out.residual.row_mut(y)[x] = at.sample(level.second.values()) - level.first.at(x, y);
+        for start in (0..width).step_by(CHUNK) {
+            let chunk = start..(start + CHUNK).min(width);
+            let n = chunk.len();
+            let (u, v) = (&u.row(y)[chunk.clone()], &v.row(y)[chunk.clone()]);
+            for k in 0..n {
+                let x = (start + k) as u32 as i32;
+                let [du, dv] = scaled.flow(f64::from(x), y as f64);
+                px[k] = x as f32 + du as f32 + u[k];
+                py[k] = y as f32 + dv as f32 + v[k];
+            }
+            let at = Footprints::new(&px, &py, width, height);
+            for (seen, plane) in seen.iter_mut().zip([&level.second_dx, &level.second_dy, &level.second]) {
+                at.sample(plane.values(), &mut seen[..n]);
+            }
+            let mean = |out: &mut Plane, first: &Plane, second: &[f32; CHUNK]| {
+                let pairs = first.row(y)[chunk.clone()].iter().zip(second);
+                out.row_mut(y)[chunk.clone()].iter_mut().zip(pairs).for_each(|(o, (a, b))| *o = 0.5 * (a + b));
+            };
+            mean(&mut out.gx, &level.first_dx, &seen[0]);
+            mean(&mut out.gy, &level.first_dy, &seen[1]);
+            let pairs = seen[2].iter().zip(&level.first.row(y)[chunk.clone()]);
+            out.residual.row_mut(y)[chunk].iter_mut().zip(pairs).for_each(|(o, (a, b))| *o = a - b);
         }
     }
     out
@@ -65,10 +81,10 @@ struct Windows {
 
 fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
-    let weight = Plane::from_fn(level.width(), level.height(), |x, y| {
-        let r = s.residual.at(x, y);
-        1.0 / (noise + r * r / 9.0 + 0.02 * level.energy.at(x, y))
-    });
+    let mut weight = s.residual.clone();
+    for (w, energy) in weight.values_mut().iter_mut().zip(level.energy.values()) {
+        *w = 1.0 / (noise + *w * *w / 9.0 + 0.02 * energy);
+    }
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();
         for ((p, a), b) in product.values_mut().iter_mut().zip(a.values()).zip(b.values()) {
@@ -113,14 +129,17 @@ pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize)
 }
 
 fn step(u: &mut Plane, v: &mut Plane, s: &Windows) {
-    for (k, (u, v)) in u.values_mut().iter_mut().zip(v.values_mut()).enumerate() {
-        let (a, c, d) = (s.xx.values()[k] + FLAT, s.xy.values()[k], s.yy.values()[k] + FLAT);
-        let (p, q) = (s.xr.values()[k], s.yr.values()[k]);
+    let n = u.values().len();
+    let (u, v) = (&mut u.values_mut()[..n], &mut v.values_mut()[..n]);
+    let [xx, xy, yy, xr, yr] = [&s.xx, &s.xy, &s.yy, &s.xr, &s.yr].map(|plane| &plane.values()[..n]);
+    for k in 0..n {
+        let (a, c, d) = (xx[k] + FLAT, xy[k], yy[k] + FLAT);
+        let (p, q) = (xr[k], yr[k]);
         let determinant = a * d - c * c;
         let (du, dv) = ((c * q - d * p) / determinant, (c * p - a * q) / determinant);
         let shorten = ((du * du + dv * dv).sqrt() / LONGEST_STEP).max(1.0);
-        *u += du / shorten;
-        *v += dv / shorten;
+        u[k] += du / shorten;
+        v[k] += dv / shorten;
     }
 }
 

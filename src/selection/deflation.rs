@@ -48,25 +48,22 @@ fn gain_of(improvement: &Plane) -> f64 {
     improvement.values().iter().map(|&d| f64::from((d - MARGIN).max(0.0))).sum()
 }
 
-fn gain(current: &Plane, cost: &Plane) -> f64 {
-    gain_of(&improvement(current, cost))
-}
-
 /// Means over blocks: enough to order proposals.
 fn blocks(plane: &Plane) -> Plane {
-    let (width, height) = (plane.width().div_ceil(BLOCK), plane.height().div_ceil(BLOCK));
-    let mut sums = Plane::filled(width, height, 0.0);
-    let mut counts = Plane::filled(width, height, 0.0);
-    for y in 0..plane.height() {
-        for (x, v) in plane.row(y).iter().enumerate() {
-            sums.row_mut(y / BLOCK)[x / BLOCK] += v;
-            counts.row_mut(y / BLOCK)[x / BLOCK] += 1.0;
+    let (width, height) = (plane.width(), plane.height());
+    let mut means = Plane::filled(width.div_ceil(BLOCK), height.div_ceil(BLOCK), 0.0);
+    for y in 0..height {
+        for (sum, values) in means.row_mut(y / BLOCK).iter_mut().zip(plane.row(y).chunks(BLOCK)) {
+            values.iter().for_each(|v| *sum += v);
         }
     }
-    for (s, c) in sums.values_mut().iter_mut().zip(counts.values()) {
-        *s /= c;
+    for y in 0..means.height() {
+        let rows = BLOCK.min(height - y * BLOCK);
+        for (x, mean) in means.row_mut(y).iter_mut().enumerate() {
+            *mean /= (rows * BLOCK.min(width - x * BLOCK)) as f32;
+        }
     }
-    sums
+    means
 }
 
 /// The gain estimated on block means.
@@ -101,8 +98,7 @@ pub(crate) fn add_motions(
             if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
-            let layer = sharpened(level, &current, proposals[k]);
-            let brings = gain(&current, &layer.cost);
+            let (brings, layer) = sharpened(level, &current, proposals[k]);
             if best.as_ref().is_none_or(|b| brings > b.0) {
                 best = Some((brings, layer));
             }
@@ -115,12 +111,13 @@ pub(crate) fn add_motions(
     }
 }
 
-/// A proposal refined on the region where it beats what is there, twice.
-fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion) -> Layer {
+/// A proposal refined on the region where it beats what is there, twice; and what it brings.
+fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion) -> (f64, Layer) {
     let mut layer = Layer::new(level, proposal);
-    let mut brings = gain(current, &layer.cost);
+    let mut improved = improvement(current, &layer.cost);
+    let mut brings = gain_of(&improved);
     for round in 0..2 {
-        let Some(region) = heaviest_region(current, &layer.cost) else { break };
+        let Some(region) = heaviest_region(&improved, current, &layer.cost) else { break };
         let support = Support::weighted(&region);
         let affine =
             Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: RIDGE, photometric: false };
@@ -131,17 +128,17 @@ fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion) -> Layer {
         }
         motion = align(level, &motion, &support, none, affine);
         let refined = Layer::new(level, motion);
-        let better = gain(current, &refined.cost);
+        let by_refined = improvement(current, &refined.cost);
+        let better = gain_of(&by_refined);
         if better > brings {
-            (layer, brings) = (refined, better);
+            (layer, improved, brings) = (refined, by_refined, better);
         }
     }
-    layer
+    (brings, layer)
 }
 
 /// The connected region in which a cost improves most on what is there, as weights 0 and 1.
-fn heaviest_region(current: &Plane, cost: &Plane) -> Option<Plane> {
-    let improved = improvement(current, cost);
+fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Plane> {
     let (width, height) = (improved.width(), improved.height());
     let mask: Vec<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
     let found = components(&mask, width, Connectivity::Eight);

@@ -45,14 +45,14 @@ fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
 /// Weights of the pixels where layer `k` is cheapest, its border taken off and softened.
 fn region_of(layers: &[Layer], k: usize) -> Option<Plane> {
     let cost = &layers[k].cost;
-    let mut region = Plane::from_fn(cost.width(), cost.height(), |x, y| {
-        let own = cost.at(x, y);
-        let wins = layers.iter().enumerate().all(|(other, layer)| {
-            let value = layer.cost.at(x, y);
-            own < value || (own == value && k <= other)
-        });
-        if wins { 1.0 } else { 0.0 }
-    });
+    let mut region = Plane::filled(cost.width(), cost.height(), 1.0);
+    for (other, layer) in layers.iter().enumerate().filter(|&(other, _)| other != k) {
+        let costs = cost.values().iter().zip(layer.cost.values());
+        for (r, (own, value)) in region.values_mut().iter_mut().zip(costs) {
+            let wins = if k < other { own <= value } else { own < value };
+            *r = if wins { *r } else { 0.0 };
+        }
+    }
     let pixels = region.values().iter().filter(|&&w| w > 0.0).count();
     if pixels < SMALLEST_REGION {
         return None;

@@ -27,7 +27,7 @@ export interface SwitchControl extends Common<'markUnknown'> {
   readonly kind: 'switch';
 }
 
-export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | NumberControl | SwitchControl;
+export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | ChoiceControl<'longestSide'> | NumberControl | SwitchControl;
 
 /** The paper's own limit on the number of motions. */
 const MOST_MOTIONS = 10;
@@ -56,6 +56,20 @@ const QUALITY: ChoiceControl<'quality'> = {
   ],
 };
 
+const LONGEST_SIDE: ChoiceControl<'longestSide'> = {
+  kind: 'select',
+  name: 'longestSide',
+  label: 'Working size',
+  help: 'Larger frames are worked on at this size, for the next that are opened; masks are saved at full size.',
+  initial: 2048,
+  choices: [
+    { value: 640, label: '640 pixels' },
+    { value: 1024, label: '1024 pixels' },
+    { value: 2048, label: '2048 pixels' },
+    { value: 4096, label: '4096 pixels' },
+  ],
+};
+
 const MARK_UNKNOWN: SwitchControl = {
   kind: 'switch',
   name: 'markUnknown',
@@ -75,11 +89,12 @@ const SEED: NumberControl = {
 };
 
 /** In the order in which they are shown. */
-export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, MARK_UNKNOWN, SEED];
+export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, MARK_UNKNOWN, LONGEST_SIDE, SEED];
 
 export const DEFAULT_SETTINGS: Settings = {
   motions: MOTIONS.initial,
   quality: QUALITY.initial,
   markUnknown: MARK_UNKNOWN.initial,
   seed: SEED.initial,
+  longestSide: LONGEST_SIDE.initial,
 };

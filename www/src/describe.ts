@@ -49,23 +49,17 @@ export function visibleParts(parts: MotionParts, reach: number): MotionParts {
   };
 }
 
-/** Mean position of the pixels of every label, `centres[label]`, pixels; the frame's centre for a label without pixels. */
-export function centresOf(segmentation: Segmentation): (readonly [number, number])[] {
-  const { labels, width, height, motions } = segmentation;
-  const count = new Float64Array(256);
-  const sumX = new Float64Array(256);
-  const sumY = new Float64Array(256);
-  let i = 0;
-  for (let y = 0; y < height; y++) {
-    for (let x = 0; x < width; x++, i++) {
-      const label = labels[i] ?? 255;
-      count[label]! += 1;
-      sumX[label]! += x;
-      sumY[label]! += y;
+/** Mean position of a label's pixels; the frame's centre for one without pixels. Looks at its bounding box alone. */
+export function centreOf({ labels, width, height, motions }: Segmentation, label: number): readonly [number, number] {
+  const [left, top, across, down] = motions[label]?.bbox ?? [0, 0, 0, 0];
+  let [count, sumX, sumY] = [0, 0, 0];
+  for (let y = top; y < top + down; y++) {
+    for (let x = left; x < left + across; x++) {
+      if (labels[y * width + x] !== label) continue;
+      count += 1;
+      sumX += x;
+      sumY += y;
     }
   }
-  return motions.map(({ label }) => {
-    const n = count[label] ?? 0;
-    return n > 0 ? [sumX[label]! / n, sumY[label]! / n] : [(width - 1) / 2, (height - 1) / 2];
-  });
+  return count > 0 ? [sumX / count, sumY / count] : [(width - 1) / 2, (height - 1) / 2];
 }

@@ -12,17 +12,19 @@ export interface LoadedFrame extends Pixels {
   readonly data: Uint8ClampedArray<ArrayBuffer>;
   readonly width: number;
   readonly height: number;
+  /** Size of the file's picture, where it was made smaller. */
+  readonly full: { readonly width: number; readonly height: number };
   /** The same pixels, ready to draw. */
   readonly bitmap: ImageBitmap;
   /** Milliseconds that decoding took. */
   readonly decoded: number;
 }
 
-/** Largest number of pixels the page decodes: the package's own limit, 4096 × 4096, is checked there with a better sentence. */
-const MOST_PIXELS = 8192 * 8192;
+/** Largest number of pixels the page decodes. */
+const MOST_PIXELS = 16384 * 8192;
 
-/** Decodes an image. Throws a {@link PageError} `unreadable-image` when it is none. */
-export async function frameFromBlob(blob: Blob, name: string): Promise<LoadedFrame> {
+/** Decodes an image, no larger than `longestSide`. Throws a {@link PageError} `unreadable-image` when it is none. */
+export async function frameFromBlob(blob: Blob, name: string, longestSide: number): Promise<LoadedFrame> {
   const began = performance.now();
   let bitmap: ImageBitmap;
   try {
@@ -30,23 +32,40 @@ export async function frameFromBlob(blob: Blob, name: string): Promise<LoadedFra
   } catch {
     throw new PageError('unreadable-image', strings.errors.unreadable(name));
   }
-  const { width, height } = bitmap;
-  if (width * height > MOST_PIXELS) {
-    bitmap.close();
-    throw new PageError('frame-size-unsupported', strings.errors.tooLarge(name, width, height));
+  return frameFromBitmap(bitmap, name, longestSide, began);
+}
+
+/** Takes the bitmap over. `began` is when work on it began. */
+export async function frameFromBitmap(given: ImageBitmap, name: string, longestSide: number, began: number): Promise<LoadedFrame> {
+  const full = { width: given.width, height: given.height };
+  if (full.width * full.height > MOST_PIXELS) {
+    given.close();
+    throw new PageError('frame-size-unsupported', strings.errors.tooLarge(name, full.width, full.height));
+  }
+  const { width, height } = smaller(full, longestSide);
+  let bitmap = given;
+  if (width !== full.width || height !== full.height) {
+    bitmap = await createImageBitmap(given, { resizeWidth: width, resizeHeight: height, resizeQuality: 'high' });
+    given.close();
   }
   const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
   if (context === null) throw new PageError('unsupported-browser', strings.errors.noCanvas);
   context.drawImage(bitmap, 0, 0);
   const { data } = context.getImageData(0, 0, width, height);
-  return { name, data, width, height, bitmap, decoded: performance.now() - began };
+  return { name, data, width, height, full, bitmap, decoded: performance.now() - began };
+}
+
+/** The size that keeps the longer side within `longest`. */
+export function smaller({ width, height }: { width: number; height: number }, longest: number): { width: number; height: number } {
+  const scale = Math.min(1, longest / Math.max(width, height));
+  return { width: Math.max(1, Math.round(width * scale)), height: Math.max(1, Math.round(height * scale)) };
 }
 
 /** Fetches an image that is part of the page. */
-export async function frameFromUrl(url: string, name: string): Promise<LoadedFrame> {
+export async function frameFromUrl(url: string, name: string, longestSide: number): Promise<LoadedFrame> {
   const response = await fetch(url).catch(() => null);
   if (response === null || !response.ok) throw new PageError('unreadable-image', strings.errors.unreachable(name));
-  return frameFromBlob(await response.blob(), name);
+  return frameFromBlob(await response.blob(), name, longestSide);
 }
 
 const naturally = new Intl.Collator('en', { numeric: true });

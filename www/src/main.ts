@@ -1,9 +1,19 @@
 //! Wires the page together: one store, one session, and the views on their markup.
 
+import { keysFor } from './keys.js';
+import { settingsFromHash } from './link.js';
+import { keepForOffline } from './offline.js';
 import { Session } from './session.js';
 import { Store } from './state.js';
+import { mountArrows } from './views/arrows.js';
+import { mountBlink } from './views/blink.js';
+import { Brush } from './views/brush.js';
+import { mountCompare } from './views/compare.js';
 import { mountDownloads } from './views/downloads.js';
 import { mountDrop } from './views/drop.js';
+import { mountEvidence } from './views/evidence.js';
+import { mountGestures } from './views/gestures.js';
+import { mountKeys } from './views/keys.js';
 import { mountLook } from './views/look.js';
 import { find } from './views/markup.js';
 import { mountMotions } from './views/motions.js';
@@ -11,9 +21,13 @@ import { mountOptions } from './views/options.js';
 import { mountOverlay } from './views/overlay.js';
 import { mountPicker } from './views/picker.js';
 import { mountProgress } from './views/progress.js';
+import { mountResidual } from './views/residual.js';
 import { mountStage } from './views/stage.js';
+import { mountTimeline } from './views/timeline.js';
 import { mountTimings } from './views/timings.js';
 import { mountToast } from './views/toast.js';
+import { mountTools } from './views/tools.js';
+import { mountZoom } from './views/zoom.js';
 
 const store = new Store();
 const session = new Session(store);
@@ -21,14 +35,32 @@ const stage = find(document, '#stage', HTMLElement);
 
 mountStage(stage, store);
 mountOverlay(stage, store);
+mountResidual(stage, store);
+mountArrows(stage, store);
+mountCompare(stage, store);
+const zoom = mountZoom(stage, store);
+const brush = new Brush(stage, store, session);
+mountGestures(find(stage, '.layers', HTMLElement), store, session, zoom, brush);
 mountLook(find(document, '#look', HTMLFormElement), store);
+mountBlink(document, store);
+mountTools(find(document, '#tools', HTMLFormElement), store, session);
 mountPicker(document, store, session);
+mountTimeline(find(document, '#timeline', HTMLElement), store, session);
 mountDrop(document.body, session);
 mountMotions(document, store, session);
+mountEvidence(find(document, '#evidence', HTMLElement), store, session);
 mountOptions(find(document, '#settings', HTMLFormElement), store, session);
 mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
-mountDownloads(document, store);
+mountDownloads(find(document, '#taking', HTMLElement), store, session);
+mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
+
+keepForOffline(store);
+
+const linked = settingsFromHash(location.hash);
+store.set({ settings: { ...store.get().settings, ...linked.settings } });
+if (linked.kind !== null) store.look({ kind: linked.kind });
+window.addEventListener('hashchange', () => session.change(settingsFromHash(location.hash).settings));
 
 void session.openSample();

@@ -1,40 +1,40 @@
 //! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. No canvas here, so that it can be tested
-//! and moved to a worker.
+//! and done piece by piece.
 
 import type { Segmentation } from 'veronese';
-import { UNKNOWN_COLOUR, colourOf, wordFromColour } from './palette.js';
-import type { Look } from './state.js';
-
-export const UNLABELLED = 255;
+import { UNLABELLED, maskTable } from './masks.js';
+import { type Colour, UNKNOWN_COLOUR, colourOf, wordFromColour } from './palette.js';
+import { type Look, keyOf } from './state.js';
 
 /** What decides how labels are painted. */
-export type Painting = Pick<Look, 'colouring' | 'hidden' | 'solo'>;
+export type Painting = Pick<Look, 'kind' | 'hidden' | 'solo' | 'colours'>;
 
-/** The number whose colour a label bears: its own, or its group's. */
-export function classOf(label: number, segmentation: Segmentation, colouring: Look['colouring']): number {
-  return colouring === 'groups' ? (segmentation.motions[label]?.group ?? label) : label;
+export function isShown(mask: number, { hidden, solo }: Pick<Look, 'hidden' | 'solo'>): boolean {
+  return solo === null ? !hidden.has(mask) : solo === mask;
 }
 
-export function isShown(label: number, { hidden, solo }: Pick<Look, 'hidden' | 'solo'>): boolean {
-  return solo === null ? !hidden.has(label) : solo === label;
+/** The colour of a mask: the one it was given, or its own of the palette. */
+export function colourOfMask(mask: number, { kind, colours }: Pick<Look, 'kind' | 'colours'>): Colour {
+  return colours[keyOf(kind, mask)] ?? (mask === UNLABELLED ? UNKNOWN_COLOUR : colourOf(mask));
 }
 
 /** The RGBA word of every label; 0, transparent, for one that is not shown. */
 function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Array {
+  const masks = maskTable(segmentation, painting.kind);
   const words = new Uint32Array(256);
-  for (const { label } of segmentation.motions) {
-    if (isShown(label, painting)) words[label] = wordFromColour(colourOf(classOf(label, segmentation, painting.colouring)));
+  for (const label of [...segmentation.motions.map((motion) => motion.label), UNLABELLED]) {
+    const mask = masks[label]!;
+    if (isShown(mask, painting)) words[label] = wordFromColour(colourOfMask(mask, painting));
   }
-  if (isShown(UNLABELLED, painting)) words[UNLABELLED] = wordFromColour(UNKNOWN_COLOUR);
   return words;
 }
 
-/** Every pixel in the colour of its label, opaque, or fully transparent. */
-export function fillOf(segmentation: Segmentation, painting: Painting): Uint32Array<ArrayBuffer> {
+/** Rows `from` to `to` of a picture in which every pixel has the colour of its label, opaque, or is fully transparent. */
+export function fillOf(segmentation: Segmentation, painting: Painting, from = 0, to = segmentation.height): Uint32Array<ArrayBuffer> {
   const words = wordsByLabel(segmentation, painting);
-  const { labels } = segmentation;
-  const pixels = new Uint32Array(labels.length);
-  for (let i = 0; i < labels.length; i++) pixels[i] = words[labels[i]!]!;
+  const { labels, width } = segmentation;
+  const pixels = new Uint32Array((to - from) * width);
+  for (let i = 0, p = from * width; i < pixels.length; i++, p++) pixels[i] = words[labels[p]!]!;
   return pixels;
 }
 
@@ -50,28 +50,39 @@ function lighter(word: number): number {
 }
 
 /**
- * The rim of every shown mask: its pixels that touch, within `thickness` pixels along a row or column, a pixel of another colour.
- * The largest motion gets none: its rim would run along all the others'.
+ * The rim of every shown mask: its pixels that touch, within `thickness` pixels along a row or column, a pixel of another mask;
+ * rows `from` to `to`. The largest mask gets none: its rim would run along all the others'.
  */
-export function outlinesOf(segmentation: Segmentation, painting: Painting, thickness: number): Uint32Array<ArrayBuffer> {
+export function outlinesOf(
+  segmentation: Segmentation,
+  painting: Painting,
+  thickness: number,
+  from = 0,
+  to = segmentation.height,
+): Uint32Array<ArrayBuffer> {
   const words = wordsByLabel(segmentation, painting);
-  const classes = Uint8Array.from({ length: 256 }, (_, label) => classOf(label, segmentation, painting.colouring));
-  const rims = words.map((word, label) => (classes[label] === 0 && painting.solo === null ? 0 : lighter(word)));
+  const masks = maskTable(segmentation, painting.kind);
+  const rims = words.map((word, label) => (masks[label] === 0 && painting.solo === null ? 0 : lighter(word)));
   const { labels, width, height } = segmentation;
-  const pixels = new Uint32Array(labels.length);
-  /** Paints from `start` on, as long as the colour stays and `limit` allows. */
+  const first = from * width;
+  const pixels = new Uint32Array((to - from) * width);
+  /** Paints from `start` on, as long as the mask stays and `limit` allows. */
   const paint = (start: number, step: number, limit: number): void => {
-    const own = classes[labels[start]!];
-    for (let k = 0, i = start; k < limit && classes[labels[i]!] === own; k++, i += step) pixels[i] = rims[labels[i]!]!;
+    const own = masks[labels[start]!];
+    for (let k = 0, i = start; k < limit && masks[labels[i]!] === own; k++, i += step) {
+      if (i >= first && i - first < pixels.length) pixels[i - first] = rims[labels[i]!]!;
+    }
   };
-  for (let y = 0, i = 0; y < height; y++) {
+  // Borders a little above and below reach into these rows.
+  const [top, bottom] = [Math.max(0, from - thickness), Math.min(height, to + thickness)];
+  for (let y = top, i = top * width; y < bottom; y++) {
     for (let x = 0; x < width; x++, i++) {
-      const own = classes[labels[i]!];
-      if (x > 0 && classes[labels[i - 1]!] !== own) {
+      const own = masks[labels[i]!];
+      if (x > 0 && masks[labels[i - 1]!] !== own) {
         paint(i, 1, Math.min(thickness, width - x));
         paint(i - 1, -1, Math.min(thickness, x));
       }
-      if (y > 0 && classes[labels[i - width]!] !== own) {
+      if (y > 0 && masks[labels[i - width]!] !== own) {
         paint(i, width, Math.min(thickness, height - y));
         paint(i - width, -width, Math.min(thickness, y));
       }

@@ -34,3 +34,13 @@ export function cssColour([r, g, b]: Colour): string {
 export function wordFromColour([r, g, b]: Colour): number {
   return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
+
+/** `#rrggbb`, as colour inputs have it. */
+export function hexColour(colour: Colour): string {
+  return `#${colour.map((channel) => channel.toString(16).padStart(2, '0')).join('')}`;
+}
+
+export function colourFromHex(hex: string): Colour {
+  const value = Number.parseInt(hex.slice(1), 16);
+  return [value >> 16, (value >> 8) & 255, value & 255];
+}

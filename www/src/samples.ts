@@ -2,13 +2,19 @@
 
 export interface Sample {
   readonly id: string;
+  readonly title: string;
   /** Paths beside the page. */
   readonly first: string;
   readonly second: string;
 }
 
-export const INTEL_TWO_CARS: Sample = {
-  id: 'intel-two-cars',
-  first: 'samples/intel-two-cars/first.png',
-  second: 'samples/intel-two-cars/second.png',
-};
+function sample(id: string, title: string): Sample {
+  return { id, title, first: `samples/${id}/first.png`, second: `samples/${id}/second.png` };
+}
+
+/** The first is shown when the page opens. */
+export const SAMPLES: readonly [Sample, ...Sample[]] = [
+  sample('intel-two-cars', 'Two cars'),
+  sample('leader-follower', 'Leader and follower'),
+  sample('parallax', 'Parallax'),
+];

@@ -1,51 +1,75 @@
-//! What the page does when it is asked to: open frames, swap them, segment, cancel. Views call these and read the state; every
-//! failure ends as a notice in the state, and the page goes on working.
+//! What the page does when it is asked to: open frames, choose them from a clip, segment, correct, cancel. Views call these and read
+//! the state; every failure ends as a notice in the state, and the page goes on working.
 
-import { filesByName, frameFromBlob, frameFromUrl } from './frames.js';
+import type { Segmentation } from 'veronese';
+import { WHOLE } from './camera.js';
+import { type Clip, looksLikeFilm, openClip } from './clips/clip.js';
+import { Correcting } from './correcting.js';
 import { codeOf, sentenceOf } from './errors.js';
-import { INTEL_TWO_CARS, type Sample } from './samples.js';
+import { filesByName, frameFromBlob, frameFromUrl } from './frames.js';
+import { openFolder } from './clips/folder.js';
+import { LiveView } from './live.js';
+import { type Sample, SAMPLES } from './samples.js';
 import { Segmenting } from './segmenting.js';
-import type { FramePair, Settings, Slot, Store } from './state.js';
+import { FRESH, type FramePair, type Result, type Settings, type Slot, type Store, UNTOUCHED } from './state.js';
 import { strings } from './strings.js';
+
+/** A film is opened at its start, with so many frames between the two. */
+const FRAMES_APART = 1;
 
 export class Session {
   readonly #store: Store;
   readonly #segmenting = new Segmenting();
+  readonly correcting: Correcting;
+  readonly #live: LiveView;
   /** Counts what the user opened, so that a slow decoding never overtakes a later one. */
   #opened = 0;
 
   constructor(store: Store) {
     this.#store = store;
+    this.correcting = new Correcting(store, this.#segmenting, (error) => this.#fail(error));
+    this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
-  openSample(sample: Sample = INTEL_TWO_CARS): Promise<void> {
+  openSample(sample: Sample = SAMPLES[0]): Promise<void> {
     return this.#open(async () => {
       const { first, second } = sample;
-      const [a, b] = await Promise.all([frameFromUrl(first, 'first.png'), frameFromUrl(second, 'second.png')]);
+      const { longestSide } = this.#store.get().settings;
+      const [a, b] = await Promise.all([
+        frameFromUrl(first, 'first.png', longestSide),
+        frameFromUrl(second, 'second.png', longestSide),
+      ]);
+      this.#close(this.#store.get().film?.clip);
       return { first: a, second: b };
     });
   }
 
   /**
-   * Opens files. Two or more make a new pair, in the order of their names; one goes into `slot`, or, where none is named, into the
-   * slot that is empty, or begins a new pair.
+   * Opens files. A video, or more than two images, is a film to choose from; two images make a new pair, in the order of their
+   * names; one goes into `slot`, or, where none is named, into the slot that is empty, or begins a new pair.
    */
   openFiles(files: Iterable<File>, slot: Slot | null = null): Promise<void> {
-    const sorted = filesByName(files);
+    const given = [...files];
+    const film = given.find(looksLikeFilm);
+    if (film !== undefined) return this.#openFilm(() => openClip(film));
+    const sorted = filesByName(given.filter((file) => file.type.startsWith('image/') || given.length <= 2));
     const [one, two] = sorted;
     if (one === undefined) {
-      this.#store.set({ notice: { sentence: strings.notices.noFiles, code: 'no-image' } });
+      this.say(strings.notices.noFiles, 'no-image');
       return Promise.resolve();
     }
+    if (sorted.length > 2) return this.#openFilm(() => openFolder(sorted));
     return this.#open(async () => {
+      const { longestSide } = this.#store.get().settings;
       if (two !== undefined) {
-        const [first, second] = await Promise.all([frameFromBlob(one, one.name), frameFromBlob(two, two.name)]);
-        if (sorted.length > 2) {
-          this.#store.set({ notice: { sentence: strings.notices.someUnused(sorted.length, one.name, two.name), code: null } });
-        }
+        const [first, second] = await Promise.all([
+          frameFromBlob(one, one.name, longestSide),
+          frameFromBlob(two, two.name, longestSide),
+        ]);
+        this.#close(this.#store.get().film?.clip);
         return { first, second };
       }
-      const frame = await frameFromBlob(one, one.name);
+      const frame = await frameFromBlob(one, one.name, longestSide);
       const { pair } = this.#store.get();
       if (slot !== null) return { ...pair, [slot]: frame };
       if (pair.first !== null && pair.second === null) return { ...pair, second: frame };
@@ -53,17 +77,57 @@ export class Session {
     });
   }
 
+  /** Chooses a frame of the film that is open; frames outside are the nearest inside. */
+  choose(slot: Slot, index: number): Promise<void> {
+    const { film, settings } = this.#store.get();
+    if (film === null) return Promise.resolve();
+    const chosen = Math.min(Math.max(Math.round(index), 0), film.clip.count - 1);
+    if (film[slot] === chosen) return Promise.resolve();
+    this.#store.set({ film: { ...film, [slot]: chosen } });
+    return this.#open(async () => {
+      const frame = await film.clip.frame(chosen, settings.longestSide);
+      return { ...this.#store.get().pair, [slot]: frame };
+    });
+  }
+
+  /** Moves both frames along the film. */
+  step(by: number): Promise<void> {
+    const { film, settings } = this.#store.get();
+    if (film === null) return Promise.resolve();
+    const { clip } = film;
+    const most = clip.count - 1;
+    const shift = Math.min(Math.max(by, -Math.min(film.first, film.second)), most - Math.max(film.first, film.second));
+    if (shift === 0) return Promise.resolve();
+    const [first, second] = [film.first + shift, film.second + shift];
+    this.#store.set({ film: { clip, first, second } });
+    return this.#open(async () => ({
+      first: await clip.frame(first, settings.longestSide),
+      second: await clip.frame(second, settings.longestSide),
+    }));
+  }
+
+  /** Switches the camera on or off. */
+  async toggleLive(): Promise<void> {
+    if (this.#store.get().live !== null) return this.#live.stop();
+    this.#opened += 1;
+    this.#segmenting.cancel();
+    this.#close(this.#store.get().film?.clip);
+    this.#store.set({ run: { phase: 'opening' }, notice: null });
+    await this.#live.start();
+  }
+
   /** The first frame becomes the second. */
   swap(): void {
-    const { first, second } = this.#store.get().pair;
+    const { pair, film } = this.#store.get();
     this.#opened += 1;
-    this.#take({ first: second, second: first });
+    if (film !== null) this.#store.set({ film: { ...film, first: film.second, second: film.first } });
+    this.#take({ first: pair.second, second: pair.first });
   }
 
   /** Takes other settings and, where there is a pair, segments it again. */
   change(settings: Partial<Settings>): void {
     this.#store.set({ settings: { ...this.#store.get().settings, ...settings } });
-    void this.segment();
+    if (this.#store.get().live === null) void this.segment();
   }
 
   /** Segments the pair with the settings, or says what is missing. */
@@ -78,21 +142,37 @@ export class Session {
     this.#store.set({ run: { phase: 'working', stage: '', index: 0, of: 0 } });
     const began = performance.now();
     try {
+      // Of a new pair something is seen soon: what fast work finds, until better work is done.
+      if (settings.quality === 'best' && this.#store.get().result === null) {
+        const preview = await this.#segmenting.run({ first, second }, { ...settings, quality: 'fast' });
+        if (preview === null) return;
+        this.#show(preview, { first, second }, began);
+      }
       const segmentation = await this.#segmenting.run({ first, second }, settings, ({ stage, index, of }) =>
         this.#store.set({ run: { phase: 'working', stage, index, of } }),
       );
       if (segmentation === null) return;
-      const { result, look } = this.#store.get();
-      // A different number of motions has different labels: what was chosen by label no longer means anything.
-      const sameLabels = result?.segmentation.count === segmentation.count && result.pair.first === first;
-      this.#store.set({
-        run: { phase: 'done' },
-        result: { segmentation, pair: { first, second }, waited: performance.now() - began },
-        look: sameLabels ? look : { ...look, hidden: new Set(), solo: null, still: null },
-      });
+      this.#store.set({ run: { phase: 'done' } });
+      this.#show(segmentation, { first, second }, began);
     } catch (error) {
       this.#fail(error);
     }
+  }
+
+  #show(segmentation: Segmentation, pair: Result['pair'], began: number): void {
+    const { result, look } = this.#store.get();
+    // A different number of motions has different labels: what was chosen by label no longer means anything.
+    const sameLabels = result?.segmentation.count === segmentation.count && result.pair.first === pair.first;
+    this.#store.set({
+      result: { segmentation, pair, waited: performance.now() - began },
+      history: { ...UNTOUCHED, found: segmentation },
+      look: sameLabels ? look : { ...look, ...FRESH },
+    });
+  }
+
+  /** Chooses the mask that is worked on. */
+  select(mask: number | null): void {
+    this.#store.look({ selected: mask });
   }
 
   /** Stops at once; an older result stays. */
@@ -109,13 +189,42 @@ export class Session {
     this.#store.set({ notice: { sentence, code } });
   }
 
-  async #open(load: () => Promise<FramePair>): Promise<void> {
+  #openFilm(load: () => Promise<Clip>): Promise<void> {
+    return this.#open(async (current) => {
+      const clip = await load();
+      if (!current()) {
+        clip.close();
+        return this.#store.get().pair;
+      }
+      try {
+        const second = Math.min(FRAMES_APART, clip.count - 1);
+        const { longestSide } = this.#store.get().settings;
+        const frames = { first: await clip.frame(0, longestSide), second: await clip.frame(second, longestSide) };
+        if (!current()) throw new Error('overtaken');
+        this.#close(this.#store.get().film?.clip);
+        this.#store.set({ film: { clip, first: 0, second } });
+        return frames;
+      } catch (error) {
+        clip.close();
+        throw error;
+      }
+    });
+  }
+
+  #close(clip: Clip | undefined): void {
+    if (clip === undefined) return;
+    clip.close();
+    this.#store.set({ film: null });
+  }
+
+  async #open(load: (current: () => boolean) => Promise<FramePair>): Promise<void> {
     const turn = ++this.#opened;
     const before = this.#store.get().run;
     this.#segmenting.cancel();
+    this.#live.stop();
     this.#store.set({ run: { phase: 'opening' }, notice: null });
     try {
-      const pair = await load();
+      const pair = await load(() => turn === this.#opened);
       if (turn === this.#opened) this.#take(pair);
     } catch (error) {
       if (turn !== this.#opened) return;
@@ -130,9 +239,17 @@ export class Session {
   }
 
   #take(pair: FramePair): void {
-    const { look, pair: before } = this.#store.get();
+    const { look, pair: before, camera } = this.#store.get();
     const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
-    this.#store.set({ pair, result: null, look: { ...look, frame: only, hidden: new Set(), solo: null, still: null } });
+    const view = pair.first !== null && pair.second !== null && look.view === 'split' ? 'split' : only;
+    const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
+    this.#store.set({
+      pair,
+      result: null,
+      history: UNTOUCHED,
+      look: { ...look, ...FRESH, view },
+      camera: sameSize ? camera : WHOLE,
+    });
     // Nobody draws the old frames any more: give their memory back now, not at the next collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     void this.segment();

@@ -1,8 +1,13 @@
 //! The page's state: one plain object, replaced as a whole and never changed in place. Views render it; nothing else remembers anything.
 
 import type { Segmentation, SegmentOptions } from 'veronese';
-import type { LoadedFrame } from './frames.js';
+import { type Camera, WHOLE } from './camera.js';
+import type { Clip } from './clips/clip.js';
 import { DEFAULT_SETTINGS } from './controls.js';
+import type { LoadedFrame } from './frames.js';
+import type { Kind } from './masks.js';
+import type { Colour } from './palette.js';
+import type { Stroke } from './strokes.js';
 
 /** The two frames; a missing one is still being asked for. */
 export interface FramePair {
@@ -13,11 +18,14 @@ export interface FramePair {
 export type Slot = keyof FramePair;
 
 /** What the settings form holds: the options of the package that the page offers. */
-export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'markUnknown' | 'seed'>>>;
+export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'markUnknown' | 'seed'>>> & {
+  /** Frames with a longer side are made smaller before anything else, pixels; masks are taken away at the size of the file. */
+  readonly longestSide: number;
+};
 
 /** What the work is doing. `index` counts stages from 0; `of` is 0 while the number of stages is not known. */
 export type Run =
-  | { readonly phase: 'idle' | 'opening' | 'done' | 'cancelled' | 'failed' }
+  | { readonly phase: 'idle' | 'opening' | 'done' | 'cancelled' | 'failed' | 'live' }
   | { readonly phase: 'working'; readonly stage: string; readonly index: number; readonly of: number };
 
 /** A segmentation together with the frames it was made from, so that late views never mix two requests. */
@@ -28,17 +36,68 @@ export interface Result {
   readonly waited: number;
 }
 
-/** How the result is looked at. Labels refer to the current result. */
+/** What a person did to the result: strokes, and motions merged or taken apart (`segmentation.motions[k].group`). */
+export interface Edit {
+  readonly segmentation: Segmentation;
+  readonly strokes: readonly Stroke[];
+}
+
+export interface History {
+  /** As it was found, before anybody touched it. */
+  readonly found: Segmentation | null;
+  readonly strokes: readonly Stroke[];
+  readonly past: readonly Edit[];
+  readonly future: readonly Edit[];
+}
+
+/** How the result is looked at. Numbers of masks refer to the current result and kind. */
 export interface Look {
-  readonly frame: Slot;
-  readonly colouring: 'motions' | 'groups';
+  readonly view: Slot | 'split';
+  /** Where the two frames meet in the split view, 0…1 of the view. */
+  readonly divide: number;
+  /** Both frames in turn. */
+  readonly blinking: boolean;
+  readonly kind: Kind;
   /** Opacity of the masks, 0…1. */
   readonly opacity: number;
   readonly outlines: boolean;
+  readonly arrows: boolean;
+  readonly residual: boolean;
   readonly hidden: ReadonlySet<number>;
   readonly solo: number | null;
-  /** The second frame is drawn warped by this motion, so that its pixels stand still. */
+  /** The mask that is worked on, and that the brush paints. */
+  readonly selected: number | null;
+  /** The second frame is drawn warped by this mask's motion, so that its pixels stand still. */
   readonly still: number | null;
+  /** Names and colours that were given, by {@link keyOf}. */
+  readonly names: Readonly<Record<string, string>>;
+  readonly colours: Readonly<Record<string, Colour>>;
+}
+
+/** Names and colours belong to a mask of one kind. */
+export function keyOf(kind: Kind, id: number): string {
+  return `${kind}-${id}`;
+}
+
+export type ToolName = 'look' | 'brush' | 'eraser';
+
+export interface Tool {
+  readonly name: ToolName;
+  /** Of the brush, pixels of the frame. */
+  readonly radius: number;
+}
+
+/** A clip that is open, and the frames chosen from it. */
+export interface Film {
+  readonly clip: Clip;
+  readonly first: number;
+  readonly second: number;
+}
+
+/** The camera is on. */
+export interface Live {
+  /** Segmentations per second, lately. */
+  readonly rate: number;
 }
 
 /** Something went wrong (`code` set) or needs saying. */
@@ -49,19 +108,34 @@ export interface Notice {
 
 export interface State {
   readonly pair: FramePair;
+  readonly film: Film | null;
+  readonly live: Live | null;
   readonly settings: Settings;
   readonly run: Run;
   readonly result: Result | null;
+  readonly history: History;
   readonly look: Look;
+  readonly camera: Camera;
+  readonly tool: Tool;
   readonly notice: Notice | null;
 }
 
+/** What of a look belongs to one result. */
+export const FRESH = { hidden: new Set<number>(), solo: null, still: null, selected: null, blinking: false, names: {}, colours: {} } as const;
+
+export const UNTOUCHED: History = { found: null, strokes: [], past: [], future: [] };
+
 export const INITIAL: State = {
   pair: { first: null, second: null },
+  film: null,
+  live: null,
   settings: DEFAULT_SETTINGS,
   run: { phase: 'idle' },
   result: null,
-  look: { frame: 'first', colouring: 'motions', opacity: 0.5, outlines: true, hidden: new Set(), solo: null, still: null },
+  history: UNTOUCHED,
+  look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.5, outlines: true, arrows: false, residual: false, ...FRESH },
+  camera: WHOLE,
+  tool: { name: 'look', radius: 8 },
   notice: null,
 };
 

@@ -1,7 +1,8 @@
 //! Every sentence that the code says, in one place. What never changes stands in `index.html`.
 
 import type { MotionParts } from './describe.js';
-import type { Slot } from './state.js';
+import type { Kind } from './masks.js';
+import type { Slot, ToolName } from './state.js';
 
 const decimals = (digits: number): Intl.NumberFormat => new Intl.NumberFormat('en', { maximumFractionDigits: digits });
 const tenths = decimals(1);
@@ -47,29 +48,58 @@ function motion(parts: MotionParts): string {
   return said.length > 0 ? said.join('; ') : 'stands still';
 }
 
+const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
+const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
+const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
+
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' } satisfies Record<Slot, string>,
-  size: (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`,
-  percent: (share: number): string => `${tenths.format(share * 100)}${NBSP}%`,
+  split: 'First | second',
+  camera: 'Camera',
+  cameraFrame: 'camera',
+  openCamera: 'Camera',
+  closeCamera: 'Stop camera',
+  size,
+  percent,
   milliseconds: (ms: number): string => `${ms < 10 ? tenths.format(ms) : whole.format(ms)} ms`,
   stage,
+  zoomValue: (value: string): string => `Size ${value}: show at 100 %`,
+  magnified: (times: number): string => `arrows ×${times}`,
 
   empty: 'none yet',
+  frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
   heldStill: (name: string): string => `, ${name} held still`,
 
+  film: (name: string, count: number, width: number, height: number): string => `${name}, ${whole.format(count)} frames, ${size(width, height)}`,
+  frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
+
   motion,
-  motionName: (label: number): string => `Motion ${label}`,
-  largest: 'largest',
-  group: (group: number): string => `group ${group}`,
+  maskName: (kind: Kind, id: number): string => `${kind === 'groups' ? 'Group' : 'Motion'} ${id}`,
+  noMasksYet: 'They are listed here as soon as they are found.',
+  liveMasks: (count: number): string => `${motions(count)} at the moment. They are listed when the camera stops.`,
   residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
+  severalMotions: (count: number): string => `${count} motions that continue each other`,
+  groupWith: (labels: readonly number[]): string => `one surface with ${labels.map((label) => `Motion ${label}`).join(', ')}`,
   unknownName: 'Cannot tell',
   unknownWords: 'no motion explains these pixels',
   entry: (value: number): string => (Math.abs(value) < 1 ? value.toFixed(6) : value.toFixed(3)),
   show: (name: string): string => `Show ${name}`,
+  colourOf: (name: string): string => `Colour of ${name}`,
+  nameOf: (name: string): string => `Name of ${name}`,
   soloOf: (name: string): string => `Solo: show only ${name}`,
-  stillOf: (name: string): string => `Hold still: show the second frame with ${name} held still`,
-  copyOf: (name: string): string => `Copy matrix of ${name}`,
-  copied: (name: string): string => `The matrix of ${name} is on the clipboard.`,
+  stillOf: (name: string): string => `Hold still: both frames in turn with ${name} held still`,
+  mergeOf: (name: string): string => `Merge ${name} with another`,
+  copied: (what: string, name: string): string => `The motion of ${name} is on the clipboard as ${what}.`,
+  copiedText: (what: string): string => `The ${what} is on the clipboard.`,
+
+  insistOn: (count: number, above: number): string => `${count} ${count === 1 ? 'motion' : 'motions'}: insist on it, score ${whole.format(above)} above the best`,
+  scoreAbove: (above: number): string => (above === 0 ? 'best score' : `${whole.format(above)} above the best`),
+
+  toolHelp: {
+    look: '',
+    brush: 'Paint what belongs to the chosen mask; the rest follows.',
+    eraser: 'Paint what does not belong to the chosen mask.',
+  } satisfies Record<ToolName, string>,
 
   timings: {
     decode: (name: string): string => `Decoding ${name}`,
@@ -78,28 +108,62 @@ export const strings = {
   },
 
   status: {
-    idle: 'Open two frames to begin.',
+    idle: 'Open two frames or a video to begin.',
     opening: 'Opening…',
     waiting: (slot: Slot): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
     working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
-    done: (count: number, waited: number): string =>
-      `${count === 1 ? 'One motion' : `${count} motions`} found in ${whole.format(waited)} ms.`,
+    done: (count: number, waited: number): string => `${motions(count)} found in ${whole.format(waited)} ms.`,
+    corrected: (waited: number): string => `Solved again under your strokes in ${whole.format(waited)} ms.`,
+    live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} per second, ${motions(count).toLowerCase()}.`,
     cancelled: 'Cancelled.',
     failed: 'Nothing was segmented.',
   },
 
   notices: {
-    someUnused: (count: number, first: string, second: string): string =>
-      `${count} files were given; the first two by name are used: ${first} and ${second}.`,
-    noFiles: 'There was no image in what you gave.',
+    noFiles: 'There was no image or video in what you gave.',
+    chooseMask: 'Choose a mask in the list first: the brush paints it.',
   },
 
   errors: {
     unreadable: (name: string): string => `“${name}” is not an image that this browser can read.`,
     unreachable: (name: string): string => `“${name}” could not be loaded.`,
     tooLarge: (name: string, width: number, height: number): string => `“${name}” is too large: ${width} × ${height} pixels.`,
+    unreadableVideo: (name: string): string => `“${name}” is not a video that this browser can read.`,
+    slowVideo: 'The video does not answer.',
+    inexactFrame: (name: string, index: number): string => `Frame ${index} of “${name}” cannot be read exactly.`,
+    noCamera: 'There is no camera, or the page may not use it.',
     noCanvas: 'This browser gives no canvas to read pixels from.',
     noClipboard: 'The browser did not let the page write to the clipboard.',
+    notWritten: (what: string): string => `${what} could not be made.`,
     wholeNumber: (name: string, min: number, max: number): string => `${name} must be a whole number from ${min} to ${max}.`,
+  },
+
+  keys: {
+    look: {
+      peek: 'The other frame, while held',
+      blink: 'Both frames in turn',
+      split: 'Both frames side by side, with a line to move',
+      kind: 'Groups or single motions',
+      outlines: 'Outlines',
+      arrows: 'Arrows of the flow',
+      residual: 'What the motions leave unexplained',
+      zoomIn: 'Larger',
+      zoomOut: 'Smaller',
+      whole: 'The whole picture',
+      actual: 'At 100 %: one pixel of the frame on one of the screen',
+      pan: 'Move the enlarged picture',
+      stepBack: 'Film: both frames one back',
+      stepOn: 'Film: both frames one on',
+      look: 'Look',
+      brush: 'Brush: this mask',
+      eraser: 'Eraser: not this mask',
+      stroke: 'With the picture in focus: begin or end a stroke; arrow keys move the brush',
+      thinner: 'Smaller brush',
+      thicker: 'Larger brush',
+      undo: 'Undo',
+      redo: 'Redo',
+      cancel: 'Cancel what is under way',
+      keys: 'This list',
+    },
   },
 } as const;

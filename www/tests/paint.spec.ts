@@ -3,11 +3,12 @@
 import { expect, test } from '@playwright/test';
 import type { Segmentation } from 'veronese';
 
-import { type Painting, classOf, fillOf, outlinesOf } from '../src/paint.js';
+import { maskOf } from '../src/masks.js';
+import { type Painting, fillOf, outlinesOf } from '../src/paint.js';
 
 const WIDTH = 23;
 const HEIGHT = 17;
-const EVERYTHING: Painting = { colouring: 'motions', hidden: new Set(), solo: null };
+const EVERYTHING: Painting = { kind: 'motions', hidden: new Set(), solo: null, colours: {} };
 
 /** Blobs of labels 0 to 3 and a few pixels without a label; motions 1 and 2 are one group. */
 function blobs(): Segmentation {
@@ -39,19 +40,19 @@ test('a label that is hidden is transparent, the others are opaque', () => {
 
 test('motions of one group have one colour', () => {
   const scene = blobs();
-  const fill = fillOf(scene, { ...EVERYTHING, colouring: 'groups' });
+  const fill = fillOf(scene, { ...EVERYTHING, kind: 'groups' });
   const coloursOf = (label: number): Set<number> => new Set(fill.filter((_, i) => scene.labels[i] === label));
   expect(coloursOf(1)).toEqual(coloursOf(2));
   expect(coloursOf(3)).not.toEqual(coloursOf(2));
 });
 
-for (const colouring of ['motions', 'groups'] as const) {
+for (const kind of ['motions', 'groups'] as const) {
   for (const thickness of [1, 2, 5]) {
-    test(`outlines of ${colouring}, ${thickness} thick, run where another colour is that near`, () => {
+    test(`outlines of ${kind}, ${thickness} thick, run where another colour is that near`, () => {
       const scene = blobs();
       const { labels } = scene;
-      const outlines = outlinesOf(scene, { ...EVERYTHING, colouring }, thickness);
-      const classAt = (x: number, y: number): number => classOf(labels[y * WIDTH + x]!, scene, colouring);
+      const outlines = outlinesOf(scene, { ...EVERYTHING, kind }, thickness);
+      const classAt = (x: number, y: number): number => maskOf(labels[y * WIDTH + x]!, scene, kind);
       for (let y = 0; y < HEIGHT; y++) {
         for (let x = 0; x < WIDTH; x++) {
           const own = classAt(x, y);
@@ -66,3 +67,21 @@ for (const colouring of ['motions', 'groups'] as const) {
     });
   }
 }
+
+test('rows painted one by one are the whole picture', () => {
+  const scene = blobs();
+  for (const whole of [fillOf(scene, EVERYTHING), outlinesOf(scene, EVERYTHING, 2)]) {
+    const pieces = whole.length === 0 ? [] : Array.from({ length: HEIGHT }, (_, y) => y);
+    const paint = whole.every((word) => word >>> 24 === 255)
+      ? (y: number) => fillOf(scene, EVERYTHING, y, y + 1)
+      : (y: number) => outlinesOf(scene, EVERYTHING, 2, y, y + 1);
+    expect(pieces.flatMap((y) => [...paint(y)])).toEqual([...whole]);
+  }
+});
+
+test('a colour that was given replaces the own', () => {
+  const scene = blobs();
+  const fill = fillOf(scene, { ...EVERYTHING, colours: { 'motions-2': [1, 2, 3], 'groups-1': [9, 9, 9] } });
+  expect(new Set(fill.filter((_, i) => scene.labels[i] === 2))).toEqual(new Set([0xff03_0201]));
+  expect(fill.includes(0xff09_0909)).toBe(false);
+});

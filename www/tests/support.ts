@@ -44,10 +44,11 @@ export const test = base.extend<{ page: Page }>({
   },
 });
 
-/** Opens the page and waits for the bundled pair's masks. */
-export async function open(page: Page): Promise<void> {
+/** Opens the page and waits for the bundled pair's masks, one for each motion unless told otherwise. */
+export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): Promise<void> {
   await page.goto('./');
   await done(page);
+  await page.locator(`#look [name=colouring][value=${kind}]`).check();
 }
 
 /** Waits until the last request is answered. */
@@ -114,7 +115,7 @@ export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixe
   return { width, height, data: new Uint8Array(Buffer.from(base64, 'base64')) };
 }
 
-/** The label of every pixel, read back from the colours of the masks; -1 where nothing is painted. */
+/** The number of every pixel's mask, read back from the colours of the masks; -1 where nothing is painted. */
 export async function labelsOnCanvas(page: Page): Promise<Int16Array> {
   const { data } = await pixelsOf(page, '#fill');
   const labelByColour = new Map(PALETTE.map((colour, label) => [colour.join(), label]));

@@ -52,7 +52,7 @@ test('one frame of the pair is replaced', async ({ page }) => {
 
 /** Presses Tab until the element has the focus. */
 async function tabTo(page: Page, selector: string): Promise<void> {
-  for (let i = 0; i < 60; i++) {
+  for (let i = 0; i < 150; i++) {
     await page.keyboard.press('Tab');
     if (await page.locator(selector).first().evaluate((element) => element === document.activeElement)) return;
   }
@@ -70,13 +70,15 @@ test('works by keyboard alone', async ({ page }) => {
 
   await tabTo(page, '#look [name=frame]');
   await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowRight');
   await expect(page.locator('#caption')).toHaveText('Second frame');
+  await page.keyboard.press('ArrowLeft');
   await page.keyboard.press('ArrowLeft');
   await tabTo(page, '#look [name=opacity]');
   await page.keyboard.press('End');
   await expect(page.locator('#opacity-value')).toHaveText('100 %');
 
-  await tabTo(page, '#motions input');
+  await tabTo(page, '#motions [type=checkbox]');
   await page.keyboard.press('Space');
   expect(differences(await labelsOnCanvas(page), all)).toBeGreaterThan(0);
   await page.keyboard.press('Space');

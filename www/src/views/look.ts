@@ -1,33 +1,45 @@
-//! The row of controls under the picture: which frame, which colours, how strong.
+//! The row of controls under the picture: which frame, which masks, how strong, and what else is drawn.
 
-import type { Store } from '../state.js';
+import type { Kind } from '../masks.js';
+import type { Look, Store } from '../state.js';
 import { strings } from '../strings.js';
 import { find } from './markup.js';
 
+const VIEWS = ['first', 'split', 'second'] as const;
+const SWITCHES = ['outlines', 'arrows', 'residual'] as const;
+
 export function mountLook(form: HTMLFormElement, store: Store): void {
   const radio = (name: string, value: string): HTMLInputElement => find(form, `[name=${name}][value=${value}]`, HTMLInputElement);
-  const frames = { first: radio('frame', 'first'), second: radio('frame', 'second') };
-  const colourings = { motions: radio('colouring', 'motions'), groups: radio('colouring', 'groups') };
+  const views = VIEWS.map((view) => radio('frame', view));
+  const kinds = { motions: radio('colouring', 'motions'), groups: radio('colouring', 'groups') };
   const opacity = find(form, '[name=opacity]', HTMLInputElement);
   const opacityValue = find(form, '#opacity-value', HTMLOutputElement);
-  const outlines = find(form, '[name=outlines]', HTMLInputElement);
+  const switches = SWITCHES.map((name) => find(form, `[name=${name}]`, HTMLInputElement));
 
   form.addEventListener('submit', (event) => event.preventDefault());
-  form.addEventListener('input', (event) => {
-    if (event.target === opacity) store.look({ opacity: opacity.valueAsNumber / 100 });
-    else if (event.target === outlines) store.look({ outlines: outlines.checked });
-    else {
-      store.look({
-        frame: frames.second.checked ? 'second' : 'first',
-        colouring: colourings.groups.checked ? 'groups' : 'motions',
-      });
+  opacity.addEventListener('input', () => store.look({ opacity: opacity.valueAsNumber / 100 }));
+  for (const view of views) {
+    view.addEventListener('change', () => store.look({ view: view.value as Look['view'], blinking: false }));
+  }
+  for (const kind of Object.values(kinds)) kind.addEventListener('change', () => showKind(store, kind.value as Kind));
+  for (const input of switches) input.addEventListener('change', () => store.look({ [input.name]: input.checked }));
+
+  store.subscribe(({ look, pair }, before) => {
+    if (look === before.look && pair === before.pair) return;
+    const both = pair.first !== null && pair.second !== null;
+    for (const view of views) {
+      view.checked = view.value === look.view;
+      view.disabled = view.value === 'split' ? !both : pair[view.value as 'first' | 'second'] === null;
     }
-  });
-  store.subscribe(({ look, pair }) => {
-    frames[look.frame].checked = true;
-    frames.first.disabled = pair.first === null;
-    frames.second.disabled = pair.second === null;
-    colourings[look.colouring].checked = true;
+    kinds[look.kind].checked = true;
+    switches.forEach((input) => (input.checked = look[input.name as (typeof SWITCHES)[number]]));
+    opacity.value = String(Math.round(look.opacity * 100));
     opacityValue.textContent = strings.percent(look.opacity);
   });
+}
+
+/** Numbers of masks mean something else then: what was chosen by them is forgotten. */
+export function showKind(store: Store, kind: Kind): void {
+  if (store.get().look.kind === kind) return;
+  store.look({ kind, hidden: new Set(), solo: null, still: null, selected: null });
 }

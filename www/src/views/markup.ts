@@ -1,4 +1,4 @@
-//! Finding the static markup. A missing element is a mistake of ours and said at once, by its selector.
+//! Finding the static markup and making the rest. A missing element is a mistake of ours and said at once, by its selector.
 
 type Kind<E extends Element> = abstract new (...args: never) => E;
 
@@ -7,6 +7,23 @@ export function find<E extends Element>(root: ParentNode, selector: string, kind
   const element = root.querySelector(selector);
   if (!(element instanceof kind)) throw new Error(`index.html has no ${kind.name} ${selector}`);
   return element;
+}
+
+/** A new element with text in it. */
+export function element<T extends keyof HTMLElementTagNameMap>(tag: T, text = '', className = ''): HTMLElementTagNameMap[T] {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  if (className !== '') made.className = className;
+  return made;
+}
+
+const SVG = 'http://www.w3.org/2000/svg';
+
+/** A new SVG element with attributes. */
+export function drawn<T extends keyof SVGElementTagNameMap>(tag: T, attributes: Readonly<Record<string, string | number>>): SVGElementTagNameMap[T] {
+  const made = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
+  return made;
 }
 
 /** The 2-D context of a canvas. */
@@ -18,5 +35,15 @@ export function contextOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
 
 /** Whether the element takes typed text, so that single keys are not commands. */
 export function takesText(target: EventTarget | null): boolean {
-  return target instanceof HTMLElement && target.matches('input:not([type=radio], [type=checkbox], [type=range], [type=file]), select, textarea');
+  return target instanceof HTMLElement && target.matches('input:not([type=radio], [type=checkbox], [type=range], [type=file], [type=color]), select, textarea');
+}
+
+/** Whether arrow keys mean something to the element itself. */
+export function takesArrows(target: EventTarget | null): boolean {
+  return takesText(target) || (target instanceof HTMLElement && target.matches('input[type=radio], input[type=range], summary, [role=slider]'));
+}
+
+/** Whether the user asked for less motion. */
+export function prefersStillness(): boolean {
+  return matchMedia('(prefers-reduced-motion: reduce)').matches;
 }

@@ -1,17 +1,22 @@
-//! The list of motions: each in words and numbers, with its colour, its share, and ways to look at it alone.
+//! The list of masks: each in words and numbers, with its colour, name and share, ways to look at it alone, and its motion to copy.
 
-import { centresOf, partsOf, visibleParts } from '../describe.js';
-import { UNLABELLED, classOf, isShown } from '../paint.js';
-import { UNKNOWN_COLOUR, colourOf, cssColour } from '../palette.js';
+import { isMerged } from '../correcting.js';
+import { centreOf, partsOf, visibleParts } from '../describe.js';
+import { type Mask, UNLABELLED, masksOf } from '../masks.js';
+import { NOTATIONS } from '../matrices.js';
+import { nameOf } from '../naming.js';
+import { colourOfMask, isShown } from '../paint.js';
+import { colourFromHex, cssColour, hexColour } from '../palette.js';
 import type { Session } from '../session.js';
-import type { Look, Result, State, Store } from '../state.js';
+import { type Look, type Result, type State, type Store, keyOf } from '../state.js';
 import { strings } from '../strings.js';
-import { find } from './markup.js';
+import { copyText } from './clipboard.js';
+import { element, find } from './markup.js';
 
-type Motion = Result['segmentation']['motions'][number];
+type Segmentation = Result['segmentation'];
 
 /** Brings one row up to date with the state. */
-type Refresh = (state: State) => void;
+type Refresh = (look: Look) => void;
 
 export function mountMotions(root: ParentNode, store: Store, session: Session): void {
   const list = find(root, '#motions', HTMLOListElement);
@@ -20,92 +25,143 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
   let rows: Refresh[] = [];
 
   store.subscribe((now, before) => {
-    if (now.result !== before.result) {
-      empty.hidden = now.result !== null;
+    const { result, look, live } = now;
+    const renamed = look.names !== before.look.names;
+    const other = result !== before.result || look.kind !== before.look.kind || live !== before.live;
+    if (other) {
+      empty.hidden = result !== null && live === null;
+      empty.textContent = live === null ? strings.noMasksYet : strings.liveMasks(result?.segmentation.count ?? 0);
       list.replaceChildren();
-      rows = now.result === null ? [] : fillList(list, template, now.result, store, session);
+      rows = result === null || live !== null ? [] : fillList(list, template, now, result.segmentation, store, session);
     }
-    if (now.result !== before.result || now.look !== before.look) for (const refresh of rows) refresh(now);
+    if (other || look !== before.look) for (const refresh of rows) refresh(look);
+    if (renamed && !other) for (const option of list.querySelectorAll('option[data-mask]')) nameOption(option, look);
   });
 }
 
-function fillList(list: HTMLElement, template: HTMLTemplateElement, { segmentation }: Result, store: Store, session: Session): Refresh[] {
-  const centres = centresOf(segmentation);
-  const total = segmentation.width * segmentation.height;
-  const refreshers = segmentation.motions.map((motion, i) => {
-    const row = newRow(template, strings.motionName(motion.label), motion.share);
-    const [, , width, height] = motion.bbox;
-    const parts = visibleParts(partsOf(motion.matrix, centres[i] ?? [0, 0]), Math.hypot(width, height) / 2);
-    find(row, '.motion-note', HTMLElement).textContent = motion.label === 0 ? strings.largest : '';
-    find(row, '.motion-words', HTMLElement).textContent = strings.motion(parts);
-    find(row, '.motion-facts', HTMLElement).textContent = `${strings.residual(motion.residual)} · ${strings.group(motion.group)}`;
-    fillMatrix(row, motion, session);
+function fillList(list: HTMLElement, template: HTMLTemplateElement, { look }: State, segmentation: Segmentation, store: Store, session: Session): Refresh[] {
+  const masks = masksOf(segmentation, look.kind);
+  return masks.map((mask) => {
+    const row = find(document.importNode(template.content, true), 'li', HTMLElement);
+    row.style.setProperty('--share', String(mask.share));
+    row.dataset.mask = String(mask.id);
+    find(row, '.motion-share', HTMLElement).textContent = strings.percent(mask.share);
+    const [main] = mask.motions;
+    if (main === undefined) {
+      find(row, '.motion-words', HTMLElement).textContent = strings.unknownWords;
+      for (const selector of ['.motion-facts', '[data-action=still]', '.more']) find(row, selector, HTMLElement).remove();
+    } else {
+      const [, , width, height] = main.bbox;
+      const parts = visibleParts(partsOf(main.matrix, centreOf(segmentation, main.label)), Math.hypot(width, height) / 2);
+      find(row, '.motion-words', HTMLElement).textContent = strings.motion(parts);
+      find(row, '.motion-facts', HTMLElement).textContent = factsOf(mask, look, segmentation);
+      fillMore(row, mask, masks, store, session);
+    }
     list.append(row);
-    return wire(row, motion.label, store, (look) => colourOf(classOf(motion.label, segmentation, look.colouring)));
+    return wire(row, mask, store, session);
   });
-  if (segmentation.unlabelled > 0) {
-    const row = newRow(template, strings.unknownName, segmentation.unlabelled / total);
-    find(row, '.motion-words', HTMLElement).textContent = strings.unknownWords;
-    for (const selector of ['.motion-facts', '[data-action=still]', '.matrix']) find(row, selector, HTMLElement).remove();
-    list.append(row);
-    refreshers.push(wire(row, UNLABELLED, store, () => UNKNOWN_COLOUR));
-  }
-  return refreshers;
 }
 
-function newRow(template: HTMLTemplateElement, name: string, share: number): HTMLElement {
-  const row = find(document.importNode(template.content, true), 'li', HTMLElement);
-  find(row, '.motion-name', HTMLElement).textContent = name;
-  find(row, '.motion-share', HTMLElement).textContent = strings.percent(share);
-  find(row, 'input', HTMLElement).setAttribute('aria-label', strings.show(name));
-  find(row, '[data-action=solo]', HTMLElement).setAttribute('aria-label', strings.soloOf(name));
-  find(row, '[data-action=still]', HTMLElement).setAttribute('aria-label', strings.stillOf(name));
-  row.style.setProperty('--share', String(share));
-  return row;
+function factsOf({ id, motions }: Mask, { kind }: Look, { motions: all }: Segmentation): string {
+  const facts = [strings.residual(motions[0]!.residual)];
+  if (kind === 'groups' && motions.length > 1) facts.push(strings.severalMotions(motions.length));
+  const fellows = all.filter(({ group, label }) => group === motions[0]!.group && label !== id);
+  if (kind === 'motions' && fellows.length > 0) facts.push(strings.groupWith(fellows.map(({ label }) => label)));
+  return facts.join(' · ');
 }
 
-/** Connects a row's checkbox and buttons to the state. */
-function wire(row: HTMLElement, label: number, store: Store, colour: (look: Look) => Parameters<typeof cssColour>[0]): Refresh {
-  const shown = find(row, 'input', HTMLInputElement);
+/** Connects what a row shows and is pressed for to the state. */
+function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): Refresh {
+  const shown = find(row, '[data-action=show]', HTMLInputElement);
+  const colour = find(row, '[data-action=colour]', HTMLInputElement);
+  const name = find(row, '.motion-name', HTMLInputElement);
   const solo = find(row, '[data-action=solo]', HTMLButtonElement);
-  const still = row.querySelector('[data-action=still]');
+  const still = row.querySelector<HTMLButtonElement>('[data-action=still]');
 
   shown.addEventListener('change', () => {
     const { look } = store.get();
     const hidden = new Set(look.hidden);
-    if (shown.checked) hidden.delete(label);
-    else hidden.add(label);
+    if (shown.checked) hidden.delete(id);
+    else hidden.add(id);
     store.look({ hidden, solo: null });
   });
-  solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === label ? null : label }));
-  still?.addEventListener('click', () => {
+  colour.addEventListener('input', () => {
     const { look } = store.get();
-    store.look(look.still === label ? { still: null } : { still: label, frame: 'second' });
+    store.look({ colours: { ...look.colours, [keyOf(look.kind, id)]: colourFromHex(colour.value) } });
   });
+  name.addEventListener('change', () => {
+    const { look } = store.get();
+    const { [keyOf(look.kind, id)]: _, ...others } = look.names;
+    const given = name.value.trim();
+    store.look({ names: given === '' ? others : { ...others, [keyOf(look.kind, id)]: given } });
+  });
+  name.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter') name.blur();
+  });
+  solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
+  still?.addEventListener('click', () => toggleStill(store, id));
+  row.addEventListener('focusin', () => session.select(id));
+  row.addEventListener('pointerdown', () => session.select(id));
 
-  return ({ look }) => {
-    row.style.setProperty('--colour', cssColour(colour(look)));
-    shown.checked = isShown(label, look);
+  return (look) => {
+    const called = nameOf(look, id);
+    const own = colourOfMask(id, look);
+    row.style.setProperty('--colour', cssColour(own));
+    colour.value = hexColour(own);
+    if (document.activeElement !== name) name.value = called;
+    shown.checked = isShown(id, look);
     row.classList.toggle('away', !shown.checked);
-    solo.setAttribute('aria-pressed', String(look.solo === label));
-    still?.setAttribute('aria-pressed', String(look.still === label));
+    row.classList.toggle('selected', look.selected === id);
+    solo.setAttribute('aria-pressed', String(look.solo === id));
+    still?.setAttribute('aria-pressed', String(look.still === id));
+    shown.setAttribute('aria-label', strings.show(called));
+    colour.setAttribute('aria-label', strings.colourOf(called));
+    name.setAttribute('aria-label', strings.nameOf(called));
+    solo.setAttribute('aria-label', strings.soloOf(called));
+    still?.setAttribute('aria-label', strings.stillOf(called));
   };
 }
 
-function fillMatrix(row: HTMLElement, motion: Motion, session: Session): void {
-  const name = strings.motionName(motion.label);
+/** The second frame in the first's place under this mask's motion, both in turn: what stands still belongs to it. */
+export function toggleStill(store: Store, id: number): void {
+  const { look } = store.get();
+  if (look.still === id) store.look({ still: null, blinking: false, view: 'first' });
+  else store.look({ still: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !matchMedia('(prefers-reduced-motion: reduce)').matches });
+}
+
+/** The matrix, ways to copy it, and what to merge with. */
+function fillMore(row: HTMLElement, mask: Mask, masks: readonly Mask[], store: Store, session: Session): void {
+  const matrix = mask.motions[0]!.matrix;
   const body = find(row, 'tbody', HTMLElement);
-  for (const entries of [motion.matrix.slice(0, 3), motion.matrix.slice(3, 6)]) {
-    const line = document.createElement('tr');
+  for (const entries of [matrix.slice(0, 3), matrix.slice(3, 6)]) {
+    const line = element('tr');
     for (const entry of entries) line.insertCell().textContent = strings.entry(entry);
     body.append(line);
   }
-  const copy = find(row, '[data-action=copy]', HTMLButtonElement);
-  copy.setAttribute('aria-label', strings.copyOf(name));
-  copy.addEventListener('click', () => {
-    navigator.clipboard.writeText(JSON.stringify(motion.matrix)).then(
-      () => session.say(strings.copied(name)),
-      () => session.say(strings.errors.noClipboard, 'no-clipboard'),
-    );
-  });
+  const copies = find(row, '.copies', HTMLElement);
+  for (const { title, write } of NOTATIONS) {
+    const button = element('button', title, 'button small quiet');
+    button.type = 'button';
+    button.addEventListener('click', () => copyText(write(matrix), strings.copied(title, nameOf(store.get().look, mask.id)), session));
+    copies.append(button);
+  }
+  const merge = find(row, '[data-action=merge]', HTMLSelectElement);
+  const { look } = store.get();
+  for (const { id } of masks) {
+    if (id === mask.id || id === UNLABELLED) continue;
+    const option = new Option('', String(id));
+    option.dataset.mask = String(id);
+    nameOption(option, look);
+    merge.append(option);
+  }
+  merge.hidden = merge.options.length < 2;
+  merge.setAttribute('aria-label', strings.mergeOf(nameOf(look, mask.id)));
+  merge.addEventListener('change', () => session.correcting.merge(mask.id, Number(merge.value)));
+  const apart = find(row, '[data-action=apart]', HTMLButtonElement);
+  apart.hidden = !isMerged(look.kind, mask.motions);
+  apart.addEventListener('click', () => session.correcting.takeApart(mask.id));
+}
+
+function nameOption(option: Element, look: Look): void {
+  if (option instanceof HTMLOptionElement) option.textContent = nameOf(look, Number(option.dataset.mask));
 }

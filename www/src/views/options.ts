@@ -2,97 +2,97 @@
 
 import { CONTROLS, type Control } from '../controls.js';
 import type { Session } from '../session.js';
-import type { Store } from '../state.js';
+import type { Settings, Store } from '../state.js';
 import { strings } from '../strings.js';
+import { element } from './markup.js';
+
+/** Elements of a field, and how they show what is set. */
+interface Field {
+  readonly elements: HTMLElement[];
+  readonly show: (settings: Settings) => void;
+}
 
 export function mountOptions(form: HTMLFormElement, store: Store, session: Session): void {
-  form.append(...CONTROLS.map((control) => field(control, store, session)));
+  const shows = CONTROLS.map((control) => {
+    const box = element(control.kind === 'radio' ? 'fieldset' : 'div', '', `field field-${control.kind}`);
+    const help = element('p', control.help, 'help faint');
+    help.id = `help-${control.name}`;
+    const { elements, show } = field(control, help.id, store, session);
+    box.append(...elements, help);
+    form.append(box);
+    return show;
+  });
   form.addEventListener('submit', (event) => event.preventDefault());
+  const render = (): void => shows.forEach((show) => show(store.get().settings));
+  store.subscribe((now, before) => {
+    if (now.settings !== before.settings) render();
+  });
+  render();
 }
 
-function field(control: Control, store: Store, session: Session): HTMLElement {
-  const box = control.kind === 'radio' ? element('fieldset') : element('div');
-  box.className = `field field-${control.kind}`;
-  const help = element('p', control.help);
-  help.className = 'help faint';
-  help.id = `help-${control.name}`;
-  box.append(...inputs(control, help.id, store, session), help);
-  return box;
-}
-
-function inputs(control: Control, helpId: string, store: Store, session: Session): HTMLElement[] {
+function field(control: Control, helpId: string, store: Store, session: Session): Field {
   const id = `setting-${control.name}`;
-  const current = store.get().settings[control.name];
+  const identified = <E extends HTMLInputElement | HTMLSelectElement>(input: E, suffix = ''): E => {
+    input.id = `${id}${suffix}`;
+    input.name = control.name;
+    input.setAttribute('aria-describedby', helpId);
+    return input;
+  };
+  const labelFor = (input: HTMLElement): HTMLLabelElement => {
+    const label = element('label', control.label);
+    label.htmlFor = input.id;
+    return label;
+  };
   switch (control.kind) {
     case 'select': {
-      const select = element('select');
-      select.append(...control.choices.map(({ value, label }) => new Option(label, String(value), value === control.initial, value === current)));
+      const select = identified(element('select'));
+      select.append(...control.choices.map(({ value, label }) => new Option(label, String(value))));
       select.addEventListener('change', () => {
         const choice = control.choices[select.selectedIndex];
         if (choice !== undefined) session.change({ [control.name]: choice.value });
       });
-      return [labelFor(identified(select, id, control.name, helpId), control.label), select];
+      return { elements: [labelFor(select), select], show: (settings) => (select.value = String(settings[control.name])) };
     }
     case 'radio': {
-      const group = element('div');
-      group.className = 'segmented';
-      for (const { value, label } of control.choices) {
-        const input = element('input');
+      const group = element('div', '', 'segmented');
+      const inputs = control.choices.map(({ value, label }) => {
+        const input = identified(element('input'), `-${String(value)}`);
         input.type = 'radio';
-        input.checked = value === current;
         input.value = String(value);
         input.addEventListener('change', () => session.change({ [control.name]: value }));
         const wrapping = element('label');
-        wrapping.append(identified(input, `${id}-${String(value)}`, control.name, helpId), element('span', label));
+        wrapping.append(input, element('span', label));
         group.append(wrapping);
-      }
-      return [element('legend', control.label), group];
+        return input;
+      });
+      const show = (settings: Settings): void => inputs.forEach((input) => (input.checked = input.value === String(settings[control.name])));
+      return { elements: [element('legend', control.label), group], show };
     }
     case 'switch': {
-      const input = element('input');
+      const input = identified(element('input'));
       input.type = 'checkbox';
-      input.checked = current === true;
       input.addEventListener('change', () => session.change({ [control.name]: input.checked }));
-      const label = element('label');
-      label.className = 'check';
-      label.append(identified(input, id, control.name, helpId), control.label);
-      return [label];
+      const label = element('label', '', 'check');
+      label.append(input, control.label);
+      return { elements: [label], show: (settings) => (input.checked = settings[control.name] === true) };
     }
     case 'number': {
-      const input = element('input');
+      const input = identified(element('input'));
       input.type = 'number';
       input.min = String(control.min);
       input.max = String(control.max);
       input.step = '1';
       input.required = true;
-      input.value = String(current);
       input.addEventListener('change', () => {
-        if (input.checkValidity()) session.change({ [control.name]: input.valueAsNumber });
-        else {
-          session.say(strings.errors.wholeNumber(control.label, control.min, control.max), 'invalid-option');
-          input.value = String(store.get().settings[control.name]);
-        }
+        if (input.checkValidity()) return session.change({ [control.name]: input.valueAsNumber });
+        session.say(strings.errors.wholeNumber(control.label, control.min, control.max), 'invalid-option');
+        input.value = String(store.get().settings[control.name]);
       });
-      return [labelFor(identified(input, id, control.name, helpId), control.label), input];
+      // What is being typed is not taken away.
+      const show = (settings: Settings): void => {
+        if (document.activeElement !== input) input.value = String(settings[control.name]);
+      };
+      return { elements: [labelFor(input), input], show };
     }
   }
-}
-
-function element<T extends keyof HTMLElementTagNameMap>(tag: T, text = ''): HTMLElementTagNameMap[T] {
-  const made = document.createElement(tag);
-  made.textContent = text;
-  return made;
-}
-
-function identified<E extends HTMLInputElement | HTMLSelectElement>(input: E, id: string, name: string, helpId: string): E {
-  input.id = id;
-  input.name = name;
-  input.setAttribute('aria-describedby', helpId);
-  return input;
-}
-
-function labelFor(input: HTMLElement, text: string): HTMLLabelElement {
-  const label = element('label', text);
-  label.htmlFor = input.id;
-  return label;
 }

@@ -1,7 +1,9 @@
 //! The masks over the picture: a canvas of fills, faded by the opacity, and a canvas of outlines. Over the first frame they lie as
-//! labelled; over the second each is carried along by its motion.
+//! labelled; over the second each is carried along by its motion. Large masks are painted piece by piece, so that the page never
+//! stops answering.
 
 import { fillOf, outlinesOf } from '../paint.js';
+import { Piecewise } from '../piecewise.js';
 import type { Look, Result, Store } from '../state.js';
 import { transformOf } from '../warp.js';
 import { contextOf, find } from './markup.js';
@@ -9,47 +11,74 @@ import { contextOf, find } from './markup.js';
 /** One pixel of outline for every so many pixels of the longer side. */
 const PIXELS_PER_OUTLINE = 400;
 
+type Segmentation = Result['segmentation'];
+type Painter = (segmentation: Segmentation, from: number, to: number) => Uint32Array<ArrayBuffer>;
+
 export function mountOverlay(stage: HTMLElement, store: Store): void {
   const fill = find(stage, '#fill', HTMLCanvasElement);
   const outlines = find(stage, '#outlines', HTMLCanvasElement);
+  const fillWork = new Piecewise(1 << 19, false);
+  const outlineWork = new Piecewise(1 << 18, true);
 
   store.subscribe(({ result, look }, before) => {
     if (look.opacity !== before.look.opacity) fill.style.opacity = String(look.opacity);
     if (look.outlines !== before.look.outlines) outlines.hidden = !look.outlines;
     if (result === before.result && !repaints(look, before.look)) return;
-    paint(fill, result, look, (segmentation) => fillOf(segmentation, look));
-    paint(outlines, result, look, (segmentation) => outlinesOf(segmentation, look, thicknessFor(segmentation)));
+    paint(fill, fillWork, result, look, (segmentation, from, to) => fillOf(segmentation, look, from, to));
+    paint(outlines, outlineWork, result, look, (segmentation, from, to) =>
+      outlinesOf(segmentation, look, thicknessFor(segmentation), from, to),
+    );
   });
   fill.style.opacity = String(store.get().look.opacity);
 }
 
+/** Whether masks lie where they are in the first frame, so that both frames show the same. */
+function inPlace(look: Look): boolean {
+  return look.view !== 'second' || look.still !== null;
+}
+
 function repaints(now: Look, before: Look): boolean {
-  return (['frame', 'colouring', 'hidden', 'solo', 'still'] as const).some((key) => now[key] !== before[key]);
+  if (inPlace(now) !== inPlace(before)) return true;
+  return (['kind', 'hidden', 'solo', 'colours'] as const).some((key) => now[key] !== before[key]);
 }
 
 function thicknessFor({ width, height }: { readonly width: number; readonly height: number }): number {
   return Math.max(1, Math.round(Math.max(width, height) / PIXELS_PER_OUTLINE));
 }
 
-type Segmentation = Result['segmentation'];
-
-function paint(canvas: HTMLCanvasElement, result: Result | null, look: Look, pixelsOf: (segmentation: Segmentation) => Uint32Array<ArrayBuffer>): void {
+function paint(canvas: HTMLCanvasElement, work: Piecewise, result: Result | null, look: Look, painter: Painter): void {
   const context = contextOf(canvas);
   if (result === null) {
+    work.stop();
     context.clearRect(0, 0, canvas.width, canvas.height);
     return;
   }
   const { segmentation } = result;
-  canvas.width = segmentation.width;
-  canvas.height = segmentation.height;
-  const pixels = pixelsOf(segmentation);
-  // The second frame held still lies in the first frame's place, and so do the masks.
-  if (look.frame === 'first' || look.still !== null) context.putImageData(imageOf(pixels, canvas.width, canvas.height), 0, 0);
-  else for (const motion of segmentation.motions) drawMoved(context, pixels, segmentation, motion);
+  const { width, height } = segmentation;
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width;
+    canvas.height = height;
+  }
+  if (inPlace(look)) {
+    work.rows(width, height, (from, to) => {
+      context.putImageData(imageOf(painter(segmentation, from, to), width), 0, from);
+    });
+    return;
+  }
+  const pixels = new Uint32Array(width * height);
+  work.rows(
+    width,
+    height,
+    (from, to) => pixels.set(painter(segmentation, from, to), from * width),
+    () => {
+      context.clearRect(0, 0, width, height);
+      for (const motion of segmentation.motions) drawMoved(context, pixels, segmentation, motion);
+    },
+  );
 }
 
-function imageOf(pixels: Uint32Array<ArrayBuffer>, width: number, height: number): ImageData {
-  return new ImageData(new Uint8ClampedArray(pixels.buffer), width, height);
+function imageOf(pixels: Uint32Array<ArrayBuffer>, width: number): ImageData {
+  return new ImageData(new Uint8ClampedArray(pixels.buffer), width);
 }
 
 /** Draws the pixels of one motion where it has carried them. The largest comes first, so that what moves before it covers it. */
@@ -64,7 +93,7 @@ function drawMoved(context: CanvasRenderingContext2D, pixels: Uint32Array, { lab
     }
   }
   const piece = new OffscreenCanvas(across, down);
-  piece.getContext('2d')?.putImageData(imageOf(own, across, down), 0, 0);
+  piece.getContext('2d')?.putImageData(imageOf(own, across), 0, 0);
   context.setTransform(transformOf(motion.matrix));
   context.drawImage(piece, left, top);
   context.resetTransform();

@@ -1,10 +1,11 @@
-//! The pair: opening files, replacing one frame, swapping, and the two thumbnails.
+//! Ways in: opening files or a folder, samples, the camera; replacing one frame, swapping, and the two thumbnails.
 
 import type { LoadedFrame } from '../frames.js';
+import { SAMPLES } from '../samples.js';
 import type { Session } from '../session.js';
 import type { Slot, Store } from '../state.js';
 import { strings } from '../strings.js';
-import { contextOf, find } from './markup.js';
+import { contextOf, element, find } from './markup.js';
 
 export function mountPicker(root: ParentNode, store: Store, session: Session): void {
   const listen = (input: HTMLInputElement, slot: Slot | null): void => {
@@ -15,27 +16,49 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
     });
   };
   listen(find(root, '#open-pair', HTMLInputElement), null);
-  find(root, '#open-sample', HTMLButtonElement).addEventListener('click', () => void session.openSample());
+  listen(find(root, '#open-folder', HTMLInputElement), null);
+  const camera = find(root, '#open-camera', HTMLButtonElement);
+  camera.addEventListener('click', () => void session.toggleLive());
+  camera.hidden = navigator.mediaDevices === undefined;
   const swap = find(root, '#swap', HTMLButtonElement);
   swap.addEventListener('click', () => session.swap());
+  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, session)));
 
   const slots = (['first', 'second'] as const).map((slot) => {
-    const element = find(root, `[data-slot=${slot}]`, HTMLElement);
-    listen(find(element, 'input', HTMLInputElement), slot);
-    const thumb = find(element, '.thumb', HTMLCanvasElement);
-    const name = find(element, '.slot-name', HTMLElement);
+    const box = find(root, `[data-slot=${slot}]`, HTMLElement);
+    listen(find(box, 'input', HTMLInputElement), slot);
+    const thumb = find(box, '.thumb', HTMLCanvasElement);
+    const name = find(box, '.slot-name', HTMLElement);
     return (frame: LoadedFrame | null): void => {
       drawThumb(thumb, frame);
-      name.textContent = frame === null ? strings.empty : `${frame.name}, ${strings.size(frame.width, frame.height)}`;
+      name.textContent = frame === null ? strings.empty : strings.frameOf(frame.name, frame.full.width, frame.full.height);
     };
   });
 
-  store.subscribe(({ pair }, before) => {
+  store.subscribe(({ pair, live }, before) => {
+    if (live !== before.live) {
+      camera.setAttribute('aria-pressed', String(live !== null));
+      camera.textContent = live === null ? strings.openCamera : strings.closeCamera;
+      swap.disabled = live !== null;
+    }
     if (pair === before.pair) return;
     slots[0]?.(pair.first);
     slots[1]?.(pair.second);
-    swap.disabled = pair.first === null && pair.second === null;
+    swap.disabled = live !== null || (pair.first === null && pair.second === null);
   });
+}
+
+function sampleButton(sample: (typeof SAMPLES)[number], session: Session): HTMLElement {
+  const button = element('button', '', 'sample');
+  button.type = 'button';
+  const picture = element('img');
+  picture.src = sample.first;
+  picture.alt = '';
+  picture.loading = 'lazy';
+  picture.decoding = 'async';
+  button.append(picture, element('span', sample.title));
+  button.addEventListener('click', () => void session.openSample(sample));
+  return button;
 }
 
 /** The whole frame, as large as it fits, in the middle. */

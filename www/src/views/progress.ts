@@ -3,7 +3,7 @@
 import type { Session } from '../session.js';
 import type { State, Store } from '../state.js';
 import { strings } from '../strings.js';
-import { find, takesText } from './markup.js';
+import { find } from './markup.js';
 
 /** Work shorter than this shows no bar: a flash tells nobody anything. Milliseconds. */
 const PATIENCE = 150;
@@ -17,15 +17,14 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
 
   cancel.addEventListener('click', () => session.cancel());
   again.addEventListener('click', () => void session.segment());
-  document.addEventListener('keydown', (event) => {
-    if (event.key === 'Escape' && !takesText(event.target)) session.cancel();
-  });
 
   store.subscribe((now, before) => {
-    if (now.run === before.run && now.pair === before.pair && now.result === before.result) return;
+    if (now.run === before.run && now.pair === before.pair && now.result === before.result && now.live === before.live) return;
     const { run } = now;
     const busy = run.phase === 'working' || run.phase === 'opening';
     root.dataset.phase = run.phase;
+    // The rate changes many times a second, which nobody wants to hear.
+    status.setAttribute('aria-live', run.phase === 'live' ? 'off' : 'polite');
     status.textContent = sentenceFor(now);
     again.hidden = !(run.phase === 'cancelled' && now.pair.first !== null && now.pair.second !== null);
     cancel.hidden = !busy;
@@ -41,12 +40,15 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   });
 }
 
-function sentenceFor({ run, pair, result }: State): string {
+function sentenceFor({ run, pair, result, live, history }: State): string {
   switch (run.phase) {
     case 'working':
       return strings.status.working(run.stage, run.index, run.of);
     case 'done':
-      return result === null ? '' : strings.status.done(result.segmentation.count, result.waited);
+      if (result === null) return '';
+      return history.strokes.length > 0 ? strings.status.corrected(result.waited) : strings.status.done(result.segmentation.count, result.waited);
+    case 'live':
+      return strings.status.live(live?.rate ?? 0, result?.segmentation.count ?? 0);
     case 'idle':
       if ((pair.first === null) === (pair.second === null)) return strings.status.idle;
       return strings.status.waiting(pair.first === null ? 'first' : 'second');

@@ -1,0 +1,331 @@
+//! What is measured: generated scenes with fixed seeds, and what lies beside the project.
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use veronese::codecs::{Picture, decode_image, encode_colour_png};
+use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
+use veronese::{AffineMotion, Frame};
+
+use crate::scores::VOID;
+
+/// Seeds of the generated scenes, far from those that anything was tuned on.
+const SERIES_SEED: u64 = 40_000;
+const COLOUR_SEED: u64 = 41_000;
+const SLOW_SEED: u64 = 42_000;
+const STILL_SEED: u64 = 43_000;
+const LARGE_SEED: u64 = 44_000;
+const ROBOT_SEED: u64 = 45_000;
+/// CDnet's codes for shadow, outside the region of interest and unknown.
+const CDNET_VOID: [u8; 3] = [50, 85, 170];
+
+/// What a case belongs to; the tables have a row for each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Set {
+    /// One to four objects on static and moving backgrounds, three sizes, three speeds; grey.
+    Generated,
+    /// The same in colour.
+    Colour,
+    /// Up to 1280 × 720.
+    Large,
+    /// The paper's leader and follower.
+    Robots,
+    /// One object that moves 0.3 pixels.
+    Slow,
+    /// Nothing moves; there is noise.
+    Still,
+    /// Generated scenes beside the project, textures from photographs.
+    SharedScenes,
+    /// Real pairs with masks.
+    Pairs,
+    /// Pairs with true flow.
+    Flow,
+}
+
+impl Set {
+    pub(crate) const ALL: [Set; 9] = [
+        Set::Generated,
+        Set::Colour,
+        Set::Large,
+        Set::Robots,
+        Set::Slow,
+        Set::Still,
+        Set::SharedScenes,
+        Set::Pairs,
+        Set::Flow,
+    ];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Set::Generated => "generated",
+            Set::Colour => "colour",
+            Set::Large => "large",
+            Set::Robots => "robots",
+            Set::Slow => "slow",
+            Set::Still => "still",
+            Set::SharedScenes => "shared-scenes",
+            Set::Pairs => "pairs",
+            Set::Flow => "flow",
+        }
+    }
+
+    pub(crate) fn title(self) -> &'static str {
+        match self {
+            Set::Generated => "generated, grey, 200 × 150 to 640 × 480",
+            Set::Colour => "generated, colour, 200 × 150 and 320 × 240",
+            Set::Large => "generated, colour, 1280 × 720",
+            Set::Robots => "leader and follower (200 × 150)",
+            Set::Slow => "one object that moves 0.3 pixels",
+            Set::Still => "nothing moves, noise only",
+            Set::SharedScenes => "generated beside the project, photographic textures",
+            Set::Pairs => "real pairs with masks",
+            Set::Flow => "pairs with true flow",
+        }
+    }
+
+    /// Whether the truth is one label for each thing that moves, rather than foreground and background.
+    pub(crate) fn is_scene(self) -> bool {
+        !matches!(self, Set::Pairs | Set::Flow)
+    }
+}
+
+/// Where a case comes from.
+#[derive(Clone, Debug)]
+enum Source {
+    Scene(SceneOptions),
+    Robots(u64),
+    Folder(PathBuf),
+}
+
+/// One pair of frames to segment.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    pub(crate) name: String,
+    pub(crate) set: Set,
+    /// Whether things move by less than a pixel and a half relative to the background.
+    pub(crate) sub_pixel: bool,
+    source: Source,
+}
+
+/// A case's frames and what is known of them.
+pub(crate) struct Data {
+    /// The two frames as RGBA bytes.
+    pub(crate) rgba: [Vec<u8>; 2],
+    pub(crate) first: Frame,
+    pub(crate) second: Frame,
+    pub(crate) before: Option<Frame>,
+    pub(crate) truth: Option<Vec<u8>>,
+    /// Pixels that are hidden or outside in the second frame; known of generated scenes.
+    pub(crate) occluded: Option<Vec<bool>>,
+    /// True flow, NaN where unknown.
+    pub(crate) flow: Option<Vec<[f32; 2]>>,
+}
+
+type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+/// All cases, those of `shared` only if it is there. `quick` takes a third of the generated ones and none of the large.
+pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    let sizes = [(200, 150), (320, 240), (640, 480)];
+    series(&mut cases, Set::Generated, SERIES_SEED, if quick { &sizes[..1] } else { &sizes });
+    let again = if quick { &sizes[..0] } else { &sizes[..2] };
+    series(&mut cases, Set::Generated, SERIES_SEED + 100, again);
+    series(&mut cases, Set::Colour, COLOUR_SEED, if quick { &sizes[..0] } else { &sizes[..2] });
+    if !quick {
+        let mut large = Vec::new();
+        series(&mut large, Set::Large, LARGE_SEED, &[(1280, 720)]);
+        // They take their time: three of them, a static and two moving backgrounds, slow to fast.
+        cases.extend(large.into_iter().enumerate().filter(|(k, _)| [0, 3, 5].contains(k)).map(|(_, case)| case));
+    }
+    let few = if quick { 2 } else { 6 };
+    for k in 0..few {
+        let seed = ROBOT_SEED + k;
+        let source = Source::Robots(seed);
+        cases.push(Case { name: format!("robots-{seed}"), set: Set::Robots, sub_pixel: false, source });
+    }
+    for k in 0..few {
+        let size = if k % 2 == 0 { (200, 150) } else { (320, 240) };
+        let options = |seed, objects, speed| SceneOptions {
+            width: size.0,
+            height: size.1,
+            objects,
+            speed,
+            background: Background::Static,
+            noise: 1.0 + 0.4 * k as f64,
+            seed,
+            ..SceneOptions::default()
+        };
+        cases.push(scene_case(Set::Slow, options(SLOW_SEED + k, 1, Speed::Creeping)));
+        cases.push(scene_case(Set::Still, options(STILL_SEED + k, 0, Speed::Medium)));
+    }
+    for (folder, set) in [("scenes", Set::SharedScenes), ("pairs", Set::Pairs)] {
+        for path in folders(&shared.join("data").join(folder))? {
+            let has = |file: &str| path.join(file).is_file();
+            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            let set = match set {
+                Set::Pairs if has("flow.flo") => Set::Flow,
+                set if has("mask.png") => set,
+                _ => continue,
+            };
+            let sub_pixel = set == Set::SharedScenes && name.contains("-sub-");
+            cases.push(Case { name, set, sub_pixel, source: Source::Folder(path) });
+        }
+    }
+    Ok(cases)
+}
+
+fn series(cases: &mut Vec<Case>, set: Set, seed: u64, sizes: &[(usize, usize)]) {
+    for options in SceneOptions::series(seed, sizes) {
+        cases.push(scene_case(set, SceneOptions { colour: matches!(set, Set::Colour | Set::Large), ..options }));
+    }
+}
+
+fn scene_case(set: Set, options: SceneOptions) -> Case {
+    let SceneOptions { width, seed, .. } = options;
+    let sub_pixel = matches!(options.speed, Speed::SubPixel | Speed::Creeping) && options.objects > 0;
+    Case { name: format!("{}-{width}-{seed}", set.name()), set, sub_pixel, source: Source::Scene(options) }
+}
+
+/// The folders in a folder, by name; none where there is no such folder.
+fn folders(path: &Path) -> Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(Vec::new());
+    }
+    let mut found = Vec::new();
+    for entry in fs::read_dir(path)? {
+        let entry = entry?.path();
+        if entry.is_dir() {
+            found.push(entry);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+impl Case {
+    /// What the scene is, in words.
+    pub(crate) fn description(&self) -> String {
+        match &self.source {
+            Source::Scene(options) => {
+                let speed = match options.speed {
+                    Speed::Creeping => "0.3 px",
+                    Speed::SubPixel => "sub-pixel",
+                    Speed::Medium => "medium",
+                    Speed::Large => "large",
+                };
+                let background = if options.background == Background::Static { "static" } else { "moving" };
+                let objects = match options.objects {
+                    0 => return format!("{} × {}, {background} background", options.width, options.height),
+                    1 => "1 object".into(),
+                    n => format!("{n} objects"),
+                };
+                format!("{} × {}, {objects}, {speed}, {background} background", options.width, options.height)
+            }
+            Source::Robots(_) => "200 × 150, leader and follower".into(),
+            Source::Folder(_) => String::new(),
+        }
+    }
+
+    /// Reads or generates the frames.
+    pub(crate) fn load(&self) -> Result<Data> {
+        match &self.source {
+            Source::Scene(options) => Ok(of_scene(scene::generate(options)?)),
+            Source::Robots(seed) => Ok(of_scene(scene::leader_follower(*seed)?)),
+            Source::Folder(folder) => {
+                of_folder(folder, self.set).map_err(|error| format!("{}: {error}", folder.display()).into())
+            }
+        }
+    }
+
+    /// The folder that has `first.png` and `second.png`: those of a generated case are written into one in `out`.
+    pub(crate) fn folder(&self, out: &Path) -> Result<PathBuf> {
+        if let Source::Folder(folder) = &self.source {
+            return Ok(folder.clone());
+        }
+        let folder = out.join(&self.name);
+        fs::create_dir_all(&folder)?;
+        let data = self.load()?;
+        for (name, rgba) in ["first.png", "second.png"].iter().zip(&data.rgba) {
+            fs::write(folder.join(name), encode_colour_png(data.first.width(), data.first.height(), rgba)?)?;
+        }
+        Ok(folder)
+    }
+}
+
+fn of_scene(scene: Scene) -> Data {
+    let [before, first, second] = scene.frames;
+    let [_, first_rgba, second_rgba] = scene.rgba;
+    let (truth, occluded) = (Some(scene.labels), Some(scene.occluded));
+    Data { rgba: [first_rgba, second_rgba], first, second, before: Some(before), truth, occluded, flow: None }
+}
+
+fn of_folder(folder: &Path, set: Set) -> Result<Data> {
+    let read = |name: &str| -> Result<Vec<u8>> { Ok(fs::read(folder.join(name))?) };
+    let picture = |name: &str| -> Result<Picture> { Ok(decode_image(&read(name)?)?) };
+    // Masks are grey images of label numbers.
+    let labels =
+        |name: &str| -> Result<Vec<u8>> { Ok(picture(name)?.rgba.chunks_exact(4).map(|pixel| pixel[0]).collect()) };
+    let has = |name: &str| folder.join(name).is_file();
+    let (one, two) = (picture("first.png")?, picture("second.png")?);
+    let (first, second) = (one.frame()?, two.frame()?);
+    let rgba = [one.rgba, two.rgba];
+    let mut data = Data { rgba, first, second, before: None, truth: None, occluded: None, flow: None };
+    if set == Set::Flow {
+        data.flow = Some(flow(&read("flow.flo")?, data.first.width(), data.first.height())?);
+        return Ok(data);
+    }
+    let mut truth = labels("mask.png")?;
+    if has("gt_raw.png") {
+        for (label, code) in truth.iter_mut().zip(labels("gt_raw.png")?) {
+            if CDNET_VOID.contains(&code) {
+                *label = VOID;
+            }
+        }
+    }
+    data.truth = Some(truth);
+    if has("before.png") {
+        data.before = Some(picture("before.png")?.frame()?);
+    }
+    Ok(data)
+}
+
+/// Middlebury's format: the number 202021.25, width, height, then u and v of each pixel; beyond 1e9 it is unknown.
+fn flow(bytes: &[u8], width: usize, height: usize) -> Result<Vec<[f32; 2]>> {
+    let words: Vec<[u8; 4]> = bytes.as_chunks::<4>().0.to_vec();
+    let size = [width as u32, height as u32];
+    let header = words.len() >= 3 && f32::from_le_bytes(words[0]) == 202_021.25;
+    if !header || [words[1], words[2]].map(u32::from_le_bytes) != size || words.len() != 3 + 2 * width * height {
+        return Err("flow.flo is not the flow of these frames".into());
+    }
+    let known = |word: [u8; 4]| Some(f32::from_le_bytes(word)).filter(|v| v.abs() <= 1e9).unwrap_or(f32::NAN);
+    Ok(words[3..].chunks_exact(2).map(|pair| [known(pair[0]), known(pair[1])]).collect())
+}
+
+/// What the baseline found in a folder: labels and the motion of each.
+pub(crate) struct Baseline {
+    pub(crate) labels: Vec<u8>,
+    pub(crate) motions: Vec<AffineMotion>,
+    pub(crate) milliseconds: f64,
+}
+
+/// Reads what the baseline wrote; none where it did not run.
+pub(crate) fn baseline(folder: &Path) -> Result<Option<Baseline>> {
+    let (labels, result) = (folder.join("labels.png"), folder.join("result.json"));
+    if !labels.is_file() || !result.is_file() {
+        return Ok(None);
+    }
+    let labels = decode_image(&fs::read(labels)?)?.rgba.chunks_exact(4).map(|pixel| pixel[0]).collect();
+    let result: serde_json::Value = serde_json::from_slice(&fs::read(result)?)?;
+    let rows = |motion: &serde_json::Value| -> Option<AffineMotion> {
+        let entry = |row: usize, column: usize| motion[row][column].as_f64();
+        let mut matrix = [0.0; 6];
+        for (k, slot) in matrix.iter_mut().enumerate() {
+            *slot = entry(k / 3, k % 3)?;
+        }
+        Some(AffineMotion::new(matrix))
+    };
+    let motions = result["affine"].as_array().map(|list| list.iter().filter_map(rows).collect()).unwrap_or_default();
+    let milliseconds = result["ms"]["total"].as_f64().unwrap_or(f64::NAN);
+    Ok(Some(Baseline { labels, motions, milliseconds }))
+}

@@ -1,0 +1,164 @@
+//! The mask benchmark: generated scenes and real pairs through the pipeline, beside what OpenCV gives, with an ablation.
+//! `npm run bench:masks` runs it.
+
+mod ablation;
+mod cases;
+mod honesty;
+mod measure;
+mod page;
+mod pictures;
+mod scores;
+mod summary;
+mod tables;
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use cases::Case;
+use honesty::Honesty;
+use measure::Method;
+
+const HELP: &str = "\
+Masks of generated scenes and real pairs beside what OpenCV gives. Two steps, between which the baseline runs:
+
+  frames       writes the frames of the generated cases and prints a line for each case: its name, a tab, its folder
+  measure      measures and writes table.csv, masks.json, masks.md and a picture of every case
+
+  --quick            a part of the generated cases, no large ones, no ablation
+  --only A,B         only cases whose name or set contains one of these
+  --no-ablation      does not leave out parts of the pipeline
+  --out DIR          where the results go; default out/masks
+  --shared DIR       where more pairs are, if there; default ../shared
+  --write-docs       writes docs/masks.md and docs/images/masks-*.png as well
+";
+
+struct Options {
+    step: String,
+    quick: bool,
+    only: Vec<String>,
+    ablation: bool,
+    out: PathBuf,
+    shared: PathBuf,
+    write_docs: bool,
+}
+
+type Failure = Box<dyn Error + Send + Sync>;
+
+fn main() {
+    match options(std::env::args().skip(1)).map(|options| options.map(|options| run(&options))) {
+        Ok(None) => print!("{HELP}"),
+        Ok(Some(Ok(()))) => {}
+        Ok(Some(Err(error))) => stop(&error.to_string(), 1),
+        Err(message) => stop(&format!("{message}\n\n{HELP}"), 2),
+    }
+}
+
+fn stop(message: &str, code: i32) {
+    eprintln!("{message}");
+    std::process::exit(code);
+}
+
+/// What was asked for; `None` where help was.
+fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options>, String> {
+    let mut options = Options {
+        step: String::new(),
+        quick: false,
+        only: Vec::new(),
+        ablation: true,
+        out: PathBuf::from("out/masks"),
+        shared: PathBuf::from("../shared"),
+        write_docs: false,
+    };
+    while let Some(name) = arguments.next() {
+        let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
+        match name.as_str() {
+            "--help" | "-h" => return Ok(None),
+            "frames" | "measure" => options.step = name,
+            "--quick" => (options.quick, options.ablation) = (true, false),
+            "--no-ablation" => options.ablation = false,
+            "--write-docs" => options.write_docs = true,
+            "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
+            "--out" => options.out = PathBuf::from(value()?),
+            "--shared" => options.shared = PathBuf::from(value()?),
+            _ => return Err(format!("There is no option '{name}'.")),
+        }
+    }
+    match options.step.is_empty() {
+        true => Err("Say which step: frames or measure.".into()),
+        false => Ok(Some(options)),
+    }
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let here = fs::canonicalize(&options.shared).is_ok();
+    let mut cases = cases::all(&options.shared, options.quick).map_err(|error| error.to_string())?;
+    if !options.only.is_empty() {
+        let wanted = |case: &Case| options.only.iter().any(|part| case.name.contains(part) || case.set.name() == part);
+        cases.retain(wanted);
+    }
+    if cases.is_empty() {
+        return Err("There is no such case.".into());
+    }
+    let out = &options.out;
+    let cannot = |error: std::io::Error| format!("{} cannot be written: {error}", out.display());
+    fs::create_dir_all(out).map_err(cannot)?;
+    if options.step == "frames" {
+        let folders = measure::in_parallel(&cases, |case| {
+            Ok(case.folder(&out.join("frames")).map_err(|error| error.to_string())?)
+        })?;
+        for (case, folder) in cases.iter().zip(folders) {
+            println!("{}\t{}", case.name, folder.display());
+        }
+        return Ok(());
+    }
+    if !here {
+        eprintln!("{} is not there: only the generated cases are measured.", options.shared.display());
+    }
+    let variants = if options.ablation { ablation::variants() } else { Vec::new() };
+    let measured = measure::all(&cases, &out.join("baseline"), &variants, ablation::takes_part)?;
+    let worths = ablation::worths(&measured);
+    let mut honesty = Honesty::default();
+    measured.iter().filter_map(|one| one.honesty.as_ref()).for_each(|counts| honesty.add(counts));
+
+    fs::write(out.join("table.csv"), tables::csv(&measured)).map_err(cannot)?;
+    let json = serde_json::to_string_pretty(&tables::all(&measured, &worths, &honesty))?;
+    fs::write(out.join("masks.json"), json).map_err(cannot)?;
+    for one in &measured {
+        fs::write(out.join(format!("{}.png", one.case.name)), &one.picture).map_err(cannot)?;
+    }
+    let page = page::Page { measured: &measured, worths: &worths, honesty: &honesty, reasons: reasons()? };
+    fs::write(out.join("masks.md"), page.text("")).map_err(cannot)?;
+    if options.write_docs {
+        write_docs(&page)?;
+    }
+    if !measured.iter().any(|one| one.of(Method::Baseline).is_some()) {
+        eprintln!("There are no figures of the baseline, which did not run.");
+    }
+    eprintln!("The results are in {}.", out.display());
+    Ok(())
+}
+
+/// Why cases come out as they do, written by hand, by the name of the case.
+fn reasons() -> Result<serde_json::Map<String, serde_json::Value>, Failure> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/masks/reasons.json");
+    let text = fs::read_to_string(&path).map_err(|error| format!("{} cannot be read: {error}", path.display()))?;
+    Ok(serde_json::from_str(&text)?)
+}
+
+/// The page and its pictures; pictures that it no longer shows go away.
+fn write_docs(page: &page::Page<'_>) -> Result<(), Failure> {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let images = docs.join("images");
+    for entry in fs::read_dir(&images)? {
+        let entry = entry?;
+        if entry.file_name().to_string_lossy().starts_with("masks-") {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    for one in page.shown() {
+        fs::write(images.join(format!("masks-{}.png", one.case.name)), &one.picture)?;
+    }
+    fs::write(docs.join("masks.md"), page.text("images/masks-"))?;
+    Ok(())
+}

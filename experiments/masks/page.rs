@@ -1,0 +1,328 @@
+//! docs/masks.md: the figures for people, with the best and the worst cases. Pictures are shown of generated cases only: the licences
+//! of the real pairs do not let the project ship them.
+
+use std::fmt::Write;
+
+use serde_json::{Map, Value};
+
+use crate::ablation::Worth;
+use crate::cases::Set;
+use crate::honesty::{Honesty, RANGES};
+use crate::measure::{Measured, Method, Outcome};
+use crate::summary::Summary;
+
+/// Cases shown at either end.
+const SHOWN: usize = 5;
+/// Sets whose pictures are the project's own and whose truth is one label for each thing.
+const OWN: [Set; 4] = [Set::Generated, Set::Colour, Set::Large, Set::Robots];
+
+pub(crate) struct Page<'a> {
+    pub(crate) measured: &'a [Measured],
+    pub(crate) worths: &'a [Worth],
+    pub(crate) honesty: &'a Honesty,
+    /// Why a case comes out as it does, by its name.
+    pub(crate) reasons: Map<String, Value>,
+}
+
+const HEAD: &str = "\
+# Masks
+
+How good the masks of `segment_pair` are, beside what can be put together with OpenCV. Everything on this page is written by
+
+```sh
+npm run bench:masks -- --write-docs
+```
+
+which measures all cases anew. The seeds are fixed and the figures the same on every machine, but for the times. The figures
+are those of motion segmentation; experiments/masks/scores.rs defines each and tests/scores.rs checks them:
+
+- **mean IoU**: over all true labels, with the found label that is assigned to each one to one;
+- **n right**: share of the cases with the right number of motions (labels of less than 0.2 % of the frame do not count);
+- **sub-pixel**: mean IoU where things move by less than a pixel and a half relative to the background;
+- **J**: intersection over union of the foreground, everything but the label with most background pixels, on *groups*;
+- **J by hand**: the same on single motions, each called foreground or background by the truth, as a user would join them;
+- **F**: F measure of the foreground's border, within 0.8 % of the diagonal; on single motions for scenes, on groups for real pairs.
+
+*best* and *fast* are the two qualities. The *baseline* is dense optical flow (OpenCV's DIS, medium preset), affine motions by
+sequential RANSAC on it with an inlier threshold from the flow's noise, a label for each pixel by the nearest motion, a median
+filter and the removal of small regions: the best of several such chains, tuned on generated scenes.
+
+";
+
+const LICENCE: &str = "\
+The real pairs are frames of [DAVIS 2016](https://davischallenge.org) (taken as CC BY-NC 4.0), [CDnet 2014](http://changedetection.net),
+Wallflower, Middlebury, FlyingChairs and Yosemite, whose licences allow research but not shipping them here; this page shows
+no picture of them. `npm run bench:masks` draws all of them into `out/masks/` where they lie beside the checkout, in
+`../shared/data`. The one real pair that may be shipped is [in the README](../README.md), without a truth to score it against.
+
+";
+
+impl Page<'_> {
+    /// The page; pictures are named `prefix` and the case.
+    pub(crate) fn text(&self, prefix: &str) -> String {
+        let mut text = String::from(HEAD);
+        self.scenes(&mut text);
+        self.pairs(&mut text);
+        self.flows(&mut text);
+        self.ablation(&mut text);
+        self.honesty(&mut text);
+        self.pictures(&mut text, prefix);
+        self.real_ends(&mut text);
+        text.push_str(LICENCE);
+        while text.ends_with("\n\n") {
+            text.pop();
+        }
+        text
+    }
+
+    /// The cases whose pictures are shown: the best, then the worst.
+    pub(crate) fn shown(&self) -> Vec<&Measured> {
+        let [best, worst] = ends(self.ranked(|one| OWN.contains(&one.case.set), |best| best.single.map(|s| s.miou)));
+        best.into_iter().chain(worst).map(|(one, _)| one).collect()
+    }
+
+    fn scenes(&self, text: &mut String) {
+        text.push_str("## Generated scenes\n\n");
+        let _ = writeln!(
+            text,
+            "| scenes | cases | method | mean IoU | n right | sub-pixel | F | ms |\n|---|---|---|---|---|---|---|---|"
+        );
+        let rows = Set::ALL.into_iter().filter(|set| set.is_scene());
+        for set in rows {
+            self.scene_rows(text, set.title(), &|one| one.case.set == set);
+        }
+        let own = [Set::Generated, Set::Colour, Set::Large];
+        self.scene_rows(text, "**generated, grey and colour, all sizes**", &|one| own.contains(&one.case.set));
+        text.push_str(
+            "\nTimes are milliseconds in native code on one core of a machine that was not quiet, with another case on the \
+             other core; the baseline's are its own measurement.\n\n",
+        );
+    }
+
+    fn scene_rows(&self, text: &mut String, title: &str, belongs: &dyn Fn(&Measured) -> bool) {
+        for method in Method::ALL {
+            let s = self.summary(method, belongs);
+            if s.cases > 0 {
+                let (miou, sub) = (three(s.miou), three(s.sub_pixel));
+                let (right, f) = (per_cent(s.count_right), three(s.boundary));
+                let row = format!("{} | {miou} | {right} | {sub} | {f} | {:.0}", method.name(), s.milliseconds);
+                let _ = writeln!(text, "| {title} | {} | {row} |", s.cases);
+            }
+        }
+    }
+
+    fn pairs(&self, text: &mut String) {
+        let names: Vec<&str> = self.of_set(Set::Pairs).map(|one| one.case.name.as_str()).collect();
+        if names.is_empty() {
+            return;
+        }
+        text.push_str("## Real pairs with masks\n\n");
+        let _ = writeln!(
+            text,
+            "| pairs | cases | method | J | J by hand | F | adjusted Rand | ms |\n|---|---|---|---|---|---|---|---|"
+        );
+        // In the order of their names, by turns: one half to look at and tune on, the other to confirm.
+        let half = |one: &Measured, rest: usize| {
+            names.iter().position(|name| *name == one.case.name).is_some_and(|k| k % 2 == rest)
+        };
+        type Belongs<'b> = &'b dyn Fn(&Measured) -> bool;
+        let halves: [(&str, Belongs<'_>); 3] = [
+            ("all", &|one| one.case.set == Set::Pairs),
+            ("looked at while developing", &|one| one.case.set == Set::Pairs && half(one, 0)),
+            ("only measured", &|one| one.case.set == Set::Pairs && half(one, 1)),
+        ];
+        for (title, belongs) in halves {
+            for method in Method::ALL {
+                let s = self.summary(method, belongs);
+                if s.cases > 0 {
+                    let row = [s.j_background, s.j_oracle, s.grouped_boundary, s.rand].map(three).join(" | ");
+                    let _ =
+                        writeln!(text, "| {title} | {} | {} | {row} | {:.0} |", s.cases, method.name(), s.milliseconds);
+                }
+            }
+        }
+        let odd: Vec<String> = names.iter().step_by(2).map(|name| format!("`{name}`")).collect();
+        let _ = writeln!(
+            text,
+            "\nOne main object each has a mask; whatever else moves counts as background. Looked at while developing were {}.\n",
+            odd.join(", ")
+        );
+    }
+
+    fn flows(&self, text: &mut String) {
+        if self.of_set(Set::Flow).next().is_none() {
+            return;
+        }
+        text.push_str(
+            "## Pairs with true flow\n\nMedian end point error, pixels, of the flow that labels and motions imply.\n\n",
+        );
+        let _ = writeln!(text, "| pair | best | fast | baseline |\n|---|---|---|---|");
+        for one in self.of_set(Set::Flow) {
+            let cell = |method| {
+                let error = one.of(method).and_then(|outcome| outcome.flow_error);
+                error.map_or("–".into(), |error| format!("{error:.2}"))
+            };
+            let _ = writeln!(text, "| {} | {} |", one.case.name, Method::ALL.map(cell).join(" | "));
+        }
+        text.push('\n');
+    }
+
+    fn ablation(&self, text: &mut String) {
+        let Some(whole) = self.worths.first() else { return };
+        let _ = writeln!(
+            text,
+            "## What each part is worth\n\nThe pipeline (best) without one part at a time, on {} generated scenes and the real pairs; in \
+             brackets the change.\n\n| without | mean IoU | n right | sub-pixel | F | J, real | J by hand, real | F, real | ms, scenes |\n\
+             |---|---|---|---|---|---|---|---|---|",
+            whole.scenes.cases
+        );
+        for worth in self.worths {
+            let first = std::ptr::eq(worth, whole);
+            let cell = |value: f64, of_whole: f64| match first {
+                true => three(value),
+                false => format!("{} ({:+.3})", three(value), value - of_whole),
+            };
+            let (s, w) = (&worth.scenes, &whole.scenes);
+            let mut cells = vec![
+                cell(s.miou, w.miou),
+                per_cent(s.count_right),
+                cell(s.sub_pixel, w.sub_pixel),
+                cell(s.boundary, w.boundary),
+            ];
+            match (&worth.pairs, &whole.pairs) {
+                (Some(s), Some(w)) => cells.extend([
+                    cell(s.j_background, w.j_background),
+                    cell(s.j_oracle, w.j_oracle),
+                    cell(s.grouped_boundary, w.grouped_boundary),
+                ]),
+                _ => cells.extend(["–".to_owned(), "–".to_owned(), "–".to_owned()]),
+            }
+            let _ = writeln!(text, "| {} | {} | {:.0} |", worth.title, cells.join(" | "), s.milliseconds);
+        }
+        text.push_str(
+            "\nDifferences below about 0.01 on the scenes and 0.02 on the real pairs are one object in one case and mean nothing.\n\n",
+        );
+    }
+
+    fn honesty(&self, text: &mut String) {
+        let all: usize = self.honesty.ranges.iter().map(|range| range.pixels).sum();
+        if all == 0 {
+            return;
+        }
+        text.push_str(
+            "## What it knows of itself\n\n`confidence` is the probability that a pixel's label is right. Over all generated scenes, \
+             where a label means the thing that most of its pixels show:\n\n| confidence | share of pixels | mean confidence | right |\n\
+             |---|---|---|---|\n",
+        );
+        for (k, range) in self.honesty.ranges.iter().enumerate().filter(|(_, range)| range.pixels > 0) {
+            let to = RANGES.get(k + 1).copied().unwrap_or(1.0);
+            let of = |value: f64| value / range.pixels as f64;
+            let _ = writeln!(
+                text,
+                "| {:.1} to {:.1} % | {:.1} % | {:.1} % | {:.1} % |",
+                100.0 * RANGES[k],
+                100.0 * to,
+                100.0 * range.pixels as f64 / all as f64,
+                100.0 * of(range.confidence),
+                100.0 * of(range.right as f64)
+            );
+        }
+        let [occluded, hit] = self.honesty.occluded;
+        let [visible, wrongly] = self.honesty.visible;
+        let _ = writeln!(
+            text,
+            "\n`markUnknown` marks {} of the pixels that are hidden or outside in the second frame, and {} of the others; the label \
+             of {} of these would have been wrong.\n",
+            per_cent_1(hit as f64 / occluded as f64),
+            per_cent_1(wrongly as f64 / visible as f64),
+            per_cent_1(self.honesty.saved as f64 / wrongly as f64)
+        );
+    }
+
+    fn pictures(&self, text: &mut String, prefix: &str) {
+        let ranked = self.ranked(|one| OWN.contains(&one.case.set), |best| best.single.map(|s| s.miou));
+        let [best, worst] = ends(ranked);
+        for (title, list) in [("The five best scenes", best), ("The five worst scenes", worst)] {
+            if list.is_empty() {
+                continue;
+            }
+            let _ = writeln!(
+                text,
+                "## {title}\n\nFrom left to right: first frame, ours (best), baseline where it ran, truth.\n"
+            );
+            for (one, miou) in list {
+                let name = &one.case.name;
+                let description = one.case.description();
+                let _ = writeln!(text, "**{name}** ({description}): mean IoU {miou:.3}. {}\n", self.reason(name));
+                let _ = writeln!(text, "![First frame, labels found, truth of {name}]({prefix}{name}.png)\n");
+            }
+        }
+    }
+
+    fn real_ends(&self, text: &mut String) {
+        let ranked = self.ranked(|one| one.case.set == Set::Pairs, |best| best.grouped.and_then(|s| s.j_background));
+        let [best, worst] = ends(ranked);
+        for (title, list) in [("The five best real pairs", best), ("The five worst real pairs", worst)] {
+            if list.is_empty() {
+                continue;
+            }
+            let _ =
+                writeln!(text, "## {title}\n\n| pair | J | J by hand | baseline's J | why |\n|---|---|---|---|---|");
+            for (one, j) in list {
+                let by_hand = one.of(Method::Best).and_then(|best| best.single).and_then(|s| s.j_oracle);
+                let theirs = one.of(Method::Baseline).and_then(|outcome| outcome.grouped).and_then(|s| s.j_background);
+                let [by_hand, theirs] = [by_hand, theirs].map(|j| three(j.unwrap_or(f64::NAN)));
+                let name = &one.case.name;
+                let _ = writeln!(text, "| `{name}` | {j:.3} | {by_hand} | {theirs} | {} |", self.reason(name));
+            }
+            text.push('\n');
+        }
+    }
+
+    fn reason(&self, name: &str) -> &str {
+        self.reasons.get(name).and_then(Value::as_str).unwrap_or("Not looked into yet.")
+    }
+
+    fn of_set(&self, set: Set) -> impl Iterator<Item = &Measured> {
+        self.measured.iter().filter(move |one| one.case.set == set)
+    }
+
+    fn summary(&self, method: Method, belongs: &dyn Fn(&Measured) -> bool) -> Summary {
+        let own = self.measured.iter().filter(|one| belongs(one));
+        Summary::of(own.filter_map(|one| one.of(method).map(|outcome| (&one.case, outcome))))
+    }
+
+    /// Some of the cases by a figure of the best quality, the largest first.
+    fn ranked(
+        &self,
+        belongs: impl Fn(&Measured) -> bool,
+        figure: impl Fn(&Outcome) -> Option<f64>,
+    ) -> Vec<(&Measured, f64)> {
+        let with_figure = |one| Some((one, Measured::of(one, Method::Best).and_then(&figure)?));
+        let mut list: Vec<(&Measured, f64)> =
+            self.measured.iter().filter(|one| belongs(one)).filter_map(with_figure).collect();
+        list.sort_by(|a, b| b.1.total_cmp(&a.1));
+        list
+    }
+}
+
+/// The first few and, the last first, the last few; nothing is in both.
+fn ends<T>(mut list: Vec<T>) -> [Vec<T>; 2] {
+    let many = SHOWN.min(list.len() / 2);
+    let mut worst = list.split_off(list.len() - many);
+    worst.reverse();
+    list.truncate(many);
+    [list, worst]
+}
+
+fn three(value: f64) -> String {
+    if value.is_finite() { format!("{value:.3}") } else { "–".into() }
+}
+
+fn per_cent(share: f64) -> String {
+    if share.is_finite() { format!("{:.0} %", 100.0 * share) } else { "–".into() }
+}
+
+fn per_cent_1(share: f64) -> String {
+    if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
+}

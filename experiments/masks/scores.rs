@@ -1,0 +1,300 @@
+//! How well labels agree with the truth: the usual figures of motion segmentation.
+//!
+//! Pixels whose true label is [`VOID`] are left out everywhere; a found label [`VOID`] is "no label", which matches nothing. Truth 0
+//! is the background.
+
+/// "Not known" in the truth, "no label" in what was found.
+pub(crate) const VOID: u8 = 255;
+/// A found label with a smaller share of the pixels than this is not counted.
+const SMALLEST_SHARE: f64 = 0.002;
+/// Width of the ring along the frame's border whose most frequent label is the background for `j_auto`, pixels.
+const RING: usize = 8;
+/// Tolerance of borders as a share of the frame's diagonal (DAVIS).
+const TOLERANCE: f64 = 0.008;
+
+/// The figures of one labelling. Those of foreground and background exist where the truth has both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scores {
+    /// Mean over the true labels of the intersection over union with the found label that is assigned to each, one to one, so
+    /// that the sum is largest; 0 where there is none.
+    pub(crate) miou: f64,
+    /// Share of pixels that are right, for the assignment with most of them.
+    pub(crate) accuracy: f64,
+    /// Intersection over union of the foreground, where each found label is foreground if most of its pixels are: what a user
+    /// gets who joins labels by hand.
+    pub(crate) j_oracle: Option<f64>,
+    /// The same where everything is foreground but the label with most background pixels.
+    pub(crate) j_background: Option<f64>,
+    /// The same where everything is foreground but the label with most pixels along the frame's border.
+    pub(crate) j_auto: Option<f64>,
+    /// F measure of the border of the foreground of `j_background`, within 0.8 % of the diagonal.
+    pub(crate) boundary: Option<f64>,
+    /// F measure of all borders between labels.
+    pub(crate) all_boundaries: Option<f64>,
+    /// Adjusted Rand index.
+    pub(crate) rand: f64,
+    /// Number of true labels.
+    pub(crate) truth_count: usize,
+    /// Number of found labels.
+    pub(crate) found_count: usize,
+}
+
+/// How many pixels of each true label have each found label.
+struct Contingency {
+    truth: Vec<u8>,
+    found: Vec<u8>,
+    /// `counts[t][f]`, indices into the lists above.
+    counts: Vec<Vec<usize>>,
+}
+
+impl Contingency {
+    fn new(truth: &[u8], found: &[u8]) -> Contingency {
+        let mut table = vec![[0usize; 256]; 256];
+        for (&t, &f) in truth.iter().zip(found).filter(|&(&t, _)| t != VOID) {
+            table[usize::from(t)][usize::from(f)] += 1;
+        }
+        let present = |seen: &dyn Fn(usize) -> bool| (0..=255u8).filter(|&l| seen(usize::from(l))).collect::<Vec<u8>>();
+        let true_labels = present(&|l| table[l].iter().any(|&c| c > 0));
+        let found_labels = present(&|l| table.iter().any(|row| row[l] > 0));
+        let row = |t: &u8| found_labels.iter().map(|&f| table[usize::from(*t)][usize::from(f)]).collect();
+        Contingency { counts: true_labels.iter().map(row).collect(), truth: true_labels, found: found_labels }
+    }
+
+    fn total(&self) -> usize {
+        self.counts.iter().flatten().sum()
+    }
+
+    fn of_truth(&self, t: usize) -> usize {
+        self.counts[t].iter().sum()
+    }
+
+    fn of_found(&self, f: usize) -> usize {
+        self.counts.iter().map(|row| row[f]).sum()
+    }
+
+    /// Indices of the found labels that are labels.
+    fn labels(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.found.len()).filter(|&f| self.found[f] != VOID)
+    }
+
+    /// The largest sum of `value(t, f)` over one-to-one assignments of true to found labels, by dynamic programming over the
+    /// sets of true labels that are taken.
+    fn best_sum(&self, value: impl Fn(usize, usize) -> f64) -> f64 {
+        let mut best = vec![f64::NEG_INFINITY; 1 << self.truth.len()];
+        best[0] = 0.0;
+        for f in self.labels() {
+            for taken in (0..best.len()).rev() {
+                for t in (0..self.truth.len()).filter(|t| taken & (1 << t) != 0) {
+                    best[taken] = best[taken].max(best[taken & !(1 << t)] + value(t, f));
+                }
+            }
+        }
+        best.into_iter().fold(0.0, f64::max)
+    }
+
+    fn overlap(&self, t: usize, f: usize) -> f64 {
+        let both = self.counts[t][f];
+        both as f64 / (self.of_truth(t) + self.of_found(f) - both).max(1) as f64
+    }
+
+    fn rand(&self) -> f64 {
+        let pairs = |count: usize| count as f64 * (count as f64 - 1.0) / 2.0;
+        let together: f64 = self.counts.iter().flatten().map(|&c| pairs(c)).sum();
+        let in_truth: f64 = (0..self.truth.len()).map(|t| pairs(self.of_truth(t))).sum();
+        let in_found: f64 = (0..self.found.len()).map(|f| pairs(self.of_found(f))).sum();
+        let by_chance = in_truth * in_found / pairs(self.total());
+        let most = 0.5 * (in_truth + in_found);
+        if most == by_chance { 1.0 } else { (together - by_chance) / (most - by_chance) }
+    }
+}
+
+/// All figures. `truth` has at most 16 labels.
+pub(crate) fn scores(truth: &[u8], found: &[u8], width: usize) -> Scores {
+    let table = Contingency::new(truth, found);
+    let total = table.total();
+    let least = SMALLEST_SHARE * total as f64;
+    let known: Vec<bool> = truth.iter().map(|&t| t != VOID).collect();
+    let grid = Grid { width, known: &known };
+    let masked = |labels: &[u8]| labels.iter().zip(&known).map(|(&l, &k)| if k { i16::from(l) } else { -1 }).collect();
+    let (all_true, all_found): (Vec<i16>, Vec<i16>) = (masked(truth), masked(found));
+    let mut result = Scores {
+        miou: table.best_sum(|t, f| table.overlap(t, f)) / table.truth.len() as f64,
+        accuracy: table.best_sum(|t, f| table.counts[t][f] as f64) / total as f64,
+        j_oracle: None,
+        j_background: None,
+        j_auto: None,
+        boundary: None,
+        all_boundaries: grid.boundary(&all_true, &all_found),
+        rand: table.rand(),
+        truth_count: table.truth.len(),
+        found_count: table.labels().filter(|&f| table.of_found(f) as f64 >= least).count(),
+    };
+    if table.truth.first() == Some(&0) && table.truth.len() > 1 {
+        let of_background = |f: usize| table.counts[0][f];
+        let mut foreground = [false; 256];
+        for f in 0..table.found.len() {
+            foreground[usize::from(table.found[f])] = 2 * of_background(f) < table.of_found(f);
+        }
+        let moving: Vec<bool> = truth.iter().map(|&t| t != 0 && t != VOID).collect();
+        let select = |counts: &dyn Fn(u8) -> bool| -> Vec<bool> {
+            found.iter().zip(&known).map(|(&f, &k)| k && counts(f)).collect()
+        };
+        let background = first_largest(table.labels().map(|f| (table.found[f], of_background(f)))).unwrap_or(VOID);
+        let chosen = select(&|f| f != background);
+        result.j_oracle = Some(intersection_over_union(&select(&|f| foreground[usize::from(f)]), &moving));
+        result.j_background = Some(intersection_over_union(&chosen, &moving));
+        result.j_auto = Some(match most_frequent_on_ring(found, width) {
+            Some(ring) => intersection_over_union(&select(&|f| f != ring), &moving),
+            None => 0.0,
+        });
+        let levels = |mask: &[bool]| mask.iter().map(|&m| i16::from(m)).collect::<Vec<i16>>();
+        result.boundary = grid.boundary(&levels(&moving), &levels(&chosen));
+    }
+    result
+}
+
+fn first_largest(counts: impl Iterator<Item = (u8, usize)>) -> Option<u8> {
+    let mut best: Option<(u8, usize)> = None;
+    for (label, count) in counts {
+        if best.is_none_or(|(_, most)| count > most) {
+            best = Some((label, count));
+        }
+    }
+    best.map(|(label, _)| label)
+}
+
+fn most_frequent_on_ring(labels: &[u8], width: usize) -> Option<u8> {
+    let height = labels.len() / width;
+    let mut counts = [0usize; 255];
+    for (p, &label) in labels.iter().enumerate() {
+        let (x, y) = (p % width, p / width);
+        let inside = x >= RING && y >= RING && x + RING < width && y + RING < height;
+        if let Some(count) = counts.get_mut(usize::from(label)).filter(|_| !inside) {
+            *count += 1;
+        }
+    }
+    first_largest((0..255).zip(counts).filter(|&(_, count)| count > 0))
+}
+
+fn intersection_over_union(a: &[bool], b: &[bool]) -> f64 {
+    let both = a.iter().zip(b).filter(|&(&a, &b)| a && b).count();
+    let either = a.iter().zip(b).filter(|&(&a, &b)| a || b).count();
+    if either == 0 { 1.0 } else { both as f64 / either as f64 }
+}
+
+/// The pixel grid, and where the truth is known.
+struct Grid<'a> {
+    width: usize,
+    known: &'a [bool],
+}
+
+impl Grid<'_> {
+    fn height(&self) -> usize {
+        self.known.len() / self.width
+    }
+
+    /// F measure of borders, those next to unknown pixels left out; none where that leaves too little of the true borders.
+    fn boundary(&self, truth: &[i16], found: &[i16]) -> Option<f64> {
+        let all_known = self.known.iter().all(|&k| k);
+        let (all_true, mut found) = (self.borders(truth), self.borders(found));
+        let mut truth = all_true.clone();
+        if !all_known {
+            let far = self.far_from_unknown();
+            for border in [&mut truth, &mut found] {
+                border.iter_mut().zip(&far).for_each(|(b, &far)| *b &= far);
+            }
+        }
+        let count = |mask: &[bool]| mask.iter().filter(|&&m| m).count();
+        let (true_count, found_count) = (count(&truth), count(&found));
+        if !all_known && (true_count as f64) < 0.25 * count(&all_true) as f64 {
+            return None;
+        }
+        match (true_count, found_count) {
+            (0, 0) => return Some(1.0),
+            (0, _) | (_, 0) => return Some(0.0),
+            _ => {}
+        }
+        let diagonal = ((self.width * self.width + self.height() * self.height()) as f64).sqrt();
+        let tolerance = (TOLERANCE * diagonal).ceil() as usize;
+        let met = |mask: &[bool], near: &[bool]| {
+            mask.iter().zip(near).filter(|&(&m, &n)| m && n).count() as f64 / count(mask) as f64
+        };
+        let precision = met(&found, &self.within(&truth, tolerance));
+        let recall = met(&truth, &self.within(&found, tolerance));
+        Some(if precision + recall == 0.0 { 0.0 } else { 2.0 * precision * recall / (precision + recall) })
+    }
+
+    /// Pixels whose right or lower neighbour is different.
+    fn borders(&self, labels: &[i16]) -> Vec<bool> {
+        let right = |p: usize| !(p + 1).is_multiple_of(self.width) && labels[p] != labels[p + 1];
+        let below = |p: usize| p + self.width < labels.len() && labels[p] != labels[p + self.width];
+        (0..labels.len()).map(|p| right(p) || below(p)).collect()
+    }
+
+    /// Pixels that are known with all eight neighbours.
+    fn far_from_unknown(&self) -> Vec<bool> {
+        let (width, height) = (self.width, self.height());
+        let known = |x: usize, y: usize| {
+            (y.saturating_sub(1)..(y + 2).min(height))
+                .all(|v| (x.saturating_sub(1)..(x + 2).min(width)).all(|u| self.known[v * width + u]))
+        };
+        (0..self.known.len()).map(|p| known(p % width, p / width)).collect()
+    }
+
+    /// Pixels whose distance from the mask is at most `reach`.
+    fn within(&self, mask: &[bool], reach: usize) -> Vec<bool> {
+        let (width, height) = (self.width, self.height());
+        const FAR: usize = usize::MAX;
+        // Distance along the column, then the nearest over the columns around.
+        let mut along = vec![FAR; mask.len()];
+        for x in 0..width {
+            for order in [false, true] {
+                let mut last = FAR;
+                for k in 0..height {
+                    let p = (if order { height - 1 - k } else { k }) * width + x;
+                    last = if mask[p] { 0 } else { last.saturating_add(1) };
+                    along[p] = along[p].min(last);
+                }
+            }
+        }
+        let near = |p: usize| {
+            let (x, row) = (p % width, p - p % width);
+            (x.saturating_sub(reach)..(x + reach + 1).min(width)).any(|u| {
+                let (dx, dy) = (u.abs_diff(x), along[row + u]);
+                dy <= reach && dx * dx + dy * dy <= reach * reach
+            })
+        };
+        (0..mask.len()).map(near).collect()
+    }
+}
+
+/// Median of sorted values: of two in the middle their mean; NaN of none.
+fn median(sorted: &[f64]) -> f64 {
+    match sorted.len() {
+        0 => f64::NAN,
+        n => 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]),
+    }
+}
+
+/// Median over the pixels with known flow of the distance between it and the flow of the motion of the pixel's label; a pixel
+/// without a label counts as standing still. `flow` has NaN where nothing is known.
+pub(crate) fn flow_error(
+    flow: &[[f32; 2]],
+    labels: &[u8],
+    width: usize,
+    flow_of: impl Fn(u8, f64, f64) -> Option<[f64; 2]>,
+) -> f64 {
+    let mut errors: Vec<f64> = flow
+        .iter()
+        .zip(labels)
+        .enumerate()
+        .filter(|(_, (known, _))| known.iter().all(|c| c.is_finite()))
+        .map(|(p, (known, &label))| {
+            let [u, v] = flow_of(label, (p % width) as f64, (p / width) as f64).unwrap_or_default();
+            let (du, dv) = (u - f64::from(known[0]), v - f64::from(known[1]));
+            (du * du + dv * dv).sqrt()
+        })
+        .collect();
+    errors.sort_by(f64::total_cmp);
+    median(&errors)
+}

@@ -1,0 +1,71 @@
+// npm run bench:masks: masks of generated scenes and real pairs beside what OpenCV gives; `-- --help` lists the options.
+// The frames are written first, the baseline (a Python program that lies beside the checkout, not in it) runs on them, and then
+// the program measures both.
+
+import { existsSync, mkdirSync, rmSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+
+import { root } from './lib/project.mjs';
+import { checkRust } from './lib/rust.mjs';
+import { command, must, run } from './lib/run.mjs';
+
+const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'masks', '--'];
+/** Baselines at a time. */
+const AT_ONCE = 2;
+
+await command(async (args) => {
+  if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
+  await checkRust();
+  const out = resolve(root, valueOf(args, '--out') ?? 'out/masks');
+  const baselines = join(out, 'baseline');
+  for (const folder of [baselines, join(out, 'frames')]) rmSync(folder, { recursive: true, force: true });
+  console.error('Building the program if it has changed (some minutes when everything is new) …');
+  const frames = await run('cargo', [...CARGO, 'frames', ...args], { output: 'collect' });
+  if (frames.code !== 0) {
+    process.stderr.write(frames.text);
+    return frames.code;
+  }
+  const cases = frames.stdout.trim().split('\n').map((line) => line.split('\t'));
+  await runBaseline(cases, baselines, resolve(root, valueOf(args, '--shared') ?? '../shared'));
+  return (await run('cargo', [...CARGO, 'measure', ...args])).code;
+});
+
+function valueOf(args, option) {
+  const place = args.indexOf(option);
+  return place < 0 ? undefined : args[place + 1];
+}
+
+/** The baseline on every case, or a sentence that says what is missing. */
+async function runBaseline(cases, folder, shared) {
+  const program = join(shared, 'tools', 'baseline.py');
+  if (!existsSync(program)) {
+    console.error(`Without a baseline to compare with: ${program} is not there.`);
+    return;
+  }
+  const python = await findPython();
+  if (!python) {
+    const packages = 'pip install numpy opencv-python-headless';
+    console.error(`Without a baseline to compare with: it needs Python with NumPy and OpenCV (${packages}). The Python to take may`);
+    console.error('be named in VERONESE_PYTHON; otherwise python3, then python on the path are tried.');
+    return;
+  }
+  console.error(`The baseline on ${cases.length} cases, by ${python} …`);
+  mkdirSync(folder, { recursive: true });
+  const left = [...cases];
+  const worker = async () => {
+    for (let next = left.shift(); next; next = left.shift()) {
+      const [name, frames] = next;
+      await must(`The baseline failed on ${name}.`, python, [program, frames, '--out', join(folder, name)], { output: 'collect' });
+    }
+  };
+  await Promise.all(Array.from({ length: AT_ONCE }, worker));
+}
+
+/** The first Python that has what the baseline needs. */
+async function findPython() {
+  const candidates = process.env.VERONESE_PYTHON ? [process.env.VERONESE_PYTHON] : ['python3', 'python'];
+  for (const python of candidates) {
+    if ((await run(python, ['-c', 'import cv2, numpy'], { output: 'collect' })).code === 0) return python;
+  }
+  return undefined;
+}

@@ -1,0 +1,348 @@
+//! Labels solved again under what a person says about single pixels: "this belongs to that motion", "this does not".
+//!
+//! The motions stay as they are. A stroke is a hard rule on its own pixels and a price around them: a label that the nearest
+//! stroke excludes costs `STRENGTH · exp(−d/REACH)` more. The distance d is measured along the picture: where the frames agree with
+//! what is said it grows slowly, where they cannot tell it grows at every edge of the picture, and where they say the contrary it
+//! grows fast. So one stroke takes a whole region with it and ends where the region does. Where no stroke reaches, the labels that
+//! were there stay, bit for bit.
+
+use super::Work;
+use super::report::{SegmentedMotion, describe, reduced};
+use super::settings::{Part, Settings};
+use crate::error::{Error, Result};
+use crate::frame::filter::gaussian;
+use crate::frame::{Frame, Plane};
+use crate::labelling::appearance::appearance_costs;
+use crate::labelling::energy::{Borders, label_cost};
+use crate::labelling::upsampling::upsample;
+use crate::labelling::visibility::with_visibility;
+use crate::motion::AffineMotion;
+use crate::options::SegmentOptions;
+use crate::points::UNLABELLED;
+use crate::progress::{Progress, Stages};
+
+const STAGES: &[&str] = &["frames", "dominant", "labels", "masks"];
+
+/// Largest number of motions a [`Correction`] can speak of: the bits of a set.
+pub const MAX_CORRECTED: usize = 16;
+
+/// Price of an excluded label beside the stroke: twice what a motion that does not fit costs there.
+const STRENGTH: f32 = 4.0;
+/// Distance, working pixels of a flat picture without texture, at which it has fallen to 1/e.
+const REACH: f32 = 24.0;
+/// A stroke with less than this share of its price left has no say.
+const SMALLEST_SAY: f32 = 0.02;
+/// Length of a step where the frames agree with what is said …
+const FREE_STEP: f32 = 0.25;
+/// … and by how much it is longer where they cannot tell.
+const DOUBTFUL_STEP: f32 = 2.0;
+/// A step over a strong edge where they cannot tell, and one where they say the contrary, is longer by this.
+const WALL: f32 = 40.0;
+/// Intensity step, grey levels, at which an edge is strong (to 1 − 1/e).
+const EDGE: f32 = 24.0;
+/// Difference of two motions' costs from which on the frames tell them apart …
+const TELLING: f32 = 0.5;
+/// … averaged over this window, working pixels.
+const TELLING_WINDOW: f32 = 1.5;
+/// Price of another label than the one that was there, where a stroke is about to lose its say.
+const HABIT: f32 = 2.0;
+/// Sweeps over the picture in which distances spread; one in each direction nearly always does.
+const SWEEPS: usize = 2;
+/// What changes at working size is enlarged anew this many working pixels around.
+const MARGIN: usize = 3;
+/// Cost of what a stroke forbids.
+const FORBIDDEN: f32 = 1e6;
+
+/// What [`relabel`] starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Correction<'a> {
+    /// The motions, pixels of the full frame; their order is that of the labels. At most [`MAX_CORRECTED`].
+    pub motions: &'a [AffineMotion],
+    /// Group of each motion; goes into the answer as it is.
+    pub groups: &'a [u8],
+    /// The labels so far, one per pixel of the frame, row by row; [`UNLABELLED`] where there is none.
+    pub labels: &'a [u8],
+    /// What is said, one set of labels per pixel of the frame: bit k is set where motion k is possible; 0 says nothing. "This is
+    /// motion 2 or 3" is `0b1100`, "this is not motion 0" of four is `0b1110`.
+    pub allowed: &'a [u16],
+}
+
+/// What [`relabel`] gives.
+#[derive(Clone, Debug)]
+pub struct Relabelling {
+    /// The motions in the order given, also those that lost all their pixels.
+    pub motions: Vec<SegmentedMotion>,
+    /// One label per pixel of the frame.
+    pub labels: Vec<u8>,
+    /// Number of unlabelled pixels.
+    pub unlabelled: usize,
+}
+
+/// Solves the labels of `first` again under what the correction says, with the motions and the numbering as they are. The answer
+/// depends on the arguments alone: corrections are undone by asking again without them.
+///
+/// `options.quality` is that of the labels so far; the other options have no effect.
+///
+/// # Errors
+/// [`Error::FrameSizeMismatch`]; [`Error::InvalidOption`] `motions`, `groups`, `labels` or `evidence` for arrays that do not belong
+/// together or speak of motions that are not there.
+pub fn relabel(
+    first: &Frame,
+    second: &Frame,
+    before: Option<&Frame>,
+    correction: &Correction<'_>,
+    options: &SegmentOptions,
+    progress: Progress<'_>,
+) -> Result<Relabelling> {
+    super::check_sizes(first, second, before)?;
+    correction.check(first.width() * first.height())?;
+    let settings = Settings::of(options);
+    let mut stages = Stages::new(STAGES, progress);
+    let labels = if correction.allowed.iter().all(|&set| set == 0) {
+        correction.labels.to_vec()
+    } else {
+        stages.begin("frames");
+        let mut work = Work::new(first, second, before, &settings);
+        stages.begin("dominant");
+        work.find_dominant(settings.has(Part::Brightness));
+        stages.begin("labels");
+        let draft = Draft::new(&work, correction, first.width());
+        let solved = draft.solve(&work, &settings);
+        stages.begin("masks");
+        draft.enlarge(&solved, correction, first.luminance())
+    };
+    let groups: Vec<usize> = correction.groups.iter().map(|&g| usize::from(g)).collect();
+    let mut motions = describe(correction.motions, &groups, &labels, first.luminance(), second.luminance());
+    motions.iter_mut().zip(correction.groups).for_each(|(motion, &group)| motion.group = group);
+    let unlabelled = labels.iter().filter(|&&l| l == UNLABELLED).count();
+    Ok(Relabelling { motions, labels, unlabelled })
+}
+
+impl Correction<'_> {
+    fn check(&self, pixels: usize) -> Result<()> {
+        let invalid = |name, reason| Err(Error::InvalidOption { name, reason });
+        let n = self.motions.len();
+        if n == 0 || n > MAX_CORRECTED {
+            return invalid("motions", format!("there must be 1 to {MAX_CORRECTED} motions, not {n}"));
+        }
+        if let Some(k) = self.motions.iter().position(|m| !m.is_finite()) {
+            return invalid("motions", format!("the matrix of motion {k} must hold six finite numbers"));
+        }
+        if self.groups.len() != n {
+            return invalid("groups", format!("{} groups do not fit {n} motions", self.groups.len()));
+        }
+        if self.labels.len() != pixels {
+            return invalid("labels", format!("{} labels do not fill {pixels} pixels", self.labels.len()));
+        }
+        if let Some(label) = self.labels.iter().find(|&&l| usize::from(l) >= n && l != UNLABELLED) {
+            return invalid("labels", format!("label {label} is not one of {n} motions"));
+        }
+        if self.allowed.len() != pixels {
+            return invalid("evidence", format!("{} sets do not fill {pixels} pixels", self.allowed.len()));
+        }
+        if let Some(set) = self.allowed.iter().find(|&&set| u32::from(set) >> n != 0) {
+            return invalid("evidence", format!("the set {set:#b} speaks of more than {n} motions"));
+        }
+        Ok(())
+    }
+}
+
+/// The correction at working size.
+struct Draft {
+    motions: Vec<AffineMotion>,
+    labels: Vec<u8>,
+    allowed: Vec<u16>,
+    /// Full-size pixels per working pixel.
+    step: usize,
+    size: [usize; 2],
+}
+
+impl Draft {
+    fn new(work: &Work, correction: &Correction<'_>, full_width: usize) -> Draft {
+        let level = work.finest();
+        let (width, height) = (level.width(), level.height());
+        let step = work.reduction as usize;
+        let full_height = correction.labels.len() / full_width;
+        let mut labels = Vec::with_capacity(width * height);
+        let mut allowed = vec![0u16; width * height];
+        for y in 0..height {
+            for x in 0..width {
+                let (u, v) = ((x * step + step / 2).min(full_width - 1), (y * step + step / 2).min(full_height - 1));
+                labels.push(correction.labels[v * full_width + u]);
+            }
+        }
+        for (p, &set) in correction.allowed.iter().enumerate().filter(|&(_, &set)| set != 0) {
+            let (x, y) = ((p % full_width / step).min(width - 1), (p / full_width / step).min(height - 1));
+            let slot = &mut allowed[y * width + x];
+            // Two strokes through one working pixel: what both admit, or, where that is nothing, what either does.
+            *slot = match (*slot, *slot & set) {
+                (0, _) => set,
+                (old, 0) => old | set,
+                (_, both) => both,
+            };
+        }
+        let motions = correction.motions.iter().map(|m| reduced(m, work.reduction)).collect();
+        Draft { motions, labels, allowed, step, size: [width, height] }
+    }
+
+    /// The labels of working size.
+    fn solve(&self, work: &Work, settings: &Settings) -> Vec<u8> {
+        let level = work.finest();
+        let coherence = settings.coherence;
+        let motions = self.motions.iter().enumerate();
+        let mut costs: Vec<Plane> = motions.map(|(k, m)| label_cost(level, m, k > 0, coherence)).collect();
+        // Where nothing was said yet, the dominant motion stands in: it is what the masks were corrected for occlusion with.
+        let known: Vec<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
+        if self.motions.len() > 1 {
+            costs = with_visibility(level, &self.motions, &costs, &known, coherence.departure);
+            let said = appearance_costs(&work.palette, &costs, &known);
+            for (cost, said) in costs.iter_mut().zip(said) {
+                cost.values_mut().iter_mut().zip(said.values()).for_each(|(c, s)| *c += s);
+            }
+        }
+        let say = self.add_evidence(&mut costs, &work.edges);
+        let mut solved = Borders::new(&work.edges, level.noise, coherence).solve(&costs, coherence.solver);
+        for (p, label) in solved.iter_mut().enumerate() {
+            if say[p] < SMALLEST_SAY {
+                *label = self.labels[p];
+            }
+        }
+        solved
+    }
+
+    /// Adds to the costs what the strokes say, and how dear a change is where they hardly say anything. Returns how much of its
+    /// strength the nearest stroke has at every pixel, 0…1.
+    fn add_evidence(&self, costs: &mut [Plane], edges: &Plane) -> Vec<f32> {
+        let mut say: Vec<f32> = self.allowed.iter().map(|&set| if set == 0 { 0.0 } else { 1.0 }).collect();
+        let smooth: Vec<Plane> = costs.iter().map(|c| gaussian(c, TELLING_WINDOW)).collect();
+        for k in 0..costs.len() {
+            let excluded = |p: usize| self.allowed[p] != 0 && self.allowed[p] >> k & 1 == 0;
+            if !(0..self.allowed.len()).any(excluded) {
+                continue;
+            }
+            let distance = distances(edges, &against(&smooth, k), excluded);
+            for (p, c) in costs[k].values_mut().iter_mut().enumerate() {
+                let strength = libm::expf(-distance[p] / REACH);
+                *c += if excluded(p) { FORBIDDEN } else { STRENGTH * strength };
+                say[p] = say[p].max(strength);
+            }
+        }
+        for (k, cost) in costs.iter_mut().enumerate() {
+            for (p, c) in cost.values_mut().iter_mut().enumerate() {
+                if self.labels[p] != UNLABELLED && usize::from(self.labels[p]) != k {
+                    *c += HABIT * (1.0 - say[p]);
+                }
+            }
+        }
+        say
+    }
+
+    /// Full-size labels: enlarged along the edges of the frame near what has changed, as they were elsewhere; strokes hold to the
+    /// pixel.
+    fn enlarge(&self, solved: &[u8], correction: &Correction<'_>, guide: &Plane) -> Vec<u8> {
+        let [width, height] = self.size;
+        let near = self.near_changes(solved);
+        // An unlabelled pixel that no stroke reached stays one: it has a label of its own while labels are enlarged.
+        let unlabelled = self.motions.len() as u8;
+        let work: Vec<u8> = solved.iter().map(|&l| l.min(unlabelled)).collect();
+        let full = upsample(&work, self.size, self.motions.len() + 1, guide);
+        let mut labels = correction.labels.to_vec();
+        for (p, label) in labels.iter_mut().enumerate() {
+            let (x, y) = (p % guide.width() / self.step, p / guide.width() / self.step);
+            let q = y.min(height - 1) * width + x.min(width - 1);
+            if near[q] {
+                *label = if full[p] == unlabelled { UNLABELLED } else { full[p] };
+            }
+            let set = correction.allowed[p];
+            if set != 0 && (*label == UNLABELLED || set >> *label & 1 == 0) {
+                let here = solved[q];
+                *label = if here != UNLABELLED && set >> here & 1 == 1 { here } else { set.trailing_zeros() as u8 };
+            }
+        }
+        labels
+    }
+
+    /// Working pixels within [`MARGIN`] of one whose label has changed.
+    fn near_changes(&self, solved: &[u8]) -> Vec<bool> {
+        let [width, height] = self.size;
+        let mut near = vec![false; solved.len()];
+        for p in (0..solved.len()).filter(|&p| solved[p] != self.labels[p]) {
+            let (x, y) = (p % width, p / width);
+            for v in y.saturating_sub(MARGIN)..=(y + MARGIN).min(height - 1) {
+                near[v * width + x.saturating_sub(MARGIN)..=v * width + (x + MARGIN).min(width - 1)].fill(true);
+            }
+        }
+        near
+    }
+}
+
+/// How clearly the frames speak against label k: the cost it has above the cheapest other, in units of [`TELLING`], −1…1.
+fn against(costs: &[Plane], k: usize) -> Vec<f32> {
+    let other =
+        |p: usize| (0..costs.len()).filter(|&l| l != k).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min);
+    let own = costs[k].values().iter().enumerate();
+    own.map(|(p, &own)| ((own - other(p)) / TELLING).clamp(-1.0, 1.0)).collect()
+}
+
+/// Distance of every pixel from the nearest that `starts`. `agreement` says how far the frames agree, −1…1. Distances spread along
+/// rows and columns in [`SWEEPS`] double sweeps, which leaves those behind many corners too large.
+fn distances(edges: &Plane, agreement: &[f32], starts: impl Fn(usize) -> bool) -> Vec<f32> {
+    let (width, height) = (edges.width(), edges.height());
+    let values = edges.values();
+    let step = |p: usize, q: usize| {
+        let agreed = agreement[p].min(agreement[q]);
+        let edge = 1.0 - libm::expf(-(values[p] - values[q]).abs() / EDGE);
+        FREE_STEP + (1.0 - agreed.abs()) * (DOUBTFUL_STEP + WALL * edge) + WALL * (-agreed).max(0.0)
+    };
+    let right: Vec<f32> = (0..values.len()).map(|p| if (p + 1) % width == 0 { 0.0 } else { step(p, p + 1) }).collect();
+    let down: Vec<f32> = (0..(height - 1) * width).map(|p| step(p, p + width)).collect();
+    let mut distance: Vec<f32> = (0..values.len()).map(|p| if starts(p) { 0.0 } else { f32::INFINITY }).collect();
+    for _ in 0..SWEEPS {
+        for p in 0..values.len() {
+            if p % width > 0 {
+                distance[p] = distance[p].min(distance[p - 1] + right[p - 1]);
+            }
+            if p >= width {
+                distance[p] = distance[p].min(distance[p - width] + down[p - width]);
+            }
+        }
+        for p in (0..values.len()).rev() {
+            if (p + 1) % width != 0 {
+                distance[p] = distance[p].min(distance[p + 1] + right[p]);
+            }
+            if p + width < values.len() {
+                distance[p] = distance[p].min(distance[p + width] + down[p]);
+            }
+        }
+    }
+    distance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDTH: usize = 9;
+
+    /// Flat ground; between the left and the right half a column of white with a gap in the last row.
+    fn walled() -> Plane {
+        Plane::from_fn(WIDTH, 5, |x, y| if x == 4 && y < 4 { 255.0 } else { 0.0 })
+    }
+
+    #[test]
+    fn where_the_frames_cannot_tell_distance_goes_around_an_edge() {
+        let distance = distances(&walled(), &[0.0; 45], |p| p == 0);
+        let step = DOUBTFUL_STEP + FREE_STEP;
+        assert_eq!(distance[3], 3.0 * step);
+        // Down, through the gap, up again.
+        assert_eq!(distance[8], 16.0 * step);
+    }
+
+    #[test]
+    fn where_they_agree_it_crosses_edges_and_where_they_do_not_it_stops() {
+        assert_eq!(distances(&walled(), &[1.0; 45], |p| p == 0)[8], 8.0 * FREE_STEP);
+        let mut agreement = [1.0; 45];
+        (0..45).filter(|p| p % WIDTH > 4).for_each(|p| agreement[p] = -1.0);
+        assert!(distances(&walled(), &agreement, |p| p == 0)[5] > WALL);
+    }
+}

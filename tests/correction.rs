@@ -1,0 +1,168 @@
+//! Labels under strokes: what is said holds, what is far from it stays, one stroke takes a region with it.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
+
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use veronese::scene::{self, Scene, SceneOptions};
+use veronese::{
+    AffineMotion, Correction, Error, Relabelling, SegmentOptions, Segmentation, UNLABELLED, relabel, segment_pair,
+};
+
+struct Case {
+    scene: Scene,
+    found: Segmentation,
+    motions: Vec<AffineMotion>,
+    groups: Vec<u8>,
+}
+
+impl Case {
+    fn new(width: usize, height: usize, seed: u64) -> Case {
+        let scene = scene::generate(&SceneOptions { width, height, seed, ..SceneOptions::default() }).unwrap();
+        let options = SegmentOptions::default();
+        let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {}).unwrap();
+        let motions = found.motions.iter().map(|m| m.matrix).collect();
+        let groups = found.motions.iter().map(|m| m.group).collect();
+        Case { scene, found, motions, groups }
+    }
+
+    fn pixels(&self) -> usize {
+        self.found.labels.len()
+    }
+
+    fn ask(&self, labels: &[u8], allowed: &[u16]) -> Result<Relabelling, Error> {
+        let correction = Correction { motions: &self.motions, groups: &self.groups, labels, allowed };
+        let (first, second) = (self.scene.first(), self.scene.second());
+        relabel(first, second, None, &correction, &SegmentOptions::default(), &mut |_| {})
+    }
+
+    /// A stroke: a disc of `radius` around a pixel.
+    fn disc(&self, allowed: &mut [u16], [cx, cy]: [usize; 2], radius: usize, set: u16) {
+        for y in cy.saturating_sub(radius)..(cy + radius + 1).min(self.found.height) {
+            for x in cx.saturating_sub(radius)..(cx + radius + 1).min(self.found.width) {
+                if x.abs_diff(cx).pow(2) + y.abs_diff(cy).pow(2) <= radius * radius {
+                    allowed[y * self.found.width + x] = set;
+                }
+            }
+        }
+    }
+
+    /// The pixel of a label that is farthest inside its bounding box's middle: the nearest to the box's centre.
+    fn middle(&self, label: u8) -> [usize; 2] {
+        let [x, y, w, h] = self.found.motions[usize::from(label)].bbox;
+        let centre = [x + w / 2, y + h / 2];
+        let own = (0..self.pixels()).filter(|&p| self.found.labels[p] == label);
+        let far = |p: usize| {
+            let (u, v) = (p % self.found.width, p / self.found.width);
+            u.abs_diff(centre[0]).pow(2) + v.abs_diff(centre[1]).pow(2)
+        };
+        let p = own.min_by_key(|&p| far(p)).unwrap();
+        [p % self.found.width, p / self.found.width]
+    }
+}
+
+#[test]
+fn nothing_said_changes_nothing() {
+    let case = Case::new(320, 240, 3);
+    let again = case.ask(&case.found.labels, &vec![0; case.pixels()]).unwrap();
+    assert_eq!(again.labels, case.found.labels);
+    for (now, before) in again.motions.iter().zip(&case.found.motions) {
+        assert_eq!(
+            (now.pixels, now.bbox, now.group, now.label),
+            (before.pixels, before.bbox, before.group, before.label)
+        );
+        assert_eq!(now.residual, before.residual);
+    }
+}
+
+#[test]
+fn what_is_said_holds_to_the_pixel_and_far_away_everything_stays() {
+    let case = Case::new(640, 480, 5);
+    assert!(case.found.count >= 2);
+    let mut allowed = vec![0; case.pixels()];
+    let [x, y] = case.middle(1);
+    case.disc(&mut allowed, [x, y], 5, 0b1);
+    let corrected = case.ask(&case.found.labels, &allowed).unwrap();
+    for (p, &set) in allowed.iter().enumerate() {
+        if set != 0 {
+            assert_eq!(corrected.labels[p], 0);
+        }
+        let (u, v) = (p % 640, p / 640);
+        // Two pixels to a working pixel: e⁻⁴ of the say is left where steps are of full length, and objects are smaller than this.
+        if u.abs_diff(x).max(v.abs_diff(y)) > 220 {
+            assert_eq!(corrected.labels[p], case.found.labels[p]);
+        }
+    }
+    assert!(corrected.motions[1].pixels < case.found.motions[1].pixels);
+    let counted: usize = corrected.motions.iter().map(|m| m.pixels).sum();
+    assert_eq!(counted + corrected.unlabelled, case.pixels());
+}
+
+#[test]
+fn one_stroke_mends_a_wrong_region() {
+    // An object was taken for background: its labels are lost, its motion is known.
+    for seed in [5, 7, 11] {
+        let case = Case::new(320, 240, seed);
+        let object = 1u8;
+        let wrong: Vec<u8> = case.found.labels.iter().map(|&l| if l == object { 0 } else { l }).collect();
+        let mut allowed = vec![0; case.pixels()];
+        case.disc(&mut allowed, case.middle(object), 4, 1 << object);
+        let mended = case.ask(&wrong, &allowed).unwrap();
+        let (mut both, mut either) = (0usize, 0usize);
+        for (&now, &right) in mended.labels.iter().zip(&case.found.labels) {
+            both += usize::from(now == object && right == object);
+            either += usize::from(now == object || right == object);
+        }
+        let overlap = both as f64 / either as f64;
+        assert!(overlap > 0.8, "seed {seed}: {overlap}");
+    }
+}
+
+#[test]
+fn an_eraser_takes_a_label_away_and_a_set_leaves_the_choice() {
+    let case = Case::new(320, 240, 5);
+    let n = case.motions.len();
+    let everything = (1u16 << n) - 1;
+    let mut allowed = vec![0; case.pixels()];
+    case.disc(&mut allowed, case.middle(1), 6, everything & !0b10);
+    let erased = case.ask(&case.found.labels, &allowed).unwrap();
+    assert!(allowed.iter().zip(&erased.labels).all(|(&set, &l)| set == 0 || l != 1));
+    // All labels are possible: the disc says nothing that could be broken, and the mask keeps its middle.
+    let mut open = vec![0; case.pixels()];
+    case.disc(&mut open, case.middle(1), 6, everything);
+    let kept = case.ask(&case.found.labels, &open).unwrap();
+    let [x, y] = case.middle(1);
+    assert_eq!(kept.labels[y * case.found.width + x], 1);
+}
+
+#[test]
+fn unlabelled_pixels_stay_so_where_nobody_speaks() {
+    let case = Case::new(320, 240, 5);
+    let mut labels = case.found.labels.clone();
+    labels[..320 * 20].fill(UNLABELLED);
+    let mut allowed = vec![0; case.pixels()];
+    let [x, y] = case.middle(1);
+    case.disc(&mut allowed, [x, y.max(120)], 3, 0b1);
+    let corrected = case.ask(&labels, &allowed).unwrap();
+    assert!(corrected.unlabelled > 0);
+    assert_eq!(corrected.unlabelled, corrected.labels.iter().filter(|&&l| l == UNLABELLED).count());
+}
+
+#[test]
+fn what_does_not_belong_together_is_refused() {
+    let case = Case::new(64, 48, 1);
+    let (pixels, labels) = (case.pixels(), &case.found.labels);
+    let reason = |result: Result<Relabelling, Error>| match result {
+        Err(Error::InvalidOption { name, .. }) => name,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(reason(case.ask(&labels[1..], &vec![0; pixels])), "labels");
+    assert_eq!(reason(case.ask(&vec![200; pixels], &vec![0; pixels])), "labels");
+    assert_eq!(reason(case.ask(labels, &vec![0; pixels - 1])), "evidence");
+    assert_eq!(reason(case.ask(labels, &vec![1 << 15; pixels])), "evidence");
+    let nan = AffineMotion::new([f64::NAN; 6]);
+    let motions = vec![nan; case.motions.len()];
+    let correction = Correction { motions: &motions, groups: &case.groups, labels, allowed: &vec![0; pixels] };
+    let (first, second) = (case.scene.first(), case.scene.second());
+    assert_eq!(reason(relabel(first, second, None, &correction, &SegmentOptions::default(), &mut |_| {})), "motions");
+}

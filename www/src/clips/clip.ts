@@ -1,0 +1,53 @@
+//! Films: a video file or a folder of frames, from which two frames are chosen by number.
+
+import { PageError } from '../errors.js';
+import type { LoadedFrame } from '../frames.js';
+import { strings } from '../strings.js';
+
+export interface Clip {
+  readonly name: string;
+  /** Number of frames. */
+  readonly count: number;
+  /** When each frame is shown, seconds; none for a folder. */
+  readonly times: Float64Array | null;
+  /** Whether frame `i` certainly is the `i`-th of the file. */
+  readonly exact: boolean;
+  /** Size of a frame as it is shown. */
+  readonly width: number;
+  readonly height: number;
+  frame(index: number, longestSide: number): Promise<LoadedFrame>;
+  /** Small pictures of the frames named, in this order, for a timeline; `draw` puts one into a canvas of any size. */
+  thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void>;
+  /** Gives back decoders and memory. */
+  close(): void;
+}
+
+/** Draws itself into the rectangle. */
+export type Picture = (context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number) => void;
+
+const FILM_NAMES = /\.(mp4|m4v|mov|webm|mkv)$/i;
+
+export function looksLikeFilm(file: File): boolean {
+  return file.type.startsWith('video/') || FILM_NAMES.test(file.name);
+}
+
+/**
+ * Opens a video: with exact frames where the browser has WebCodecs and the codec, else by seeking, which the clip then says.
+ * Throws a {@link PageError} `unreadable-video` when the browser can do neither.
+ */
+export async function openClip(file: File): Promise<Clip> {
+  if (typeof VideoDecoder === 'function') {
+    const { openExact } = await import('./exact.js');
+    const clip = await openExact(file);
+    if (clip !== null) return clip;
+  }
+  const { openApproximate } = await import('./approximate.js');
+  const clip = await openApproximate(file);
+  if (clip === null) throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
+  return clip;
+}
+
+/** The name of a frame in lists and files: "clip.mp4 #12". */
+export function frameName(clip: string, index: number): string {
+  return `${clip} #${index}`;
+}

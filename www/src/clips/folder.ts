@@ -1,0 +1,42 @@
+//! A folder of frames, in the order of their names.
+
+import { type LoadedFrame, frameFromBlob } from '../frames.js';
+import type { Clip, Picture } from './clip.js';
+
+export async function openFolder(files: readonly File[]): Promise<Clip> {
+  const size = await frameFromBlob(files[0]!, files[0]!.name, Infinity);
+  size.bitmap.close();
+  return new Folder(files, size.width, size.height);
+}
+
+class Folder implements Clip {
+  readonly exact = true;
+  readonly times = null;
+  readonly name: string;
+  readonly count: number;
+
+  constructor(
+    readonly files: readonly File[],
+    readonly width: number,
+    readonly height: number,
+  ) {
+    this.name = files[0]!.webkitRelativePath.split('/')[0] || files[0]!.name;
+    this.count = files.length;
+  }
+
+  frame(index: number, longestSide: number): Promise<LoadedFrame> {
+    const file = this.files[index]!;
+    return frameFromBlob(file, file.name, longestSide);
+  }
+
+  async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {
+    for (const index of indices) {
+      const bitmap = await createImageBitmap(this.files[index]!, { resizeHeight: 96 }).catch(() => null);
+      if (bitmap === null) continue; // said when it is chosen
+      draw(index, (context, x, y, width, height) => context.drawImage(bitmap, x, y, width, height));
+      bitmap.close();
+    }
+  }
+
+  close(): void {}
+}

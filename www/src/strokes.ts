@@ -1,0 +1,44 @@
+//! Brush strokes: paths that say which labels are possible where they go.
+
+/** A path over the first frame. */
+export interface Stroke {
+  /** x, y of one point after another, pixels of the frame. */
+  readonly points: readonly number[];
+  /** Pixels. */
+  readonly radius: number;
+  /** The labels that are possible here, one bit each. */
+  readonly labels: number;
+}
+
+/** What all strokes say, as `relabel` takes it: a set of labels for each pixel, 0 where nothing is said. */
+export function evidenceOf(strokes: readonly Stroke[], width: number, height: number): Uint16Array<ArrayBuffer> {
+  const evidence = new Uint16Array(width * height);
+  for (const stroke of strokes) {
+    eachPixel(stroke, width, height, (p) => {
+      // Two strokes that contradict each other: the later one is meant.
+      evidence[p] = evidence[p] === 0 ? stroke.labels : evidence[p]! & stroke.labels || stroke.labels;
+    });
+  }
+  return evidence;
+}
+
+/** Calls `visit` for every pixel whose centre lies under a stroke; for some more than once. */
+function eachPixel({ points, radius }: Stroke, width: number, height: number, visit: (pixel: number) => void): void {
+  for (let i = 0; i < points.length; i += 2) {
+    const [x0, y0] = [points[Math.max(0, i - 2)]!, points[Math.max(1, i - 1)]!];
+    const [x1, y1] = [points[i]!, points[i + 1]!];
+    const steps = Math.max(1, Math.ceil(Math.hypot(x1 - x0, y1 - y0) / Math.max(1, radius / 2)));
+    for (let s = i === 0 ? steps : 1; s <= steps; s++) {
+      disc(x0 + ((x1 - x0) * s) / steps, y0 + ((y1 - y0) * s) / steps, radius, width, height, visit);
+    }
+  }
+}
+
+function disc(x: number, y: number, radius: number, width: number, height: number, visit: (pixel: number) => void): void {
+  const [top, bottom] = [Math.max(0, Math.ceil(y - radius)), Math.min(height - 1, Math.floor(y + radius))];
+  for (let v = top; v <= bottom; v++) {
+    const reach = Math.sqrt(Math.max(0, radius * radius - (v - y) ** 2));
+    const [left, right] = [Math.max(0, Math.ceil(x - reach)), Math.min(width - 1, Math.floor(x + reach))];
+    for (let u = left; u <= right; u++) visit(v * width + u);
+  }
+}

@@ -1,0 +1,61 @@
+//! Both frames in turn: for as long as the B key is held, or by themselves.
+
+import type { Store } from '../state.js';
+import { find, prefersStillness } from './markup.js';
+
+/** How long each frame is seen, milliseconds. */
+const PERIOD = 450;
+
+export function mountBlink(root: ParentNode, store: Store): void {
+  const button = find(root, '#blink', HTMLButtonElement);
+  let timer = 0;
+  button.addEventListener('click', () => toggleBlinking(store));
+  store.subscribe(({ look, pair }, before) => {
+    button.disabled = pair.first === null || pair.second === null;
+    if (look.blinking === before.look.blinking) return;
+    button.setAttribute('aria-pressed', String(look.blinking));
+    clearInterval(timer);
+    if (look.blinking) timer = window.setInterval(() => flip(store), PERIOD);
+    else if (before.look.view !== 'split' && look.still === null) store.look({ view: 'first' });
+  });
+}
+
+/** Begins or ends; where less motion is asked for, each press shows the other frame instead. */
+export function toggleBlinking(store: Store): void {
+  const { look, pair } = store.get();
+  if (pair.first === null || pair.second === null) return;
+  if (prefersStillness()) flip(store);
+  else store.look({ blinking: !look.blinking, view: look.view === 'split' ? 'first' : look.view });
+}
+
+export function flip(store: Store): void {
+  const { look, pair } = store.get();
+  if (pair.first === null || pair.second === null) return;
+  store.look({ view: look.view === 'second' ? 'first' : 'second' });
+}
+
+/** Shows the other frame from `press` to `release`. */
+export class Peek {
+  readonly #store: Store;
+  #held = false;
+
+  constructor(store: Store) {
+    this.#store = store;
+  }
+
+  get held(): boolean {
+    return this.#held;
+  }
+
+  press(): void {
+    const { first, second } = this.#store.get().pair;
+    if (this.#held || first === null || second === null) return;
+    this.#held = true;
+    flip(this.#store);
+  }
+
+  release(): void {
+    if (this.#held) flip(this.#store);
+    this.#held = false;
+  }
+}

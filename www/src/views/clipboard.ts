@@ -1,0 +1,11 @@
+//! Text to the clipboard, and saying so.
+
+import type { Session } from '../session.js';
+import { strings } from '../strings.js';
+
+export function copyText(text: string, done: string, session: Session): void {
+  navigator.clipboard.writeText(text).then(
+    () => session.say(done),
+    () => session.say(strings.errors.noClipboard, 'no-clipboard'),
+  );
+}

@@ -1,0 +1,66 @@
+//! What the number of motions rests on: the score of each number, smaller is better, and a button to insist on one.
+
+import type { Session } from '../session.js';
+import type { State, Store } from '../state.js';
+import { strings } from '../strings.js';
+import { drawn, element, find } from './markup.js';
+
+/** The plot's own units. */
+const HEIGHT = 44;
+const MARGIN = 6;
+
+export function mountEvidence(root: HTMLElement, store: Store, session: Session): void {
+  const plot = find(root, 'svg', SVGSVGElement);
+  const buttons = find(root, '.numbers', HTMLElement);
+  const automatic = find(root, '[data-action=automatic]', HTMLButtonElement);
+  automatic.addEventListener('click', () => session.change({ motions: 'auto' }));
+  /** Of the last automatic search: a forced number says nothing about the others. */
+  let scores: readonly { motions: number; score: number }[] = [];
+
+  const render = ({ result, settings }: State): void => {
+    const found = result?.segmentation;
+    root.hidden = found === undefined;
+    if (found === undefined) return;
+    if (found.settings.motions === 'auto') scores = found.evidence.candidates;
+    const known = scores.length > 0 ? scores : found.evidence.candidates;
+    const seen = known.filter(({ motions }) => motions >= 1 && motions <= 10);
+    automatic.setAttribute('aria-pressed', String(settings.motions === 'auto'));
+    const least = Math.min(...seen.map(({ score }) => score));
+    buttons.replaceChildren(
+      ...seen.map(({ motions, score }) => {
+        const button = element('button', String(motions), 'number');
+        button.type = 'button';
+        button.setAttribute('aria-pressed', String(settings.motions === motions));
+        button.classList.toggle('found', motions === found.count);
+        button.setAttribute('aria-label', strings.insistOn(motions, score - least));
+        button.title = strings.scoreAbove(score - least);
+        button.addEventListener('click', () => session.change({ motions }));
+        return button;
+      }),
+    );
+    root.style.setProperty('--numbers', String(Math.max(1, seen.length)));
+    draw(plot, seen, found.count);
+  };
+  store.subscribe((now, before) => {
+    if (now.pair !== before.pair) scores = [];
+    if (now.live !== null) root.hidden = true;
+    else if (now.result !== before.result || now.settings !== before.settings || before.live !== null) render(now);
+  });
+}
+
+function draw(plot: SVGSVGElement, candidates: readonly { motions: number; score: number }[], count: number): void {
+  const scores = candidates.map(({ score }) => score);
+  const [least, most] = [Math.min(...scores), Math.max(...scores)];
+  const width = 40 * Math.max(1, candidates.length);
+  plot.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
+  // Small differences decide and large ones do not matter: the root brings both into one picture.
+  const place = (score: number): number => HEIGHT - MARGIN - (HEIGHT - 2 * MARGIN) * Math.sqrt((score - least) / Math.max(most - least, 1e-9));
+  const points = candidates.map(({ score }, i) => [40 * i + 20, place(score)] as const);
+  plot.replaceChildren(
+    drawn('polyline', { points: points.map((point) => point.join()).join(' '), class: 'score-line' }),
+    // A line of no length with round ends is a dot that keeps its shape when the plot is stretched.
+    ...points.map(([x, y], i) =>
+      drawn('path', { d: `M${x} ${y}h0.01`, class: candidates[i]!.motions === count ? 'score found' : 'score' }),
+    ),
+  );
+}

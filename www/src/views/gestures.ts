@@ -1,0 +1,141 @@
+//! What pointers do on the picture. Looking: a tap chooses the mask, holding shows the other frame, dragging moves the enlarged
+//! picture. Brush and eraser: dragging paints. Always: the wheel and two fingers zoom.
+
+import { inPicture } from '../camera.js';
+import { maskOf } from '../masks.js';
+import type { Session } from '../session.js';
+import type { State, Store } from '../state.js';
+import { Peek } from './blink.js';
+import type { Brush } from './brush.js';
+import type { Zoom } from './zoom.js';
+
+/** A press that moves farther is a drag, screen pixels. */
+const STILL = 5;
+/** A press that lasts longer is no tap, milliseconds. */
+const TAP = 220;
+/** Zoom per pixel of the wheel. */
+const WHEEL = 0.0025;
+
+interface Press {
+  x: number;
+  y: number;
+  readonly began: readonly [number, number];
+}
+
+export function mountGestures(layers: HTMLElement, store: Store, session: Session, zoom: Zoom, brush: Brush): void {
+  const presses = new Map<number, Press>();
+  const peek = new Peek(store);
+  let holding = 0;
+  let dragged = false;
+
+  const inView = ({ clientX, clientY }: { clientX: number; clientY: number }): [number, number] => {
+    const box = layers.getBoundingClientRect();
+    return [(clientX - box.left) / box.width, (clientY - box.top) / box.height];
+  };
+  const paints = (): boolean => store.get().tool.name !== 'look';
+
+  layers.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0 || event.target instanceof HTMLInputElement) return;
+    presses.set(event.pointerId, { x: event.clientX, y: event.clientY, began: [event.clientX, event.clientY] });
+    layers.setPointerCapture(event.pointerId);
+    clearTimeout(holding);
+    if (presses.size > 1) {
+      dragged = true;
+      peek.release();
+      brush.abandon();
+      return;
+    }
+    dragged = false;
+    if (paints()) brush.begin(pixelAt(store.get(), inView(event)));
+    else holding = window.setTimeout(() => peek.press(), TAP);
+  });
+
+  layers.addEventListener('pointermove', (event) => {
+    const press = presses.get(event.pointerId);
+    if (press === undefined) {
+      if (paints()) brush.hover(pixelAt(store.get(), inView(event)));
+      return;
+    }
+    const [dx, dy] = [event.clientX - press.x, event.clientY - press.y];
+    const box = layers.getBoundingClientRect();
+    if (presses.size === 2) {
+      const [other] = [...presses].filter(([id]) => id !== event.pointerId).map(([, value]) => value);
+      if (other !== undefined) {
+        const distance = (p: { x: number; y: number }): number => Math.hypot(p.x - other.x, p.y - other.y);
+        const now = { x: event.clientX, y: event.clientY };
+        zoom.pan(dx / 2 / box.width, dy / 2 / box.height);
+        const middle = { clientX: (now.x + other.x) / 2, clientY: (now.y + other.y) / 2 };
+        if (distance(press) > 0) zoom.by(distance(now) / distance(press), inView(middle));
+      }
+    } else if (paints()) {
+      if (!dragged || brush.painting) for (const point of coalesced(event)) brush.move(pixelAt(store.get(), inView(point)));
+    } else if (dragged || Math.hypot(event.clientX - press.began[0], event.clientY - press.began[1]) > STILL) {
+      if (!dragged && store.get().camera.zoom > 1) clearTimeout(holding);
+      dragged = true;
+      zoom.pan(dx / box.width, dy / box.height);
+    }
+    press.x = event.clientX;
+    press.y = event.clientY;
+  });
+
+  const end = (event: PointerEvent): void => {
+    const press = presses.get(event.pointerId);
+    if (press === undefined) return;
+    presses.delete(event.pointerId);
+    clearTimeout(holding);
+    if (paints()) {
+      if (event.type === 'pointerup') void brush.end();
+      else brush.abandon();
+      return;
+    }
+    const tapped = !dragged && event.type === 'pointerup' && !peek.held;
+    peek.release();
+    if (tapped) choose(store, session, pixelAt(store.get(), inView(event)));
+  };
+  layers.addEventListener('pointerup', end);
+  layers.addEventListener('pointercancel', end);
+  layers.addEventListener('pointerleave', () => brush.leave());
+  window.addEventListener('blur', () => peek.release());
+  layers.addEventListener('keydown', (event) => {
+    const plain = event.target === layers && !event.ctrlKey && !event.metaKey && !event.altKey;
+    if (plain && brush.key(event)) event.preventDefault();
+  });
+  // A long press on a touch screen would open a menu.
+  layers.addEventListener('contextmenu', (event) => {
+    if (presses.size > 0) event.preventDefault();
+  });
+
+  layers.addEventListener(
+    'wheel',
+    (event) => {
+      // The whole picture cannot become smaller: let the page scroll.
+      if (event.deltaY > 0 && store.get().camera.zoom <= 1 && !event.ctrlKey) return;
+      event.preventDefault();
+      const pixels = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY : event.deltaY * 33;
+      zoom.by(Math.exp(-pixels * WHEEL * (event.ctrlKey ? 4 : 1)), inView(event));
+    },
+    { passive: false },
+  );
+}
+
+function coalesced(event: PointerEvent): PointerEvent[] {
+  const events = event.getCoalescedEvents?.() ?? [];
+  return events.length > 0 ? events : [event];
+}
+
+/** The place in the frame, its pixels' centres at whole numbers. */
+function pixelAt({ pair, camera }: State, view: readonly [number, number]): [number, number] {
+  const frame = pair.first ?? pair.second;
+  const [x, y] = inPicture(camera, view);
+  return [x * (frame?.width ?? 1) - 0.5, y * (frame?.height ?? 1) - 0.5];
+}
+
+/** Chooses the mask at a place of the first frame, or none where it is chosen already. */
+function choose(store: Store, session: Session, [x, y]: readonly [number, number]): void {
+  const { result, look } = store.get();
+  if (result === null) return;
+  const { labels, width, height } = result.segmentation;
+  const [px, py] = [Math.min(Math.max(Math.round(x), 0), width - 1), Math.min(Math.max(Math.round(y), 0), height - 1)];
+  const mask = maskOf(labels[py * width + px] ?? 255, result.segmentation, look.kind);
+  session.select(look.selected === mask ? null : mask);
+}

@@ -1,0 +1,49 @@
+//! Listens to the keys and lists them in a dialogue that `?` opens. Single keys can be switched off there, for those who speak to
+//! their computer.
+
+import type { Key } from '../keys.js';
+import type { Store } from '../state.js';
+import { strings } from '../strings.js';
+import { Peek } from './blink.js';
+import { element, find, takesArrows, takesText } from './markup.js';
+
+export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, keys: readonly Key[]): void {
+  const single = find(dialog, '#single-keys', HTMLInputElement);
+  const list = find(dialog, 'dl', HTMLDListElement);
+  const peek = new Peek(store);
+  const rows = [{ shown: 'B', does: strings.keys.look.peek }, ...keys, { shown: '?', does: strings.keys.look.keys }];
+  for (const { shown, does } of rows) {
+    if (does === '') {
+      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown)); // the same again, with another key
+      continue;
+    }
+    const row = element('div');
+    const term = element('dt');
+    term.append(element('kbd', shown));
+    row.append(term, element('dd', does));
+    list.append(row);
+  }
+
+  open.addEventListener('click', () => dialog.showModal());
+  find(dialog, '[data-action=close]', HTMLButtonElement).addEventListener('click', () => dialog.close());
+  dialog.addEventListener('click', (event) => {
+    if (event.target === dialog) dialog.close(); // beside it
+  });
+
+  document.addEventListener('keydown', (event) => {
+    if (event.defaultPrevented || event.altKey || dialog.open || takesText(event.target)) return;
+    const name = event.key.toLowerCase();
+    const command = event.ctrlKey || event.metaKey;
+    if (!command && !single.checked && name !== 'escape') return;
+    if (!command && name === '?') return dialog.showModal();
+    if (!command && name === 'b') return peek.press();
+    const key = keys.find((one) => one.keys.includes(name) && (one.command ?? false) === command && (one.shift ?? event.shiftKey) === event.shiftKey);
+    if (key === undefined || (key.arrows && (store.get().camera.zoom <= 1 || takesArrows(event.target)))) return;
+    if (name !== 'escape') event.preventDefault();
+    key.run();
+  });
+  document.addEventListener('keyup', (event) => {
+    if (event.key.toLowerCase() === 'b') peek.release();
+  });
+  window.addEventListener('blur', () => peek.release());
+}

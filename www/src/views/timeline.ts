@@ -1,0 +1,93 @@
+//! The timeline of a film: thumbnails, the two chosen frames, steps by one frame.
+
+import type { Session } from '../session.js';
+import type { Film, Slot, Store } from '../state.js';
+import { strings } from '../strings.js';
+import { contextOf, find } from './markup.js';
+
+/** Width of a thumbnail at least, screen pixels. */
+const THUMB = 72;
+
+export function mountTimeline(root: HTMLElement, store: Store, session: Session): void {
+  const strip = find(root, '#strip', HTMLCanvasElement);
+  const label = find(root, '#film-name', HTMLElement);
+  const note = find(root, '#film-note', HTMLElement);
+  const sliders = (['first', 'second'] as const).map((slot) => {
+    const input = find(root, `[name=film-${slot}]`, HTMLInputElement);
+    const readout = find(root, `#film-${slot}-at`, HTMLElement);
+    input.addEventListener('input', () => (readout.textContent = placeOf(store.get().film, input.valueAsNumber)));
+    input.addEventListener('change', () => void session.choose(slot, input.valueAsNumber));
+    return { slot, input, readout };
+  });
+  for (const button of root.querySelectorAll<HTMLButtonElement>('[data-step]')) {
+    const [slot, by] = (button.dataset.step ?? '').split(' ');
+    button.addEventListener('click', () => stepOne(store, session, slot as Slot | 'both', Number(by)));
+  }
+  strip.addEventListener('click', (event) => {
+    const { film } = store.get();
+    if (film === null) return;
+    const index = Math.floor((event.offsetX / strip.clientWidth) * film.clip.count);
+    void session.choose(event.shiftKey ? 'second' : 'first', index);
+  });
+
+  store.subscribe(({ film }, before) => {
+    if (film === before.film) return;
+    root.hidden = film === null;
+    if (film === null) return;
+    const { clip } = film;
+    if (clip !== before.film?.clip) {
+      label.textContent = strings.film(clip.name, clip.count, clip.width, clip.height);
+      note.hidden = clip.exact;
+      void drawStrip(strip, film, () => store.get().film?.clip === clip);
+    }
+    root.style.setProperty('--first', String((film.first + 0.5) / clip.count));
+    root.style.setProperty('--second', String((film.second + 0.5) / clip.count));
+    for (const { slot, input, readout } of sliders) {
+      input.max = String(clip.count - 1);
+      input.value = String(film[slot]);
+      readout.textContent = placeOf(film, film[slot]);
+    }
+  });
+}
+
+/** One frame on or back, for one of the frames or both. */
+export function stepOne(store: Store, session: Session, which: Slot | 'both', by: number): void {
+  const { film } = store.get();
+  if (film === null) return;
+  if (which === 'both') void session.step(by);
+  else void session.choose(which, film[which] + by);
+}
+
+function placeOf(film: Film | null, index: number): string {
+  if (film === null) return '';
+  return strings.frameAt(index, film.clip.times?.[index] ?? null);
+}
+
+async function drawStrip(canvas: HTMLCanvasElement, { clip }: Film, current: () => boolean): Promise<void> {
+  const dense = Math.min(2, devicePixelRatio);
+  const [across, height] = [canvas.clientWidth || 640, canvas.clientHeight || 48];
+  const count = Math.max(1, Math.min(clip.count, Math.floor(across / THUMB)));
+  canvas.width = across * dense;
+  canvas.height = height * dense;
+  const context = contextOf(canvas);
+  const cell = canvas.width / count;
+  const indices = Array.from({ length: count }, (_, k) => Math.floor(((k + 0.5) * clip.count) / count));
+  let k = 0;
+  try {
+    await clip.thumbnails(indices, (_, picture) => {
+      const left = k++ * cell;
+      if (!current()) return;
+      // The middle of the frame fills the cell.
+      const scale = Math.max(cell / clip.width, canvas.height / clip.height);
+      const [width, tall] = [clip.width * scale, clip.height * scale];
+      context.save();
+      context.beginPath();
+      context.rect(left, 0, cell, canvas.height);
+      context.clip();
+      picture(context, left + (cell - width) / 2, (canvas.height - tall) / 2, width, tall);
+      context.restore();
+    });
+  } catch {
+    // Pictures are a help; the frames themselves are asked for one by one, and say what is wrong.
+  }
+}

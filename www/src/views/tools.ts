@@ -1,0 +1,59 @@
+//! The row of tools: look, brush, eraser; the brush's size; undo and redo.
+
+import type { Session } from '../session.js';
+import type { Store, ToolName } from '../state.js';
+import { strings } from '../strings.js';
+import { find } from './markup.js';
+
+export const RADII = { least: 2, most: 60 } as const;
+
+export function mountTools(form: HTMLFormElement, store: Store, session: Session): void {
+  const radios = (['look', 'brush', 'eraser'] as const).map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
+  const size = find(form, '[name=radius]', HTMLInputElement);
+  const sizeRow = find(form, '#radius-row', HTMLElement);
+  const help = find(form, '#tool-help', HTMLElement);
+  const undo = find(form, '#undo', HTMLButtonElement);
+  const redo = find(form, '#redo', HTMLButtonElement);
+
+  form.addEventListener('submit', (event) => event.preventDefault());
+  for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
+  size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
+  undo.addEventListener('click', () => session.correcting.undo());
+  redo.addEventListener('click', () => session.correcting.redo());
+
+  const render = (): void => {
+    const { tool, result, history, live, run } = store.get();
+    const usable = result !== null && live === null && (run.phase !== 'working' || history.past.length > 0);
+    for (const radio of radios) {
+      radio.checked = radio.value === tool.name;
+      radio.disabled = !usable && radio.value !== 'look';
+    }
+    size.value = String(tool.radius);
+    sizeRow.hidden = tool.name === 'look';
+    help.textContent = strings.toolHelp[tool.name];
+    undo.disabled = history.past.length === 0;
+    redo.disabled = history.future.length === 0;
+  };
+  store.subscribe((now, before) => {
+    const same = now.tool === before.tool && now.result === before.result && now.history === before.history && now.live === before.live && now.run.phase === before.run.phase;
+    if (!same) render();
+  });
+  render();
+}
+
+/** Takes a tool up. To paint, a mask must be chosen and the first frame seen: the object that stands out most and that frame. */
+export function chooseTool(store: Store, name: ToolName): void {
+  const { tool, look, result } = store.get();
+  store.set({ tool: { ...tool, name } });
+  if (name === 'look') return;
+  const { motions } = result?.segmentation ?? { motions: [] };
+  const second = motions[1] ?? motions[0];
+  const selected = look.selected ?? (second === undefined ? null : look.kind === 'groups' ? second.group : second.label);
+  store.look({ view: 'first', blinking: false, still: null, selected });
+}
+
+export function changeRadius(store: Store, factor: number): void {
+  const { tool } = store.get();
+  const radius = Math.min(Math.max(Math.round(tool.radius * factor), RADII.least), RADII.most);
+  store.set({ tool: { ...tool, radius } });
+}

@@ -1,0 +1,188 @@
+//! Films: a real video file with a number in every frame, read back exactly; folders; the fallback without WebCodecs; the camera.
+
+import { readFile } from 'node:fs/promises';
+
+import { type Page } from '@playwright/test';
+
+import { type Upload, done, expect, open, pixelsOf, square, test, upload } from './support.js';
+
+const WIDTH = 192;
+const HEIGHT = 128;
+/** Frames of a film are this long, seconds: NTSC's, which no clock of a container counts exactly. */
+const FRAME = 1001 / 30_000;
+const BITS = 6;
+/** Side of the square that shows one bit, pixels. */
+const BIT = 24;
+
+/** A film of `count` frames, each with its number as black and white squares over moving texture, encoded by the browser itself. */
+async function film(page: Page, count: number, kind: 'webm' | 'mp4', codec: string): Promise<Upload> {
+  const bundle = await readFile(new URL('../../node_modules/mediabunny/dist/bundles/mediabunny.mjs', import.meta.url));
+  await page.route('**/maker/mediabunny.mjs', (route) => route.fulfill({ body: bundle, contentType: 'text/javascript' }));
+  const base64 = await page.evaluate(
+    async ([url, count, kind, codec, width, height, frame, bits, bit]) => {
+      const { BufferTarget, CanvasSource, Mp4OutputFormat, Output, WebMOutputFormat } = (await import(url)) as typeof import('mediabunny');
+      const canvas = new OffscreenCanvas(width, height);
+      const context = canvas.getContext('2d')!;
+      const target = new BufferTarget();
+      const output = new Output({ format: kind === 'webm' ? new WebMOutputFormat() : new Mp4OutputFormat(), target });
+      const source = new CanvasSource(canvas, { codec: codec as 'vp8', bitrate: 2e6, keyFrameInterval: 0.5 });
+      output.addVideoTrack(source);
+      await output.start();
+      for (let k = 0; k < count; k++) {
+        for (let y = 0; y < height; y += 8) {
+          for (let x = 0; x < width; x += 8) {
+            const grey = 128 + 70 * Math.sin(0.31 * (x + 2 * k) + 0.17 * y) + 40 * Math.cos(0.23 * y - 0.11 * x);
+            context.fillStyle = `rgb(${grey} ${grey} ${grey})`;
+            context.fillRect(x, y, 8, 8);
+          }
+        }
+        for (let b = 0; b < bits; b++) {
+          context.fillStyle = (k >> b) & 1 ? 'white' : 'black';
+          context.fillRect(8 + b * bit, 8, bit, bit);
+        }
+        await source.add(k * frame, frame);
+      }
+      await output.finalize();
+      let binary = '';
+      for (const byte of new Uint8Array(target.buffer!)) binary += String.fromCharCode(byte);
+      return btoa(binary);
+    },
+    [new URL('maker/mediabunny.mjs', page.url()).href, count, kind, codec, WIDTH, HEIGHT, FRAME, BITS, BIT] as const,
+  );
+  return { name: `film.${kind}`, mimeType: `video/${kind}`, buffer: Buffer.from(base64, 'base64') };
+}
+
+/** The number in the frame that is shown. */
+async function numberShown(page: Page): Promise<number> {
+  const { data, width } = await pixelsOf(page, '#frame');
+  expect(width).toBe(WIDTH);
+  const bits = Array.from({ length: BITS }, (_, b) => {
+    const grey = data[4 * ((8 + BIT / 2) * width + 8 + b * BIT + BIT / 2)]!;
+    if (grey > 90 && grey < 160) throw new Error(`bit ${b} is neither black nor white: ${grey}`);
+    return grey > 128 ? 1 << b : 0;
+  });
+  return bits.reduce((sum, bit) => sum + bit, 0);
+}
+
+/** Shows each of the chosen frames and reads its number. */
+async function numbers(page: Page): Promise<[number, number]> {
+  await page.locator('#look [name=frame][value=first]').check();
+  const first = await numberShown(page);
+  await page.locator('#look [name=frame][value=second]').check();
+  return [first, await numberShown(page)];
+}
+
+async function slide(page: Page, slot: 'first' | 'second', index: number): Promise<void> {
+  await page.locator(`[name=film-${slot}]`).fill(String(index));
+  await page.locator(`[name=film-${slot}]`).dispatchEvent('change');
+  await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toContainText(`#${index},`);
+  await done(page);
+}
+
+test('a WebM film gives exactly the frames that are asked for', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Fast').check();
+  const file = await film(page, 40, 'webm', 'vp8');
+  await upload(page, [file]);
+  await expect(page.locator('#film-name')).toHaveText('film.webm, 40 frames, 192 × 128');
+  await done(page);
+  await expect(page.locator('#film-note')).toBeHidden();
+  expect(await numbers(page)).toEqual([0, 1]);
+  for (const [first, second] of [[17, 18], [39, 5], [16, 38]] as const) {
+    await slide(page, 'first', first);
+    await slide(page, 'second', second);
+    expect(await numbers(page)).toEqual([first, second]);
+  }
+
+  await page.getByRole('button', { name: 'First frame: one on' }).click();
+  await done(page);
+  expect(await numbers(page)).toEqual([17, 38]);
+  await page.keyboard.press('.');
+  await expect(page.locator('#film-second-at')).toHaveText('#39, 1.301 s');
+  await done(page);
+  expect(await numbers(page)).toEqual([18, 39]);
+  // The film ends here: both stay.
+  await page.keyboard.press('.');
+  expect(await numbers(page)).toEqual([18, 39]);
+
+  // The thumbnails are of the film.
+  const strip = await pixelsOf(page, '#strip');
+  const greys = new Set(strip.data.filter((_, i) => i % 4 === 0));
+  expect(greys.size).toBeGreaterThan(50);
+
+  // Another pair puts the film away.
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await done(page);
+  await expect(page.locator('#timeline')).toBeHidden();
+});
+
+test('an MP4 film gives exactly the frames that are asked for', async ({ page }) => {
+  await open(page);
+  // The codec that every build of the browser can write into an MP4.
+  const file = await film(page, 12, 'mp4', 'vp9');
+  await upload(page, [{ ...file, name: 'film.mov', mimeType: 'video/quicktime' }]);
+  await expect(page.locator('#film-name')).toHaveText('film.mov, 12 frames, 192 × 128');
+  await done(page);
+  await slide(page, 'first', 7);
+  await slide(page, 'second', 11);
+  expect(await numbers(page)).toEqual([7, 11]);
+});
+
+test('without WebCodecs frames are called approximate', async ({ page, context }) => {
+  const maker = await context.newPage();
+  await maker.goto('./');
+  const file = await film(maker, 30, 'webm', 'vp8');
+  await maker.close();
+  await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
+  await open(page);
+  await upload(page, [file]);
+  await done(page);
+  await expect(page.locator('#film-note')).toBeVisible();
+  await expect(page.locator('#film-note')).toHaveText(/^Approximate frames/);
+  await slide(page, 'first', 20);
+  const [shown] = await numbers(page);
+  expect(Math.abs(shown - 20)).toBeLessThanOrEqual(1);
+});
+
+test('what is no video is refused and the pair stays', async ({ page }) => {
+  await open(page);
+  await upload(page, [{ name: 'broken.mp4', mimeType: 'video/mp4', buffer: Buffer.from('no video at all') }]);
+  await expect(page.locator('#notice-code')).toHaveText('unreadable-video');
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+  await expect(page.locator('#motions > li').first()).toBeVisible();
+});
+
+test('a folder of frames is a film in the order of the names', async ({ page }) => {
+  await open(page);
+  const names = ['f10.png', 'f2.png', 'f1.png', 'f11.png'];
+  const files = await Promise.all(names.map((name) => square(name, 96, 64, Number(/\d+/.exec(name)![0]), 0)));
+  await page.locator('#open-pair').setInputFiles(files);
+  await expect(page.locator('#film-name')).toHaveText('f1.png, 4 frames, 96 × 64');
+  await done(page);
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f2.png, 96 × 64');
+  await page.keyboard.press('.');
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f10.png, 96 × 64');
+  await done(page);
+});
+
+test('the camera is segmented live and its last pair stays', async ({ page, context }) => {
+  await context.grantPermissions(['camera']);
+  await open(page);
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ per second, .*motion/, { timeout: 20_000 });
+  await expect(page.locator('#caption')).toHaveText('Camera');
+  await page.getByRole('button', { name: 'Stop camera' }).click();
+  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  await expect(page.locator('#motions > li').first()).toBeVisible();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('camera');
+});
+
+test('frames larger than the working size are worked on smaller', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Working size').selectOption('640');
+  await done(page);
+  await upload(page, [await square('a.png', 800, 500, 0, 0), await square('b.png', 800, 500, 5, 0)]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 800 × 500');
+  await done(page);
+  expect((await pixelsOf(page, '#frame')).width).toBe(640);
+});
