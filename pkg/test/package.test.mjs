@@ -53,11 +53,11 @@ describe('npm pack', () => {
 
 test('sizes stay within their budgets', () => {
   const zipped = (path) => gzipSync(read(path), { level: 9 }).length;
-  const script = ['web', 'api', 'core', 'errors', 'labels', 'loading', 'palette', 'segmenter', 'version', 'glue'];
+  const script = ['web', 'api', 'core', 'errors', 'labels', 'loading', 'ordered', 'palette', 'pool', 'segmenter', 'threads', 'version', 'glue'];
   // Where it stands; the goal is 120.
   const core = zipped('wasm/veronese_bg.wasm');
   assert.ok(core <= 190 * 1024, `the core module has ${core} bytes`);
-  assert.ok(script.reduce((sum, name) => sum + zipped(`dist/${name}.js`), 0) <= 12 * 1024);
+  assert.ok(script.reduce((sum, name) => sum + zipped(`dist/${name}.js`), 0) <= 14 * 1024);
 });
 
 test("the modules do not hold the builder's folders", () => {
