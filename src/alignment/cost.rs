@@ -60,10 +60,18 @@ fn interpolation_variance(fx: f32, fy: f32, correlation: f32) -> f32 {
 
 /// Cost of a motion (of the working frame) at every pixel of a level; the smaller of both views where there is a frame before.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
-    let forward = view_cost(level, &level.second, &level.scaled(motion), Photometric::default(), model);
+    let mut plane = cost_where_seen(level, motion, model);
+    plane.values_mut().iter_mut().for_each(|c| *c = if c.is_finite() { *c } else { model.outside() });
+    plane
+}
+
+/// The same, infinite where the displaced position lies outside of every view.
+pub(crate) fn cost_where_seen(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
+    let none = Photometric::default();
+    let forward = view_cost(level, &level.second, &level.scaled(motion), none, model, f32::INFINITY);
     match (&level.before, inverse(motion)) {
         (Some(before), Some(back)) => {
-            let mut both = view_cost(level, before, &level.scaled(&back), Photometric::default(), model);
+            let mut both = view_cost(level, before, &level.scaled(&back), none, model, f32::INFINITY);
             for (b, f) in both.values_mut().iter_mut().zip(forward.values()) {
                 *b = b.min(*f);
             }
@@ -75,7 +83,7 @@ pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Pl
 
 /// Cost with a change of brightness that has not been taken out of the second frame yet.
 pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
-    view_cost(level, &level.second, &level.scaled(motion), photometric, model)
+    view_cost(level, &level.second, &level.scaled(motion), photometric, model, model.outside())
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
@@ -90,7 +98,15 @@ pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
     Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
 }
 
-fn view_cost(level: &Level, view: &Plane, scaled: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
+/// Cost in one view, `outside` where a pixel leaves it.
+fn view_cost(
+    level: &Level,
+    view: &Plane,
+    scaled: &AffineMotion,
+    photometric: Photometric,
+    model: CostModel,
+    outside: f32,
+) -> Plane {
     let (width, height) = (level.width(), level.height());
     let (noise, looseness) = (level.noise * level.noise, model.looseness * model.looseness);
     let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
@@ -109,7 +125,7 @@ fn view_cost(level: &Level, view: &Plane, scaled: &AffineMotion, photometric: Ph
                 let residual = sample - first * (1.0 + gain) - bias;
                 let variance = noise * interpolation_variance(*fx, *fy, correlation) + looseness * energy;
                 let cost = model.of(residual, variance);
-                *o = if *inside { cost } else { model.outside() };
+                *o = if *inside { cost } else { outside };
             }
         }
     }

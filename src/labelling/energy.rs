@@ -2,7 +2,7 @@
 //! lower where the image has an edge.
 
 use super::potts::{Potts, Solver, minimise};
-use crate::alignment::cost::{CostModel, cost};
+use crate::alignment::cost::{CostModel, cost_where_seen};
 use crate::frame::Plane;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
@@ -58,21 +58,50 @@ impl Borders {
     }
 }
 
-/// Cost of one motion at every pixel, as labels see it; `object` is whether it is not the dominant motion.
-pub(crate) fn label_cost(level: &Level, motion: &AffineMotion, object: bool, coherence: Coherence) -> Plane {
-    let mut plane = cost(level, motion, CostModel::LABELS);
-    if object {
-        plane.values_mut().iter_mut().for_each(|c| *c += coherence.departure);
-        let price = FRAME_BORDER * coherence.smoothness;
-        let (width, height) = (plane.width(), plane.height());
-        for y in [0, height - 1] {
-            plane.row_mut(y).iter_mut().for_each(|c| *c += price);
+/// What every motion costs at every pixel, as labels see it; the first is the dominant one.
+///
+/// A pixel that a motion moves out of the frame says nothing about it, so there the motion costs what the cheapest of those costs
+/// that keep the pixel inside. An object costs at least what says nothing by itself, and the dominant motion at most that: an object
+/// does not win pixels by leaving the frame with them.
+pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
+    let mut costs: Vec<Plane> = motions.iter().map(|m| cost_where_seen(level, m, CostModel::LABELS)).collect();
+    let neutral = CostModel::LABELS.outside();
+    let seen = cheapest(&costs);
+    for (k, cost) in costs.iter_mut().enumerate() {
+        for (c, seen) in cost.values_mut().iter_mut().zip(seen.values()).filter(|(c, _)| !c.is_finite()) {
+            *c = match (k, seen.is_finite()) {
+                (_, false) => neutral,
+                (0, true) => seen.min(neutral),
+                (_, true) => seen.max(neutral),
+            };
         }
-        for y in 0..height {
-            for x in [0, width - 1] {
-                plane.row_mut(y)[x] += price;
-            }
+        if k > 0 {
+            add_departure(cost, coherence);
         }
     }
-    plane
+    costs
+}
+
+/// The smallest of the costs at every pixel.
+fn cheapest(costs: &[Plane]) -> Plane {
+    let mut cheapest = costs[0].clone();
+    for cost in &costs[1..] {
+        cheapest.values_mut().iter_mut().zip(cost.values()).for_each(|(l, c)| *l = l.min(*c));
+    }
+    cheapest
+}
+
+/// What an object pays for its pixels.
+fn add_departure(cost: &mut Plane, coherence: Coherence) {
+    cost.values_mut().iter_mut().for_each(|c| *c += coherence.departure);
+    let price = FRAME_BORDER * coherence.smoothness;
+    let (width, height) = (cost.width(), cost.height());
+    for y in [0, height - 1] {
+        cost.row_mut(y).iter_mut().for_each(|c| *c += price);
+    }
+    for y in 0..height {
+        for x in [0, width - 1] {
+            cost.row_mut(y)[x] += price;
+        }
+    }
 }

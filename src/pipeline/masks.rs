@@ -8,7 +8,7 @@ use crate::frame::Plane;
 use crate::labelling::appearance::appearance_costs;
 use crate::labelling::components::absorb_small;
 use crate::labelling::description::{SMALLEST_SHARE, counts, worth};
-use crate::labelling::energy::{Borders, label_cost};
+use crate::labelling::energy::{Borders, label_costs};
 use crate::labelling::potts::Solver;
 use crate::labelling::splitting::{split_bodies, split_components};
 use crate::labelling::visibility::with_visibility;
@@ -86,9 +86,8 @@ impl Draft<'_> {
     /// Costs of all motions.
     fn measure(&mut self) {
         let level = self.work.finest();
-        let coherence = self.settings.coherence;
         self.raw = self.motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
-        self.costs = self.motions.iter().enumerate().map(|(k, m)| label_cost(level, m, k > 0, coherence)).collect();
+        self.costs = label_costs(level, &self.motions, self.settings.coherence);
     }
 
     fn solve(&mut self) {
