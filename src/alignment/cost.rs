@@ -58,26 +58,37 @@ fn interpolation_variance(fx: f32, fy: f32, correlation: f32) -> f32 {
     0.5 * (1.0 + (1.0 - c * fx * (1.0 - fx)) * (1.0 - c * fy * (1.0 - fy)))
 }
 
-/// Cost of a motion (of the working frame) at every pixel of a level; the smaller of both views where there is a frame before.
+/// The frame that the first one is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum View {
+    Second,
+    Before,
+}
+
+/// Cost of a motion (of the working frame) at every pixel of a level; in the frame before, where there is one, where the pixel
+/// leaves the second.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
-    let mut plane = cost_where_seen(level, motion, model);
+    let mut plane = cost_in(level, View::Second, motion, model);
+    if level.before.is_some() {
+        let before = cost_in(level, View::Before, motion, model);
+        let unseen = plane.values_mut().iter_mut().zip(before.values()).filter(|(c, _)| !c.is_finite());
+        unseen.for_each(|(c, b)| *c = *b);
+    }
     plane.values_mut().iter_mut().for_each(|c| *c = if c.is_finite() { *c } else { model.outside() });
     plane
 }
 
-/// The same, infinite where the displaced position lies outside of every view.
-pub(crate) fn cost_where_seen(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
-    let none = Photometric::default();
-    let forward = view_cost(level, &level.second, &level.scaled(motion), none, model, f32::INFINITY);
-    match (&level.before, inverse(motion)) {
-        (Some(before), Some(back)) => {
-            let mut both = view_cost(level, before, &level.scaled(&back), none, model, f32::INFINITY);
-            for (b, f) in both.values_mut().iter_mut().zip(forward.values()) {
-                *b = b.min(*f);
-            }
-            both
+/// Cost of a motion in one view; infinite where the displaced position lies outside, or where there is no such view.
+pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: CostModel) -> Plane {
+    let (plane, moved) = match view {
+        View::Second => (Some(&level.second), Some(*motion)),
+        View::Before => (level.before.as_ref(), inverse(motion)),
+    };
+    match (plane, moved) {
+        (Some(plane), Some(moved)) => {
+            view_cost(level, plane, &level.scaled(&moved), Photometric::default(), model, f32::INFINITY)
         }
-        _ => forward,
+        _ => Plane::filled(level.width(), level.height(), f32::INFINITY),
     }
 }
 

@@ -199,8 +199,8 @@ impl Draft {
                 cost.values_mut().iter_mut().zip(said.values()).for_each(|(c, s)| *c += s);
             }
         }
-        let say = self.add_evidence(&mut costs, &work.edges);
-        let mut solved = Borders::new(&work.edges, level.noise, coherence).solve(&costs, coherence.solver);
+        let say = self.add_evidence(&mut costs, &work.picture.luminance);
+        let mut solved = Borders::new(&work.picture, level.noise, coherence).solve(&costs, coherence.solver);
         for (p, label) in solved.iter_mut().enumerate() {
             if say[p] < SMALLEST_SAY {
                 *label = self.labels[p];

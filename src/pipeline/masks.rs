@@ -53,10 +53,9 @@ pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled 
         work,
         settings,
         borders: if settings.has(Part::Edges) {
-            Borders::new(&work.edges, level.noise, settings.coherence)
+            Borders::new(&work.picture, level.noise, settings.coherence)
         } else {
-            let no_edges = Plane::filled(level.width(), level.height(), 0.0);
-            Borders::new(&no_edges, level.noise, settings.coherence)
+            Borders::uniform(level.width(), level.height(), settings.coherence)
         },
         costs: Vec::new(),
         raw: Vec::new(),
