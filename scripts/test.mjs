@@ -24,6 +24,16 @@ const PARTS = {
       return tests(nodeCounts, 'npm', ['test', '--silent', '--workspace', 'pkg']);
     },
   },
+  hosts: {
+    title: 'the packed package in its hosts',
+    run: async ({ chromium }) => {
+      await buildModules();
+      await buildPackage();
+      if (chromium.problem) throw new Stop(chromium.problem);
+      const env = { VERONESE_CHROMIUM: chromium.path };
+      return tests(nodeCounts, 'npm', ['run', 'test:hosts', '--silent', '--workspace', 'pkg'], env);
+    },
+  },
   page: {
     title: 'page tests in Chromium',
     run: async ({ chromium }) => {
@@ -44,7 +54,11 @@ await command(async (args) => {
     return 2;
   }
   const names = args.length > 0 ? args : Object.keys(PARTS);
-  const setup = await prepare({ checks: names.includes('check'), browser: names.includes('page') });
+  const setup = await prepare({
+    checks: names.includes('check'),
+    browser: names.includes('page') || names.includes('hosts'),
+    hosts: names.includes('hosts'),
+  });
   const results = [];
   for (const name of names) results.push(await runPart(PARTS[name], setup));
   return summarise(results);

@@ -208,10 +208,38 @@ fn unknown_pixels_are_marked_on_request_only() {
     assert!(result.unlabelled > 0);
     let occluded = scene.occluded.iter().filter(|&&o| o).count();
     let hit = result.labels.iter().zip(&scene.occluded).filter(|&(&l, &o)| l == UNLABELLED && o).count();
-    // Marks gather where the truth says that nothing can be seen, well above chance.
-    let share_of_marks = hit as f64 / result.unlabelled as f64;
-    let chance = occluded as f64 / scene.labels.len() as f64;
-    assert!(share_of_marks > 3.0 * chance, "{share_of_marks} of the marks are occluded, by chance {chance}");
+    let found = hit as f64 / occluded as f64;
+    let wrongly = (result.unlabelled - hit) as f64 / (scene.labels.len() - occluded) as f64;
+    assert!(found > 0.7 && wrongly < 0.03, "{found} of the hidden pixels are marked, {wrongly} of the others");
+}
+
+#[test]
+fn where_there_is_no_texture_nothing_is_known() {
+    let marked = SegmentOptions { mark_unknown: true, ..SegmentOptions::default() };
+    let flat = constant(64, 48, 90);
+    let result = segment(&flat, &flat, marked);
+    assert_eq!((result.count, result.unlabelled), (1, 64 * 48));
+    // Half of the frame is a wall without texture: its inside is unknown, the other half is not.
+    let half = |shift: f64| {
+        let picture = textured(120, 90, shift);
+        let rgba: Vec<u8> = (0..120 * 90)
+            .flat_map(|p| {
+                let grey = if p % 120 < 60 { 128 } else { picture.luminance().values()[p].round() as u8 };
+                [grey, grey, grey, 255]
+            })
+            .collect();
+        Frame::from_rgba(120, 90, &rgba).unwrap()
+    };
+    let frame = half(0.0);
+    let result = segment(&frame, &frame, marked);
+    let unknown = |columns: std::ops::Range<usize>| {
+        columns
+            .clone()
+            .flat_map(|x| (0..90).map(move |y| y * 120 + x))
+            .filter(|&p| result.labels[p] == UNLABELLED)
+            .count()
+    };
+    assert_eq!((unknown(0..45), unknown(70..120)), (45 * 90, 0));
 }
 
 /// Number and rightness of the pixels of each of five ranges of confidence, from unsure to sure, over some scenes.
@@ -356,7 +384,7 @@ fn fingerprint(result: &Segmentation) -> u64 {
 /// The same constants hold natively and in WebAssembly: a change of the numerics changes both.
 #[test]
 fn the_same_bits_on_every_target() {
-    let expected: [u64; 3] = [0x55dc_a98c_2dd8_94b7, 0xe388_f47c_7500_ac28, 0x8e1e_e19d_e51c_063f];
+    let expected: [u64; 3] = [0x55dc_a98c_2dd8_94b7, 0xe388_f47c_7500_ac28, 0x1340_f06f_4da4_59cc];
     let options = [
         SegmentOptions::default(),
         SegmentOptions { quality: Quality::Fast, ..SegmentOptions::default() },

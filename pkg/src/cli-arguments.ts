@@ -1,6 +1,8 @@
 // The command line: what it means, and what is wrong with it.
 
+import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
+import type { PairSettings } from './cli-pair.js';
 import { VeroneseError } from './errors.js';
 
 export const HELP = `veronese finds how many things move between two frames, how each moves, and which pixels belong to it.
@@ -10,11 +12,23 @@ export const HELP = `veronese finds how many things move between two frames, how
       --motions auto|1..10   how many motions (default: auto)
       --quality fast|best    how much work (default: best)
       --grouped              labels.png and mask-K.png show groups: what belongs to one rigid background counts as one
-      --mark-unknown         label 255 where no motion explains a pixel
+      --mark-unknown         label 255 where a pixel is hidden or outside in SECOND, or where the data cannot tell
       --seed N               seed of every random choice (default: 1)
       --out DIR              write labels.png, result.json and mask-K.png into DIR
       --confidence           and confidence.png: how sure every pixel's label is, 255 times its probability
       --overlay              and overlay.png: the first frame with every motion in its colour
+
+  veronese batch FRAMES... [options]     every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
+      --list FILE            frames, one path in each line (- reads standard input)
+      --every K              use every K-th frame only (default: 1)
+      --with-before          each pair also gets the frame before its first, like --before of pair
+      --out DIR              a folder for each pair in DIR, with the files of pair; pairs finished before are skipped
+      --jobs N               pairs at the same time (default: as many as the machine has processors)
+      --shard I/N            only the I-th of N parts of the pairs, for N machines
+      --motions, --quality, --grouped, --mark-unknown, --confidence, --seed, --overlay as for pair
+
+  veronese video FILE [options]          the same on the frames of a video, which the program ffmpeg reads
+      options as for batch, without --list
 
   veronese points FILE.json [options]    {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
       --motions auto|1..10   how many motions (default: auto)
@@ -23,22 +37,31 @@ export const HELP = `veronese finds how many things move between two frames, how
 
   veronese --help | --version
 
-One line of JSON on stdout. Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
+One line of JSON on stdout, of batch and video one for each pair. Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
 `;
+
+/** What both commands for sequences of frames take. */
+export interface SequenceSettings extends PairSettings {
+  every: number;
+  withBefore: boolean;
+  jobs: number;
+  /** This part of all pairs; `index` from 0. */
+  shard: { index: number; of: number };
+  out?: string;
+}
 
 export type Command =
   | { name: 'help' }
   | { name: 'version' }
-  | {
+  | ({
       name: 'pair';
       first: string;
       second: string;
       before?: string;
-      options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; confidence: boolean; seed: number };
-      grouped: boolean;
-      overlay: boolean;
       out?: string;
-    }
+    } & PairSettings)
+  | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
+  | ({ name: 'video'; file: string } & SequenceSettings)
   | {
       name: 'points';
       file: string;
@@ -47,6 +70,7 @@ export type Command =
 
 export type PairCommand = Extract<Command, { name: 'pair' }>;
 export type PointsCommand = Extract<Command, { name: 'points' }>;
+export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
 export type WorkCommand = PairCommand | PointsCommand;
 
 /** The files that a command reads, in the order in which their contents are handed over. */
@@ -54,6 +78,9 @@ export function filesOf(command: WorkCommand): string[] {
   if (command.name === 'points') return [command.file];
   return [command.first, command.second, ...(command.before === undefined ? [] : [command.before])];
 }
+
+/** Most pairs at the same time. */
+const MOST_JOBS = 256;
 
 const OPTIONS = {
   help: { type: 'boolean', short: 'h' },
@@ -68,10 +95,20 @@ const OPTIONS = {
   seed: { type: 'string', default: '1' },
   out: { type: 'string' },
   overlay: { type: 'boolean', default: false },
+  list: { type: 'string' },
+  every: { type: 'string', default: '1' },
+  'with-before': { type: 'boolean', default: false },
+  jobs: { type: 'string', short: 'j' },
+  shard: { type: 'string', default: '1/1' },
 } as const;
 
+const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
+const OF_SEQUENCES = [...OF_PAIRS, 'every', 'with-before', 'jobs', 'shard'];
+
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
-  pair: ['before', 'motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'],
+  pair: ['before', ...OF_PAIRS],
+  batch: ['list', ...OF_SEQUENCES],
+  video: OF_SEQUENCES,
   points: ['motions', 'method', 'seed'],
 };
 
@@ -94,15 +131,10 @@ export function parseCommand(args: string[]): Command {
     const [file] = exactly(1, files, "'points' takes one file");
     return { name, file: file as string, options: { ...shared, method: choice('method', values.method, 'paper', 'best') } };
   }
-  const [first, second] = exactly(2, files, "'pair' takes two files");
   for (const name of ['overlay', 'confidence'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
-  return {
-    name: 'pair',
-    first: first as string,
-    second: second as string,
-    ...(values.before !== undefined && { before: values.before }),
+  const settings: PairSettings & { out?: string } = {
     options: {
       ...shared,
       quality: choice('quality', values.quality, 'fast', 'best'),
@@ -113,6 +145,25 @@ export function parseCommand(args: string[]): Command {
     overlay: values.overlay,
     ...(values.out !== undefined && { out: values.out }),
   };
+  if (name === 'pair') {
+    const [first, second] = exactly(2, files, "'pair' takes two files");
+    const before = values.before !== undefined && { before: values.before };
+    return { name, first: first as string, second: second as string, ...before, ...settings };
+  }
+  const sequence: SequenceSettings = {
+    ...settings,
+    every: whole('every', values.every, 1_000_000),
+    withBefore: values['with-before'],
+    jobs: values.jobs === undefined ? availableParallelism() : whole('jobs', values.jobs, MOST_JOBS),
+    shard: shard(values.shard),
+  };
+  if (name === 'video') {
+    const [file] = exactly(1, files, "'video' takes one file");
+    return { name, file: file as string, ...sequence };
+  }
+  if (files.length === 0 && values.list === undefined) throw usage("'batch' takes frames, or a list of them");
+  if (files.includes('')) throw usage("a frame's name is empty");
+  return { name: 'batch', frames: files, ...(values.list !== undefined && { list: values.list }), ...sequence };
 }
 
 function parsed(args: string[]) {
@@ -141,6 +192,18 @@ function motions(text: string): 'auto' | number {
 function seed(text: string): number {
   if (/^\d+$/.test(text) && Number.isSafeInteger(Number(text))) return Number(text);
   throw invalid('seed', `a whole number from 0 to ${Number.MAX_SAFE_INTEGER}`, text);
+}
+
+function whole(name: string, text: string, most: number): number {
+  const value = Number(text);
+  if (/^\d+$/.test(text) && value >= 1 && value <= most) return value;
+  throw invalid(name, `a whole number from 1 to ${most}`, text);
+}
+
+function shard(text: string): { index: number; of: number } {
+  const [, index, of] = (/^(\d{1,9})\/(\d{1,9})$/.exec(text) ?? []).map(Number);
+  if (index !== undefined && of !== undefined && index >= 1 && index <= of) return { index: index - 1, of };
+  throw invalid('shard', "'I/N', part I from 1 to N of N parts", text);
 }
 
 function choice<const T extends string>(name: string, text: string, ...choices: T[]): T {

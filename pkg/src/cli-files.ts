@@ -42,7 +42,7 @@ export function checkFolder(folder: string): void {
   if (problem) throw writeFailed(folder, problem);
 }
 
-function writeFailed(folder: string, reason: string): VeroneseError {
+export function writeFailed(folder: string, reason: string): VeroneseError {
   return new VeroneseError('write-failed', `the results cannot be written into '${folder}': ${reason}`);
 }
 
@@ -52,7 +52,7 @@ export interface OutputFile {
 }
 
 /** What this program writes; files of an earlier run that this one did not make would be mistaken for its own. */
-const OURS = /^(mask-\d+|overlay|confidence)\.png$/;
+export const OURS = /^(mask-\d+|overlay|confidence)\.png$/;
 
 /** A set of files that appears as a whole: all are written under temporary names, then renamed in one go. */
 export class Output {

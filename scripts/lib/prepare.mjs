@@ -2,21 +2,24 @@
 // and nothing is recorded: each piece is looked at anew, which takes less than a second.
 
 import { prepareChromium } from './chromium.mjs';
-import { prepareNpmPackages } from './npm-packages.mjs';
+import { HOSTS, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
 import { Stop } from './run.mjs';
 import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
- * Prepares compiler, wasm tools and npm packages; with `checks` formatter and clippy too, with `browser` Chromium.
+ * Prepares compiler, wasm tools and npm packages; with `checks` formatter and clippy too, with `browser` Chromium, with
+ * `hosts` the bundlers and checkers that the packed package is tried in.
  * Throws `Stop` with a sentence for every missing piece. Only a missing browser is returned instead, as
  * `{ chromium: { problem } }`, because everything but the page tests works without it.
  */
-export async function prepare({ checks = false, browser = false } = {}) {
+export async function prepare({ checks = false, browser = false, hosts = false } = {}) {
   checkNode();
   await checkRust();
   const rust = prepareCompiler({ checks }).then(prepareWasmTools);
-  const javascript = prepareNpmPackages().then(() => (browser ? prepareChromium() : {}));
+  const javascript = prepareNpmPackages()
+    .then(() => (hosts ? prepareNpmPackages(HOSTS) : undefined))
+    .then(() => (browser ? prepareChromium() : {}));
   const outcomes = await Promise.allSettled([rust, javascript]);
   const failures = outcomes.filter(({ status }) => status === 'rejected').map(({ reason }) => reason);
   const surprise = failures.find((reason) => !(reason instanceof Stop));

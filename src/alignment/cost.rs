@@ -122,25 +122,26 @@ fn view_cost(
     let (noise, looseness) = (level.noise * level.noise, model.looseness * model.looseness);
     let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
     let correlation = level.noise_correlation();
-    let mut out = Plane::filled(width, height, 0.0);
-    let mut samples = [0.0; CHUNK];
+    let mut out = Vec::with_capacity(width * height);
+    let (mut samples, mut costs) = ([0.0; CHUNK], [0.0; CHUNK]);
     for y in 0..height {
         let path = RowPath::new(scaled, 0, y);
-        let rows = out.row_mut(y).chunks_mut(CHUNK).zip(level.first.row(y).chunks(CHUNK));
-        for (k, ((out, first), energy)) in rows.zip(level.energy.row(y).chunks(CHUNK)).enumerate() {
+        let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
+        for (k, (first, energy)) in rows.enumerate() {
             let at = Footprints::along(&path, k * CHUNK, width, height);
-            at.sample(view.values(), &mut samples[..out.len()]);
+            at.sample(view.values(), &mut samples[..first.len()]);
             let seen = samples.iter().zip(&at.inside).zip(at.fx.iter().zip(&at.fy));
-            let pixels = out.iter_mut().zip(first).zip(energy).zip(seen);
-            for (((o, first), energy), ((sample, inside), (fx, fy))) in pixels {
+            let pixels = costs.iter_mut().zip(first).zip(energy).zip(seen);
+            for (((cost, first), energy), ((sample, inside), (fx, fy))) in pixels {
                 let residual = sample - first * (1.0 + gain) - bias;
                 let variance = noise * interpolation_variance(*fx, *fy, correlation) + looseness * energy;
-                let cost = model.of(residual, variance);
-                *o = if *inside { cost } else { outside };
+                let explained = model.of(residual, variance);
+                *cost = if *inside { explained } else { outside };
             }
+            out.extend_from_slice(&costs[..first.len()]);
         }
     }
-    out
+    Plane::from_vec(width, height, out)
 }
 
 /// Sum of a cost plane.
@@ -167,8 +168,7 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const SMALLEST: f32 = 0.5;
     const LARGEST: f32 = 8.0;
     let scaled = level.scaled(motion);
-    let mut energies = level.energy.values().to_vec();
-    let flat = median(&mut energies).unwrap_or(0.0);
+    let flat = median(level.energy.values()).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
     let mut samples = [0.0; CHUNK];
     for y in 0..level.height() {
@@ -183,9 +183,9 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
             }
         }
     }
-    let Some(centre) = median(&mut residuals) else { return LARGEST };
+    let Some(centre) = median(&residuals) else { return LARGEST };
     residuals.iter_mut().for_each(|r| *r = (*r - centre).abs());
-    (1.4826 * median(&mut residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
+    (1.4826 * median(&residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
 }
 
 #[cfg(test)]

@@ -16,9 +16,9 @@ const RELATIVE_TOLERANCE: f64 = 0.2;
 pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, reduction: f64) -> Vec<usize> {
     let n = motions.len();
     let mut jumps: Vec<(f64, usize, usize)> = Vec::new();
-    for (i, j, mut along) in borders(motions, labels, width) {
+    for (i, j, along) in borders(motions, labels, width) {
         if along.len() >= SHORTEST_BORDER {
-            jumps.extend(median_f64(&mut along).map(|jump| (jump, i, j)));
+            jumps.extend(median_f64(&along).map(|jump| (jump, i, j)));
         }
     }
     let largest = jumps.iter().fold(0.0f64, |m, j| m.max(j.0));

@@ -17,8 +17,9 @@
 //! motion, or the exact motions of noise-free data freeze the others.
 
 use super::mixture::{Mixture, Normal, Stop, Workspace, nearest_distances, own_distances};
-use super::samples::{Samples, median};
+use super::samples::Samples;
 use super::subset;
+use crate::order::{median_f64, sort_few};
 use crate::random::Random;
 
 /// The search works on at most this many measurements, the last maximisation on all.
@@ -180,7 +181,7 @@ impl<'a> Search<'a> {
         let mut last = Vec::new();
         for cap in [CAP_SIGMAS * best.sigma, CAP] {
             let mut chosen = subset::choose(&self.sample, &self.pool, n, cap);
-            chosen.sort_unstable();
+            sort_few(&mut chosen, usize::cmp);
             if chosen == last {
                 continue;
             }
@@ -217,5 +218,6 @@ fn is_usable(motion: &[f64; 6]) -> bool {
 
 /// The largest noise that the measurements nearest to one of the motions suggest: 1.4826 times the median of their distances.
 fn widest_sigma(samples: &Samples, motions: &[[f64; 6]]) -> f64 {
-    own_distances(samples, motions).iter_mut().map(|own| 1.4826 * median(own)).fold(0.0, f64::max)
+    let typical = |own: &Vec<f64>| 1.4826 * median_f64(own).unwrap_or(0.0);
+    own_distances(samples, motions).iter().map(typical).fold(0.0, f64::max)
 }
