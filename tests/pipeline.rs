@@ -308,6 +308,42 @@ fn a_third_view_is_taken_and_checked() {
     );
 }
 
+/// Of the pixels that the second frame hides or leaves out, the share whose label is the one that most of their object has.
+fn right_where_hidden(scene: &Scene, before: Option<&Frame>) -> f64 {
+    let result = segment_pair(scene.first(), scene.second(), before, &SegmentOptions::default(), &mut |_| {}).unwrap();
+    let found = result.count;
+    let mut votes = vec![vec![0usize; found]; scene.motions.len()];
+    for (&t, &l) in scene.labels.iter().zip(&result.labels) {
+        votes[usize::from(t)][usize::from(l)] += 1;
+    }
+    let of: Vec<usize> = votes.iter().map(|v| (0..found).max_by_key(|&k| v[k]).unwrap()).collect();
+    let hidden = (0..scene.labels.len()).filter(|&p| scene.occluded[p]);
+    let right = hidden.clone().filter(|&p| of[usize::from(scene.labels[p])] == usize::from(result.labels[p]));
+    right.count() as f64 / hidden.count().max(1) as f64
+}
+
+#[test]
+fn a_frame_before_tells_what_the_second_hides() {
+    let mut with = Vec::new();
+    let mut without = Vec::new();
+    for seed in 400..406 {
+        let options = SceneOptions {
+            width: 200,
+            height: 150,
+            objects: 2,
+            speed: Speed::Large,
+            background: Background::Moving,
+            seed,
+            ..SceneOptions::default()
+        };
+        let scene = scene::generate(&options).unwrap();
+        with.push(right_where_hidden(&scene, Some(scene.before())));
+        without.push(right_where_hidden(&scene, None));
+    }
+    println!("right where hidden: with {with:.3?}, without {without:.3?}");
+    assert!(mean(&with) > mean(&without) + 0.03, "with {with:.3?}, without {without:.3?}");
+}
+
 #[test]
 fn sizes_and_numbers_out_of_range_are_errors() {
     let options = SegmentOptions::default();

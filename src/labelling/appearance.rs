@@ -13,7 +13,7 @@ const COLOURS: usize = STEPS * STEPS * STEPS;
 /// Probability that every label gives every colour beforehand.
 const DOUBT: f32 = 1e-3;
 /// Price of a colour per nat of its improbability, where colours can be trusted entirely.
-const STRENGTH: f32 = 0.5;
+const STRENGTH: f32 = 1.0;
 /// Largest price of a colour.
 const LARGEST: f32 = 2.0;
 /// Side of the blocks that form the two halves, working pixels.
