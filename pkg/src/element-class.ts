@@ -33,7 +33,7 @@ export class VeroneseSegmenterElement extends Base {
   readonly #picture: HTMLElement;
   readonly #status: HTMLElement;
   readonly #given: { first?: Source; second?: Source } = {};
-  #segmenter: Segmenter | undefined;
+  #segmenter: InstanceType<typeof Segmenter> | undefined;
   #request: AbortController | undefined;
   #result: Segmentation | undefined;
   #planned = false;

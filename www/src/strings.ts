@@ -92,8 +92,8 @@ export const strings = {
   copied: (what: string, name: string): string => `The motion of ${name} is on the clipboard as ${what}.`,
   copiedText: (what: string): string => `The ${what} is on the clipboard.`,
 
-  insistOn: (count: number, above: number): string => `${count} ${count === 1 ? 'motion' : 'motions'}: insist on it, score ${whole.format(above)} above the best`,
-  scoreAbove: (above: number): string => (above === 0 ? 'best score' : `${whole.format(above)} above the best`),
+  insistOn: (count: number, above: number): string => `${count} ${count === 1 ? 'motion' : 'motions'}: insist on it; its score is ${whole.format(above)} above the lowest`,
+  scoreAbove: (above: number): string => (above === 0 ? 'lowest score' : `${whole.format(above)} above the lowest`),
 
   toolHelp: {
     look: '',

@@ -78,7 +78,6 @@ test('masks of frames that were made smaller are saved at their full size', asyn
 test('the copied command and script give the same result', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page, 'groups');
-  await page.getByLabel('Fast').check();
   await page.getByLabel('Number of motions').selectOption('3');
   await done(page);
   const expected = await segmentedInNode(await sample('first'), await sample('second'), { quality: 'fast', motions: 3 });
@@ -128,7 +127,6 @@ test('the picture is copied', async ({ page, context }) => {
 test('a copied link opens with the same settings', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
-  await page.getByLabel('Fast').check();
   await page.getByLabel('Number of motions').selectOption('2');
   await done(page);
   await page.getByRole('button', { name: 'Copy link' }).click();
@@ -142,4 +140,83 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   await expect(other.getByLabel('Fast')).toBeChecked();
   await expect(other.locator('#motions > li')).toHaveCount(2);
   await expect(other.locator('#look [value=motions]')).toBeChecked();
+});
+
+/** Uncompressed COCO run lengths from the compressed, after the description of the format. */
+function countsOf(text: string): number[] {
+  const counts: number[] = [];
+  for (let i = 0; i < text.length; ) {
+    let [value, shift, more] = [0, 0, true];
+    let chunk = 0;
+    while (more) {
+      chunk = text.charCodeAt(i++) - 48;
+      value |= (chunk & 0x1f) << shift;
+      more = (chunk & 0x20) !== 0;
+      shift += 5;
+    }
+    if (chunk & 0x10) value |= -1 << shift;
+    counts.push(counts.length > 2 ? value + counts.at(-2)! : value);
+  }
+  return counts;
+}
+
+/** Pixels of one mask as a plane of 255 and 0, in rows, from runs down the columns that begin with zeros. */
+function planeFromColumns(counts: readonly number[], width: number, height: number): Uint8Array {
+  const plane = new Uint8Array(width * height);
+  let at = 0;
+  counts.forEach((count, k) => {
+    if (k % 2 === 1) for (let i = at; i < at + count; i++) plane[(i % height) * width + Math.floor(i / height)] = 255;
+    at += count;
+  });
+  expect(at).toBe(width * height);
+  return plane;
+}
+
+test('annotation tools get the masks under their names', async ({ page }) => {
+  await open(page, 'groups');
+  const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
+  const row = page.locator('#motions > li').nth(1);
+  await row.locator('.motion-name').fill('White car');
+  await row.locator('.motion-name').press('Enter');
+  const mask = (id: number): Uint8Array => groups.map((group) => (group === id ? 255 : 0));
+  const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
+
+  const coco = (await json('COCO, run lengths')) as {
+    categories: { id: number; name: string }[];
+    annotations: { category_id: number; area: number; segmentation: { counts: string; size: number[] } }[];
+  };
+  const category = coco.categories.find(({ name }) => name === 'White car')!;
+  const annotation = coco.annotations.find((one) => one.category_id === category.id)!;
+  expect(annotation.segmentation.size).toEqual([432, 768]);
+  expect(differences(planeFromColumns(countsOf(annotation.segmentation.counts), 768, 432), mask(1))).toBe(0);
+
+  const polygons = (await json('COCO, polygons')) as { annotations: { segmentation: number[][] }[] };
+  expect(polygons.annotations).toHaveLength(coco.annotations.length);
+  expect(polygons.annotations[1]!.segmentation[0]!.length).toBeGreaterThan(20);
+
+  const cvat = (await savedAs(page, 'CVAT')).bytes.toString();
+  const shape = /<mask label="White car"[^>]*rle="([^"]*)"[^>]*>/.exec(cvat)!;
+  const side = (name: string): number => Number(new RegExp(`${name}="(\\d+)"`).exec(shape[0])![1]);
+  const [left, top, width, height] = ['left', 'top', 'width', 'height'].map(side) as [number, number, number, number];
+  const plane = new Uint8Array(768 * 432);
+  let at = 0;
+  shape[1]!.split(',').forEach((run, k) => {
+    for (let i = 0; i < Number(run); i++, at++) {
+      if (k % 2 === 1) plane[(top + Math.floor(at / width)) * 768 + left + (at % width)] = 255;
+    }
+  });
+  expect(at).toBeLessThanOrEqual(width * height);
+  expect(differences(plane, mask(1))).toBe(0);
+
+  const [task] = (await json('Label Studio')) as [{ predictions: { result: { value: { brushlabels: string[]; rle: number[] } }[] }[] }];
+  expect(task.predictions[0]!.result.map(({ value }) => value.brushlabels[0])).toContain('White car');
+  const labelme = (await json('LabelMe')) as { shapes: { label: string }[]; imageWidth: number };
+  expect(labelme.shapes.map(({ label }) => label)).toContain('White car');
+  expect(labelme.imageWidth).toBe(768);
+
+  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+  const lines = new TextDecoder().decode(yolo['labels/first.txt']).trim().split('\n');
+  expect(lines.length).toBe(new Set(groups).size);
+  for (const line of lines) expect(line).toMatch(/^\d+( (0|1|0?\.\d+|\d\.\d+(e-\d+)?)){6,}$/);
+  expect(new TextDecoder().decode(yolo['data.yaml'])).toContain('White car');
 });

@@ -6,6 +6,7 @@ import { nameOf } from '../naming.js';
 import { colourOfMask } from '../paint.js';
 import type { Colour } from '../palette.js';
 import type { Look, Result } from '../state.js';
+import { ANNOTATIONS } from './annotations.js';
 import { overlayPicture } from './overlay.js';
 import { pngFromGrey, pngFromLabels } from './png.js';
 import { atSize } from './full-size.js';
@@ -108,4 +109,4 @@ export const OVERLAY: Format = {
 };
 
 /** In the order of the menu. */
-export const FORMATS: readonly Format[] = [LABELS, MASK, MASKS, OVERLAY, RESULT];
+export const FORMATS: readonly Format[] = [LABELS, MASK, MASKS, OVERLAY, RESULT, ...ANNOTATIONS];
