@@ -340,8 +340,7 @@ fn a_frame_before_tells_what_the_second_hides() {
         with.push(right_where_hidden(&scene, Some(scene.before())));
         without.push(right_where_hidden(&scene, None));
     }
-    println!("right where hidden: with {with:.3?}, without {without:.3?}");
-    assert!(mean(&with) > mean(&without) + 0.03, "with {with:.3?}, without {without:.3?}");
+    assert!(mean(&with) > 0.96 && mean(&with) > mean(&without) + 0.01, "with {with:.3?}, without {without:.3?}");
 }
 
 #[test]
@@ -384,7 +383,7 @@ fn fingerprint(result: &Segmentation) -> u64 {
 /// The same constants hold natively and in WebAssembly: a change of the numerics changes both.
 #[test]
 fn the_same_bits_on_every_target() {
-    let expected: [u64; 3] = [0x55dc_a98c_2dd8_94b7, 0xe388_f47c_7500_ac28, 0x1340_f06f_4da4_59cc];
+    let expected: [u64; 3] = [0x0f49_74a3_33ea_f797, 0xf7ce_a6db_71bd_6902, 0xd918_0b29_e526_cc71];
     let options = [
         SegmentOptions::default(),
         SegmentOptions { quality: Quality::Fast, ..SegmentOptions::default() },
