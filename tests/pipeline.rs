@@ -27,7 +27,6 @@ fn check(result: &Segmentation, options: &SegmentOptions) {
         assert_eq!(motion.pixels, result.labels.iter().filter(|&&l| usize::from(l) == k).count());
         assert!((motion.share - motion.pixels as f64 / pixels as f64).abs() < 1e-12);
         assert!(motion.matrix.is_finite() && motion.residual.is_finite() && motion.residual >= 0.0);
-        assert!(motion.group <= motion.label);
         if k > 0 && !options.mark_unknown {
             assert!(motion.pixels <= result.motions[k - 1].pixels, "labels by decreasing size");
         }
@@ -35,6 +34,14 @@ fn check(result: &Segmentation, options: &SegmentOptions) {
         assert!(x + w <= result.width && y + h <= result.height);
         counted += motion.pixels;
     }
+    let groups = usize::from(result.motions.iter().map(|m| m.group).max().unwrap()) + 1;
+    let sizes: Vec<usize> = (0..groups)
+        .map(|g| result.motions.iter().filter(|m| usize::from(m.group) == g).map(|m| m.pixels).sum())
+        .collect();
+    assert!(
+        options.mark_unknown || sizes.is_sorted_by(|a, b| a >= b && *b > 0),
+        "groups by decreasing size: {sizes:?}"
+    );
     assert_eq!(counted + result.unlabelled, pixels);
     assert!(options.mark_unknown || result.unlabelled == 0);
     assert!(result.evidence.candidates.iter().all(|c| c.score.is_finite()));
