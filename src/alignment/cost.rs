@@ -58,24 +58,43 @@ fn interpolation_variance(fx: f32, fy: f32, correlation: f32) -> f32 {
     0.5 * (1.0 + (1.0 - c * fx * (1.0 - fx)) * (1.0 - c * fy * (1.0 - fy)))
 }
 
-/// Cost of a motion (of the working frame) at every pixel of a level; the smaller of both views where there is a frame before.
+/// The frame that the first one is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum View {
+    Second,
+    Before,
+}
+
+/// Cost of a motion (of the working frame) at every pixel of a level; in the frame before, where there is one, where the pixel
+/// leaves the second.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
-    let forward = view_cost(level, &level.second, &level.scaled(motion), Photometric::default(), model);
-    match (&level.before, inverse(motion)) {
-        (Some(before), Some(back)) => {
-            let mut both = view_cost(level, before, &level.scaled(&back), Photometric::default(), model);
-            for (b, f) in both.values_mut().iter_mut().zip(forward.values()) {
-                *b = b.min(*f);
-            }
-            both
+    let mut plane = cost_in(level, View::Second, motion, model);
+    if level.before.is_some() {
+        let before = cost_in(level, View::Before, motion, model);
+        let unseen = plane.values_mut().iter_mut().zip(before.values()).filter(|(c, _)| !c.is_finite());
+        unseen.for_each(|(c, b)| *c = *b);
+    }
+    plane.values_mut().iter_mut().for_each(|c| *c = if c.is_finite() { *c } else { model.outside() });
+    plane
+}
+
+/// Cost of a motion in one view; infinite where the displaced position lies outside, or where there is no such view.
+pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: CostModel) -> Plane {
+    let (plane, moved) = match view {
+        View::Second => (Some(&level.second), Some(*motion)),
+        View::Before => (level.before.as_ref(), inverse(motion)),
+    };
+    match (plane, moved) {
+        (Some(plane), Some(moved)) => {
+            view_cost(level, plane, &level.scaled(&moved), Photometric::default(), model, f32::INFINITY)
         }
-        _ => forward,
+        _ => Plane::filled(level.width(), level.height(), f32::INFINITY),
     }
 }
 
 /// Cost with a change of brightness that has not been taken out of the second frame yet.
 pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
-    view_cost(level, &level.second, &level.scaled(motion), photometric, model)
+    view_cost(level, &level.second, &level.scaled(motion), photometric, model, model.outside())
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
@@ -90,7 +109,15 @@ pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
     Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
 }
 
-fn view_cost(level: &Level, view: &Plane, scaled: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
+/// Cost in one view, `outside` where a pixel leaves it.
+fn view_cost(
+    level: &Level,
+    view: &Plane,
+    scaled: &AffineMotion,
+    photometric: Photometric,
+    model: CostModel,
+    outside: f32,
+) -> Plane {
     let (width, height) = (level.width(), level.height());
     let (noise, looseness) = (level.noise * level.noise, model.looseness * model.looseness);
     let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
@@ -109,7 +136,7 @@ fn view_cost(level: &Level, view: &Plane, scaled: &AffineMotion, photometric: Ph
                 let residual = sample - first * (1.0 + gain) - bias;
                 let variance = noise * interpolation_variance(*fx, *fy, correlation) + looseness * energy;
                 let explained = model.of(residual, variance);
-                *cost = if *inside { explained } else { model.outside() };
+                *cost = if *inside { explained } else { outside };
             }
             out.extend_from_slice(&costs[..first.len()]);
         }

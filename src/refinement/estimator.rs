@@ -26,9 +26,11 @@ use crate::random::Random;
 const SEARCHED: usize = 1000;
 /// Random motions are drawn with this many times the typical normal flow as deviation.
 const SEED_SCALE: f64 = 1.2;
-/// Random motions per wanted motion: on all measurements, on the unexplained ones, on those of one motion.
+/// Random motions per wanted motion: on all measurements, on the unexplained ones (more where outliers hide the motion that is
+/// missing), on those of one motion.
 const OVER_COMPLETE: usize = 6;
 const UNEXPLAINED: usize = 6;
+const UNEXPLAINED_AMONG_OUTLIERS: usize = 10;
 const SPLIT: usize = 4;
 /// σ at the start from random motions, of splitting one motion, and the largest at the start from a choice, all in units
 /// of the derivatives' root mean square.
@@ -157,7 +159,8 @@ impl<'a> Search<'a> {
         let rest: Vec<usize> = (0..near.len()).filter(|&j| near[j] > EXPLAINED_SIGMAS * best.sigma).collect();
         if rest.len() >= FEWEST {
             let rest = self.sample.subset(rest.into_iter());
-            let seeds = self.seeds(UNEXPLAINED * n, &[0.0; 6], self.scale);
+            let many = if best.outliers < CLEAN { UNEXPLAINED } else { UNEXPLAINED_AMONG_OUTLIERS };
+            let seeds = self.seeds(many * n, &[0.0; 6], self.scale);
             let found = self.workspace.maximise(&rest, Mixture::new(seeds, WIDE), SEARCH);
             self.pool.extend(found.motions);
         }
