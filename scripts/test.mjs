@@ -24,6 +24,15 @@ const PARTS = {
       return tests(nodeCounts, 'npm', ['test', '--silent', '--workspace', 'pkg']);
     },
   },
+  formats: {
+    title: "formats, read by the annotation tools' own decoders",
+    run: async ({ python }) => {
+      await buildModules();
+      await buildPackage();
+      if (python.problem) console.log(python.problem);
+      return tests(nodeCounts, 'npm', ['run', '--silent', 'test:formats', '--workspace', 'pkg']);
+    },
+  },
   hosts: {
     title: 'the packed package in its hosts',
     run: async ({ chromium }) => {
@@ -57,6 +66,7 @@ await command(async (args) => {
   const setup = await prepare({
     checks: names.includes('check'),
     browser: names.includes('page') || names.includes('hosts'),
+    python: names.includes('formats'),
     hosts: names.includes('hosts'),
   });
   const results = [];

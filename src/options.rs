@@ -73,7 +73,8 @@ pub struct SegmentOptions {
     pub motions: MotionCount,
     /// Work to spend; default [`Quality::Best`].
     pub quality: Quality,
-    /// Label 255 where no motion explains a pixel; default off.
+    /// Label 255 where a pixel is hidden or outside in the second frame, where there is no texture around it, and where its label
+    /// would more likely be wrong than right; default off.
     pub mark_unknown: bool,
     /// Say for every pixel how sure its label is ([`Segmentation::confidence`](crate::Segmentation::confidence)); default off.
     pub confidence: bool,

@@ -12,7 +12,7 @@ export const HELP = `veronese finds how many things move between two frames, how
       --motions auto|1..10   how many motions (default: auto)
       --quality fast|best    how much work (default: best)
       --grouped              labels.png and mask-K.png show groups: what belongs to one rigid background counts as one
-      --mark-unknown         label 255 where no motion explains a pixel
+      --mark-unknown         label 255 where a pixel is hidden or outside in SECOND, or where the data cannot tell
       --seed N               seed of every random choice (default: 1)
       --out DIR              write labels.png, result.json and mask-K.png into DIR
       --confidence           and confidence.png: how sure every pixel's label is, 255 times its probability

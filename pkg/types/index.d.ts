@@ -33,7 +33,10 @@ export interface SegmentOptions extends CallOptions {
   motions?: 'auto' | number | undefined;
   /** Work to spend: `'fast'` for live use, `'best'` (the default) for keeping. */
   quality?: 'fast' | 'best' | undefined;
-  /** Label 255 where no motion explains a pixel; default `false`. */
+  /**
+   * Label 255 where a pixel is hidden or outside in the second frame, where there is no texture around it, and where its label
+   * would more likely be wrong than right; default `false`.
+   */
   markUnknown?: boolean | undefined;
   /** Say for every pixel how sure its label is, in `confidence` of the result; default `false`. */
   confidence?: boolean | undefined;
@@ -229,7 +232,7 @@ export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOpti
  * `evidence` holds a set of labels for each pixel, row by row: bit k is set where label k is possible, 0 says nothing. "This is
  * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. What is said
  * holds on its pixels and spreads from there as far as the picture looks alike; far from it every label stays. Numbering and groups
- * stay too, so a label may be left without pixels. The same arguments give the same answer: to undo, ask without.
+ * stay too, so a label may be left without pixels; `confidence` is left out. The same arguments give the same answer: to undo, ask without.
  */
 export function relabel(
   first: Pixels,

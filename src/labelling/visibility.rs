@@ -24,13 +24,7 @@ pub(crate) fn with_visibility(
 ) -> Vec<Plane> {
     let landed: Vec<Plane> = (0..motions.len()).map(|k| moved_mask(level, &motions[k], labels, k)).collect();
     let hide = |k: usize| {
-        let mut cover = Plane::filled(level.width(), level.height(), 0.0);
-        for (_, mask) in landed.iter().enumerate().skip(1).filter(|&(other, _)| other != k) {
-            for (c, m) in cover.values_mut().iter_mut().zip(mask.values()) {
-                *c = c.max(*m);
-            }
-        }
-        let covered = warp(&cover, &level.scaled(&motions[k]));
+        let covered = covered(level, &motions[k], &landed, k);
         let hidden = HIDDEN + if k == 0 { 0.0 } else { departure };
         let mut out = costs[k].clone();
         for ((c, covered), label) in out.values_mut().iter_mut().zip(covered.values()).zip(labels) {
@@ -41,6 +35,24 @@ pub(crate) fn with_visibility(
         out
     };
     (0..motions.len()).map(hide).collect()
+}
+
+/// Pixels of the dominant motion that it moves behind an object.
+pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<bool> {
+    let landed: Vec<Plane> = (0..motions.len()).map(|k| moved_mask(level, &motions[k], labels, k)).collect();
+    let covered = covered(level, &motions[0], &landed, 0);
+    covered.values().iter().zip(labels).map(|(&covered, &label)| label == 0 && covered > 0.5).collect()
+}
+
+/// How much of the place that a motion moves each pixel to is covered by objects other than `own`, 0…1.
+fn covered(level: &Level, motion: &AffineMotion, landed: &[Plane], own: usize) -> Plane {
+    let mut cover = Plane::filled(level.width(), level.height(), 0.0);
+    for (_, mask) in landed.iter().enumerate().skip(1).filter(|&(other, _)| other != own) {
+        for (c, m) in cover.values_mut().iter_mut().zip(mask.values()) {
+            *c = c.max(*m);
+        }
+    }
+    warp(&cover, &level.scaled(motion))
 }
 
 /// The inner part of an object's mask, moved to where it is in the second frame.

@@ -11,10 +11,11 @@ use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::description::{counts, length, price_of_motion, worth};
-use crate::labelling::energy::label_cost;
+use crate::labelling::energy::label_costs;
 use crate::labelling::groups::groups;
 use crate::labelling::potts::Solver;
 use crate::labelling::upsampling::{enlarged, upsample};
+use crate::labelling::visibility::hidden;
 use crate::motion::AffineMotion;
 use crate::options::{MAX_MOTIONS, SegmentOptions};
 use crate::order::descending;
@@ -82,6 +83,10 @@ pub struct PairEvidence {
 const UNKNOWN_WINDOW: f32 = 1.5;
 /// Share of the saturated cost above which it does not.
 const UNKNOWN_COST: f32 = 0.7;
+/// Window over which texture is looked for, working pixels.
+const TEXTURE_WINDOW: f32 = 3.0;
+/// Mean squared gradient, in units of the noise variance, below which there is no texture: noise alone has 0.15 to 0.2.
+const NO_TEXTURE: f32 = 0.2;
 
 pub(super) fn report(
     work: &Work,
@@ -94,11 +99,11 @@ pub(super) fn report(
     let level = work.finest();
     let size = [level.width(), level.height()];
     let candidates = evidence(work, &labelled, settings);
-    let unknown = options.mark_unknown.then(|| unexplained(work, &labelled));
-    let sure = options.confidence.then(|| {
+    let sure = (options.mark_unknown || options.confidence).then(|| {
         let cost = |motion| cost(level, motion, CostModel::LABELS);
         probabilities(&labelled.motions.iter().map(cost).collect::<Vec<_>>(), &labelled.labels)
     });
+    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(work, &labelled, sure));
     let grouping = groups(&labelled.motions, &labelled.labels, size[0], work.reduction);
 
     let full = if settings.has(Part::GuidedEnlarging) {
@@ -106,7 +111,7 @@ pub(super) fn report(
     } else {
         nearest(&labelled.labels, size, first, work.reduction)
     };
-    let mut confidence = sure.map(|sure| confidence(&sure, &full, first.width()));
+    let mut confidence = sure.filter(|_| options.confidence).map(|sure| confidence(&sure, &full, first.width()));
     let order = by_size(&full, labelled.motions.len());
     let mut rank = vec![0u8; labelled.motions.len()];
     order.iter().enumerate().for_each(|(k, &old)| rank[old] = k as u8);
@@ -171,11 +176,14 @@ pub(super) fn reduced(motion: &AffineMotion, reduction: f64) -> AffineMotion {
     AffineMotion::new(a)
 }
 
-/// Working pixels that their own motion does not explain, or that leave the frame.
-fn unexplained(work: &Work, labelled: &Labelled) -> Vec<bool> {
+/// Working pixels that leave the frame, are hidden behind an object or are not explained by their own motion, those without
+/// texture around them, and those whose label is more likely wrong than right.
+fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Vec<bool> {
     let level = work.finest();
     let limit = UNKNOWN_COST * CostModel::LABELS.truncation;
-    let mut unknown = vec![false; labelled.labels.len()];
+    let texture = gaussian(&level.energy, TEXTURE_WINDOW);
+    let no_texture = NO_TEXTURE * level.noise * level.noise;
+    let mut unknown = hidden(level, &labelled.motions, &labelled.labels);
     for (k, motion) in labelled.motions.iter().enumerate() {
         let own = gaussian(&cost(level, motion, CostModel::LABELS), UNKNOWN_WINDOW);
         let scaled = level.scaled(motion);
@@ -186,7 +194,8 @@ fn unexplained(work: &Work, labelled: &Labelled) -> Vec<bool> {
                 if usize::from(labelled.labels[p]) == k {
                     let (px, py) = path.at(x);
                     let inside = Footprint::new(px, py, level.width(), level.height()).inside;
-                    unknown[p] = !inside || own.values()[p] > limit;
+                    let telling = texture.values()[p] > no_texture && probabilities[k].values()[p] >= 0.5;
+                    unknown[p] |= !inside || !telling || own.values()[p] > limit;
                 }
             }
         }
@@ -227,7 +236,8 @@ fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candid
         let mut one_more = found + price_of_motion(labels.len());
         if let Some(motion) = &labelled.left_out {
             raw.push(cost(level, motion, CostModel::ESTIMATION));
-            costs.push(label_cost(level, motion, true, settings.coherence));
+            let all: Vec<AffineMotion> = labelled.motions.iter().chain([motion]).copied().collect();
+            costs.extend(label_costs(level, &all, settings.coherence).pop());
             one_more = one_more.min(length(&raw, &labelled.borders.solve(&costs, Solver::FAST), width));
             raw.pop();
             costs.pop();

@@ -82,7 +82,7 @@ impl Settings {
             hypothesis_price: 300.0,
             most: 7,
             least: 1,
-            coherence: Coherence { smoothness: 6.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
+            coherence: Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
             #[cfg(feature = "ablation")]
             without: None,
         };

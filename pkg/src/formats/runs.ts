@@ -26,8 +26,8 @@ export function columnRuns({ left, top, width, height, pixels }: Mask, imageWidt
     const column = (left + x) * imageHeight;
     for (let y = 0; y <= height; y++) {
       const pixel = y < height ? (pixels[y * width + x] as number) : 0;
-      // A column's end ends a run only where the next pixel, at the top of the next column, is not set.
-      if (pixel === value || (y === height && top === 0 && height === imageHeight)) continue;
+      // Where the box is as high as the image, the pixel after a column is the top of the next one, which has its turn then.
+      if (pixel === value || (y === height && height === imageHeight && x + 1 < width)) continue;
       const at = column + top + y;
       if (at === start && runs.length > 0) {
         start = at - (runs.pop() as number);

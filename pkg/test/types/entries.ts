@@ -1,8 +1,8 @@
 // The entries are what the hand-written types say; compiled, never run.
 
 import * as codecs from '../../src/codecs.js';
-import * as inline from '../../src/inline.js';
 import * as formats from '../../src/formats/index.js';
+import * as inline from '../../src/inline.js';
 import * as node from '../../src/node.js';
 import * as slim from '../../src/slim.js';
 import * as web from '../../src/web.js';
