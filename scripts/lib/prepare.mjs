@@ -2,7 +2,7 @@
 // and nothing is recorded: each piece is looked at anew, which takes less than a second.
 
 import { prepareChromium } from './chromium.mjs';
-import { HOSTS, prepareNpmPackages } from './npm-packages.mjs';
+import { HOSTS, SCALE_OUT, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
 import { preparePython } from './python-packages.mjs';
 import { Stop } from './run.mjs';
@@ -20,7 +20,7 @@ export async function prepare({ checks = false, browser = false, hosts = false, 
   await checkRust();
   const rust = prepareCompiler({ checks }).then(prepareWasmTools);
   const javascript = prepareNpmPackages()
-    .then(() => (hosts ? prepareNpmPackages(HOSTS) : undefined))
+    .then(() => (hosts ? prepareNpmPackages(HOSTS).then(() => prepareNpmPackages(SCALE_OUT)) : undefined))
     .then(() => (browser ? prepareChromium() : {}));
   const decoders = python ? preparePython() : {};
   const outcomes = await Promise.allSettled([rust, javascript, decoders]);
