@@ -2,8 +2,12 @@
 
 import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
+import { FORMATS, type FormatName, isFormatName } from './cli-formats.js';
 import type { PairSettings } from './cli-pair.js';
 import { VeroneseError } from './errors.js';
+
+/** Names of the formats in lines that fit a terminal. */
+const FORMAT_NAMES = wrapped(Object.keys(FORMATS), 80, '\n' + ' '.repeat(41));
 
 export const HELP = `veronese finds how many things move between two frames, how each moves, and which pixels belong to it.
 
@@ -29,6 +33,12 @@ export const HELP = `veronese finds how many things move between two frames, how
 
   veronese video FILE [options]          the same on the frames of a video, which the program ffmpeg reads
       options as for batch, without --list
+
+  veronese convert DIR --to FORMATS      what pair wrote into DIR, as annotation tools read it; FORMATS are separated by commas:
+                                         ${FORMAT_NAMES}
+      --grouped              groups instead of motions
+      --image NAME           the name of the image that the masks lie on (default: first.png)
+      --out DIR              where to write (default: beside the result)
 
   veronese points FILE.json [options]    {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
       --motions auto|1..10   how many motions (default: auto)
@@ -62,6 +72,7 @@ export type Command =
     } & PairSettings)
   | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
   | ({ name: 'video'; file: string } & SequenceSettings)
+  | { name: 'convert'; folder: string; to: FormatName[]; grouped: boolean; image?: string; out?: string }
   | {
       name: 'points';
       file: string;
@@ -70,6 +81,7 @@ export type Command =
 
 export type PairCommand = Extract<Command, { name: 'pair' }>;
 export type PointsCommand = Extract<Command, { name: 'points' }>;
+export type ConvertCommand = Extract<Command, { name: 'convert' }>;
 export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
 export type WorkCommand = PairCommand | PointsCommand;
 
@@ -95,6 +107,8 @@ const OPTIONS = {
   seed: { type: 'string', default: '1' },
   out: { type: 'string' },
   overlay: { type: 'boolean', default: false },
+  to: { type: 'string' },
+  image: { type: 'string' },
   list: { type: 'string' },
   every: { type: 'string', default: '1' },
   'with-before': { type: 'boolean', default: false },
@@ -109,6 +123,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: ['before', ...OF_PAIRS],
   batch: ['list', ...OF_SEQUENCES],
   video: OF_SEQUENCES,
+  convert: ['to', 'grouped', 'image', 'out'],
   points: ['motions', 'method', 'seed'],
 };
 
@@ -130,6 +145,13 @@ export function parseCommand(args: string[]): Command {
   if (name === 'points') {
     const [file] = exactly(1, files, "'points' takes one file");
     return { name, file: file as string, options: { ...shared, method: choice('method', values.method, 'paper', 'best') } };
+  }
+  if (name === 'convert') {
+    const [folder] = exactly(1, files, "'convert' takes one folder");
+    if (values.to === undefined) throw usage("'convert' needs '--to FORMATS'");
+    const image = values.image !== undefined && { image: values.image };
+    const out = values.out !== undefined && { out: values.out };
+    return { name, folder: folder as string, to: formats(values.to), grouped: values.grouped, ...image, ...out };
   }
   for (const name of ['overlay', 'confidence'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
@@ -192,6 +214,23 @@ function motions(text: string): 'auto' | number {
 function seed(text: string): number {
   if (/^\d+$/.test(text) && Number.isSafeInteger(Number(text))) return Number(text);
   throw invalid('seed', `a whole number from 0 to ${Number.MAX_SAFE_INTEGER}`, text);
+}
+
+function formats(text: string): FormatName[] {
+  const names = [...new Set(text.split(','))];
+  const known: FormatName[] = names.filter(isFormatName);
+  if (known.length === names.length) return known;
+  throw invalid('to', `formats of ${Object.keys(FORMATS).join(', ')}`, text);
+}
+
+function wrapped(words: readonly string[], width: number, lineBreak: string): string {
+  let [text, used] = ['', 0];
+  for (const [k, word] of words.entries()) {
+    const piece = k + 1 < words.length ? `${word}, ` : word;
+    if (used > 0 && used + piece.length > width) [text, used] = [text.trimEnd() + lineBreak, 0];
+    [text, used] = [text + piece, used + piece.length];
+  }
+  return text;
 }
 
 function whole(name: string, text: string, most: number): number {

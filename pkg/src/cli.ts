@@ -36,6 +36,7 @@ export async function main(args: string[]): Promise<void> {
 async function answer(command: Exclude<Command, SequenceCommand>, output: Output): Promise<string> {
   if (command.name === 'help') return HELP;
   if (command.name === 'version') return `veronese ${version}\n`;
+  if (command.name === 'convert') return (await import('./cli-convert.js')).convert(command, output);
   const folder = command.name === 'pair' ? command.out : undefined;
   if (folder !== undefined) checkFolder(folder);
   const contents: Uint8Array[] = [];
