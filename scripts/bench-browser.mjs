@@ -1,5 +1,6 @@
 // npm run bench:browser: the package in headless Chromium beside OpenCV.js and jsfeat, on the same frames, calls in turn.
-// Options: --rounds N (default 30), --sizes 320x240,640x480,… Writes out/bench/browser.json and prints tables.
+// Options: --rounds N (default 30), --sizes 320x240,640x480,…, --scaling (also time and memory against pixels and motions).
+// Writes out/bench/browser.json and prints tables.
 
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -23,10 +24,13 @@ const FRESH_PAGES = 3;
 /** One and two workers by turns. */
 const THROUGHPUT_ROUNDS = 5;
 const THROUGHPUT_PAIRS = 12;
+/** 0.05 to 16.8 megapixels, the largest frame there may be. */
+const SCALES = ['256x192', '512x384', '1024x768', '2048x1536', '3264x2448', '4096x4096'];
+const SCALING_ROUNDS = 3;
 const HOST = '127.0.0.1';
 
 await command(async (args) => {
-  const { rounds, sizes } = options(args);
+  const { rounds, sizes, scaling } = options(args);
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
   await buildModules();
@@ -38,6 +42,7 @@ await command(async (args) => {
   const browser = await playwright().launch({ executablePath: chromium.path });
   try {
     const report = { ...downloads(), ...(await measured(browser, address, rounds, sizes)) };
+    if (scaling) report.scaling = await scaled(browser, address, sizes[Math.min(1, sizes.length - 1)]);
     write(report);
     print(report, browser.version(), rounds);
   } finally {
@@ -51,7 +56,7 @@ function options(args) {
   const text = { type: 'string' };
   let values;
   try {
-    ({ values } = parseArgs({ args, options: { rounds: text, sizes: text } }));
+    ({ values } = parseArgs({ args, options: { rounds: text, sizes: text, scaling: { type: 'boolean' } } }));
   } catch (error) {
     throw new Stop(error.message);
   }
@@ -59,7 +64,7 @@ function options(args) {
   const sizes = (values.sizes ?? '320x240,640x480,1280x720').split(',');
   if (!Number.isInteger(rounds) || rounds < 1) throw new Stop('--rounds must be a whole number from 1.');
   if (!sizes.every((size) => /^\d+x\d+$/.test(size))) throw new Stop('--sizes must look like 320x240,640x480.');
-  return { rounds, sizes };
+  return { rounds, sizes, scaling: values.scaling === true };
 }
 
 /** The others are nobody's dependency: they are installed here, at fixed versions, into a folder of their own. */
@@ -202,6 +207,66 @@ async function throughput(browser, address, size) {
   return { size, onePairsPerSecond: one, twoPairsPerSecond: two, ratio: two / one };
 }
 
+/** Time and memory against pixels, time against the number of motions asked for, with the exponents of power laws. */
+async function scaled(browser, address, from) {
+  const pixels = [];
+  for (const size of SCALES) {
+    console.log(`Scaling: ${size}`);
+    const [width, height] = size.split('x').map(Number);
+    const entry = { size, megapixels: (width * height) / 1e6 };
+    for (const quality of OURS) {
+      await onPage(browser, address, async (page) => {
+        await page.evaluate((from) => globalThis.bench.prepare(from), from);
+        await page.evaluate(([from, to]) => globalThis.bench.resize(from, to), [from, size]);
+        await page.evaluate((name) => globalThis.bench.load(name), quality);
+        const times = [];
+        for (let k = 0; k < SCALING_ROUNDS + 1; k += 1) times.push((await call(page, quality, size)).milliseconds);
+        entry[quality] = quantile(times.slice(1), 0.5); // the first warms up
+      });
+    }
+    entry.memoryBytes = await onPage(browser, address, async (page) => {
+      await page.evaluate((from) => globalThis.bench.prepare(from), from);
+      await page.evaluate(([from, to]) => globalThis.bench.resize(from, to), [from, size]);
+      return page.evaluate(([name, size]) => globalThis.bench.memory(name, size), ['best', size]);
+    });
+    pixels.push(entry);
+  }
+  const motions = [];
+  await onPage(browser, address, async (page) => {
+    await page.evaluate((from) => globalThis.bench.prepare(from), from);
+    for (let n = 1; n <= 10; n += 1) {
+      const entry = { motions: n };
+      for (const quality of OURS) {
+        const times = [];
+        for (let k = 0; k < SCALING_ROUNDS; k += 1) {
+          const task = [n, quality, from];
+          times.push((await page.evaluate((task) => globalThis.bench.given(...task), task)).milliseconds);
+        }
+        entry[quality] = quantile(times, 0.5);
+      }
+      motions.push(entry);
+    }
+  });
+  const large = pixels.filter(({ megapixels }) => megapixels > 0.5);
+  const exponents = {
+    fastByPixels: exponent(large, 'megapixels', 'fast'),
+    bestByPixels: exponent(large, 'megapixels', 'best'),
+    memoryByPixels: exponent(large, 'megapixels', 'memoryBytes'),
+    fastByMotions: exponent(motions, 'motions', 'fast'),
+    bestByMotions: exponent(motions, 'motions', 'best'),
+  };
+  return { pixels, motions, exponents };
+}
+
+/** Of the power law through points: the slope of the straight line through their logarithms. */
+function exponent(points, x, y) {
+  const logs = points.map((point) => [Math.log(point[x]), Math.log(point[y])]);
+  const mean = (k) => logs.reduce((sum, log) => sum + log[k], 0) / logs.length;
+  const [mx, my] = [mean(0), mean(1)];
+  const covariance = logs.reduce((sum, [p, q]) => sum + (p - mx) * (q - my), 0);
+  return covariance / logs.reduce((sum, [p]) => sum + (p - mx) ** 2, 0);
+}
+
 async function onPage(browser, address, work) {
   const context = await browser.newContext();
   try {
@@ -239,7 +304,7 @@ function write(report) {
   rmSync(join(root, 'out/bench/frames'), { recursive: true, force: true });
 }
 
-function print({ wasmGzip, jsGzip, peers, readyMs, peersReadyMs, workers, sizes }, version, rounds) {
+function print({ wasmGzip, jsGzip, peers, readyMs, peersReadyMs, workers, sizes, scaling }, version, rounds) {
   const kib = (bytes) => `${(bytes / 1024).toFixed(1)} KiB`;
   const ms = (value) => value.toFixed(1);
   console.log(`\n${cpus()[0].model}, Chromium ${version}, ${rounds} rounds in turn on one thread, milliseconds\n`);
@@ -266,4 +331,17 @@ function print({ wasmGzip, jsGzip, peers, readyMs, peersReadyMs, workers, sizes 
   console.log(
     `\nPairs of ${size} per second, fast: ${ms(onePairsPerSecond)} in one worker, ${ms(twoPairsPerSecond)} in two (${ratio.toFixed(2)} times)`,
   );
+  if (scaling) printScaling(scaling);
+}
+
+function printScaling({ pixels, motions, exponents }) {
+  console.log('\n| size | megapixels | fast, ms | best, ms | memory, MiB |\n|---|---|---|---|---|');
+  for (const { size, megapixels, fast, best, memoryBytes } of pixels) {
+    const cells = [megapixels.toFixed(2), fast.toFixed(0), best.toFixed(0), (memoryBytes / 2 ** 20).toFixed(0)];
+    console.log(`| ${[size, ...cells].join(' | ')} |`);
+  }
+  console.log('\n| motions given | fast, ms | best, ms |\n|---|---|---|');
+  for (const { motions: n, fast, best } of motions) console.log(`| ${n} | ${fast.toFixed(0)} | ${best.toFixed(0)} |`);
+  const list = Object.entries(exponents).map(([name, value]) => `${name} ${value.toFixed(2)}`);
+  console.log(`\nExponents (pixels: above half a megapixel): ${list.join(', ')}`);
 }

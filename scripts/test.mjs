@@ -24,6 +24,25 @@ const PARTS = {
       return tests(nodeCounts, 'npm', ['test', '--silent', '--workspace', 'pkg']);
     },
   },
+  formats: {
+    title: "formats, read by the annotation tools' own decoders",
+    run: async ({ python }) => {
+      await buildModules();
+      await buildPackage();
+      if (python.problem) console.log(python.problem);
+      return tests(nodeCounts, 'npm', ['run', '--silent', 'test:formats', '--workspace', 'pkg']);
+    },
+  },
+  hosts: {
+    title: 'the packed package in its hosts',
+    run: async ({ chromium }) => {
+      await buildModules();
+      await buildPackage();
+      if (chromium.problem) throw new Stop(chromium.problem);
+      const env = { VERONESE_CHROMIUM: chromium.path };
+      return tests(nodeCounts, 'npm', ['run', 'test:hosts', '--silent', '--workspace', 'pkg'], env);
+    },
+  },
   page: {
     title: 'page tests in Chromium',
     run: async ({ chromium }) => {
@@ -44,7 +63,12 @@ await command(async (args) => {
     return 2;
   }
   const names = args.length > 0 ? args : Object.keys(PARTS);
-  const setup = await prepare({ checks: names.includes('check'), browser: names.includes('page') });
+  const setup = await prepare({
+    checks: names.includes('check'),
+    browser: names.includes('page') || names.includes('hosts'),
+    python: names.includes('formats'),
+    hosts: names.includes('hosts'),
+  });
   const results = [];
   for (const name of names) results.push(await runPart(PARTS[name], setup));
   return summarise(results);

@@ -5,6 +5,7 @@ use crate::factorisation::algebraic_start;
 use crate::measurements::{Measurements, Normalisation};
 use crate::motion::AffineMotion;
 use crate::options::{FitOptions, MAX_MOTIONS, MotionCount};
+use crate::order::sort_few;
 use crate::points::{Candidate, FitEvidence, FittedMotion, MotionFit, UNLABELLED};
 use crate::progress::{Progress, Stages};
 use crate::random::Random;
@@ -84,7 +85,7 @@ fn labelled_motions(
     let mut counts = vec![0_usize; fit.motions.len()];
     nearest.iter().flatten().for_each(|&i| counts[i] += 1);
     let mut order: Vec<usize> = (0..counts.len()).collect();
-    order.sort_by(|&a, &b| {
+    sort_few(&mut order, |&a, &b| {
         let entries = || fit.motions[a].iter().zip(&fit.motions[b]).map(|(p, q)| p.total_cmp(q));
         let by_entries = || entries().find(|o| o.is_ne()).unwrap_or(std::cmp::Ordering::Equal);
         let by_share = || fit.shares[b].total_cmp(&fit.shares[a]);

@@ -1,11 +1,33 @@
-//! Orders and medians of numbers, in one place: results must not depend on how equals fall, and every copy of a sorting routine
-//! for another type of element costs three kilobytes of the module.
+//! Orders and medians of numbers, in one place and without the standard library's sorting: results must not depend on how equals
+//! fall, and each of its routines brings several kilobytes for every type and order it is used with.
 
-/// Indices by increasing key; equals by index. NaN comes last.
+use std::cmp::Ordering;
+
+/// Indices by increasing key; equals by index. NaN comes last (−NaN first).
 pub(crate) fn ascending(keys: impl IntoIterator<Item = f64>) -> Vec<usize> {
-    let mut order: Vec<(f64, usize)> = keys.into_iter().enumerate().map(|(k, key)| (key, k)).collect();
-    order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    order.into_iter().map(|(_, k)| k).collect()
+    let keys: Vec<u64> = keys.into_iter().map(order_of).collect();
+    let mut order: Vec<usize> = (0..keys.len()).collect();
+    let mut merged = order.clone();
+    // Runs of 1, 2, 4 … in order are merged by twos; the left one goes first among equals.
+    let mut length = 1;
+    while length < order.len() {
+        for (runs, target) in order.chunks(2 * length).zip(merged.chunks_mut(2 * length)) {
+            let (mut left, mut right) = runs.split_at(length.min(runs.len()));
+            for slot in target {
+                let from = match (left, right) {
+                    (&[l, ..], &[r, ..]) if keys[r] < keys[l] => &mut right,
+                    (&[_, ..], _) => &mut left,
+                    _ => &mut right,
+                };
+                if let Some((&first, rest)) = from.split_first() {
+                    (*slot, *from) = (first, rest);
+                }
+            }
+        }
+        std::mem::swap(&mut order, &mut merged);
+        length *= 2;
+    }
+    order
 }
 
 /// Indices by decreasing key; equals by index.
@@ -13,22 +35,61 @@ pub(crate) fn descending(keys: impl IntoIterator<Item = f64>) -> Vec<usize> {
     ascending(keys.into_iter().map(|key| -key))
 }
 
-/// The upper median, which is a value of the list; `None` of nothing. Reorders the list.
-pub(crate) fn median(values: &mut [f32]) -> Option<f32> {
-    if values.is_empty() {
-        return None;
+/// Sorts a handful of values; equals keep their order. The time grows with the square of their number.
+pub(crate) fn sort_few<T: Copy>(values: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
+    for end in 1..values.len() {
+        let value = values[end];
+        let mut place = end;
+        while place > 0 && compare(&value, &values[place - 1]).is_lt() {
+            values[place] = values[place - 1];
+            place -= 1;
+        }
+        values[place] = value;
     }
-    let middle = values.len() / 2;
-    Some(*values.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
+
+/// The upper median, which is a value of the list; `None` of nothing.
+pub(crate) fn median(values: &[f32]) -> Option<f32> {
+    // Widening keeps value and order.
+    middle(values.iter().map(|&v| order_of(f64::from(v))).collect()).map(|v| v as f32)
 }
 
 /// The same in double precision.
-pub(crate) fn median_f64(values: &mut [f64]) -> Option<f64> {
-    if values.is_empty() {
-        return None;
+pub(crate) fn median_f64(values: &[f64]) -> Option<f64> {
+    middle(values.iter().map(|&v| order_of(v)).collect())
+}
+
+const SIGN: u64 = 1 << 63;
+
+/// A whole number that stands to others as the value does by `total_cmp`.
+fn order_of(value: f64) -> u64 {
+    let bits = value.to_bits();
+    if bits & SIGN == 0 { bits | SIGN } else { !bits }
+}
+
+/// Inverse of [`order_of`].
+fn value_of(order: u64) -> f64 {
+    f64::from_bits(if order & SIGN == 0 { !order } else { order & !SIGN })
+}
+
+/// The upper median of values given by their order: digit after digit, from the first, those with the middle one's digit are kept.
+fn middle(mut left: Vec<u64>) -> Option<f64> {
+    let mut rank = left.len() / 2;
+    for digit in (0..8).rev() {
+        if left.len() <= 1 {
+            break;
+        }
+        let digit_of = |order: u64| (order >> (8 * digit)) as usize & 0xff;
+        let mut counts = [0usize; 256];
+        left.iter().for_each(|&order| counts[digit_of(order)] += 1);
+        let mut chosen = 0;
+        while rank >= counts[chosen] {
+            rank -= counts[chosen];
+            chosen += 1;
+        }
+        left.retain(|&order| digit_of(order) == chosen);
     }
-    let middle = values.len() / 2;
-    Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
+    left.first().map(|&order| value_of(order))
 }
 
 #[cfg(test)]
@@ -42,9 +103,36 @@ mod tests {
     }
 
     #[test]
+    fn orders_and_medians_are_those_of_sorting() {
+        let mut random = crate::random::Random::from_seed(4);
+        for count in [0, 1, 2, 3, 7, 64, 100, 1001] {
+            // Many equals, both signs of zero, infinities.
+            let mut values: Vec<f64> = (0..count).map(|_| (random.uniform(-9.0, 9.0) as i32) as f64 * 0.3).collect();
+            if count > 6 {
+                (values[1], values[2], values[5]) = (-0.0, f64::INFINITY, f64::NEG_INFINITY);
+            }
+            let mut expected: Vec<usize> = (0..count).collect();
+            expected.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+            assert_eq!(ascending(values.iter().copied()), expected);
+            let mut few = values.clone();
+            sort_few(&mut few, f64::total_cmp);
+            let mut sorted = values.clone();
+            sorted.sort_by(f64::total_cmp);
+            assert_eq!(
+                few.iter().map(|v| v.to_bits()).collect::<Vec<_>>(),
+                sorted.iter().map(|v| v.to_bits()).collect::<Vec<_>>()
+            );
+            let bits = sorted.get(count / 2).map(|v| v.to_bits());
+            assert_eq!(median_f64(&values).map(f64::to_bits), bits);
+            let narrow: Vec<f32> = values.iter().map(|&v| v as f32).collect();
+            assert_eq!(median(&narrow), sorted.get(count / 2).map(|&v| v as f32));
+        }
+    }
+
+    #[test]
     fn the_median_is_a_value_of_the_list() {
-        assert_eq!(median(&mut [5.0, 1.0, 3.0]), Some(3.0));
-        assert_eq!(median_f64(&mut [4.0, 1.0, 3.0, 2.0]), Some(3.0));
-        assert_eq!(median(&mut []), None);
+        assert_eq!(median(&[5.0, 1.0, 3.0]), Some(3.0));
+        assert_eq!(median_f64(&[4.0, 1.0, 3.0, 2.0]), Some(3.0));
+        assert_eq!(median(&[]), None);
     }
 }

@@ -20,6 +20,7 @@ use crate::frame::Plane;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::pyramid::{Level, PRE_BLUR, build};
 use crate::labelling::appearance::Palette;
+use crate::labelling::energy::Picture;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
@@ -102,14 +103,25 @@ fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<
     Ok(())
 }
 
+/// Red, green, blue of a frame, halved to a width.
+fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
+    std::array::from_fn(|c| {
+        let values = frame.colours().iter().map(|colour| f32::from(colour[c])).collect();
+        let mut plane = Plane::from_vec(frame.width(), frame.height(), values);
+        while plane.width() > width {
+            plane = halve(&plane);
+        }
+        plane
+    })
+}
+
 /// The frames at working size and below.
 pub(crate) struct Work {
     /// Level 0 is the working size.
     levels: Vec<Level>,
     /// Index of the level on which motions are first looked for.
     base: usize,
-    /// Luminance of the first frame at working size, unblurred: its edges are where labels may change.
-    edges: Plane,
+    picture: Picture,
     /// Coarse colour of every working pixel.
     palette: Palette,
     /// Full-size pixels per working pixel.
@@ -125,15 +137,15 @@ impl Work {
             planes.iter_mut().for_each(|p| *p = halve(p));
             reduction *= 2.0;
         }
-        let edges = planes[0].clone();
-        let palette = Palette::new(first, edges.width(), edges.height());
+        let picture = Picture { luminance: planes[0].clone(), colours: colours(first, planes[0].width()) };
+        let palette = Palette::new(first, planes[0].width(), planes[0].height());
         let mut blurred = planes.iter().map(|p| gaussian(p, PRE_BLUR));
         let empty = || Plane::filled(1, 1, 0.0);
         let (one, two) = (blurred.next().unwrap_or_else(empty), blurred.next().unwrap_or_else(empty));
         let levels = build(one, two, blurred.next(), settings.smallest_side);
         let base =
             levels.iter().position(|l| l.width().max(l.height()) <= settings.base_side).unwrap_or(levels.len() - 1);
-        Work { levels, base, edges, palette, reduction }
+        Work { levels, base, picture, palette, reduction }
     }
 
     /// Finds the dominant motion, takes the change of brightness (if there may be one) out of the second frame, measures the noise.

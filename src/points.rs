@@ -9,6 +9,7 @@ use crate::linear::RowQr;
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 use crate::options::{FitOptions, Method};
+use crate::order::descending;
 use crate::paper::paper_fit;
 use crate::progress::Progress;
 use crate::refinement::Report;
@@ -157,9 +158,7 @@ fn order_by_count(motions: usize, nearest: &[usize]) -> Vec<usize> {
             *count += 1;
         }
     }
-    let mut order: Vec<usize> = (0..motions).collect();
-    order.sort_by_key(|&i| std::cmp::Reverse(counts[i]));
-    order
+    descending(counts.iter().map(|&count| count as f64))
 }
 
 /// The rank of the constraints `φᵀa = −I_t`, φ = (I_x x, I_x y, I_x, I_y x, I_y y, I_y), that measurements put on one motion: 6 where

@@ -204,7 +204,7 @@ fn image_from_labels(
         return Err(invalid("palette", reason).into());
     }
     if !(0.0..=1.0).contains(&opacity) {
-        return Err(invalid("opacity", format!("must be a number from 0 to 1, not {opacity}")).into());
+        return Err(invalid("opacity", format!("must be a number from 0 to 1, not {}", written(opacity))).into());
     }
     let colours: Vec<[u8; 4]> = (0..256)
         .map(|label| match palette.get(4 * label..4 * label + 4) {
@@ -438,12 +438,17 @@ fn choice<T: Copy>(name: &str, value: &JsValue, choices: &[(&str, T)]) -> Result
 fn invalid(name: &str, wanted: &str, found: &JsValue) -> Failure {
     let found = match (found.as_string(), found.as_f64(), found.as_bool()) {
         (Some(text), ..) => format!("'{text}'"),
-        (_, Some(number), _) => number.to_string(),
+        (_, Some(number), _) => written(number),
         (.., Some(flag)) => flag.to_string(),
         _ if found.is_null() => "null".into(),
         _ => format!("a value of type {}", found.js_typeof().as_string().unwrap_or_default()),
     };
     Failure::option(format!("option '{name}': must be {wanted}, not {found}"))
+}
+
+/// A number as JavaScript writes it: what Rust has for that is twelve kilobytes of the module.
+fn written(number: f64) -> String {
+    js_sys::Number::from(number).to_string_with_radix(10).map(String::from).unwrap_or_default()
 }
 
 fn unknown(name: &str, known: &str) -> Failure {

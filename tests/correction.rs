@@ -1,5 +1,5 @@
 //! Labels under strokes: what is said holds, what is far from it stays, one stroke takes a region with it.
-#![allow(clippy::unwrap_used, reason = "test code may panic")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;

@@ -12,6 +12,8 @@ export default defineConfig({
   reporter: [['list']],
   use: {
     baseURL: `http://127.0.0.1:${PORT}/`,
+    // Tests hold back and replace files, which a service worker would have kept; the one about it allows it.
+    serviceWorkers: 'block',
     viewport: { width: 1280, height: 860 },
     launchOptions: {
       executablePath: process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium',

@@ -1,16 +1,78 @@
-import { defineConfig } from 'vite';
+import { createHash } from 'node:crypto';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { join, relative, sep } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+import { type HtmlTagDescriptor, type Plugin, defineConfig } from 'vite';
+// @ts-expect-error: plain JavaScript, shared with the demonstration server
+import { CONTENT_SECURITY_POLICY, HEADERS } from '../scripts/lib/policy.mjs';
+
+const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+
+/** Writes the policy into the built pages; while developing, Vite needs more than it allows. */
+function policy(): Plugin {
+  let building = false;
+  return {
+    name: 'policy',
+    configResolved: ({ command }) => void (building = command === 'build'),
+    transformIndexHtml: (html) =>
+      building ? html.replace('%POLICY%', CONTENT_SECURITY_POLICY) : html.replace(/\s*<meta http-equiv="Content-Security-Policy"[^>]*>/, ''),
+  };
+}
+
+/** Has the browser fetch the WebAssembly module while it reads the page, not when the first frames are decoded. */
+function preload(): Plugin {
+  return {
+    name: 'preload',
+    apply: 'build',
+    transformIndexHtml: {
+      order: 'post',
+      handler: (_html, { bundle, path }) => {
+        const names = path.endsWith('/index.html') ? Object.keys(bundle ?? {}) : [];
+        const link = (name: string, as: string): HtmlTagDescriptor => ({
+          tag: 'link',
+          attrs: { rel: 'preload', as, href: `./${name}`, crossorigin: true },
+          injectTo: 'head',
+        });
+        return names.filter((name) => name.endsWith('.wasm')).map((name) => link(name, 'fetch'));
+      },
+    },
+  };
+}
+
+/** Writes the service worker with the list of all files, under a name that changes with any of them. */
+function serviceWorker(): Plugin {
+  return {
+    name: 'service-worker',
+    apply: 'build',
+    writeBundle({ dir }) {
+      if (dir === undefined) return;
+      const paths = readdirSync(dir, { recursive: true, withFileTypes: true })
+        .filter((entry) => entry.isFile() && entry.name !== 'service-worker.js')
+        .map((entry) => relative(dir, join(entry.parentPath, entry.name)).split(sep).join('/'))
+        .sort();
+      const hash = createHash('sha256');
+      for (const path of paths) hash.update(path).update(readFileSync(join(dir, path)));
+      const template = readFileSync(here('src/service-worker.js'), 'utf8');
+      const filled = template.replace('__FILES__', JSON.stringify(paths)).replace('__VERSION__', hash.digest('hex').slice(0, 16));
+      writeFileSync(join(dir, 'service-worker.js'), filled);
+    },
+  };
+}
 
 export default defineConfig({
   // Relative addresses: the built page works in any folder of any host.
   base: './',
+  plugins: [policy(), preload(), serviceWorker()],
   worker: { format: 'es' },
   build: {
     target: 'es2023',
     // No data: addresses: the content security policy lets scripts and WebAssembly come from files only.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
+    rolldownOptions: { input: [here('index.html'), here('embed.html')] },
   },
   // The package is part of this project and finds its worker and module by import.meta.url: leave it as it is.
   optimizeDeps: { exclude: ['veronese'] },
-  preview: { strictPort: true },
+  preview: { strictPort: true, headers: HEADERS },
 });

@@ -31,13 +31,37 @@ globalThis.bench = {
     frames.set(size, { first: await image('first'), second: await image('second'), truth: await bytes('labels') });
   },
 
+  /** The frames of one size at another, smoothly scaled: the same scene with more or fewer pixels. */
+  resize(from, to) {
+    const [width, height] = to.split('x').map(Number);
+    const scaled = (frame) => {
+      const source = new OffscreenCanvas(frame.width, frame.height);
+      source.getContext('2d').putImageData(frame, 0, 0);
+      const context = new OffscreenCanvas(width, height).getContext('2d');
+      context.imageSmoothingQuality = 'high';
+      context.drawImage(source, 0, 0, width, height);
+      return context.getImageData(0, 0, width, height);
+    };
+    const { first, second } = frames.get(from);
+    frames.set(to, { first: scaled(first), second: scaled(second) });
+  },
+
+  /** Milliseconds of one call for a given number of motions. */
+  async given(motions, quality, size) {
+    await loadVeronese();
+    const { first, second } = frames.get(size);
+    const start = performance.now();
+    const { count } = await veronese.segmentPair(first, second, { motions, quality });
+    return { milliseconds: performance.now() - start, count };
+  },
+
   /** One call: its milliseconds, what the call itself says of its stages, how well its labels overlap the true ones. */
   async run(name, size) {
     const pair = frames.get(size);
     const start = performance.now();
     const result = await CASES[name].run(pair);
     const milliseconds = performance.now() - start;
-    const overlap = result?.labels ? meanOverlap(pair.truth, result.labels) : undefined;
+    const overlap = result?.labels && pair.truth ? meanOverlap(pair.truth, result.labels) : undefined;
     return { milliseconds, stages: result?.milliseconds, count: result?.count, overlap };
   },
 

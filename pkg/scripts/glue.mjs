@@ -1,6 +1,8 @@
-// Takes the JavaScript that wasm-bindgen wrote beside each module into dist, with two changes; part of `npm run build`.
+// Takes the JavaScript that wasm-bindgen wrote beside each module into dist, with two changes, and the core module as text;
+// part of `npm run build`.
 
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { deflateSync } from 'node:zlib';
 
 const MODULES = [
   { from: '../wasm/veronese.js', to: '../dist/glue.js' },
@@ -11,6 +13,11 @@ mkdirSync(new URL('../dist/', import.meta.url), { recursive: true });
 for (const { from, to } of MODULES) {
   writeFileSync(new URL(to, import.meta.url), adapted(readGlue(new URL(from, import.meta.url))));
 }
+
+// The module inside of JavaScript, for veronese/inline.
+const module = readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url));
+const packed = deflateSync(module, { level: 9 }).toString('base64');
+writeFileSync(new URL('../dist/inline-module.js', import.meta.url), `export const packed = '${packed}';\n`);
 
 function adapted(glue) {
   // Where the module lies is said in one place (web.ts, node.ts). A second URL would make bundlers look for a second file.

@@ -54,7 +54,9 @@ export class Api {
       call,
       (glue, onStage) => glue.relabel(...frames, third, matrices, groups, labels, sets, settings, onStage),
     );
-    return { ...segmentation, ...corrected };
+    // How sure the labels were says nothing about those of now.
+    const { confidence: _, ...kept } = segmentation;
+    return { ...kept, ...corrected };
   };
 
   readonly fitMotions = async (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> => {

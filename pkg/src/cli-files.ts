@@ -42,7 +42,7 @@ export function checkFolder(folder: string): void {
   if (problem) throw writeFailed(folder, problem);
 }
 
-function writeFailed(folder: string, reason: string): VeroneseError {
+export function writeFailed(folder: string, reason: string): VeroneseError {
   return new VeroneseError('write-failed', `the results cannot be written into '${folder}': ${reason}`);
 }
 
@@ -52,14 +52,17 @@ export interface OutputFile {
 }
 
 /** What this program writes; files of an earlier run that this one did not make would be mistaken for its own. */
-const OURS = /^(mask-\d+|overlay|confidence)\.png$/;
+export const OURS = /^(mask-\d+|overlay|confidence)\.png$/;
 
 /** A set of files that appears as a whole: all are written under temporary names, then renamed in one go. */
 export class Output {
   readonly #temporary = new Set<string>();
 
-  /** Throws `write-failed`, leaving nothing behind but the folder. The last file is renamed last. */
-  async write(folder: string, files: readonly OutputFile[]): Promise<void> {
+  /**
+   * Throws `write-failed`, leaving nothing behind but the folder. The last file is renamed last. `beside`: what an earlier run
+   * made stays.
+   */
+  async write(folder: string, files: readonly OutputFile[], { beside = false } = {}): Promise<void> {
     try {
       await mkdir(folder, { recursive: true });
       const moves: { from: string; to: string }[] = [];
@@ -70,7 +73,8 @@ export class Output {
         await writeFile(move.from, bytes);
         moves.push(move);
       }
-      this.#replace(folder, moves, new Set(files.map(({ name }) => name)));
+      if (!beside) this.#clear(folder, new Set(files.map(({ name }) => name)));
+      this.#rename(moves);
     } catch (thrown) {
       const reason = thrown instanceof Error ? thrown.message : String(thrown);
       throw writeFailed(folder, reason);
@@ -79,9 +83,13 @@ export class Output {
     }
   }
 
-  /** Without a pause, so that no signal is handled in between. */
-  #replace(folder: string, moves: readonly { from: string; to: string }[], names: ReadonlySet<string>): void {
+  // Both without a pause, so that no signal is handled in between.
+
+  #clear(folder: string, names: ReadonlySet<string>): void {
     for (const name of readdirSync(folder)) if (OURS.test(name) && !names.has(name)) rmSync(join(folder, name));
+  }
+
+  #rename(moves: readonly { from: string; to: string }[]): void {
     for (const { from, to } of moves) {
       renameSync(from, to);
       this.#temporary.delete(from);

@@ -1,14 +1,12 @@
 // The command line's work, in a thread of its own so that Ctrl-C is heard at once.
 
 import { parentPort, workerData } from 'node:worker_threads';
-import type { Picture } from '../types/codecs.js';
-import type { MotionFit, Segmentation } from '../types/index.js';
+import type { MotionFit } from '../types/index.js';
 import { filesOf, type PairCommand, type PointsCommand, type WorkCommand } from './cli-arguments.js';
 import type { OutputFile } from './cli-files.js';
-import { api, decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from './codecs.js';
-import { type ErrorMessage, errorMessage, VeroneseError, veroneseError } from './errors.js';
-import { groupLabels, maskOf, overlay } from './labels.js';
-import { davisPalette } from './palette.js';
+import { jsonLine, segmentFiles } from './cli-pair.js';
+import { api } from './codecs.js';
+import { type ErrorMessage, errorMessage, VeroneseError } from './errors.js';
 
 /** The command with the contents of its files, in the order of {@link filesOf}. */
 export type Work = { command: WorkCommand; contents: Uint8Array[] };
@@ -24,33 +22,10 @@ async function run({ command, contents }: Work): Promise<Outcome> {
 }
 
 async function pair(command: PairCommand, contents: Uint8Array[]): Promise<Outcome> {
-  const paths = filesOf(command);
-  const pictures: Picture[] = [];
-  for (const [index, bytes] of contents.entries()) pictures.push(await decoded(paths[index] ?? '', bytes));
-  const [first, second, before] = pictures as [Picture, Picture, Picture | undefined];
-  const segmentation = await api.segmentPair(first, second, { ...command.options, before });
-  const { labels: _, confidence: __, ...report } = segmentation;
+  const inputs = filesOf(command).map((name, index) => ({ name, bytes: contents[index] ?? new Uint8Array() }));
+  const { report, images } = await segmentFiles(inputs, command, command.out !== undefined);
   const json = jsonLine(report);
-  if (command.out === undefined) return { json, files: [] };
-  return { json, files: [...(await images(command, segmentation, first)), { name: 'result.json', bytes: Buffer.from(json) }] };
-}
-
-async function images(command: PairCommand, segmentation: Segmentation, first: Picture): Promise<OutputFile[]> {
-  const { width, height, motions } = segmentation;
-  const labels = command.grouped ? groupLabels(segmentation) : segmentation.labels;
-  const numbers = new Set(motions.map(({ label, group }) => (command.grouped ? group : label)));
-  const files = [{ name: 'labels.png', bytes: await encodeIndexedPng(width, height, labels, davisPalette()) }];
-  for (const number of numbers) {
-    files.push({ name: `mask-${number}.png`, bytes: await encodeGreyPng(width, height, maskOf(labels, number)) });
-  }
-  if (segmentation.confidence) {
-    files.push({ name: 'confidence.png', bytes: await encodeGreyPng(width, height, segmentation.confidence) });
-  }
-  if (command.overlay) {
-    const rgb = overlay(first.data, labels);
-    files.push({ name: 'overlay.png', bytes: await encodeColourPng(width, height, rgb) });
-  }
-  return files;
+  return { json, files: images.length > 0 ? [...images, { name: 'result.json', bytes: Buffer.from(json) }] : [] };
 }
 
 async function points({ file, options }: PointsCommand, [bytes]: Uint8Array[]): Promise<Outcome> {
@@ -60,15 +35,6 @@ async function points({ file, options }: PointsCommand, [bytes]: Uint8Array[]): 
     options,
   );
   return { json: jsonLine({ ...fit, labels: Array.from(fit.labels) }), files: [] };
-}
-
-async function decoded(path: string, bytes: Uint8Array): Promise<Picture> {
-  try {
-    return await decodeImage(bytes);
-  } catch (thrown) {
-    const { code, message } = veroneseError(thrown);
-    throw new VeroneseError(code, `${path}: ${message}`);
-  }
 }
 
 function parsedPoints(file: string, bytes: Uint8Array): { positions?: unknown; derivatives?: unknown } {
@@ -97,15 +63,6 @@ function flat(file: string, name: string, rows: unknown, entries: readonly strin
     values.set(row as number[], index * entries.length);
   });
   return values;
-}
-
-/** One line of JSON. What is no number in JSON would become null without a word: that is a mistake of ours. */
-function jsonLine(report: object): string {
-  const text = JSON.stringify(report, (key, value: unknown) => {
-    if (typeof value !== 'number' || Number.isFinite(value)) return value;
-    throw new VeroneseError('internal', `the result's '${key}' is ${value}`);
-  });
-  return `${text}\n`;
 }
 
 parentPort?.postMessage(await run(workerData as Work));

@@ -1,11 +1,12 @@
 // The program `veronese`: reads files, has the work done in a thread, writes files and one line of JSON.
 
-import { writeSync } from 'node:fs';
 import { Worker } from 'node:worker_threads';
-import { type Command, filesOf, HELP, parseCommand } from './cli-arguments.js';
+import { type Command, filesOf, HELP, parseCommand, type SequenceCommand } from './cli-arguments.js';
+import { batch } from './cli-batch.js';
 import { checkFolder, Output, readInput } from './cli-files.js';
 import type { Outcome, Work } from './cli-work.js';
-import { VeroneseError, veroneseError } from './errors.js';
+import { complain, print } from './cli-terminal.js';
+import { VeroneseError } from './errors.js';
 import { version } from './version.js';
 
 const EXIT = { failed: 1, usage: 2, interrupted: 130, terminated: 143 } as const;
@@ -24,16 +25,18 @@ export async function main(args: string[]): Promise<void> {
   process.on('SIGINT', () => stop(output, EXIT.interrupted));
   process.on('SIGTERM', () => stop(output, EXIT.terminated));
   try {
-    await print(await answer(command, output));
+    if (command.name === 'batch' || command.name === 'video') await batch(command);
+    else await print(await answer(command, output));
   } catch (thrown) {
     complain(thrown);
     process.exitCode = EXIT.failed;
   }
 }
 
-async function answer(command: Command, output: Output): Promise<string> {
+async function answer(command: Exclude<Command, SequenceCommand>, output: Output): Promise<string> {
   if (command.name === 'help') return HELP;
   if (command.name === 'version') return `veronese ${version}\n`;
+  if (command.name === 'convert') return (await import('./cli-convert.js')).convert(command, output);
   const folder = command.name === 'pair' ? command.out : undefined;
   if (folder !== undefined) checkFolder(folder);
   const contents: Uint8Array[] = [];
@@ -61,24 +64,4 @@ function stop(output: Output, code: number): never {
   output.discard();
   complain(new VeroneseError('cancelled', 'stopped by a signal'));
   process.exit(code);
-}
-
-function print(text: string): Promise<void> {
-  return new Promise((resolve, reject) => {
-    const failed = (error: Error) => {
-      reject(new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`));
-    };
-    process.stdout.once('error', failed);
-    process.stdout.write(text, (error) => (error ? failed(error) : resolve()));
-  });
-}
-
-/** One line on stderr, whatever the error's message looks like. */
-function complain(thrown: unknown): void {
-  const { code, message } = veroneseError(thrown);
-  try {
-    writeSync(2, `veronese: error: ${code}: ${message.replace(/\s+/g, ' ').trim()}\n`);
-  } catch {
-    // Nobody listens: the exit code says it.
-  }
 }

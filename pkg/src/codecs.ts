@@ -8,7 +8,8 @@ import { VeroneseError } from './errors.js';
 import { colourBytes } from './palette.js';
 import { read } from './reading.js';
 
-const core = new Core(glue, read, new URL('../wasm/codecs/veronese_codecs_bg.wasm', import.meta.url));
+/** The build's own core, for threads that share its compiled module. */
+export const core = new Core(glue, read, new URL('../wasm/codecs/veronese_codecs_bg.wasm', import.meta.url));
 
 /** The calls of the package on this build: what decodes also segments, so the command line loads one module only. */
 export const api = new Api(core);

@@ -25,10 +25,13 @@ export type Task =
     }
   | { call: 'fitMotions'; measurements: PointMeasurements; options: FitOptions };
 
-/** The compiled module comes with the first call of a worker. */
-export type Request = { task: Task; module?: WebAssembly.Module };
+/** What a task gives. */
+export type Result = Segmentation | MotionFit;
 
-export type Reply =
+/** The compiled module comes with the first task of a worker. */
+export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
+
+export type Reply<R = Result> =
   | { kind: 'progress'; progress: Progress }
-  | { kind: 'done'; result: Segmentation | MotionFit }
+  | { kind: 'done'; result: R }
   | { kind: 'failed'; error: ErrorMessage };

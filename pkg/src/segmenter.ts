@@ -1,160 +1,148 @@
-// The same calls in a worker: one after another, each cancelled at once by ending the worker.
+// The same calls in workers: one, or a pool of them.
 
-import type { CallOptions, FitOptions, MotionFit, Pixels, PointMeasurements, RelabelOptions, Segmentation, SegmentOptions } from '../types/index.js';
+import type {
+  FitOptions,
+  MotionFit,
+  PairInput,
+  PairOutcome,
+  PairsOptions,
+  Pixels,
+  PointMeasurements,
+  PoolOptions,
+  Progress,
+  RelabelOptions,
+  Segmentation,
+  SegmenterOptions,
+  SegmentOptions,
+  WasmSource,
+  WorkerLike,
+} from '../types/index.js';
 import { checkedCorrection, checkedMeasurements, checkedPixels, splitOptions } from './api.js';
-import { cancelled, VeroneseError } from './errors.js';
-import type { Reply, Request, Task } from './messages.js';
+import type { Core, Glue } from './core.js';
+import { cancelled, VeroneseError, veroneseError } from './errors.js';
+import type { Result, Task } from './messages.js';
+import { inOrder } from './ordered.js';
+import { WorkerPool } from './pool.js';
+import { spawnWith } from './threads.js';
 
-/** A Web Worker or a worker thread, with what the two have in common. */
-export interface Thread {
-  post(request: Request): void;
-  /** Lets a Node process end while the worker is idle. */
-  hold(busy: boolean): void;
-  terminate(): void;
+/** Most workers of one pool: more is a mistake, not a wish. */
+const MOST_JOBS = 256;
+
+/** What differs between the package's entries. */
+export interface Host {
+  newCore: () => Core<Glue>;
+  /** Makes a worker where the caller does not. */
+  worker: () => WorkerLike;
+  /** Number of workers where the caller does not say. */
+  jobs: () => number;
 }
 
-export type Spawn = (onReply: (reply: Reply) => void, onDeath: (reason: string) => void) => Thread;
+/** The classes for one host. */
+export function segmenters(host: Host) {
+  class Segmenter {
+    readonly #pool: WorkerPool<Task, Result>;
 
-interface Job {
-  task: Task;
-  call: CallOptions;
-  resolve: (result: Segmentation | MotionFit) => void;
-  reject: (reason: unknown) => void;
-  /** No longer listens to the signal. */
-  release: () => void;
-}
+    constructor(source?: WasmSource | Promise<WasmSource>, options: SegmenterOptions = {}, jobs = 1) {
+      const core = host.newCore();
+      this.#pool = new WorkerPool(spawnWith(options.worker ?? host.worker), () => core.module(source), jobs);
+    }
 
-export class WorkerSegmenter {
-  readonly #spawn: Spawn;
-  readonly #module: () => Promise<WebAssembly.Module>;
-  readonly #waiting: Job[] = [];
-  #running: Job | undefined;
-  #thread: Thread | undefined;
+    async segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> {
+      const { call, rest } = splitOptions(options);
+      const settings = rest.before === undefined ? rest : { ...rest, before: checkedPixels('the frame before', rest.before) };
+      const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
+      return (await this.#pool.run({ call: 'segmentPair', ...frames, options: settings }, call)) as Segmentation;
+    }
 
-  constructor(spawn: Spawn, module: () => Promise<WebAssembly.Module>) {
-    this.#spawn = spawn;
-    this.#module = module;
-  }
+    async relabel(
+      first: Pixels,
+      second: Pixels,
+      segmentation: Segmentation,
+      evidence: Uint16Array,
+      options?: RelabelOptions,
+    ): Promise<Segmentation> {
+      const { call, rest } = splitOptions(options);
+      const settings = rest.before === undefined ? rest : { before: checkedPixels('the frame before', rest.before) };
+      const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
+      checkedCorrection(segmentation, evidence);
+      return (await this.#pool.run({ call: 'relabel', ...frames, segmentation, evidence, options: settings }, call)) as Segmentation;
+    }
 
-  async segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> {
-    const { call, rest } = splitOptions(options);
-    const settings = rest.before === undefined ? rest : { ...rest, before: checkedPixels('the frame before', rest.before) };
-    const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
-    return (await this.#enqueue({ call: 'segmentPair', ...frames, options: settings }, call)) as Segmentation;
-  }
+    async fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {
+      const { call, rest } = splitOptions(options);
+      const checked = checkedMeasurements(measurements);
+      return (await this.#pool.run({ call: 'fitMotions', measurements: checked, options: rest }, call)) as MotionFit;
+    }
 
-  async relabel(
-    first: Pixels,
-    second: Pixels,
-    segmentation: Segmentation,
-    evidence: Uint16Array,
-    options?: RelabelOptions,
-  ): Promise<Segmentation> {
-    const { call, rest } = splitOptions(options);
-    const settings = rest.before === undefined ? rest : { before: checkedPixels('the frame before', rest.before) };
-    const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
-    checkedCorrection(segmentation, evidence);
-    return (await this.#enqueue({ call: 'relabel', ...frames, segmentation, evidence, options: settings }, call)) as Segmentation;
-  }
-
-  async fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {
-    const { call, rest } = splitOptions(options);
-    const checked = checkedMeasurements(measurements);
-    return (await this.#enqueue({ call: 'fitMotions', measurements: checked, options: rest }, call)) as MotionFit;
-  }
-
-  close(): void {
-    const jobs = [...(this.#running ? [this.#running] : []), ...this.#waiting.splice(0)];
-    this.#end();
-    for (const job of jobs) this.#settle(job, () => job.reject(cancelled(job.call.signal)));
-  }
-
-  #enqueue(task: Task, call: CallOptions): Promise<Segmentation | MotionFit> {
-    const { signal } = call;
-    if (signal?.aborted) return Promise.reject(cancelled(signal));
-    return new Promise((resolve, reject) => {
-      const onAbort = () => this.#cancel(job);
-      const release = () => signal?.removeEventListener('abort', onAbort);
-      const job: Job = { task, call, resolve, reject, release };
-      signal?.addEventListener('abort', onAbort);
-      this.#waiting.push(job);
-      this.#next();
-    });
-  }
-
-  #cancel(job: Job, reason: unknown = cancelled(job.call.signal)): void {
-    if (this.#running === job) this.#end();
-    else this.#waiting.splice(this.#waiting.indexOf(job), 1);
-    this.#settle(job, () => job.reject(reason));
-    this.#next();
-  }
-
-  #settle(job: Job, how: () => void): void {
-    job.release();
-    how();
-  }
-
-  /** Ends the worker and whatever it does. */
-  #end(): void {
-    this.#thread?.terminate();
-    this.#thread = undefined;
-    this.#running = undefined;
-  }
-
-  #next(): void {
-    if (this.#running) return;
-    const job = this.#waiting.shift();
-    if (!job) return;
-    this.#running = job;
-    void this.#start(job);
-  }
-
-  async #start(job: Job): Promise<void> {
-    const request: Request = { task: job.task };
-    try {
-      if (!this.#thread) request.module = await this.#module();
-      if (this.#running !== job) return; // cancelled while the module loaded
-      this.#thread ??= this.#spawnThread();
-      this.#thread.hold(true);
-      this.#thread.post(request);
-    } catch (thrown) {
-      if (this.#running === job) this.#cancel(job, thrown);
+    close(): void {
+      this.#pool.close();
     }
   }
 
-  #spawnThread(): Thread {
-    const thread = this.#spawn(
-      (reply) => {
-        if (this.#thread === thread) this.#receive(reply);
-      },
-      (reason) => {
-        if (this.#thread !== thread) return;
-        const job = this.#running;
-        this.#end();
-        if (job) this.#settle(job, () => job.reject(new VeroneseError('worker-failed', `the worker stopped: ${reason}`)));
-        this.#next();
-      },
-    );
-    return thread;
-  }
+  class SegmenterPool extends Segmenter {
+    readonly jobs: number;
 
-  #receive(reply: Reply): void {
-    const job = this.#running;
-    if (!job) return;
-    if (reply.kind === 'progress') {
+    constructor({ jobs = host.jobs(), source, worker }: PoolOptions = {}) {
+      super(source, { worker }, checkedJobs(jobs));
+      this.jobs = jobs;
+    }
+
+    async *segmentPairs<Input extends PairInput>(
+      pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
+      options?: PairsOptions,
+    ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
+      const { signal, onProgress, ...rest } = checkedPairsOptions(pairs, options);
+      if (signal?.aborted) throw cancelled(signal);
+      // Ends what is under way when the reader stops early or the caller's signal says so.
+      const ending = new AbortController();
+      const end = () => ending.abort(signal?.reason);
+      signal?.addEventListener('abort', end);
+      const work = async (input: Input, index: number): Promise<PairOutcome<Input>> => {
+        try {
+          const { first, second, before } = Object(input) as Input;
+          const listener = onProgress && ((progress: Progress) => onProgress({ ...progress, pair: index }));
+          const call = { signal: ending.signal, onProgress: listener };
+          const segmentation = await this.segmentPair(first, second, { ...rest, before, ...call });
+          return { index, input, segmentation };
+        } catch (thrown) {
+          return { index, input, error: veroneseError(thrown) };
+        }
+      };
       try {
-        job.call.onProgress?.(reply.progress);
-      } catch (thrown) {
-        this.#cancel(job, thrown);
+        // As many again as there are workers: a slow pair leaves the other workers something to do.
+        yield* inOrder(pairs, work, { room: 2 * this.jobs, signal, stop: () => cancelled(signal) });
+      } finally {
+        signal?.removeEventListener('abort', end);
+        ending.abort();
       }
-      return;
     }
-    this.#running = undefined;
-    this.#thread?.hold(false);
-    this.#settle(job, () => {
-      if (reply.kind === 'done') job.resolve(reply.result);
-      else job.reject(new VeroneseError(reply.error.code, reply.error.message));
-    });
-    this.#next();
   }
+
+  async function* segmentPairs<Input extends PairInput>(
+    pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
+    { jobs, source, worker, ...options }: PairsOptions & PoolOptions = {},
+  ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
+    const pool = new SegmenterPool({ ...(jobs !== undefined && { jobs }), source, worker });
+    try {
+      yield* pool.segmentPairs(pairs, options);
+    } finally {
+      pool.close();
+    }
+  }
+
+  return { Segmenter, SegmenterPool, segmentPairs };
+}
+
+function checkedJobs(jobs: number): number {
+  if (Number.isInteger(jobs) && jobs >= 1 && jobs <= MOST_JOBS) return jobs;
+  throw new VeroneseError('invalid-option', `option 'jobs': must be a whole number from 1 to ${MOST_JOBS}, not ${String(jobs)}`);
+}
+
+function checkedPairsOptions(pairs: unknown, options: PairsOptions | undefined): PairsOptions {
+  const iterable = Object(pairs) as Partial<Iterable<unknown> & AsyncIterable<unknown>>;
+  if (typeof iterable[Symbol.asyncIterator] !== 'function' && typeof iterable[Symbol.iterator] !== 'function') {
+    throw new VeroneseError('invalid-input', 'the pairs must be an iterable or async iterable of { first, second }');
+  }
+  splitOptions(options as SegmentOptions | undefined);
+  return options ?? {};
 }

@@ -200,7 +200,11 @@ export type ErrorCode =
   | 'file-not-found'
   | 'unreadable-file'
   | 'invalid-json'
-  | 'write-failed';
+  | 'write-failed'
+  | 'too-few-frames'
+  | 'pairs-failed'
+  | 'ffmpeg-missing'
+  | 'unreadable-video';
 
 /** Every error that this package throws or rejects with. */
 export class VeroneseError extends Error {
@@ -228,7 +232,7 @@ export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOpti
  * `evidence` holds a set of labels for each pixel, row by row: bit k is set where label k is possible, 0 says nothing. "This is
  * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. What is said
  * holds on its pixels and spreads from there as far as the picture looks alike; far from it every label stays. Numbering and groups
- * stay too, so a label may be left without pixels. The same arguments give the same answer: to undo, ask without.
+ * stay too, so a label may be left without pixels; `confidence` is left out. The same arguments give the same answer: to undo, ask without.
  */
 export function relabel(
   first: Pixels,
@@ -257,13 +261,52 @@ export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions
 /** The 256 colours of the DAVIS benchmark's masks; label 0 is black. */
 export function davisPalette(): [number, number, number][];
 
+/** Two frames and, if there is one, the frame before the first; whatever else the object has comes back with its outcome. */
+export interface PairInput {
+  first: Pixels;
+  second: Pixels;
+  before?: Pixels | undefined;
+}
+
+/** Options for all pairs of a {@link segmentPairs}. */
+export interface PairsOptions extends Omit<SegmentOptions, 'before' | 'onProgress'> {
+  /** Called when a stage of a pair begins; `pair` counts from 0. What it throws ends that pair. */
+  onProgress?: ((progress: Progress & { pair: number }) => void) | undefined;
+}
+
+/** What became of one pair: a segmentation, or the error that prevented it. The other pairs go on. */
+export type PairOutcome<Input extends PairInput = PairInput> =
+  | { index: number; input: Input; segmentation: Segmentation; error?: undefined }
+  | { index: number; input: Input; error: VeroneseError; segmentation?: undefined };
+
+/** As much of a `Worker`, of the browser or of Node, as types that know neither can say. */
+export interface WorkerLike {
+  postMessage(message: unknown): void;
+  terminate(): unknown;
+}
+
+export interface SegmenterOptions {
+  /**
+   * Makes the worker, where the bundler or the page needs that done by hand: a module worker (in Node a worker thread) whose file is
+   * `veronese/worker`. By default the file beside the package's code.
+   */
+  worker?: (() => WorkerLike) | undefined;
+}
+
+export interface PoolOptions extends SegmenterOptions {
+  /** Number of workers, 1 to 256; by default as many as the machine runs at a time. */
+  jobs?: number | undefined;
+  /** As in {@link init}: compiled once for all workers. */
+  source?: WasmSource | Promise<WasmSource> | undefined;
+}
+
 /**
  * The same calls in a Web Worker, or in a worker thread under Node: the page stays responsive, and a cancelled call stops at
  * once. Calls are done one after another.
  */
 export class Segmenter {
   /** `source` as in {@link init}; by default the file beside the package's code. */
-  constructor(source?: WasmSource | Promise<WasmSource>);
+  constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
   segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
   relabel(
     first: Pixels,
@@ -276,3 +319,29 @@ export class Segmenter {
   /** Ends the worker; calls under way reject with code `cancelled`. The next call starts a fresh one. */
   close(): void;
 }
+
+/**
+ * Several workers, each with an instance of its own of the module that is compiled once. Calls begin in their order and are
+ * cancelled one by one; workers are started when there is work for them.
+ */
+export class SegmenterPool extends Segmenter {
+  /** Throws code `invalid-option`. */
+  constructor(options?: PoolOptions);
+  readonly jobs: number;
+  /**
+   * Segments many pairs, as an async iterator in the order of the pairs. A pair is taken from `pairs` only when there is room for it:
+   * at most 2·`jobs` are under way or wait to be fetched, so an async generator that reads frames reads no faster than the workers
+   * work. A pair that fails is an outcome with `error`, not the end; `signal` ends everything with code `cancelled`, and
+   * so does leaving the loop.
+   */
+  segmentPairs<Input extends PairInput>(
+    pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
+    options?: PairsOptions,
+  ): AsyncGenerator<PairOutcome<Input>, void, undefined>;
+}
+
+/** {@link SegmenterPool.segmentPairs} on a pool of its own, which ends with the iterator. */
+export function segmentPairs<Input extends PairInput>(
+  pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
+  options?: PairsOptions & PoolOptions,
+): AsyncGenerator<PairOutcome<Input>, void, undefined>;

@@ -55,7 +55,7 @@ export async function buildPackage() {
 
 /** The page, with what it takes from the package. */
 export async function buildPage() {
-  const inputs = ['www', 'pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm', 'package-lock.json'];
+  const inputs = ['www', 'scripts/lib/policy.mjs', 'pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm', 'package-lock.json'];
   await step('the page', 'www/dist', ['www/dist/index.html'], inputs, [], () =>
     must('The page could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'www']),
   );

@@ -2,20 +2,27 @@
 
 import { join } from 'node:path';
 
-import { inProject, projectText } from './project.mjs';
+import { inProject, projectText, root } from './project.mjs';
 import { Stop, longStep } from './run.mjs';
 
-/** Installs what package-lock.json names, unless it is there already. */
-export async function prepareNpmPackages() {
-  if (!inProject('package-lock.json')) {
-    throw new Stop('package-lock.json is missing: restore it with `git checkout package-lock.json`.');
+/** Tools that only some tests and commands need; no workspace, so that nobody else has to install them. */
+export const HOSTS = 'pkg/test/hosts';
+export const SCALE_OUT = 'examples/scale-out';
+
+/** Installs what the package-lock.json of a folder names, unless it is there already. */
+export async function prepareNpmPackages(folder = '.') {
+  const at = (path) => join(folder, path);
+  if (!inProject(at('package-lock.json'))) {
+    throw new Stop(`${at('package-lock.json')} is missing: restore it with \`git checkout ${at('package-lock.json')}\`.`);
   }
-  if (isInstalled()) return;
+  if (isInstalled(at)) return;
+  const what = folder === '.' ? 'the npm packages' : `the npm packages of ${folder}`;
   await longStep(
-    'Installing the npm packages (about half a minute)',
-    'The npm packages could not be installed. See above; if it is the network, run the command again.',
+    `Installing ${what} (about half a minute)`,
+    `${what[0].toUpperCase()}${what.slice(1)} could not be installed. See above; if it is the network, run the command again.`,
     'npm',
     ['ci', '--no-audit', '--no-fund'],
+    { cwd: join(root, folder) },
   );
 }
 
@@ -23,13 +30,13 @@ export async function prepareNpmPackages() {
  * Whether node_modules holds the versions of package-lock.json. npm notes what it installed in a lock file of its own
  * there; packages for other operating systems are optional and absent.
  */
-function isInstalled() {
-  if (!inProject('node_modules/.package-lock.json')) return false;
-  const wanted = JSON.parse(projectText('package-lock.json')).packages;
-  const found = JSON.parse(projectText('node_modules/.package-lock.json')).packages;
+function isInstalled(at) {
+  if (!inProject(at('node_modules/.package-lock.json'))) return false;
+  const wanted = JSON.parse(projectText(at('package-lock.json'))).packages;
+  const found = JSON.parse(projectText(at('node_modules/.package-lock.json'))).packages;
   return Object.entries(wanted).every(([path, { version, link, optional }]) => {
     if (!path.includes('node_modules/')) return true;
     if (!(path in found)) return optional === true;
-    return link ? inProject(path) : found[path].version === version && inProject(join(path, 'package.json'));
+    return link ? inProject(at(path)) : found[path].version === version && inProject(at(join(path, 'package.json')));
   });
 }

@@ -4,6 +4,7 @@ import { createReadStream, statSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { extname, join, normalize, sep } from 'node:path';
 
+import { HEADERS } from './policy.mjs';
 import { Stop } from './run.mjs';
 
 const TYPES = {
@@ -19,6 +20,7 @@ const TYPES = {
   '.svg': 'image/svg+xml',
   '.txt': 'text/plain; charset=utf-8',
   '.wasm': 'application/wasm',
+  '.webmanifest': 'application/manifest+json',
   '.webp': 'image/webp',
 };
 const ATTEMPTS = 20;
@@ -49,7 +51,7 @@ function answer(folder, request, response) {
   const path = fileFor(folder, request.url);
   if (!path) return refuse(response, 404, 'Not found.');
   const type = TYPES[extname(path).toLowerCase()] ?? 'application/octet-stream';
-  const headers = { 'Content-Type': type, 'Content-Length': statSync(path).size, 'Cache-Control': 'no-cache' };
+  const headers = { ...HEADERS, 'Content-Type': type, 'Content-Length': statSync(path).size, 'Cache-Control': 'no-cache' };
   response.writeHead(200, headers);
   if (request.method === 'HEAD') return response.end();
   return createReadStream(path).on('error', () => response.destroy()).pipe(response);
@@ -69,6 +71,6 @@ function fileFor(folder, url) {
 }
 
 function refuse(response, code, sentence) {
-  response.writeHead(code, { 'Content-Type': 'text/plain; charset=utf-8' });
+  response.writeHead(code, { ...HEADERS, 'Content-Type': 'text/plain; charset=utf-8' });
   response.end(`${sentence}\n`);
 }

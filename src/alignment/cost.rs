@@ -58,24 +58,43 @@ fn interpolation_variance(fx: f32, fy: f32, correlation: f32) -> f32 {
     0.5 * (1.0 + (1.0 - c * fx * (1.0 - fx)) * (1.0 - c * fy * (1.0 - fy)))
 }
 
-/// Cost of a motion (of the working frame) at every pixel of a level; the smaller of both views where there is a frame before.
+/// The frame that the first one is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum View {
+    Second,
+    Before,
+}
+
+/// Cost of a motion (of the working frame) at every pixel of a level; in the frame before, where there is one, where the pixel
+/// leaves the second.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
-    let forward = view_cost(level, &level.second, &level.scaled(motion), Photometric::default(), model);
-    match (&level.before, inverse(motion)) {
-        (Some(before), Some(back)) => {
-            let mut both = view_cost(level, before, &level.scaled(&back), Photometric::default(), model);
-            for (b, f) in both.values_mut().iter_mut().zip(forward.values()) {
-                *b = b.min(*f);
-            }
-            both
+    let mut plane = cost_in(level, View::Second, motion, model);
+    if level.before.is_some() {
+        let before = cost_in(level, View::Before, motion, model);
+        let unseen = plane.values_mut().iter_mut().zip(before.values()).filter(|(c, _)| !c.is_finite());
+        unseen.for_each(|(c, b)| *c = *b);
+    }
+    plane.values_mut().iter_mut().for_each(|c| *c = if c.is_finite() { *c } else { model.outside() });
+    plane
+}
+
+/// Cost of a motion in one view; infinite where the displaced position lies outside, or where there is no such view.
+pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: CostModel) -> Plane {
+    let (plane, moved) = match view {
+        View::Second => (Some(&level.second), Some(*motion)),
+        View::Before => (level.before.as_ref(), inverse(motion)),
+    };
+    match (plane, moved) {
+        (Some(plane), Some(moved)) => {
+            view_cost(level, plane, &level.scaled(&moved), Photometric::default(), model, f32::INFINITY)
         }
-        _ => forward,
+        _ => Plane::filled(level.width(), level.height(), f32::INFINITY),
     }
 }
 
 /// Cost with a change of brightness that has not been taken out of the second frame yet.
 pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
-    view_cost(level, &level.second, &level.scaled(motion), photometric, model)
+    view_cost(level, &level.second, &level.scaled(motion), photometric, model, model.outside())
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
@@ -90,30 +109,39 @@ pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
     Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
 }
 
-fn view_cost(level: &Level, view: &Plane, scaled: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
+/// Cost in one view, `outside` where a pixel leaves it.
+fn view_cost(
+    level: &Level,
+    view: &Plane,
+    scaled: &AffineMotion,
+    photometric: Photometric,
+    model: CostModel,
+    outside: f32,
+) -> Plane {
     let (width, height) = (level.width(), level.height());
     let (noise, looseness) = (level.noise * level.noise, model.looseness * model.looseness);
     let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
     let correlation = level.noise_correlation();
-    let mut out = Plane::filled(width, height, 0.0);
-    let mut samples = [0.0; CHUNK];
+    let mut out = Vec::with_capacity(width * height);
+    let (mut samples, mut costs) = ([0.0; CHUNK], [0.0; CHUNK]);
     for y in 0..height {
         let path = RowPath::new(scaled, 0, y);
-        let rows = out.row_mut(y).chunks_mut(CHUNK).zip(level.first.row(y).chunks(CHUNK));
-        for (k, ((out, first), energy)) in rows.zip(level.energy.row(y).chunks(CHUNK)).enumerate() {
+        let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
+        for (k, (first, energy)) in rows.enumerate() {
             let at = Footprints::along(&path, k * CHUNK, width, height);
-            at.sample(view.values(), &mut samples[..out.len()]);
+            at.sample(view.values(), &mut samples[..first.len()]);
             let seen = samples.iter().zip(&at.inside).zip(at.fx.iter().zip(&at.fy));
-            let pixels = out.iter_mut().zip(first).zip(energy).zip(seen);
-            for (((o, first), energy), ((sample, inside), (fx, fy))) in pixels {
+            let pixels = costs.iter_mut().zip(first).zip(energy).zip(seen);
+            for (((cost, first), energy), ((sample, inside), (fx, fy))) in pixels {
                 let residual = sample - first * (1.0 + gain) - bias;
                 let variance = noise * interpolation_variance(*fx, *fy, correlation) + looseness * energy;
-                let cost = model.of(residual, variance);
-                *o = if *inside { cost } else { model.outside() };
+                let explained = model.of(residual, variance);
+                *cost = if *inside { explained } else { outside };
             }
+            out.extend_from_slice(&costs[..first.len()]);
         }
     }
-    out
+    Plane::from_vec(width, height, out)
 }
 
 /// Sum of a cost plane.
@@ -140,8 +168,7 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const SMALLEST: f32 = 0.5;
     const LARGEST: f32 = 8.0;
     let scaled = level.scaled(motion);
-    let mut energies = level.energy.values().to_vec();
-    let flat = median(&mut energies).unwrap_or(0.0);
+    let flat = median(level.energy.values()).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
     let mut samples = [0.0; CHUNK];
     for y in 0..level.height() {
@@ -156,9 +183,9 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
             }
         }
     }
-    let Some(centre) = median(&mut residuals) else { return LARGEST };
+    let Some(centre) = median(&residuals) else { return LARGEST };
     residuals.iter_mut().for_each(|r| *r = (*r - centre).abs());
-    (1.4826 * median(&mut residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
+    (1.4826 * median(&residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use nalgebra::Complex;
 
+use crate::order::sort_few;
+
 /// Bound of the iteration; typical polynomials of degree 10 need 10 to 20 steps.
 const MAX_STEPS: usize = 100;
 /// A leading or last coefficient below this share of the largest counts as zero: the root is at infinity or at zero.
@@ -127,7 +129,7 @@ fn starting_points(c: &[f64]) -> Vec<Complex<f64>> {
 
 /// Makes near-real roots real and conjugate pairs exact.
 fn conjugate_symmetric(mut z: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
-    z.sort_by(|a, b| b.im.total_cmp(&a.im).then(a.re.total_cmp(&b.re)));
+    sort_few(&mut z, |a, b| b.im.total_cmp(&a.im).then(a.re.total_cmp(&b.re)));
     let mut result = Vec::with_capacity(z.len());
     while !z.is_empty() {
         let root = z.remove(0);

@@ -19,12 +19,12 @@ pub(crate) fn gaussian(plane: &Plane, sigma: f32) -> Plane {
 
 /// Separable symmetric filter; `weights[k]` belongs to the two neighbours at distance k.
 fn symmetric(plane: &Plane, weights: &[f32]) -> Plane {
-    let mut out = Plane::filled(plane.width(), plane.height(), 0.0);
+    let mut out = Vec::with_capacity(plane.values().len());
     let mut filter = RowFilter::new(plane.width(), weights);
     for y in 0..plane.height() {
-        filter.row(plane, y, out.row_mut(y));
+        filter.append_row(plane, y, &mut out);
     }
-    out
+    Plane::from_vec(plane.width(), plane.height(), out)
 }
 
 /// A separable symmetric filter, a row at a time.
@@ -39,36 +39,44 @@ struct RowFilter<'a> {
 impl<'a> RowFilter<'a> {
     fn new(width: usize, weights: &'a [f32]) -> Self {
         let radius = weights.len() - 1;
-        RowFilter { weights, places: vec![[0; 2]; radius], padded: vec![0.0; width + 2 * radius] }
+        RowFilter { weights, places: vec![[0; 2]; radius], padded: Vec::with_capacity(width + 2 * radius) }
     }
 
-    /// Row y of the filtered plane.
-    fn row(&mut self, plane: &Plane, y: usize, out: &mut [f32]) {
+    /// Appends row y of the filtered plane.
+    fn append_row(&mut self, plane: &Plane, y: usize, out: &mut Vec<f32>) {
         let (width, height, radius) = (plane.width(), plane.height(), self.weights.len() - 1);
         for (k, place) in self.places.iter_mut().enumerate() {
             *place = [y.saturating_sub(k + 1) * width, (y + k + 1).min(height - 1) * width];
         }
-        let middle = &mut self.padded[radius..radius + width];
-        weighted_sums(plane.values(), y * width, &self.places, self.weights, middle);
-        let (first, last) = (middle[0], middle[width - 1]);
+        self.padded.clear();
+        self.padded.resize(radius, 0.0);
+        append_sums(plane.values(), y * width, &self.places, self.weights, width, &mut self.padded);
+        let (first, last) = (self.padded[radius], self.padded[radius + width - 1]);
         self.padded[..radius].fill(first);
-        self.padded[radius + width..].fill(last);
+        self.padded.resize(width + 2 * radius, last);
         for (k, place) in self.places.iter_mut().enumerate() {
             *place = [radius - k - 1, radius + k + 1];
         }
-        weighted_sums(&self.padded, radius, &self.places, self.weights, out);
+        append_sums(&self.padded, radius, &self.places, self.weights, width, out);
     }
 }
 
-/// `out[x] = weights[0] v[centre + x] + Σ_k weights[k] (v[places[k−1][0] + x] + v[places[k−1][1] + x])`, the nearest first.
-fn weighted_sums(values: &[f32], centre: usize, places: &[[usize; 2]], weights: &[f32], out: &mut [f32]) {
-    let (blocks, rest) = out.as_chunks_mut::<BLOCK>();
-    let done = blocks.len() * BLOCK;
-    for (x, block) in blocks.iter_mut().enumerate() {
-        *block = weighted_block(values, centre + x * BLOCK, x * BLOCK, places, weights);
+/// Appends `weights[0] v[centre + x] + Σ_k weights[k] (v[places[k−1][0] + x] + v[places[k−1][1] + x])` for `count` x from 0 on,
+/// summed in that order.
+fn append_sums(
+    values: &[f32],
+    centre: usize,
+    places: &[[usize; 2]],
+    weights: &[f32],
+    count: usize,
+    out: &mut Vec<f32>,
+) {
+    let whole = count - count % BLOCK;
+    for x in (0..whole).step_by(BLOCK) {
+        out.extend_from_slice(&weighted_block::<BLOCK>(values, centre + x, x, places, weights));
     }
-    for (x, o) in rest.iter_mut().enumerate() {
-        [*o] = weighted_block(values, centre + done + x, done + x, places, weights);
+    for x in whole..count {
+        out.extend_from_slice(&weighted_block::<1>(values, centre + x, x, places, weights));
     }
 }
 
@@ -98,14 +106,16 @@ fn weighted_block<const N: usize>(
 
 /// Every second pixel after the 5-tap filter [1 4 6 4 1]/16: pixel (x, y) of the result lies at (2x, 2y) of the source.
 pub(crate) fn halve(plane: &Plane) -> Plane {
-    let mut half = Plane::filled(plane.width().div_ceil(2), plane.height().div_ceil(2), 0.0);
+    let (width, height) = (plane.width().div_ceil(2), plane.height().div_ceil(2));
     let mut filter = RowFilter::new(plane.width(), &[6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);
-    let mut smooth = vec![0.0; plane.width()];
-    for y in 0..half.height() {
-        filter.row(plane, 2 * y, &mut smooth);
-        half.row_mut(y).iter_mut().zip(smooth.iter().step_by(2)).for_each(|(h, s)| *h = *s);
+    let mut half = Vec::with_capacity(width * height);
+    let mut smooth = Vec::with_capacity(plane.width());
+    for y in 0..height {
+        smooth.clear();
+        filter.append_row(plane, 2 * y, &mut smooth);
+        half.extend(smooth.iter().step_by(2));
     }
-    half
+    Plane::from_vec(width, height, half)
 }
 
 /// Scharr gradients (∂/∂x, ∂/∂y) per pixel: central differences, smoothed by [3 10 3]/16 across.

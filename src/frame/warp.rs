@@ -86,6 +86,7 @@ pub(crate) struct Footprints {
 
 impl Footprints {
     /// Footprints of the pixels `from`, `from + 1`, … of a path in a plane of the given size.
+    #[inline(never)]
     pub(crate) fn along(path: &RowPath, from: usize, width: usize, height: usize) -> Footprints {
         let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
         for (k, (x, y)) in x.iter_mut().zip(&mut y).enumerate() {
@@ -96,6 +97,7 @@ impl Footprints {
     }
 
     /// Footprints of positions in a plane of the given size.
+    #[inline(never)] // Used in many places; a call for 64 pixels costs nothing, a copy in each place a kilobyte.
     pub(crate) fn new(x: &[f32; CHUNK], y: &[f32; CHUNK], width: usize, height: usize) -> Footprints {
         let (right_edge, lower_edge) = ((width - 1) as f32, (height - 1) as f32);
         let mut all =
@@ -112,7 +114,7 @@ impl Footprints {
 
     /// Bilinear samples of a plane of the size that the footprints were made for, into as many places as there are, at most
     /// [`CHUNK`].
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn sample(&self, values: &[f32], out: &mut [f32]) {
         // On the last column and row a neighbour is missing; its weight is zero there, so that any value will do.
         let Some(last) = values.len().checked_sub(1) else { return };

@@ -13,9 +13,11 @@ const COLOURS: usize = STEPS * STEPS * STEPS;
 /// Probability that every label gives every colour beforehand.
 const DOUBT: f32 = 1e-3;
 /// Price of a colour per nat of its improbability, where colours can be trusted entirely.
-const STRENGTH: f32 = 0.5;
+const STRENGTH: f32 = 1.0;
 /// Largest price of a colour.
 const LARGEST: f32 = 2.0;
+/// Evidence, in costs, from which on a label has colours.
+const LEAST_EVIDENCE: f32 = 20.0;
 /// Side of the blocks that form the two halves, working pixels.
 const BLOCK: usize = 12;
 
@@ -100,11 +102,18 @@ fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, counts
         table[usize::from(palette.indices[p]) * n + usize::from(label)] += weight;
         totals[usize::from(label)] += weight;
     }
+    let known = totals.iter().filter(|&&total| total >= LEAST_EVIDENCE).count().max(1) as f32;
     for of_colour in table.chunks_exact_mut(n) {
         let mut sum = 0.0;
-        for (share, total) in of_colour.iter_mut().zip(&totals) {
+        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= LEAST_EVIDENCE) {
             *share = *share / total + DOUBT;
             sum += *share;
+        }
+        // Nothing is known against a label that has given no evidence: any colour is as likely there as elsewhere on average.
+        let average = if sum > 0.0 { sum / known } else { 1.0 };
+        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < LEAST_EVIDENCE) {
+            *share = average;
+            sum += average;
         }
         of_colour.iter_mut().for_each(|share| *share /= sum);
     }

@@ -1,8 +1,10 @@
 //! Which pixel goes with which motion: cost of each motion at each pixel, plus a price for every border between labels that is
 //! lower where the image has an edge.
 
+use super::misfit::allow_for_misfit;
 use super::potts::{Potts, Solver, minimise};
-use crate::alignment::cost::{CostModel, cost};
+use super::views::{cheapest, costs_in_views};
+use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
@@ -21,16 +23,36 @@ pub(crate) struct Coherence {
 }
 
 /// Share of λ that remains at the strongest image edge.
-const EDGE_SHARE: f32 = 0.15;
+const EDGE_SHARE: f32 = 0.02;
 /// Intensity step at which the rest of λ has fallen to 1/e: at least this many grey levels …
 const SMALLEST_STEP: f32 = 5.0;
 /// … and at least this many noise deviations.
 const NOISE_STEPS: f32 = 4.0;
 /// Share of λ that an object pays for every pixel on the frame's border: without it a border between labels that leaves the
 /// frame costs nothing, and flat regions leak through.
-const FRAME_BORDER: f32 = 0.5;
+const FRAME_BORDER: f32 = 0.375;
 
-/// Prices of borders between neighbours, from the unblurred first frame.
+/// What a step in colour counts beside one in luminance, as a share of its length in RGB.
+const COLOUR_SHARE: f32 = 0.6;
+
+/// The unblurred first frame at working size: labels may change along its edges.
+#[derive(Clone, Debug)]
+pub(crate) struct Picture {
+    pub(crate) luminance: Plane,
+    /// Red, green, blue.
+    pub(crate) colours: [Plane; 3],
+}
+
+impl Picture {
+    /// The step between two pixels in luminance or, where larger, in colour; grey levels.
+    fn step(&self, p: usize, q: usize) -> f32 {
+        let difference = |plane: &Plane| plane.values()[p] - plane.values()[q];
+        let squares: f32 = self.colours.iter().map(|c| difference(c) * difference(c)).sum();
+        difference(&self.luminance).abs().max(COLOUR_SHARE * squares.sqrt())
+    }
+}
+
+/// Prices of borders between neighbours.
 #[derive(Clone, Debug)]
 pub(crate) struct Borders {
     horizontal: Plane,
@@ -38,17 +60,22 @@ pub(crate) struct Borders {
 }
 
 impl Borders {
-    pub(crate) fn new(first: &Plane, noise: f32, coherence: Coherence) -> Borders {
+    pub(crate) fn new(picture: &Picture, noise: f32, coherence: Coherence) -> Borders {
         let step = SMALLEST_STEP.max(NOISE_STEPS * noise);
-        let (width, height) = (first.width(), first.height());
-        let price = |a: f32, b: f32| {
-            coherence.smoothness * (EDGE_SHARE + (1.0 - EDGE_SHARE) * libm::expf(-(a - b).abs() / step))
-        };
+        Self::with(picture.luminance.width(), picture.luminance.height(), |p, q| {
+            coherence.smoothness * (EDGE_SHARE + (1.0 - EDGE_SHARE) * libm::expf(-picture.step(p, q) / step))
+        })
+    }
+
+    /// Borders that cost the same everywhere.
+    pub(crate) fn uniform(width: usize, height: usize, coherence: Coherence) -> Borders {
+        Self::with(width, height, |_, _| coherence.smoothness)
+    }
+
+    fn with(width: usize, height: usize, price: impl Fn(usize, usize) -> f32) -> Borders {
         Borders {
-            horizontal: Plane::from_fn(width, height, |x, y| {
-                price(first.at(x, y), first.at((x + 1).min(width - 1), y))
-            }),
-            vertical: Plane::from_fn(width, height, |x, y| price(first.at(x, y), first.at(x, (y + 1).min(height - 1)))),
+            horizontal: Plane::from_fn(width, height, |x, y| price(y * width + x, y * width + (x + 1).min(width - 1))),
+            vertical: Plane::from_fn(width, height, |x, y| price(y * width + x, (y + 1).min(height - 1) * width + x)),
         }
     }
 
@@ -58,21 +85,98 @@ impl Borders {
     }
 }
 
-/// Cost of one motion at every pixel, as labels see it; `object` is whether it is not the dominant motion.
-pub(crate) fn label_cost(level: &Level, motion: &AffineMotion, object: bool, coherence: Coherence) -> Plane {
-    let mut plane = cost(level, motion, CostModel::LABELS);
-    if object {
-        plane.values_mut().iter_mut().for_each(|c| *c += coherence.departure);
-        let price = FRAME_BORDER * coherence.smoothness;
-        let (width, height) = (plane.width(), plane.height());
-        for y in [0, height - 1] {
-            plane.row_mut(y).iter_mut().for_each(|c| *c += price);
+/// What every motion costs at every pixel, as labels see it; the first is the dominant one.
+///
+/// A pixel that a motion moves out of the frame says nothing about it, so there the motion costs what the cheapest of those costs
+/// that keep the pixel inside. An object costs at least what says nothing by itself, and the dominant motion at most that: an object
+/// does not win pixels by leaving the frame with them.
+pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
+    let mut costs = costs_in_views(level, motions);
+    allow_for_misfit(&mut costs);
+    let neutral = CostModel::LABELS.outside();
+    let seen = cheapest(&costs, f32::INFINITY);
+    for (k, cost) in costs.iter_mut().enumerate() {
+        for (c, seen) in cost.values_mut().iter_mut().zip(seen.values()).filter(|(c, _)| !c.is_finite()) {
+            *c = match (k, seen.is_finite()) {
+                (_, false) => neutral,
+                (0, true) => seen.min(neutral),
+                (_, true) => seen.max(neutral),
+            };
         }
-        for y in 0..height {
-            for x in [0, width - 1] {
-                plane.row_mut(y)[x] += price;
-            }
+        if k > 0 {
+            add_departure(cost, coherence);
         }
     }
-    plane
+    costs
+}
+
+/// What an object pays for its pixels.
+fn add_departure(cost: &mut Plane, coherence: Coherence) {
+    cost.values_mut().iter_mut().for_each(|c| *c += coherence.departure);
+    let price = FRAME_BORDER * coherence.smoothness;
+    let (width, height) = (cost.width(), cost.height());
+    for y in [0, height - 1] {
+        cost.row_mut(y).iter_mut().for_each(|c| *c += price);
+    }
+    for y in 0..height {
+        for x in [0, width - 1] {
+            cost.row_mut(y)[x] += price;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::pyramid::build;
+
+    const COHERENCE: Coherence =
+        Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST };
+
+    fn noise(seed: u64) -> Plane {
+        let mut random = crate::random::Random::from_seed(seed);
+        Plane::from_fn(64, 48, |_, _| random.uniform(0.0, 255.0) as f32)
+    }
+
+    #[test]
+    fn leaving_the_frame_wins_an_object_nothing_and_costs_the_dominant_motion_nothing() {
+        let (still, leaving) = (AffineMotion::STATIC, AffineMotion::translation(20.0, 0.0));
+        let same = &build(noise(1), noise(1), None, 24)[0];
+        let other = &build(noise(1), noise(2), None, 24)[0];
+        for level in [same, other] {
+            let object = label_costs(level, &[still, leaving], COHERENCE);
+            let dominant = label_costs(level, &[leaving, still], COHERENCE);
+            for y in 1..47 {
+                for x in 45..63 {
+                    assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.departure, "({x}, {y})");
+                    assert!(dominant[0].at(x, y) <= dominant[1].at(x, y), "({x}, {y})");
+                }
+            }
+        }
+        let nowhere = AffineMotion::translation(100.0, 0.0);
+        let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
+        assert_eq!(unseen[0].at(30, 30), CostModel::LABELS.outside());
+        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.departure).abs() < 1e-6);
+    }
+
+    #[test]
+    fn borders_are_cheap_along_edges_and_dear_where_nothing_changes() {
+        let grey = Plane::filled(64, 48, 100.0);
+        let step = |small: f32, large: f32| Plane::from_fn(64, 48, |x, _| if x < 32 { small } else { large });
+        let bright = Picture { luminance: step(60.0, 160.0), colours: [0; 3].map(|_| step(60.0, 160.0)) };
+        let coloured =
+            Picture { luminance: grey.clone(), colours: [step(40.0, 140.0), step(140.0, 76.0), grey.clone()] };
+        let borders = Borders::new(&bright, 1.0, COHERENCE);
+        for borders in [&borders, &Borders::new(&coloured, 1.0, COHERENCE)] {
+            assert_eq!(borders.horizontal.at(10, 10), COHERENCE.smoothness);
+            assert!(borders.horizontal.at(31, 10) < 0.03 * COHERENCE.smoothness);
+        }
+        // Evidence says where the labels change only to within four pixels; the edge says the rest.
+        let costs = [
+            Plane::from_fn(64, 48, |x, _| if x >= 34 { 1.0 } else { 0.0 }),
+            Plane::from_fn(64, 48, |x, _| if x < 30 { 1.0 } else { 0.0 }),
+        ];
+        let labels = borders.solve(&costs, Solver::Expansion { sweeps: 1 });
+        assert!((0..64 * 48).all(|p| usize::from(labels[p]) == usize::from(p % 64 >= 32)));
+    }
 }

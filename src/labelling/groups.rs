@@ -1,5 +1,9 @@
 //! Motions that belong together: a continuous surface has a continuous flow, so two neighbouring regions whose motions agree
 //! along their common border are one (a slanted plane, the layers of a rigid background).
+//!
+//! Regions are joined one pair at a time, the pair with the smallest jump first, and jumps of the joined region are taken anew
+//! along the whole of its border. A chain of small jumps alone does not join two regions that differ where they really meet: a
+//! limb that moves a little would otherwise tie the whole animal to the ground.
 
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
@@ -8,41 +12,76 @@ use crate::order::median_f64;
 const SHORTEST_BORDER: usize = 12;
 /// Flows that differ by less than this (median along the border, pixels) are continuous …
 const TOLERANCE: f64 = 0.3;
-/// … or by less than this share of the largest jump in the frame.
-const RELATIVE_TOLERANCE: f64 = 0.2;
+/// … or by less than this share of the largest jump at which anything was joined …
+const RELATIVE_TOLERANCE: f64 = 0.3;
+/// … as long as that is less than this share of the frame's longer side: layers of one background differ by little.
+const LARGEST_TOLERANCE: f64 = 0.007;
 
 /// The group of every motion, as the smallest label in it. `motions` in pixels of the label grid, one of which has `reduction`
 /// pixels of the frame.
 pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, reduction: f64) -> Vec<usize> {
-    let n = motions.len();
-    let mut jumps: Vec<(f64, usize, usize)> = Vec::new();
-    for (i, j, mut along) in borders(motions, labels, width) {
-        if along.len() >= SHORTEST_BORDER {
-            jumps.extend(median_f64(&mut along).map(|jump| (jump, i, j)));
-        }
-    }
-    let largest = jumps.iter().fold(0.0f64, |m, j| m.max(j.0));
-    let tolerance = (TOLERANCE / reduction).max(RELATIVE_TOLERANCE * largest);
-    let mut group: Vec<usize> = (0..n).collect();
-    for (jump, i, j) in jumps {
-        if jump < tolerance {
-            let (keep, drop) = (group[i].min(group[j]), group[i].max(group[j]));
-            group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);
-        }
+    let joined = joined(motions.len(), borders(motions, labels, width));
+    let largest = joined.iter().fold(0.0f64, |m, j| m.max(j.jump));
+    let side = width.max(labels.len() / width) as f64;
+    let tolerance = (RELATIVE_TOLERANCE * largest).min(LARGEST_TOLERANCE * side).max(TOLERANCE / reduction);
+    let mut group: Vec<usize> = (0..motions.len()).collect();
+    for Join { keep, drop, .. } in joined.into_iter().take_while(|j| j.jump < tolerance) {
+        group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);
     }
     group
 }
 
-/// For every pair of labels that touch: how far their flows differ at each border pixel.
-fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<(usize, usize, Vec<f64>)> {
+/// Two regions become one, which goes on as `keep`, the smaller of the two labels.
+struct Join {
+    keep: usize,
+    drop: usize,
+    /// Median jump of the flow along their border at that moment, pixels.
+    jump: f64,
+}
+
+/// All regions joined one after another, always the two with the smallest jump, until no two are left that touch.
+fn joined(n: usize, mut borders: Vec<Vec<f64>>) -> Vec<Join> {
+    let mut joined = Vec::new();
+    while let Some(next) = closest(n, &mut borders) {
+        for other in 0..n {
+            let moved = std::mem::take(&mut borders[pair(n, next.drop, other)]);
+            if other != next.keep && other != next.drop {
+                borders[pair(n, next.keep, other)].extend(moved);
+            }
+        }
+        joined.push(next);
+    }
+    joined
+}
+
+/// The pair with the smallest jump along a border that is long enough.
+fn closest(n: usize, borders: &mut [Vec<f64>]) -> Option<Join> {
+    let mut best: Option<Join> = None;
+    for (k, along) in borders.iter_mut().enumerate().filter(|(_, along)| along.len() >= SHORTEST_BORDER) {
+        if let Some(jump) = median_f64(along)
+            && best.as_ref().is_none_or(|b| jump < b.jump)
+        {
+            best = Some(Join { keep: k / n, drop: k % n, jump });
+        }
+    }
+    best
+}
+
+/// Where the border of two labels stands in a list of n · n.
+fn pair(n: usize, i: usize, j: usize) -> usize {
+    i.min(j) * n + i.max(j)
+}
+
+/// For every [`pair`] of labels that touch: how far their flows differ at each border pixel.
+fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<Vec<f64>> {
     let n = motions.len();
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); n * n];
     let mut note = |p: usize, q: usize| {
-        let (i, j) = (usize::from(labels[p].min(labels[q])), usize::from(labels[p].max(labels[q])));
-        if i != j && j < n {
+        let (i, j) = (usize::from(labels[p]), usize::from(labels[q]));
+        if i != j && i < n && j < n {
             let (x, y) = ((p % width) as f64, (p / width) as f64);
             let ([u, v], [r, s]) = (motions[i].flow(x, y), motions[j].flow(x, y));
-            found[i * n + j].push(((u - r) * (u - r) + (v - s) * (v - s)).sqrt());
+            found[pair(n, i, j)].push(((u - r) * (u - r) + (v - s) * (v - s)).sqrt());
         }
     };
     for p in 0..labels.len() {
@@ -53,7 +92,7 @@ fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<(usize,
             note(p, p + width);
         }
     }
-    found.into_iter().enumerate().filter(|(_, f)| !f.is_empty()).map(|(k, f)| (k / n, k % n, f)).collect()
+    found
 }
 
 #[cfg(test)]
@@ -70,5 +109,32 @@ mod tests {
             AffineMotion::translation(7.0, 0.0),
         ];
         assert_eq!(groups(&motions, &labels, 60, 1.0), [0, 0, 2]);
+    }
+
+    #[test]
+    fn a_chain_of_small_jumps_does_not_tie_a_moving_thing_to_the_ground() {
+        // The thing (1) jumps by 0.56 pixels against the ground (0) along most of its border; its foot (2) moves half as much, which
+        // is too little a difference from either.
+        let (width, height) = (60, 60);
+        let labels: Vec<u8> = (0..width * height)
+            .map(|p| match (p % width, p / width) {
+                (20..40, 10..40) => 1,
+                (26..42, 40..44) => 2,
+                _ => 0,
+            })
+            .collect();
+        let motions = [
+            AffineMotion::translation(0.0, 0.0),
+            AffineMotion::translation(0.56, 0.0),
+            AffineMotion::translation(0.28, 0.0),
+        ];
+        let groups = groups(&motions, &labels, width, 1.0);
+        assert_ne!(groups[0], groups[1]);
+    }
+
+    #[test]
+    fn where_nothing_touches_every_motion_is_its_own_group() {
+        let labels = vec![0; 32 * 32];
+        assert_eq!(groups(&[AffineMotion::STATIC, AffineMotion::translation(9.0, 0.0)], &labels, 32, 1.0), [0, 1]);
     }
 }

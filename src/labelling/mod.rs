@@ -9,9 +9,11 @@ mod expansion;
 pub(crate) mod groups;
 mod max_flow;
 mod messages;
+mod misfit;
 pub(crate) mod potts;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;
+mod views;
 pub(crate) mod visibility;
 
 use crate::frame::Plane;

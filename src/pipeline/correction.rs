@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
 use crate::labelling::appearance::appearance_costs;
-use crate::labelling::energy::{Borders, label_cost};
+use crate::labelling::energy::{Borders, label_costs};
 use crate::labelling::upsampling::upsample;
 use crate::labelling::visibility::with_visibility;
 use crate::motion::AffineMotion;
@@ -189,8 +189,7 @@ impl Draft {
     fn solve(&self, work: &Work, settings: &Settings) -> Vec<u8> {
         let level = work.finest();
         let coherence = settings.coherence;
-        let motions = self.motions.iter().enumerate();
-        let mut costs: Vec<Plane> = motions.map(|(k, m)| label_cost(level, m, k > 0, coherence)).collect();
+        let mut costs = label_costs(level, &self.motions, coherence);
         // Where nothing was said yet, the dominant motion stands in: it is what the masks were corrected for occlusion with.
         let known: Vec<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
         if self.motions.len() > 1 {
@@ -200,8 +199,8 @@ impl Draft {
                 cost.values_mut().iter_mut().zip(said.values()).for_each(|(c, s)| *c += s);
             }
         }
-        let say = self.add_evidence(&mut costs, &work.edges);
-        let mut solved = Borders::new(&work.edges, level.noise, coherence).solve(&costs, coherence.solver);
+        let say = self.add_evidence(&mut costs, &work.picture.luminance);
+        let mut solved = Borders::new(&work.picture, level.noise, coherence).solve(&costs, coherence.solver);
         for (p, label) in solved.iter_mut().enumerate() {
             if say[p] < SMALLEST_SAY {
                 *label = self.labels[p];

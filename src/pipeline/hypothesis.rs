@@ -15,6 +15,9 @@ use crate::selection::{Deflation, Layer, add_motions, fine_proposals, prune, ref
 /// No motion is a hypothesis of its own as long as it costs no more than this many times what the dominant motion costs: where much
 /// of the frame is flat, one motion bent over several objects can explain more than the background that stands still.
 const PLAUSIBLE: f64 = 1.5;
+/// It wins only where all motions together then cost less than this share of what they cost beside the dominant motion: a background
+/// that moves by less than a pixel costs about as much at rest, with a motion more.
+const CLEARLY: f64 = 0.9;
 
 impl Settings {
     fn refit(&self, level: &Level, layers: &mut [Layer], rounds: usize) {
@@ -28,7 +31,7 @@ pub(super) struct Found {
     pub(super) left_out: Option<AffineMotion>,
 }
 
-/// The cheapest set of motions, over the hypotheses "the dominant motion is as found" and "nothing but objects moves".
+/// The motions beside the dominant one as found, or those beside "nothing but objects moves" where these are clearly cheaper.
 pub(super) fn best(
     work: &Work,
     dominant: AffineMotion,
@@ -42,7 +45,7 @@ pub(super) fn best(
     let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
     if other && alone(&AffineMotion::STATIC) < PLAUSIBLE * alone(&dominant) {
         let (found, cost) = with_dominant(work, AffineMotion::STATIC, Some(dominant), settings, random, stages);
-        if cost < least {
+        if cost < CLEARLY * least {
             winner = found;
         }
     }

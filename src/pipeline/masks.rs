@@ -8,7 +8,7 @@ use crate::frame::Plane;
 use crate::labelling::appearance::appearance_costs;
 use crate::labelling::components::absorb_small;
 use crate::labelling::description::{SMALLEST_SHARE, counts, worth};
-use crate::labelling::energy::{Borders, label_cost};
+use crate::labelling::energy::{Borders, label_costs};
 use crate::labelling::potts::Solver;
 use crate::labelling::splitting::{split_bodies, split_components};
 use crate::labelling::visibility::with_visibility;
@@ -53,10 +53,9 @@ pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled 
         work,
         settings,
         borders: if settings.has(Part::Edges) {
-            Borders::new(&work.edges, level.noise, settings.coherence)
+            Borders::new(&work.picture, level.noise, settings.coherence)
         } else {
-            let no_edges = Plane::filled(level.width(), level.height(), 0.0);
-            Borders::new(&no_edges, level.noise, settings.coherence)
+            Borders::uniform(level.width(), level.height(), settings.coherence)
         },
         costs: Vec::new(),
         raw: Vec::new(),
@@ -86,9 +85,8 @@ impl Draft<'_> {
     /// Costs of all motions.
     fn measure(&mut self) {
         let level = self.work.finest();
-        let coherence = self.settings.coherence;
         self.raw = self.motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
-        self.costs = self.motions.iter().enumerate().map(|(k, m)| label_cost(level, m, k > 0, coherence)).collect();
+        self.costs = label_costs(level, &self.motions, self.settings.coherence);
     }
 
     fn solve(&mut self) {

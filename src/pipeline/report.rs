@@ -11,7 +11,7 @@ use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::description::{counts, length, price_of_motion, worth};
-use crate::labelling::energy::label_cost;
+use crate::labelling::energy::label_costs;
 use crate::labelling::groups::groups;
 use crate::labelling::potts::Solver;
 use crate::labelling::upsampling::{enlarged, upsample};
@@ -236,7 +236,8 @@ fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candid
         let mut one_more = found + price_of_motion(labels.len());
         if let Some(motion) = &labelled.left_out {
             raw.push(cost(level, motion, CostModel::ESTIMATION));
-            costs.push(label_cost(level, motion, true, settings.coherence));
+            let all: Vec<AffineMotion> = labelled.motions.iter().chain([motion]).copied().collect();
+            costs.extend(label_costs(level, &all, settings.coherence).pop());
             one_more = one_more.min(length(&raw, &labelled.borders.solve(&costs, Solver::FAST), width));
             raw.pop();
             costs.pop();

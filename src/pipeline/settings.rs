@@ -72,7 +72,7 @@ impl Settings {
     pub(crate) fn of(options: &SegmentOptions) -> Settings {
         let best = Settings {
             work_side: 448,
-            base_side: 256,
+            base_side: 320,
             smallest_side: 24,
             degrees: 3,
             measurements: 2000,
@@ -82,14 +82,14 @@ impl Settings {
             hypothesis_price: 300.0,
             most: 7,
             least: 1,
-            coherence: Coherence { smoothness: 6.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
+            coherence: Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
             #[cfg(feature = "ablation")]
             without: None,
         };
         let mut settings = match options.quality {
             Quality::Best => best,
             Quality::Fast => Settings {
-                work_side: 256,
+                work_side: 320,
                 base_side: 160,
                 degrees: 2,
                 measurements: 1000,

@@ -123,8 +123,8 @@ fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
             return Vec::new();
         };
         readings = read_off(&polynomial, &data.measurements);
-        let mut distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
-        close = 1.5 * median_f64(&mut distances).unwrap_or(0.0) + 1e-9;
+        let distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
+        close = 1.5 * median_f64(&distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
             let relative = r.distance / close;
@@ -179,8 +179,8 @@ fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize
         .filter_map(|g| {
             let member = || points.iter().zip(&assignment).filter(move |&(_, &a)| a == g).map(|(p, _)| p);
             let median = |k: usize| {
-                let mut values: Vec<f64> = member().map(|p| p[k]).collect();
-                median_f64(&mut values).unwrap_or(0.0)
+                let values: Vec<f64> = member().map(|p| p[k]).collect();
+                median_f64(&values).unwrap_or(0.0)
             };
             (member().count() >= SMALLEST_GROUP).then(|| [median(0), median(1)])
         })

@@ -12,29 +12,32 @@
 //!
 //! Measured on the paper's experiment (general motions, n = 2…5, up to 30 % outliers, one motion with 5 % of the measurements),
 //! this ends at the maximum that EM reaches from the true motions. Pitfalls found by measurement: a start σ of 0.05 or 0.15
-//! freezes the random assignment; fewer motions in the residual search are worse, not better; without taking the weakest motion away, a
+//! freezes the random assignment; without taking the weakest motion away, a
 //! wrong motion hides half of the measurements of a small one that is missing; the σ from which EM starts must be that of the *worst* chosen
 //! motion, or the exact motions of noise-free data freeze the others.
 
 use super::mixture::{Mixture, Normal, Stop, Workspace, nearest_distances, own_distances};
-use super::samples::{Samples, median};
+use super::samples::Samples;
 use super::subset;
+use crate::order::{median_f64, sort_few};
 use crate::random::Random;
 
 /// The search works on at most this many measurements, the last maximisation on all.
 const SEARCHED: usize = 1000;
 /// Random motions are drawn with this many times the typical normal flow as deviation.
 const SEED_SCALE: f64 = 1.2;
-/// Random motions per wanted motion: on all measurements, on the unexplained ones, on those of one motion.
+/// Random motions per wanted motion: on all measurements, on the unexplained ones (more where outliers hide the motion that is
+/// missing), on those of one motion.
 const OVER_COMPLETE: usize = 6;
-const UNEXPLAINED: usize = 10;
+const UNEXPLAINED: usize = 6;
+const UNEXPLAINED_AMONG_OUTLIERS: usize = 10;
 const SPLIT: usize = 4;
 /// σ at the start from random motions, of splitting one motion, and the largest at the start from a choice, all in units
 /// of the derivatives' root mean square.
 const WIDE: f64 = 0.3;
 const SPLIT_WIDE: f64 = 0.1;
 const CHOICE_WIDE: f64 = 0.1;
-/// Distances are cut at this many σ of the best fit in one choice and at this distance in the other.
+/// Distances count up to this many σ of the best fit in one choice and at this distance in the other.
 const CAP_SIGMAS: f64 = 4.0;
 const CAP: f64 = 0.1;
 /// A measurement further than this many σ from every motion is unexplained.
@@ -156,7 +159,8 @@ impl<'a> Search<'a> {
         let rest: Vec<usize> = (0..near.len()).filter(|&j| near[j] > EXPLAINED_SIGMAS * best.sigma).collect();
         if rest.len() >= FEWEST {
             let rest = self.sample.subset(rest.into_iter());
-            let seeds = self.seeds(UNEXPLAINED * n, &[0.0; 6], self.scale);
+            let many = if best.outliers < CLEAN { UNEXPLAINED } else { UNEXPLAINED_AMONG_OUTLIERS };
+            let seeds = self.seeds(many * n, &[0.0; 6], self.scale);
             let found = self.workspace.maximise(&rest, Mixture::new(seeds, WIDE), SEARCH);
             self.pool.extend(found.motions);
         }
@@ -180,7 +184,7 @@ impl<'a> Search<'a> {
         let mut last = Vec::new();
         for cap in [CAP_SIGMAS * best.sigma, CAP] {
             let mut chosen = subset::choose(&self.sample, &self.pool, n, cap);
-            chosen.sort_unstable();
+            sort_few(&mut chosen, usize::cmp);
             if chosen == last {
                 continue;
             }
@@ -217,5 +221,6 @@ fn is_usable(motion: &[f64; 6]) -> bool {
 
 /// The largest noise that the measurements nearest to one of the motions suggest: 1.4826 times the median of their distances.
 fn widest_sigma(samples: &Samples, motions: &[[f64; 6]]) -> f64 {
-    own_distances(samples, motions).iter_mut().map(|own| 1.4826 * median(own)).fold(0.0, f64::max)
+    let typical = |own: &Vec<f64>| 1.4826 * median_f64(own).unwrap_or(0.0);
+    own_distances(samples, motions).iter().map(typical).fold(0.0, f64::max)
 }

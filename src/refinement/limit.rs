@@ -35,6 +35,7 @@ fn the_search_reaches_the_likelihood_of_the_truth() {
     for protocol in [
         general.clone(),
         Protocol { first_share: Some(0.05), ..general },
+        Protocol { first_share: Some(0.05), ..Protocol::new(2, 0.05) },
         Protocol { outliers: 0.3, ..Protocol::new(4, 0.02) },
         Protocol { relation: Relation::Near(0.2), ..Protocol::new(2, 0.05) },
     ] {

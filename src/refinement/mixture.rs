@@ -412,11 +412,12 @@ pub(crate) fn own_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<Vec<
     own
 }
 
-/// Appends the absolute distances of all measurements to one motion, cut at `cap`; single precision is enough to compare by.
-pub(crate) fn capped_distances(samples: &Samples, motion: &[f64; 6], cap: f64, out: &mut Vec<f32>) {
+/// Appends the squared distances of all measurements to one motion, cut at `cap²`; single precision is enough to compare by.
+pub(crate) fn capped_squares(samples: &Samples, motion: &[f64; 6], cap: f64, out: &mut Vec<f32>) {
+    let most = cap * cap;
     let mut scratch = Scratch::default();
     for (b, block) in samples.blocks().iter().enumerate() {
         distances(block, motion, &mut scratch);
-        out.extend(scratch.distance[..samples.filled(b)].iter().map(|d| d.abs().min(cap) as f32));
+        out.extend(scratch.distance[..samples.filled(b)].iter().map(|d| (d * d).min(most) as f32));
     }
 }

@@ -1,6 +1,7 @@
 //! Measurements laid out for the inner loops: blocks of plain arrays, one per quantity.
 
 use crate::measurements::Measurements;
+use crate::order::median_f64;
 
 /// Measurements in a block. With 24 motions at once the scratch rows of a block still fit the first-level cache.
 pub(crate) const BLOCK: usize = 32;
@@ -104,15 +105,6 @@ impl Samples {
                 flows.push(block.it[j].abs() / gradient);
             }
         }
-        median(&mut flows)
+        median_f64(&flows).unwrap_or(0.0)
     }
-}
-
-/// The middle value (the upper one of two; 0 where there is none); reorders the values.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -1,6 +1,10 @@
-//! The choice of n motions out of many hypotheses: each measurement pays its distance to the nearest of them, up to a cap.
+//! The choice of n motions out of many hypotheses: each measurement pays the square of its distance to the
+//! nearest of them, up to a cap.
+//!
+//! Why squares: two motions that share the measurements of one, each nudged a little, shorten many small distances. In the sum of
+//! absolute distances that is worth as much as a motion with a twentieth of the measurements that is missing; in squares it is not.
 
-use super::mixture::capped_distances;
+use super::mixture::capped_squares;
 use super::samples::Samples;
 
 /// Passes of exchanging one member at a time; rarely more than two change anything.
@@ -8,13 +12,13 @@ const EXCHANGES: usize = 3;
 /// Independent partial sums.
 const LANES: usize = 8;
 
-/// The indices of `n` hypotheses (fewer where there are fewer) that together leave the least `Σ_j min(cap, min_i |d_ij|)`: one after
+/// The indices of `n` hypotheses (fewer where there are fewer) that together leave the least `Σ_j min(cap², min_i d_ij²)`: one after
 /// another, then every member exchanged for the best other one while that helps.
 pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: f64) -> Vec<usize> {
     let width = samples.len();
     let n = n.min(hypotheses.len());
     let mut table = Vec::with_capacity(hypotheses.len() * width);
-    hypotheses.iter().for_each(|motion| capped_distances(samples, motion, cap, &mut table));
+    hypotheses.iter().for_each(|motion| capped_squares(samples, motion, cap, &mut table));
     let row = |k: usize| &table[k * width..(k + 1) * width];
     let best_beside = |others: &[f32]| {
         let mut best = (f64::INFINITY, 0);
@@ -27,7 +31,8 @@ pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: 
         best
     };
     let mut chosen = Vec::with_capacity(n);
-    let mut nearest = vec![cap as f32; width];
+    let most = (cap * cap) as f32;
+    let mut nearest = vec![most; width];
     let mut cost = f64::INFINITY;
     for _ in 0..n {
         let (least, k) = best_beside(&nearest);
@@ -38,7 +43,7 @@ pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: 
     for _ in 0..if n > 1 { EXCHANGES } else { 0 } {
         let before = cost;
         for i in 0..n {
-            nearest.fill(cap as f32);
+            nearest.fill(most);
             for (_, &k) in chosen.iter().enumerate().filter(|&(j, _)| j != i) {
                 nearest.iter_mut().zip(row(k)).for_each(|(a, &b)| *a = a.min(b));
             }

@@ -6,7 +6,8 @@
 
 use super::estimator::Search;
 use super::mixture::{Mixture, Stop, nearest_distances};
-use super::samples::{Samples, median};
+use super::samples::Samples;
+use crate::order::median_f64;
 
 /// A pair is close if at least half of its measurements are within this many σ of both motions.
 const CLOSE_SIGMAS: f64 = 8.0;
@@ -64,5 +65,5 @@ fn farther_distance(own: &Samples, pair: &[[f64; 6]; 2]) -> f64 {
     let mut first = nearest_distances(own, &pair[..1]);
     let second = nearest_distances(own, &pair[1..]);
     first.iter_mut().zip(&second).for_each(|(a, &b)| *a = a.max(b));
-    median(&mut first)
+    median_f64(&first).unwrap_or(0.0)
 }

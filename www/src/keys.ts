@@ -52,6 +52,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['v'], shown: 'V', does: look.look, run: () => chooseTool(store, 'look') },
     { keys: ['p'], shown: 'P', does: look.brush, run: () => chooseTool(store, 'brush') },
     { keys: ['e'], shown: 'E', does: look.eraser, run: () => chooseTool(store, 'eraser') },
+    { keys: [], shown: 'Space', does: look.stroke, run: () => undefined },
     { keys: ['['], shown: '[', does: look.thinner, run: () => changeRadius(store, 0.75) },
     { keys: [']'], shown: ']', does: look.thicker, run: () => changeRadius(store, 4 / 3) },
     { keys: ['z'], shown: 'Ctrl Z', does: look.undo, run: () => session.correcting.undo(), command: true, shift: false },

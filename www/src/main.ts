@@ -1,6 +1,8 @@
 //! Wires the page together: one store, one session, and the views on their markup.
 
 import { keysFor } from './keys.js';
+import { settingsFromHash } from './link.js';
+import { keepForOffline } from './offline.js';
 import { Session } from './session.js';
 import { Store } from './state.js';
 import { mountArrows } from './views/arrows.js';
@@ -51,7 +53,14 @@ mountOptions(find(document, '#settings', HTMLFormElement), store, session);
 mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
-mountDownloads(document, store);
+mountDownloads(find(document, '#taking', HTMLElement), store, session);
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
+
+keepForOffline(store);
+
+const linked = settingsFromHash(location.hash);
+store.set({ settings: { ...store.get().settings, ...linked.settings } });
+if (linked.kind !== null) store.look({ kind: linked.kind });
+window.addEventListener('hashchange', () => session.change(settingsFromHash(location.hash).settings));
 
 void session.openSample();

@@ -1,10 +1,15 @@
 //! Work on many rows of pixels in pieces, with the page's other work between them.
 
-/** Pixels of a piece: a few milliseconds of work. */
-const PIECE = 1 << 19;
-
 export class Piecewise {
+  readonly #piece: number;
+  readonly #later: boolean;
   #turn = 0;
+
+  /** `piece`: pixels that are a few milliseconds of work. `later`: the first piece is a task of its own, too. */
+  constructor(piece: number, later: boolean) {
+    this.#piece = piece;
+    this.#later = later;
+  }
 
   /** The work under way, if any, is not gone on with. */
   stop(): void {
@@ -12,12 +17,12 @@ export class Piecewise {
   }
 
   /**
-   * Calls `work` for all rows, first at once and, where there are more pixels than a piece holds, then in tasks of their own; new
-   * work replaces the old. `done` is called at the end.
+   * Calls `work` for all rows, and `done` at the end; where there are more pixels than a piece holds, in several tasks. New work
+   * replaces the old.
    */
   rows(width: number, height: number, work: (from: number, to: number) => void, done: () => void = () => undefined): void {
     const turn = ++this.#turn;
-    const step = Math.max(1, Math.floor(PIECE / width));
+    const step = Math.max(1, Math.floor(this.#piece / width));
     const next = (from: number): void => {
       if (turn !== this.#turn) return;
       const to = Math.min(from + step, height);
@@ -25,6 +30,7 @@ export class Piecewise {
       if (to === height) done();
       else setTimeout(() => next(to));
     };
-    next(0);
+    if (this.#later) setTimeout(() => next(0));
+    else next(0);
   }
 }

@@ -92,8 +92,8 @@ export const strings = {
   copied: (what: string, name: string): string => `The motion of ${name} is on the clipboard as ${what}.`,
   copiedText: (what: string): string => `The ${what} is on the clipboard.`,
 
-  insistOn: (count: number, above: number): string => `Insist on ${motions(count).toLowerCase()}: score ${whole.format(above)} above the best`,
-  scoreAbove: (above: number): string => (above === 0 ? 'best score' : `${whole.format(above)} above the best`),
+  insistOn: (count: number, above: number): string => `${count} ${count === 1 ? 'motion' : 'motions'}: insist on it; its score is ${whole.format(above)} above the lowest`,
+  scoreAbove: (above: number): string => (above === 0 ? 'lowest score' : `${whole.format(above)} above the lowest`),
 
   toolHelp: {
     look: '',
@@ -122,8 +122,6 @@ export const strings = {
   notices: {
     noFiles: 'There was no image or video in what you gave.',
     chooseMask: 'Choose a mask in the list first: the brush paints it.',
-    offline: 'This page now works without a network, too.',
-    linkSettings: 'The settings of the link were taken over.',
   },
 
   errors: {
@@ -159,6 +157,7 @@ export const strings = {
       look: 'Look',
       brush: 'Brush: this mask',
       eraser: 'Eraser: not this mask',
+      stroke: 'With the picture in focus: begin or end a stroke; arrow keys move the brush',
       thinner: 'Smaller brush',
       thicker: 'Larger brush',
       undo: 'Undo',

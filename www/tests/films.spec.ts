@@ -81,7 +81,6 @@ async function slide(page: Page, slot: 'first' | 'second', index: number): Promi
 
 test('a WebM film gives exactly the frames that are asked for', async ({ page }) => {
   await open(page);
-  await page.getByLabel('Fast').check();
   const file = await film(page, 40, 'webm', 'vp8');
   await upload(page, [file]);
   await expect(page.locator('#film-name')).toHaveText('film.webm, 40 frames, 192 × 128');

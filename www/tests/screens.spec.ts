@@ -1,27 +1,85 @@
 //! Pictures of the page in its states, in `out/screens/`, for people to look at. Each waits for the state it shows.
 
-import { done, expect, open, sample, screen, square, test, upload } from './support.js';
+import { type Page } from '@playwright/test';
+
+import { done, expect, sample, screen, square, test, upload } from './support.js';
+
+/** As visitors see it first. */
+async function openBest(page: Page): Promise<void> {
+  await page.goto('./');
+  await done(page);
+}
 
 test('desktop', async ({ page }) => {
-  await open(page, 'groups');
+  await openBest(page);
   await page.screenshot({ path: screen('desktop') });
   await page.screenshot({ path: screen('desktop-whole'), fullPage: true });
 });
 
 test('dark', async ({ page }) => {
   await page.emulateMedia({ colorScheme: 'dark' });
-  await open(page, 'groups');
+  await openBest(page);
   await page.screenshot({ path: screen('dark') });
+});
+
+test('split, with arrows', async ({ page }) => {
+  await openBest(page);
+  await page.locator('#look [value=split]').check();
+  await page.getByLabel('Arrows').check();
+  await page.screenshot({ path: screen('split') });
+});
+
+test('residual, enlarged', async ({ page }) => {
+  await openBest(page);
+  await page.getByLabel('Residual').check();
+  await page.getByLabel('Opacity').fill('0');
+  await page.locator('#zoom-in').click();
+  await page.waitForTimeout(200);
+  await page.screenshot({ path: screen('residual') });
+});
+
+test('brush', async ({ page }) => {
+  await openBest(page);
+  await page.locator('#tools [value=brush]').check();
+  const box = (await page.locator('.layers').boundingBox())!;
+  await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.26 * box.width, box.y + 0.7 * box.height, { steps: 8 });
+  await page.screenshot({ path: screen('brush') });
+  await page.mouse.up();
+  await done(page);
+});
+
+test('folder of frames', async ({ page }) => {
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await openBest(page);
+  await upload(page, await Promise.all([0, 1, 2, 3, 4, 5].map((k) => square(`frame${k}.png`, 320, 180, 3 * k, k))));
+  await done(page);
+  await page.locator('#timeline').scrollIntoViewIfNeeded();
+  await page.waitForTimeout(300);
+  await page.screenshot({ path: screen('film'), fullPage: true });
+});
+
+test('keys', async ({ page }) => {
+  await openBest(page);
+  await page.keyboard.press('?');
+  await page.screenshot({ path: screen('keys') });
+});
+
+test('host page', async ({ page }) => {
+  await page.goto('./embed.html');
+  await expect(page.locator('#host-status')).toHaveText(/masks received/, { timeout: 30_000 });
+  await page.screenshot({ path: screen('embed') });
 });
 
 test('phone', async ({ page }) => {
   await page.setViewportSize({ width: 360, height: 740 });
-  await open(page, 'groups');
+  await openBest(page);
   await page.screenshot({ path: screen('phone'), fullPage: true });
 });
 
 test('error', async ({ page }) => {
-  await open(page, 'groups');
+  await openBest(page);
   await upload(page, [await sample('first'), await square('second.png', 640, 480, 0, 0)]);
   await expect(page.getByRole('alert')).toBeVisible();
   await page.screenshot({ path: screen('error') });

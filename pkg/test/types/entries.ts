@@ -1,8 +1,14 @@
-// Both entries are what the hand-written types say; compiled, never run.
+// The entries are what the hand-written types say; compiled, never run.
 
 import * as codecs from '../../src/codecs.js';
+import * as formats from '../../src/formats/index.js';
+import * as inline from '../../src/inline.js';
 import * as node from '../../src/node.js';
+import * as slim from '../../src/slim.js';
 import * as web from '../../src/web.js';
 
 export const entries: (typeof import('veronese'))[] = [node, web];
+export const partial: (typeof import('veronese/slim'))[] = [slim, inline];
+export const same: typeof import('veronese/inline') = inline;
 export const files: typeof import('veronese/codecs') = codecs;
+export const masks: typeof import('veronese/formats') = formats;

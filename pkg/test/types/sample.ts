@@ -11,11 +11,14 @@ import {
   type Pixels,
   type Segmentation,
   Segmenter,
+  SegmenterPool,
   segmentPair,
+  segmentPairs,
   VeroneseError,
   version,
 } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
+import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
 export async function browser(canvas: HTMLCanvasElement, first: ImageData, second: ImageData): Promise<string> {
   await init(new URL('/veronese_bg.wasm', location.href));
@@ -58,4 +61,32 @@ export function mistakes(frame: ImageData): void {
   void fitMotions({ positions: [1, 2], derivatives: [1, 2, 3] });
   // @ts-expect-error a code that does not exist
   void new VeroneseError('broken', 'a sentence');
+}
+
+export async function many(clip: AsyncIterable<Pixels & { time: number }>): Promise<number[]> {
+  async function* pairs() {
+    let first: (Pixels & { time: number }) | undefined;
+    for await (const second of clip) {
+      if (first) yield { first, second, time: first.time };
+      first = second;
+    }
+  }
+  const times: number[] = [];
+  for await (const { index, input, segmentation, error } of segmentPairs(pairs(), { jobs: 2, quality: 'fast' })) {
+    if (error) console.log(index, error.code);
+    else times.push(input.time * segmentation.count);
+  }
+  const pool = new SegmenterPool({ jobs: 3, worker: () => new Worker('worker.js', { type: 'module' }) });
+  pool.close();
+  return times;
+}
+
+export function slim(): void {
+  new SlimSegmenter(undefined, { worker: () => new Worker('worker.js', { type: 'module' }) }).close();
+  // @ts-expect-error no worker
+  new SlimSegmenter();
+  // @ts-expect-error a misspelt option
+  new SegmenterPool({ job: 3 });
+  // @ts-expect-error a pair without its second frame
+  void segmentPairs([{ first: new ImageData(16, 16) }]);
 }

@@ -4,7 +4,7 @@ import { type Arrow, arrowsOf } from '../arrows.js';
 import { maskOf } from '../masks.js';
 import { colourOfMask, isShown } from '../paint.js';
 import { cssColour } from '../palette.js';
-import type { Store } from '../state.js';
+import type { State, Store } from '../state.js';
 import { strings } from '../strings.js';
 import { drawn, find } from './markup.js';
 
@@ -14,8 +14,14 @@ const DOT = 0.5;
 export function mountArrows(stage: HTMLElement, store: Store): void {
   const picture = find(stage, '#arrows', SVGSVGElement);
   const note = find(stage, '#magnified', HTMLElement);
-  store.subscribe(({ look, result }, before) => {
-    if (look === before.look && result === before.result) return;
+  let waiting = 0;
+  store.subscribe((now, before) => {
+    if (now.look === before.look && now.result === before.result) return;
+    // A task of its own: masks and list come first.
+    clearTimeout(waiting);
+    waiting = window.setTimeout(() => draw(now));
+  });
+  const draw = ({ look, result }: State): void => {
     const seen = look.arrows && result !== null;
     picture.toggleAttribute('hidden', !seen);
     note.hidden = true;
@@ -35,7 +41,7 @@ export function mountArrows(stage: HTMLElement, store: Store): void {
       ];
     });
     picture.replaceChildren(...paths.flat());
-  });
+  };
 }
 
 /** A line with two barbs, or a dot. */

@@ -11,6 +11,9 @@ import { drawn, find } from './markup.js';
 
 type Point = readonly [number, number];
 
+/** Where the arrow keys lead. */
+const STEPS: Readonly<Record<string, Point>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
 /** Points nearer than this share of the radius to the last say nothing new. */
 const NEXT_POINT = 0.3;
 
@@ -22,6 +25,8 @@ export class Brush {
   readonly #path = drawn('path', { class: 'stroke now' });
   readonly #strokes = drawn('g', {});
   #points: number[] | null = null;
+  /** Where the brush was last. */
+  #at: Point | null = null;
 
   constructor(stage: HTMLElement, store: Store, session: Session) {
     this.#store = store;
@@ -29,11 +34,36 @@ export class Brush {
     this.#picture = find(stage, '#strokes', SVGSVGElement);
     this.#picture.append(this.#strokes, this.#path, this.#circle);
     store.subscribe((now, before) => {
-      if (now.pair !== before.pair) this.abandon();
+      if (now.pair !== before.pair) {
+        this.abandon();
+        this.#at = null;
+      }
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
       const same = now.history.strokes === before.history.strokes && now.tool.name === before.tool.name && now.result === before.result;
       if (!same) this.#draw(now);
     });
+  }
+
+  /**
+   * With the picture in focus: arrow keys move the brush, Space begins and ends a stroke, Escape gives it up. Returns whether the key
+   * meant something.
+   */
+  key({ key, shiftKey }: KeyboardEvent): boolean {
+    const { tool, result } = this.#store.get();
+    if (tool.name === 'look' || result === null) return false;
+    const { width, height } = result.segmentation;
+    const [x, y] = this.#at ?? [width / 2, height / 2];
+    const step = shiftKey ? 1 : Math.max(2, tool.radius);
+    const [right, down] = STEPS[key] ?? [0, 0];
+    if (key === ' ') {
+      if (this.painting) void this.end();
+      else this.begin([x, y]);
+    } else if (key === 'Escape' && this.painting) this.abandon();
+    else if (right !== 0 || down !== 0) {
+      const clamped: Point = [Math.min(Math.max(x + right * step, 0), width - 1), Math.min(Math.max(y + down * step, 0), height - 1)];
+      this.move(clamped);
+    } else return false;
+    return true;
   }
 
   get painting(): boolean {
@@ -41,6 +71,7 @@ export class Brush {
   }
 
   hover([x, y]: Point): void {
+    this.#at = [x, y];
     this.#circle.setAttribute('cx', String(x));
     this.#circle.setAttribute('cy', String(y));
     this.#circle.setAttribute('r', String(this.#store.get().tool.radius));

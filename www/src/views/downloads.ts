@@ -1,34 +1,79 @@
-//! Taking the result away as files.
+//! Taking the result away: as files, to the clipboard, as something that makes it again.
 
-import { groupLabels } from 'veronese';
-import { pngFromLabels } from '../png.js';
-import type { Result, Store } from '../state.js';
-import { find } from './markup.js';
+import type { Session } from '../session.js';
+import type { Result, State, Store } from '../state.js';
+import { strings } from '../strings.js';
+import { FORMATS, LABELS, MASKS, OVERLAY, RESULT, type Format, takingOf } from '../taking/formats.js';
+import { commandFor, linkFor, scriptFor } from '../taking/reproduce.js';
+import { copyText } from './clipboard.js';
+import { element, find } from './markup.js';
 
-export function mountDownloads(root: ParentNode, store: Store): void {
-  const labels = find(root, '#take-labels', HTMLButtonElement);
-  const json = find(root, '#take-json', HTMLButtonElement);
-  store.subscribe(({ result }) => {
-    labels.disabled = json.disabled = result === null;
+/** The formats that have a button of their own. */
+const BUTTONS: readonly Format[] = [LABELS, MASKS, RESULT];
+
+/** Texts to copy; those with a result need one. */
+const COPIES: readonly { readonly title: string; readonly text: (state: State, result: Result) => string }[] = [
+  { title: 'command', text: ({ settings, look, film }, result) => commandFor(result, settings, look, film) },
+  { title: 'JavaScript', text: ({ settings, look, film }, result) => scriptFor(result, settings, look, film) },
+];
+
+export function mountDownloads(root: HTMLElement, store: Store, session: Session): void {
+  const need: (HTMLButtonElement | HTMLSelectElement)[] = [];
+  const button = (text: string, run: (result: Result) => void, className = 'button small quiet'): HTMLButtonElement => {
+    const made = element('button', text, className);
+    made.type = 'button';
+    made.disabled = true;
+    made.addEventListener('click', () => {
+      const { result } = store.get();
+      if (result !== null) run(result);
+    });
+    need.push(made);
+    return made;
+  };
+
+  const take = (format: Format, result: Result): void => {
+    format.make(takingOf(result, store.get().look)).then(
+      (content) => save(content instanceof Blob ? content : new Blob([content], { type: format.type }), format.file),
+      () => session.say(strings.errors.notWritten(format.title), 'not-written'),
+    );
+  };
+  find(root, '.take', HTMLElement).append(...BUTTONS.map((format) => button(format.title, (result) => take(format, result), 'button small')));
+
+  const select = find(root, 'select', HTMLSelectElement);
+  const hint = find(root, '#format-hint', HTMLElement);
+  select.append(...FORMATS.map(({ id, title }) => new Option(title, id)));
+  need.push(select);
+  const chosen = (): Format => FORMATS[select.selectedIndex] ?? LABELS;
+  select.addEventListener('change', () => (hint.textContent = chosen().hint));
+  hint.textContent = chosen().hint;
+  find(root, '.format-row', HTMLElement).append(button('Save', (result) => take(chosen(), result), 'button small primary'));
+
+  const copies = find(root, '.copies', HTMLElement);
+  copies.append(button('Copy picture', (result) => copyPicture(OVERLAY.make(takingOf(result, store.get().look)) as Promise<Blob>, session)));
+  copies.append(...COPIES.map(({ title, text }) => button(`Copy ${title}`, (result) => copyText(text(store.get(), result), strings.copiedText(title), session))));
+  const link = element('button', 'Copy link', 'button small quiet');
+  link.type = 'button';
+  link.addEventListener('click', () => {
+    const { settings, look } = store.get();
+    copyText(linkFor(settings, look, location.href), strings.copiedText('link with the settings'), session);
   });
-  json.addEventListener('click', () => {
-    const { result } = store.get();
-    if (result !== null) save(new Blob([jsonOf(result)], { type: 'application/json' }), 'result.json');
+  copies.append(link);
+
+  store.subscribe(({ result, live }, before) => {
+    if (result === before.result && live === before.live) return;
+    for (const control of need) control.disabled = result === null || live !== null;
   });
-  labels.addEventListener('click', () => {
-    const { result, look } = store.get();
-    if (result === null) return;
-    const { segmentation } = result;
-    const { width, height } = segmentation;
-    const seen = look.kind === 'groups' ? groupLabels(segmentation) : segmentation.labels;
-    void pngFromLabels(seen, width, height).then((file) => save(file, 'labels.png'));
-  });
+  select.disabled = true;
 }
 
-/** The report as the command line prints it: everything but the labels, which have a file of their own. */
-function jsonOf({ segmentation }: Result): string {
-  const { labels: _, ...report } = segmentation;
-  return `${JSON.stringify(report)}\n`;
+function copyPicture(picture: Promise<Blob>, session: Session): void {
+  // Some browsers must be promised the picture while the press is handled.
+  Promise.resolve()
+    .then(() => navigator.clipboard.write([new ClipboardItem({ 'image/png': picture })]))
+    .then(
+      () => session.say(strings.copiedText('picture')),
+      () => session.say(strings.errors.noClipboard, 'no-clipboard'),
+    );
 }
 
 function save(file: Blob, name: string): void {

@@ -58,8 +58,9 @@ function draw(plot: SVGSVGElement, candidates: readonly { motions: number; score
   const points = candidates.map(({ score }, i) => [40 * i + 20, place(score)] as const);
   plot.replaceChildren(
     drawn('polyline', { points: points.map((point) => point.join()).join(' '), class: 'score-line' }),
+    // A line of no length with round ends is a dot that keeps its shape when the plot is stretched.
     ...points.map(([x, y], i) =>
-      drawn('circle', { cx: x, cy: y, r: candidates[i]!.motions === count ? 5 : 3.5, class: candidates[i]!.motions === count ? 'score found' : 'score' }),
+      drawn('path', { d: `M${x} ${y}h0.01`, class: candidates[i]!.motions === count ? 'score found' : 'score' }),
     ),
   );
 }

@@ -96,6 +96,10 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   layers.addEventListener('pointercancel', end);
   layers.addEventListener('pointerleave', () => brush.leave());
   window.addEventListener('blur', () => peek.release());
+  layers.addEventListener('keydown', (event) => {
+    const plain = event.target === layers && !event.ctrlKey && !event.metaKey && !event.altKey;
+    if (plain && brush.key(event)) event.preventDefault();
+  });
   // A long press on a touch screen would open a menu.
   layers.addEventListener('contextmenu', (event) => {
     if (presses.size > 0) event.preventDefault();

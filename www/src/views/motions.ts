@@ -95,6 +95,9 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
     const given = name.value.trim();
     store.look({ names: given === '' ? others : { ...others, [keyOf(look.kind, id)]: given } });
   });
+  name.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter') name.blur();
+  });
   solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
   still?.addEventListener('click', () => toggleStill(store, id));
   row.addEventListener('focusin', () => session.select(id));

@@ -17,7 +17,8 @@ type Painter = (segmentation: Segmentation, from: number, to: number) => Uint32A
 export function mountOverlay(stage: HTMLElement, store: Store): void {
   const fill = find(stage, '#fill', HTMLCanvasElement);
   const outlines = find(stage, '#outlines', HTMLCanvasElement);
-  const [fillWork, outlineWork] = [new Piecewise(), new Piecewise()];
+  const fillWork = new Piecewise(1 << 19, false);
+  const outlineWork = new Piecewise(1 << 18, true);
 
   store.subscribe(({ result, look }, before) => {
     if (look.opacity !== before.look.opacity) fill.style.opacity = String(look.opacity);

@@ -7,7 +7,7 @@ import { contextOf, find } from './markup.js';
 
 export function mountResidual(stage: HTMLElement, store: Store): void {
   const canvas = find(stage, '#residual', HTMLCanvasElement);
-  const work = new Piecewise();
+  const work = new Piecewise(1 << 16, true);
   store.subscribe(({ look, result }, before) => {
     if (look.residual === before.look.residual && result === before.result) return;
     canvas.hidden = !look.residual || result === null;

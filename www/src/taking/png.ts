@@ -1,4 +1,5 @@
-//! An 8-bit indexed PNG from labels: palette index = label, as annotation tools read it (the DAVIS way) and as the command line writes it.
+//! PNG files that a canvas cannot write: indexed, as annotation tools read labels (the DAVIS way) and as the command line writes
+//! them, and grey.
 
 import { davisPalette } from 'veronese';
 
@@ -28,19 +29,30 @@ function chunk(type: string, content: Uint8Array): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-/** The PNG file of `labels`, row by row. */
-export async function pngFromLabels(labels: Uint8Array, width: number, height: number): Promise<Blob> {
+/** An indexed PNG: palette index = label, in the colours of DAVIS. */
+export function pngFromLabels(labels: Uint8Array, width: number, height: number): Promise<Uint8Array<ArrayBuffer>> {
+  return png(labels, width, height, INDEXED, [chunk('PLTE', Uint8Array.from(davisPalette().flat()))]);
+}
+
+/** A grey PNG of one byte per pixel. */
+export function pngFromGrey(grey: Uint8Array, width: number, height: number): Promise<Uint8Array<ArrayBuffer>> {
+  return png(grey, width, height, GREY, []);
+}
+
+/** Colour types of PNG. */
+const GREY = 0;
+const INDEXED = 3;
+
+async function png(bytes: Uint8Array, width: number, height: number, colourType: number, extra: Uint8Array[]): Promise<Uint8Array<ArrayBuffer>> {
   const header = new Uint8Array(13);
   const view = new DataView(header.buffer);
   view.setUint32(0, width);
   view.setUint32(4, height);
-  header.set([8, 3, 0, 0, 0], 8); // bit depth 8, indexed colour, deflate, adaptive filters, not interlaced
+  header.set([8, colourType, 0, 0, 0], 8); // bit depth 8, deflate, adaptive filters, not interlaced
   const rows = new Uint8Array(height * (width + 1)); // each row begins with its filter, 0: none
-  for (let y = 0; y < height; y++) rows.set(labels.subarray(y * width, (y + 1) * width), y * (width + 1) + 1);
+  for (let y = 0; y < height; y++) rows.set(bytes.subarray(y * width, (y + 1) * width), y * (width + 1) + 1);
   const deflated = new Blob([rows]).stream().pipeThrough(new CompressionStream('deflate'));
   const data = new Uint8Array(await new Response(deflated).arrayBuffer());
-  return new Blob(
-    [Uint8Array.from(SIGNATURE), chunk('IHDR', header), chunk('PLTE', Uint8Array.from(davisPalette().flat())), chunk('IDAT', data), chunk('IEND', new Uint8Array())],
-    { type: 'image/png' },
-  );
+  const parts = [Uint8Array.from(SIGNATURE), chunk('IHDR', header), ...extra, chunk('IDAT', data), chunk('IEND', new Uint8Array())];
+  return new Uint8Array(await new Blob(parts as BlobPart[]).arrayBuffer());
 }

@@ -1,0 +1,66 @@
+// One job: what it is called, where its result is, how it is done. The same input and settings are the same job, so doing it
+// twice changes nothing.
+
+import { createHash, randomUUID } from 'node:crypto';
+import { mkdir, readFile, rename, rm, writeFile } from 'node:fs/promises';
+import { dirname, join } from 'node:path';
+import { davisPalette, version } from 'veronese';
+import { decodeImage, encodeIndexedPng } from 'veronese/codecs';
+
+export const QUEUE = 'veronese-pairs';
+
+export const sha256 = (content) => createHash('sha256').update(content).digest('hex');
+
+/** The name of a job: contents of the frames, settings, version. */
+export function jobOf(hashes, options) {
+  return `pair-${sha256(JSON.stringify({ software: `veronese ${version}`, options, hashes }))}`;
+}
+
+/** `OUT/ab/pair-ab….json` and `.png`: a folder holds a 256th of the results. */
+export function placeOf(out, job) {
+  const stem = join(out, job.slice(5, 7), job);
+  return { json: `${stem}.json`, png: `${stem}.png` };
+}
+
+/** What a job found, or undefined where it is not done. The JSON is written last: where it is, the PNG is too. */
+export async function resultOf(out, job) {
+  try {
+    return JSON.parse(await readFile(placeOf(out, job).json, 'utf8'));
+  } catch (error) {
+    if (error.code === 'ENOENT') return undefined;
+    throw error;
+  }
+}
+
+/** Errors that lie in the frames: another attempt would find the same, so they are the result. */
+const FINAL = new Set(['unreadable-image', 'frame-size-mismatch', 'frame-size-unsupported', 'invalid-option']);
+
+/** Does a job unless it is done. Returns whether there was something to do. */
+export async function perform(pool, { job, first, second, out, options }) {
+  if (await resultOf(out, job)) return false;
+  const files = await Promise.all([first, second].map((path) => readFile(path)));
+  if (jobOf(files.map(sha256), options) !== job) throw new Error(`${first} or ${second} has changed since the job was made`);
+  const place = placeOf(out, job);
+  try {
+    const [one, two] = await Promise.all(files.map((file) => decodeImage(file)));
+    const { labels, confidence: _, milliseconds: __, ...report } = await pool.segmentPair(one, two, options);
+    await writeWhole(place.png, await encodeIndexedPng(report.width, report.height, labels, davisPalette()));
+    await writeWhole(place.json, JSON.stringify(report));
+  } catch (error) {
+    if (!FINAL.has(error.code)) throw error;
+    await writeWhole(place.json, JSON.stringify({ error: { code: error.code, message: error.message } }));
+  }
+  return true;
+}
+
+/** Under another name first: a reader sees a whole file or none, whenever the writer ends. */
+async function writeWhole(path, content) {
+  await mkdir(dirname(path), { recursive: true });
+  const part = `${path}.${randomUUID()}.part`;
+  try {
+    await writeFile(part, content);
+    await rename(part, path);
+  } finally {
+    await rm(part, { force: true });
+  }
+}

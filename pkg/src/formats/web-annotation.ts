@@ -1,0 +1,31 @@
+// W3C Web Annotation: one annotation per label, its target an SVG path in pixels of the image, filled by the even-odd rule.
+
+import type { FormatMeta, WebAnnotation } from '../../types/formats.js';
+import { imageOf, masksOf } from './input.js';
+import { type Ring, rings } from './outline.js';
+
+export function encodeWebAnnotation(
+  labels: Uint8Array,
+  width: number,
+  height: number,
+  meta: FormatMeta = {},
+  { tolerance = 0 } = {},
+): WebAnnotation[] {
+  return masksOf(labels, width, height, meta).map((mask) => ({
+    '@context': 'http://www.w3.org/ns/anno.jsonld',
+    id: `#motion-${mask.label}`,
+    type: 'Annotation',
+    body: [{ type: 'TextualBody', purpose: 'tagging', value: mask.name }],
+    target: {
+      source: imageOf(meta),
+      selector: {
+        type: 'SvgSelector',
+        value: `<svg xmlns="http://www.w3.org/2000/svg"><path fill-rule="evenodd" d="${rings(mask, tolerance).map(path).join('')}"/></svg>`,
+      },
+    },
+  }));
+}
+
+function path(ring: Ring): string {
+  return `M${ring.join(' ')}Z`;
+}

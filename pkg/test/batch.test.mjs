@@ -1,0 +1,442 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
+import { segmentPair } from 'veronese';
+import { byNumbers, findFrames } from '../dist/cli-frames.js';
+import { ProgressBar } from '../dist/cli-terminal.js';
+import { pixmaps } from '../dist/cli-video.js';
+import { frame, png, ppm } from './support/frames.mjs';
+import { temporaryFolder, veronese } from './support/program.mjs';
+import { checkPair, timeless } from './support/shapes.mjs';
+
+/** The k-th frame of a small clip. */
+const clipFrame = (k, size) => frame(k / 2, size);
+
+/** A folder of test frames f0.png, f1.png …, and a place for results. */
+function clip(t, count, size) {
+  const folder = temporaryFolder(t);
+  mkdirSync(folder.path('frames'));
+  for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(clipFrame(k, size)));
+  return { ...folder, frames: folder.path('frames'), one: (k) => folder.path('frames', `f${k}.png`), out: folder.path('out') };
+}
+
+const lines = (text) => text.trimEnd().split('\n').filter(Boolean).map((line) => JSON.parse(line));
+
+async function batch(args, { code = 0, ...options } = {}) {
+  const run = await veronese(['batch', ...args], options);
+  assert.equal(run.code, code, run.stderr);
+  if (code === 0) assert.equal(run.stderr, '', 'nothing on stderr where nobody looks');
+  return { ...run, lines: lines(run.stdout) };
+}
+
+/** Every file below a folder, hidden ones too, with its content. */
+function tree(folder) {
+  const files = {};
+  for (const entry of readdirSync(folder, { recursive: true })) {
+    const path = join(folder, entry);
+    files[entry] = statSync(path).isDirectory() ? 'folder' : readFileSync(path, 'latin1');
+  }
+  return files;
+}
+
+describe('veronese batch', () => {
+  test('does every pair of consecutive frames, like pair, in order, with several jobs', async (t) => {
+    const { frames, one, out } = clip(t, 12);
+    const run = await batch([frames, '--out', out, '--jobs', '3', '--overlay', '--seed', '5']);
+    assert.deepEqual(run.lines.map(({ index, status, first, second }) => [index, status, first, second]),
+      Array.from({ length: 11 }, (_, k) => [k, 'done', one(k), one(k + 1)]));
+    const names = run.lines.map(({ name }) => name);
+    assert.deepEqual(readdirSync(out), names);
+    assert.equal(names[10], '000010-f10');
+    const { index, name, status, first, second, ...found } = run.lines[3];
+    checkPair(found, 64, 48);
+    const { labels, ...direct } = await segmentPair(clipFrame(3), clipFrame(4), { seed: 5 });
+    assert.deepEqual(timeless(found), timeless(direct));
+
+    // The images are those of pair; the record has no times, because two runs would differ in them.
+    const alone = join(out, '..', 'alone');
+    assert.equal((await veronese(['pair', one(3), one(4), '--out', alone, '--overlay', '--seed', '5'])).code, 0);
+    const [mine, theirs] = [tree(join(out, name)), tree(alone)];
+    const { job, inputs, files, ...record } = JSON.parse(mine['result.json']);
+    const { milliseconds, ...expected } = JSON.parse(theirs['result.json']);
+    assert.deepEqual(record, expected);
+    assert.deepEqual(inputs.map(({ name }) => name), ['f3.png', 'f4.png']);
+    delete mine['result.json'];
+    delete theirs['result.json'];
+    assert.deepEqual(mine, theirs);
+    assert.deepEqual(Object.keys(files).sort(), Object.keys(mine).sort());
+  });
+
+  test('--every, --with-before, patterns, lists and single files', async (t) => {
+    const { frames, one, path, file } = clip(t, 7);
+    const pairs = async (...args) => (await batch([...args, '--quality', 'fast'])).lines.map(({ first, second }) => [first, second]);
+    assert.deepEqual(await pairs(frames, '--every', '3'), [[one(0), one(3)], [one(3), one(6)]]);
+    assert.deepEqual(await pairs(path('f*', 'f[0-2].png')), [[one(0), one(1)], [one(1), one(2)]]);
+    assert.deepEqual(await pairs('--list', file('list', `${one(5)}\n\n${one(2)}\r\n`)), [[one(5), one(2)]]);
+    assert.deepEqual(await pairs(one(4), one(1)), [[one(4), one(1)]]);
+    const { lines } = await batch([frames, '--with-before', '--every', '2']);
+    assert.deepEqual(lines.map(({ settings }) => settings.before), [false, true, true]);
+    const direct = await segmentPair(clipFrame(2), clipFrame(4), { before: clipFrame(0) });
+    assert.deepEqual(lines[1].motions, JSON.parse(JSON.stringify(direct.motions)));
+  });
+
+  test('shards are disjoint and together everything', async (t) => {
+    const { frames, out } = clip(t, 8);
+    const seen = [];
+    for (const shard of ['1/3', '2/3', '3/3']) {
+      seen.push(...(await batch([frames, '--out', out, '--shard', shard])).lines.map(({ index }) => index));
+    }
+    assert.deepEqual(seen, [0, 3, 6, 1, 4, 2, 5]);
+    const whole = join(out, '..', 'whole');
+    await batch([frames, '--out', whole]);
+    assert.deepEqual(tree(out), tree(whole));
+    assert.deepEqual((await batch([frames, '--shard', '9/9'])).lines, [], 'more shards than pairs');
+  });
+
+  test('skips what is finished, by content and settings, and mends what is damaged', async (t) => {
+    const { frames, one, out } = clip(t, 5);
+    const status = async (...args) => (await batch([frames, '--out', out, ...args])).lines.map(({ status }) => status).join(' ');
+    assert.equal(await status(), 'done done done done');
+    const before = tree(out);
+    assert.equal(await status(), 'skipped skipped skipped skipped');
+    // A copy with another date is the same; another content is not.
+    writeFileSync(one(0), readFileSync(one(0)));
+    writeFileSync(one(4), png(frame(7)));
+    assert.equal(await status(), 'skipped skipped skipped done');
+    writeFileSync(one(4), png(clipFrame(4)));
+    writeFileSync(join(out, '000000-f0', 'labels.png'), 'damaged');
+    rmSync(join(out, '000001-f1', 'mask-0.png'));
+    writeFileSync(join(out, '000002-f2', 'result.json'), '{"job"');
+    assert.equal(await status(), 'done done done done');
+    assert.deepEqual(tree(out), before);
+    assert.equal(await status('--seed', '2'), 'done done done done');
+    assert.equal(await status('--seed', '2', '--overlay'), 'done done done done');
+    assert.equal(await status('--seed', '2', '--overlay'), 'skipped skipped skipped skipped');
+    assert.ok(existsSync(join(out, '000000-f0', 'overlay.png')));
+    writeFileSync(join(out, '000000-f0', 'mine.txt'), 'mine');
+    assert.equal(await status(), 'done done done done');
+    assert.ok(!existsSync(join(out, '000000-f0', 'overlay.png')), 'an overlay of other settings does not stay');
+    assert.ok(existsSync(join(out, '000000-f0', 'mine.txt')), 'other files do');
+  });
+
+  test('what is skipped prints what was found then', async (t) => {
+    const { frames, out } = clip(t, 3);
+    const [first, again] = [await batch([frames, '--out', out]), await batch([frames, '--out', out])];
+    for (const [k, line] of again.lines.entries()) {
+      assert.equal(line.status, 'skipped');
+      assert.deepEqual([line.motions, line.name, line.settings], [first.lines[k].motions, first.lines[k].name, first.lines[k].settings]);
+      assert.ok(!('milliseconds' in line));
+    }
+  });
+
+  test('one bad frame does not stop the rest; all are listed at the end, exit 1', async (t) => {
+    const { frames, one, out } = clip(t, 6);
+    writeFileSync(one(2), 'no image');
+    const run = await batch([frames, '--out', out, '--jobs', '2'], { code: 1 });
+    assert.deepEqual(run.lines.map(({ status }) => status), ['done', 'failed', 'failed', 'done', 'done']);
+    assert.equal(run.lines[1].error.code, 'unreadable-image');
+    const said = run.stderr.trimEnd().split('\n');
+    assert.equal(said.length, 3);
+    assert.match(said[0], /^veronese: error: unreadable-image: pair 1 \(.*f1\.png, .*f2\.png\): /);
+    assert.match(said[1], /^veronese: error: unreadable-image: pair 2 /);
+    assert.match(said[2], /^veronese: error: pairs-failed: 2 of 5 pairs failed/);
+    assert.deepEqual(readdirSync(out), ['000000-f0', '000003-f3', '000004-f4']);
+    // Repaired, only those are done.
+    writeFileSync(one(2), png(clipFrame(2)));
+    assert.deepEqual((await batch([frames, '--out', out])).lines.map(({ status }) => status), ['skipped', 'done', 'done', 'skipped', 'skipped']);
+  });
+
+  test('a missing file and a frame of another size fail alone', async (t) => {
+    const { one, path } = clip(t, 3);
+    writeFileSync(one(1), png(frame(0, { width: 70 })));
+    const run = await batch([one(0), one(1), path('none.png'), one(2), one(2)], { code: 1 });
+    assert.deepEqual(run.lines.map(({ error }) => error?.code), ['frame-size-mismatch', 'file-not-found', 'file-not-found', undefined]);
+  });
+
+  test('refuses what cannot be a batch, with one line', async (t) => {
+    const { frames, one, path, file } = clip(t, 1);
+    mkdirSync(path('empty'));
+    for (const [args, errorCode] of [
+      [[one(0)], 'too-few-frames'],
+      [[frames], 'too-few-frames'],
+      [[path('empty')], 'file-not-found'],
+      [[path('none*.png')], 'file-not-found'],
+      [['--list', path('none')], 'file-not-found'],
+      [['--list', path('empty')], 'unreadable-file'],
+      [['--list', file('blank', '\n\n')], 'too-few-frames'],
+      [[one(0), one(0), '--out', one(0)], 'write-failed'],
+    ]) {
+      const { stderr, stdout } = await batch(args, { code: 1 });
+      assert.match(stderr, /^veronese: error: [^\n]+\n$/);
+      assert.equal(stderr.split(': ')[2], errorCode, stderr);
+      assert.equal(stdout, '');
+    }
+  });
+
+  test('a result that cannot be written fails its pair alone', async (t) => {
+    const { frames, out } = clip(t, 4);
+    mkdirSync(out);
+    writeFileSync(join(out, '000001-f1'), 'in the way');
+    const run = await batch([frames, '--out', out], { code: 1 });
+    assert.deepEqual(run.lines.map(({ status, error }) => error?.code ?? status), ['done', 'write-failed', 'done']);
+    assert.deepEqual(readdirSync(out), ['000000-f0', '000001-f1', '000002-f2'], 'nothing half-written stays');
+  });
+});
+
+describe('a batch that is stopped', { skip: process.platform === 'win32' }, () => {
+  const SIZE = { width: 160, height: 120 };
+  const args = (frames, out) => [frames, '--out', out, '--jobs', '2', '--overlay'];
+
+  /** The environment in which the program gets a signal as the n-th pair is complete: before its folder has its name, or after. */
+  function signalled(folder, signal, n, when) {
+    const preload = folder.file(`preload-${signal}-${n}-${when}.cjs`, `
+      const fs = require('fs'), { renameSync } = fs;
+      let count = 0;
+      fs.renameSync = (from, to) => {
+        const now = from.endsWith('.part') && ++count === ${n};
+        const signal = () => process.kill(process.pid, '${signal}');
+        if (now && '${when}' === 'before') signal();
+        renameSync(from, to);
+        if (now && '${when}' === 'after') signal();
+      };
+      require('module').syncBuiltinESMExports();`);
+    return { env: { NODE_OPTIONS: `--require "${preload}"` } };
+  }
+
+  test('by kill -9, at any moment, ends after another run in the files of an undisturbed one', async (t) => {
+    const { frames, out, ...folder } = clip(t, 10, SIZE);
+    await batch(args(frames, folder.path('undisturbed')));
+    const expected = tree(folder.path('undisturbed'));
+    let there = 0;
+    for (const [n, when] of [[1, 'before'], [2, 'after'], [3, 'before']]) {
+      const killed = await veronese(['batch', ...args(frames, out)], signalled(folder, 'SIGKILL', n, when));
+      assert.equal(killed.signal, 'SIGKILL');
+      const left = readdirSync(out).filter((name) => !name.startsWith('.'));
+      there += when === 'before' ? n - 1 : n;
+      assert.equal(left.length, there);
+      for (const name of left) assert.deepEqual(tree(join(out, name)), tree(join(folder.path('undisturbed'), name)));
+      assert.equal(readdirSync(out).length - there, when === 'before' ? 1 : 0, 'what was being written is not called a result');
+    }
+    const run = await batch(args(frames, out));
+    assert.equal(run.lines.filter(({ status }) => status === 'skipped').length, there);
+    assert.deepEqual(tree(out), expected);
+  });
+
+  test('by kill -9 from outside, at a moment nobody chose', async (t) => {
+    const { frames, out, path } = clip(t, 8, SIZE);
+    await batch(args(frames, path('undisturbed')));
+    await veronese(['batch', ...args(frames, out)], {
+      onStart: async (child) => {
+        await setTimeout(1000);
+        child.kill('SIGKILL');
+      },
+    });
+    await batch(args(frames, out));
+    assert.deepEqual(tree(out), tree(path('undisturbed')));
+  });
+
+  test('in the middle of writing: what is left is taken away by the next run, but not that of others', async (t) => {
+    const { frames, out, ...folder } = clip(t, 4);
+    const ended = spawnSync(process.execPath, ['--eval', '']).pid;
+    // This machine's mark is in the name of what the program writes: catch it in the act.
+    const killed = await veronese(['batch', frames, '--out', out, '--jobs', '1'], signalled(folder, 'SIGKILL', 1, 'before'));
+    assert.equal(killed.signal, 'SIGKILL');
+    const [left] = readdirSync(out);
+    const [, host] = /^\.00000\d-f\d\.([0-9a-f]{8})-\d+\.part$/.exec(left);
+    const leave = (name) => {
+      mkdirSync(join(out, name));
+      writeFileSync(join(out, name, 'labels.png'), 'half');
+    };
+    leave(`.000000-f0.${host}-${ended}.part`);
+    leave('.000002-f2.00000000-1.part');
+    leave(`.000002-f2.${host}-${process.pid}.part`); // this very process, which runs
+    leave('.000001-f1.00000000-1.part'); // another part of the work
+    await batch([frames, '--out', out, '--shard', '1/2']);
+    const hidden = readdirSync(out).filter((name) => name.startsWith('.'));
+    assert.deepEqual(hidden, ['.000001-f1.00000000-1.part', `.000002-f2.${host}-${process.pid}.part`]);
+  });
+
+  for (const [signal, exit] of [['SIGINT', 130], ['SIGTERM', 143]]) {
+    test(`by ${signal} leaves whole results only, exit ${exit}`, async (t) => {
+      const { frames, out, path, ...folder } = clip(t, 8, SIZE);
+      const run = await veronese(['batch', ...args(frames, out)], signalled(folder, signal, 3, 'after'));
+      assert.equal(run.code, exit);
+      assert.match(run.stderr, /^veronese: error: cancelled: [^\n]+\n$/);
+      const names = readdirSync(out);
+      assert.ok(names.length >= 3 && names.length < 7, names.join());
+      await batch(args(frames, path('undisturbed')));
+      for (const name of names) assert.deepEqual(tree(join(out, name)), tree(join(path('undisturbed'), name)));
+      for (const line of lines(run.stdout)) assert.ok(names.includes(line.name), 'what is printed is on the disk');
+    });
+  }
+});
+
+describe('frames', () => {
+  test('numbers are sorted by value, the same in every language', () => {
+    const sorted = ['a', 'a1', 'a1b', 'a2', 'a02', 'a10', 'a10b', 'a100', 'b', 'b/1', 'b/2/x', 'b/10/x', 'Z'].sort(byNumbers);
+    assert.deepEqual([...sorted].reverse().sort(byNumbers), sorted);
+    assert.deepEqual(['f10', 'f9', 'f100', 'f1'].sort(byNumbers), ['f1', 'f9', 'f10', 'f100']);
+    assert.deepEqual(['f99999999999999999999', 'f100000000000000000000'].sort(byNumbers), ['f99999999999999999999', 'f100000000000000000000']);
+    assert.equal(byNumbers('same', 'same'), 0);
+  });
+
+  test('patterns', (t) => {
+    const folder = temporaryFolder(t);
+    mkdirSync(folder.path('a', 'b.c'), { recursive: true });
+    for (const name of ['a/1.png', 'a/2.jpg', 'a/10.png', 'a/b.c/3.png', 'a/(x).png', 'a/.h.png', 'a/[y].png', 'a/n.txt']) folder.file(name, '');
+    const found = (pattern) => findFrames([folder.path(pattern)]).map((path) => path.slice(folder.path('a').length + 1));
+    assert.deepEqual(found('a/*.png'), ['(x).png', '1.png', '10.png', '[y].png']);
+    assert.deepEqual(found('a/?.*'), ['1.png', '2.jpg', 'n.txt']);
+    assert.deepEqual(found('*/[0-9].png'), ['1.png']);
+    assert.deepEqual(found('a/[!1]*.jpg'), ['2.jpg']);
+    assert.deepEqual(found('**/3.png'), ['b.c/3.png']);
+    assert.deepEqual(found('a/**/*.png').length, 5);
+    assert.deepEqual(found('a/(?).png'), ['(x).png']);
+    assert.deepEqual(found('a/[y].png'), ['[y].png'], 'a file of that very name');
+    assert.deepEqual(found('a'), ['(x).png', '1.png', '2.jpg', '10.png', '[y].png'], 'a folder: its images');
+    assert.throws(() => found('a/*.gif'), { code: 'file-not-found' });
+  });
+});
+
+describe('the progress bar', () => {
+  const drawn = (isTTY, total) => {
+    let [text, now] = ['', 0];
+    const bar = new ProgressBar(total, { isTTY, write: (piece) => (text += piece) }, () => now);
+    for (let done = 1; done <= 4; done++) {
+      now += 500;
+      bar.update({ done, skipped: 1, failed: 0 });
+      bar.update({ done, skipped: 1, failed: 0 });
+    }
+    bar.clear();
+    return text.split('\r\u001b[K');
+  };
+
+  test('is drawn on a terminal, not too often, and taken away', () => {
+    const pieces = drawn(true, 8);
+    assert.equal(pieces.length, 6, 'four times, and the clearing');
+    assert.equal(pieces[4], '[###############.........] 5 of 8 pairs, 1 done before, 2.0 pairs/s, 2 s left');
+    assert.equal(pieces[5], '');
+    assert.equal(drawn(true, undefined)[2], '3 pairs, 1 done before, 2.0 pairs/s');
+  });
+
+  test('and nowhere else', () => assert.deepEqual(drawn(false, 8), ['']));
+
+  const script = process.platform === 'linux' && spawnSync('script', ['--version']).status === 0;
+  test('on a real terminal', { skip: !script && "there is no program 'script' to make a terminal" }, (t) => {
+    const { frames, path } = clip(t, 3);
+    const program = new URL('../bin/veronese.js', import.meta.url).pathname;
+    const command = `'${process.execPath}' '${program}' batch '${frames}' > '${path('lines')}'`;
+    const { stdout } = spawnSync('script', ['-qec', command, '/dev/null'], { encoding: 'utf8', timeout: 60_000 });
+    assert.match(stdout, /\[#+\.+\] 1 of 2 pairs/);
+    assert.equal(lines(readFileSync(path('lines'), 'utf8')).length, 2);
+  });
+});
+
+describe('veronese video', () => {
+  const ffmpeg = spawnSync('ffmpeg', ['-version']).status === 0;
+  const skip = !ffmpeg && 'the program ffmpeg is not installed';
+
+  /** Ten frames in a file without loss. */
+  function film(t) {
+    const made = clip(t, 10);
+    const file = made.path('film.mkv');
+    const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-i', join(made.frames, 'f%d.png'), '-c:v', 'ffv1', '-pix_fmt', 'bgr0', file]);
+    assert.equal(status, 0, String(stderr));
+    return { ...made, film: file };
+  }
+
+  test('does the frames of a video like files of them', { skip }, async (t) => {
+    const { film: file, frames, out, path } = film(t);
+    const run = await veronese(['video', file, '--out', out, '--every', '3', '--jobs', '2']);
+    assert.equal(run.code, 0, run.stderr);
+    assert.equal(run.stderr, '');
+    const found = lines(run.stdout);
+    assert.deepEqual(found.map(({ name, first, second }) => [name, first, second]), [
+      ['000000-frame-000000', 'film.mkv#0', 'film.mkv#3'],
+      ['000001-frame-000003', 'film.mkv#3', 'film.mkv#6'],
+      ['000002-frame-000006', 'film.mkv#6', 'film.mkv#9'],
+    ]);
+    const files = (await batch([frames, '--every', '3', '--out', path('files')])).lines;
+    assert.deepEqual(found.map(({ motions }) => motions), files.map(({ motions }) => motions));
+    assert.deepEqual(tree(join(out, found[1].name))['labels.png'], tree(join(path('files'), files[1].name))['labels.png']);
+    const again = await veronese(['video', file, '--out', out, '--every', '3']);
+    assert.deepEqual(lines(again.stdout).map(({ status }) => status), ['skipped', 'skipped', 'skipped']);
+  });
+
+  test('refuses what is no video', { skip }, async (t) => {
+    const folder = temporaryFolder(t);
+    for (const [path, errorCode] of [
+      [folder.path('none.mp4'), 'file-not-found'],
+      [folder.path('.'), 'unreadable-file'],
+      [folder.file('text.mp4', 'no video'), 'unreadable-video'],
+      [folder.file('one.png', png(frame(0))), 'too-few-frames'],
+    ]) {
+      const { code, stdout, stderr } = await veronese(['video', path]);
+      assert.equal(stderr.split(': ')[2], errorCode, stderr);
+      assert.equal(stdout, '');
+      assert.equal(code, 1);
+    }
+  });
+
+  test('does the pairs before a film breaks off, and says that it does', { skip }, async (t) => {
+    const { film: file } = film(t);
+    const whole = readFileSync(file);
+    writeFileSync(file, whole.subarray(0, Math.floor(whole.length * 0.6)));
+    const { code, stdout, stderr } = await veronese(['video', file]);
+    const count = lines(stdout).length;
+    assert.ok(count >= 2 && count < 9, String(count));
+    // A file that ends early is to ffmpeg a short film or an error, as its version likes; nothing is made up either way.
+    if (code !== 0) assert.match(stderr, /^veronese: error: unreadable-video: /);
+  });
+
+  test('says what is missing where there is no ffmpeg', async (t) => {
+    const file = temporaryFolder(t).file('film.mp4', '');
+    const { code, stderr } = await veronese(['video', file], { env: { PATH: '/nowhere' } });
+    assert.equal(code, 1);
+    assert.match(stderr, /^veronese: error: ffmpeg-missing: [^\n]*install[^\n]*\n$/);
+  });
+
+  test('pixmaps are cut apart wherever the stream is', async () => {
+    const pictures = [0, 1, 2].map((k) => ppm(frame(k, { width: 16 + k, height: 16 })));
+    const stream = Buffer.concat(pictures);
+    for (const size of [1, 7, 800, 1000, 100_000]) {
+      const chunks = [];
+      for (let at = 0; at < stream.length; at += size) chunks.push(stream.subarray(at, at + size));
+      const found = [];
+      for await (const picture of pixmaps(chunks)) found.push(Buffer.from(picture));
+      assert.deepEqual(found, pictures, String(size));
+    }
+    const read = async (bytes) => { for await (const _ of pixmaps([bytes])); };
+    await assert.rejects(read(stream.subarray(0, -1)), { code: 'unreadable-video' });
+    await assert.rejects(read(Buffer.alloc(64, 'x')), { code: 'unreadable-video' });
+    await assert.rejects(read(Buffer.from('P6\n99999 10\n255\n')), { code: 'frame-size-unsupported' });
+  });
+});
+
+describe('usage', () => {
+  const wrong = {
+    'a batch of nothing': ['usage', ['batch']],
+    'an empty name': ['usage', ['batch', 'a', '']],
+    'an overlay without --out': ['usage', ['batch', 'a', '--overlay']],
+    'a before file': ['usage', ['batch', 'a', '--before', 'b']],
+    'two videos': ['usage', ['video', 'a', 'b']],
+    'a list for a video': ['usage', ['video', 'a', '--list', 'b']],
+    'jobs of pair': ['usage', ['pair', 'a', 'b', '--jobs', '2']],
+    'no jobs': ['invalid-option', ['batch', 'a', '--jobs', '0']],
+    'too many jobs': ['invalid-option', ['batch', 'a', '--jobs', '257']],
+    'every none': ['invalid-option', ['batch', 'a', '--every', '0']],
+    'half a shard': ['invalid-option', ['batch', 'a', '--shard', '1']],
+    'shard 0': ['invalid-option', ['batch', 'a', '--shard', '0/2']],
+    'shard 3 of 2': ['invalid-option', ['batch', 'a', '--shard', '3/2']],
+  };
+  for (const [title, [code, args]] of Object.entries(wrong)) {
+    test(`${title} is wrong`, async () => {
+      const run = await veronese(args);
+      assert.equal(run.code, 2);
+      assert.equal(run.stderr.split(': ')[2], code, run.stderr);
+    });
+  }
+});

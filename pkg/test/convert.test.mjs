@@ -1,0 +1,109 @@
+import assert from 'node:assert/strict';
+import { mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, test } from 'node:test';
+import { decode } from 'fast-png';
+import { groupLabels } from 'veronese';
+import { decodeVeronese, encodeCoco, encodeCvatXml, encodeDavis } from 'veronese/formats';
+import { pair, png } from './support/frames.mjs';
+import { temporaryFolder, veronese } from './support/program.mjs';
+
+const EVERY =
+  'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-points,cvat-mots,label-studio,label-studio-polygon,labelme,labelme-polygon,yolo,davis,supervisely,web-annotation,veronese';
+
+/** A folder as `pair --out` leaves it. */
+async function segmented(t, ...options) {
+  const folder = temporaryFolder(t);
+  const [first, second] = pair().map((frame, k) => folder.file(`${k}.png`, png(frame)));
+  const out = folder.path('out');
+  const { code, stderr } = await veronese(['pair', first, second, '--out', out, ...options]);
+  assert.equal(code, 0, stderr);
+  const result = JSON.parse(readFileSync(join(out, 'result.json'), 'utf8'));
+  const labels = Uint8Array.from(decode(readFileSync(join(out, 'labels.png'))).data);
+  return { folder, out, result, labels };
+}
+
+async function converted(...args) {
+  const { code, stdout, stderr } = await veronese(['convert', ...args]);
+  assert.equal(stderr, '');
+  assert.equal(code, 0);
+  assert.match(stdout, /^\{.*\}\n$/, 'one line');
+  return JSON.parse(stdout);
+}
+
+async function refused(args, code, sentence) {
+  const answer = await veronese(['convert', ...args]);
+  assert.equal(answer.stdout, '');
+  assert.equal(answer.code, code === 'usage' || code === 'invalid-option' ? 2 : 1, answer.stderr);
+  assert.ok(answer.stderr.startsWith(`veronese: error: ${code}: `), answer.stderr);
+  assert.match(answer.stderr, sentence);
+}
+
+describe('veronese convert', () => {
+  test('writes what the encoders give, beside the result, and leaves the rest alone', async (t) => {
+    const { out, result, labels } = await segmented(t);
+    const before = readdirSync(out);
+    const { version, folder, files } = await converted(out, '--to', 'coco,cvat,davis,veronese', '--image', 'a.png');
+    assert.deepEqual({ version, folder, files }, { version: 1, folder: out, files: ['coco.json', 'cvat.xml', 'davis.png', 'veronese.json'] });
+    assert.deepEqual(readdirSync(out).sort(), [...before, ...files].sort());
+    const given = [labels, result.width, result.height, { image: 'a.png', motions: result.motions }];
+    const read = (name) => readFileSync(join(out, name), 'utf8');
+    assert.deepEqual(JSON.parse(read('coco.json')), JSON.parse(JSON.stringify(encodeCoco(...given))));
+    assert.equal(read('cvat.xml'), encodeCvatXml(...given));
+    assert.deepEqual(new Uint8Array(readFileSync(join(out, 'davis.png'))), encodeDavis(...given));
+    const back = decodeVeronese(JSON.parse(read('veronese.json')));
+    assert.deepEqual(back.labels, labels);
+    assert.deepEqual(back.meta.motions.map(({ matrix }) => matrix), result.motions.map(({ matrix }) => matrix));
+  });
+
+  test('--grouped converts groups, also where labels.png shows them already', async (t) => {
+    const { folder, out, result, labels } = await segmented(t);
+    const groups = groupLabels({ labels, motions: result.motions });
+    await converted(out, '--to', 'veronese', '--grouped', '--out', folder.path('a'));
+    const document = JSON.parse(readFileSync(folder.path('a', 'veronese.json'), 'utf8'));
+    assert.deepEqual(decodeVeronese(document).labels, groups);
+    assert.equal(document.names[0], 'group-0');
+    for (const { label, pixels } of document.motions) assert.equal(pixels, groups.filter((group) => group === label).length);
+    const again = await segmented(t, '--grouped');
+    await converted(again.out, '--to', 'veronese', '--out', folder.path('b'));
+    assert.deepEqual(decodeVeronese(JSON.parse(readFileSync(folder.path('b', 'veronese.json'), 'utf8'))).labels, groups);
+  });
+
+  test('knows every format, writes one twice named only once', async (t) => {
+    const { folder, out } = await segmented(t, '--mark-unknown');
+    const { files } = await converted(out, '--to', `${EVERY},coco`, '--out', folder.path('all'));
+    assert.equal(new Set(files).size, files.length);
+    assert.equal(files.length, EVERY.split(',').length + 1, 'YOLO has two files');
+    assert.deepEqual(readdirSync(folder.path('all')).sort(), [...files].sort());
+    for (const name of files.filter((name) => name.endsWith('.json'))) JSON.parse(readFileSync(folder.path('all', name), 'utf8'));
+  });
+
+  test('says what is wrong and writes nothing', async (t) => {
+    const { folder, out, result } = await segmented(t);
+    const files = readdirSync(out);
+    await refused([out], 'usage', /needs '--to FORMATS'/);
+    await refused(['--to', 'coco'], 'usage', /takes one folder/);
+    await refused([out, '--to', 'coco', '--overlay'], 'usage', /has no option '--overlay'/);
+    await refused([out, '--to', 'coco,xyz'], 'invalid-option', /not 'coco,xyz'/);
+    await refused([out, '--to', 'toString'], 'invalid-option', /toString/);
+    await refused([folder.path(), '--to', 'coco'], 'file-not-found', /labels\.png/);
+    await refused([out, '--to', 'coco', '--out', join(out, 'result.json')], 'write-failed', /it is a file/);
+    const bad = (name, content) => {
+      const path = folder.path(name);
+      mkdirSync(path);
+      writeFileSync(join(path, 'labels.png'), readFileSync(join(out, 'labels.png')));
+      writeFileSync(join(path, 'result.json'), content);
+      return path;
+    };
+    await refused([bad('text', 'no'), '--to', 'coco'], 'invalid-json', /is not JSON/);
+    await refused([bad('null', 'null'), '--to', 'coco'], 'invalid-input', /not a result/);
+    await refused([bad('other', '{"width": 3}'), '--to', 'coco'], 'invalid-input', /not a result/);
+    await refused([bad('size', JSON.stringify({ ...result, width: 65 })), '--to', 'coco'], 'frame-size-mismatch', /64×48 and 65×48/);
+    const motions = result.motions.map((motion) => ({ ...motion, pixels: motion.pixels + 1 }));
+    await refused([bad('foreign', JSON.stringify({ ...result, motions })), '--to', 'coco'], 'invalid-input', /not of the same result/);
+    const photo = bad('photo', JSON.stringify(result));
+    writeFileSync(join(photo, 'labels.png'), png(pair()[0]));
+    await refused([photo, '--to', 'coco'], 'invalid-input', /no labels|not of the same result/);
+    assert.deepEqual(readdirSync(out), files);
+  });
+});

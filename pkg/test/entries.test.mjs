@@ -1,0 +1,63 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync } from 'node:fs';
+import { describe, test } from 'node:test';
+import { Worker } from 'node:worker_threads';
+import { segmentPair } from 'veronese';
+import * as inline from 'veronese/inline';
+import * as slim from 'veronese/slim';
+import { pair } from './support/frames.mjs';
+import { failure, timeless } from './support/shapes.mjs';
+
+const bytes = readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url));
+const worker = () => new Worker(new URL(import.meta.resolve('veronese/worker')));
+
+describe('veronese/inline', () => {
+  test('needs no file, and gives the same bits', async () => {
+    assert.deepEqual(timeless(await inline.segmentPair(...pair())), timeless(await segmentPair(...pair())));
+  });
+
+  test('runs in workers that the caller makes', async (t) => {
+    const segmenter = new inline.Segmenter(undefined, { worker });
+    t.after(() => segmenter.close());
+    assert.equal((await segmenter.segmentPair(...pair())).width, 64);
+    const error = await failure(new inline.Segmenter().segmentPair(...pair()));
+    assert.equal(error.code, 'invalid-option');
+    assert.match(error.message, /'worker'/);
+  });
+
+  test('takes another module all the same', async (t) => {
+    const pool = new inline.SegmenterPool({ jobs: 1, worker, source: bytes });
+    t.after(() => pool.close());
+    assert.equal((await pool.segmentPair(...pair())).width, 64);
+  });
+});
+
+describe('veronese/slim', () => {
+  test('waits to be given its module', async (t) => {
+    const error = await failure(slim.segmentPair(...pair()));
+    assert.equal(error.code, 'wasm-load-failed');
+    await slim.init(await WebAssembly.compile(bytes));
+    assert.equal((await slim.segmentPair(...pair())).width, 64);
+    const segmenter = new slim.Segmenter(bytes, { worker });
+    t.after(() => segmenter.close());
+    assert.equal((await segmenter.segmentPair(...pair())).width, 64);
+    for await (const { segmentation } of slim.segmentPairs([{ first: pair()[0], second: pair()[1] }], { source: bytes, worker, jobs: 1 })) {
+      assert.equal(segmentation.width, 64);
+    }
+  });
+});
+
+test('importing any entry, also the one for browsers, changes nothing and starts nothing', () => {
+  const entries = ['node', 'web', 'slim', 'inline', 'codecs'].map((name) => String(new URL(`../dist/${name}.js`, import.meta.url)));
+  const script = `
+    const names = () => Reflect.ownKeys(globalThis).map(String).sort().join();
+    const before = names();
+    globalThis.fetch = WebAssembly.compile = WebAssembly.instantiate = () => { throw new Error('too early'); };
+    for (const entry of ${JSON.stringify(entries)}) await import(entry);
+    if (names() !== before) throw new Error('a global was added');
+    setImmediate(() => console.log(process.getActiveResourcesInfo().filter((name) => !/Pipe|TTY|Immediate/.test(name)).join()));`;
+  const { stdout, stderr, status } = spawnSync(process.execPath, ['--input-type=module', '--eval', script], { encoding: 'utf8' });
+  assert.equal(status, 0, stderr);
+  assert.equal(stdout, '\n');
+});

@@ -1,0 +1,179 @@
+// The encoders by themselves: polygons filled again, documents read back, bytes that stay, wrong input.
+
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { decode } from 'fast-png';
+import { unzipSync } from 'fflate';
+import { davisPalette } from 'veronese';
+import * as formats from 'veronese/formats';
+import { drawn, labelImages, present } from './support/masks.mjs';
+
+const IMAGES = labelImages(300);
+const each = (check) => IMAGES.forEach(({ labels, width, height }, index) => check(labels, width, height, index));
+const mask = (labels, label) => labels.map((value) => Number(value === label));
+
+/** Even-odd filling at pixel centres: a ring's vertical edges toggle everything to their right. Exact for rings of cracks. */
+function filled(rings, width, height) {
+  const pixels = new Uint8Array(width * height);
+  for (const ring of rings) {
+    for (let at = 0; at < ring.length; at += 2) {
+      const [x0, y0] = [ring[at], ring[at + 1]];
+      const [x1, y1] = [ring[(at + 2) % ring.length], ring[(at + 3) % ring.length]];
+      for (let y = Math.min(y0, y1); y < Math.max(y0, y1); y++) {
+        const crossing = x0 + ((y + 0.5 - y0) / (y1 - y0)) * (x1 - x0);
+        for (let x = Math.max(0, Math.ceil(crossing - 0.5)); x < width; x++) pixels[y * width + x] ^= 1;
+      }
+    }
+  }
+  return pixels;
+}
+
+describe('polygons without tolerance fill the same pixels', () => {
+  test('COCO: every ring by itself and united', () => {
+    each((labels, width, height) => {
+      for (const { category_id, segmentation } of formats.encodeCoco(labels, width, height, {}, { shape: 'polygon' }).annotations) {
+        const sum = new Uint8Array(labels.length);
+        for (const ring of segmentation) filled([ring], width, height).forEach((set, at) => (sum[at] += set));
+        assert.deepEqual(sum, mask(labels, category_id - 1));
+      }
+    });
+  });
+
+  test('SVG: all rings together', () => {
+    each((labels, width, height) => {
+      const annotations = formats.encodeWebAnnotation(labels, width, height);
+      assert.equal(annotations.length, present(labels).length);
+      for (const { id, target } of annotations) {
+        const path = / d="([^"]*)"/.exec(target.selector.value)[1];
+        const rings = path.split('Z').slice(0, -1).map((ring) => ring.slice(1).split(' ').map(Number));
+        assert.deepEqual(filled(rings, width, height), mask(labels, Number(id.slice('#motion-'.length))));
+      }
+    });
+  });
+
+  test('only corners are written', () => {
+    const [{ segmentation }] = formats.encodeCoco(...Object.values(drawn('1111', '1111')), {}, { shape: 'polygon' }).annotations;
+    assert.deepEqual(segmentation, [[0, 0, 4, 0, 4, 2, 0, 2]]);
+  });
+});
+
+test('with a tolerance a polygon has fewer vertices and stays within it', () => {
+  const [width, height] = [80, 80];
+  const labels = Uint8Array.from({ length: width * height }, (_, at) => {
+    const distance = Math.hypot((at % width) - 39.5, Math.floor(at / width) - 39.5);
+    return distance < 35 && distance > 12 ? 1 : 255;
+  });
+  const encoded = (tolerance) => formats.encodeCoco(labels, width, height, {}, { shape: 'polygon', tolerance }).annotations[0].segmentation;
+  const [exact] = encoded(0);
+  const [rough] = encoded(1);
+  assert.ok(rough.length < exact.length / 3, `${rough.length} of ${exact.length}`);
+  const wrong = filled([rough], width, height).reduce((sum, set, at) => sum + Number(set !== Number(labels[at] === 1)), 0);
+  // Nothing farther than the tolerance from the two circles can change.
+  assert.ok(wrong > 0 && wrong < 2 * Math.PI * (35 + 12), `${wrong} pixels`);
+});
+
+test('masks with thousands of holes are outlined', () => {
+  const [width, height] = [301, 301];
+  const labels = Uint8Array.from({ length: width * height }, (_, at) => ((at % width) % 2 && Math.floor(at / width) % 2 ? 255 : 1));
+  const [{ segmentation }] = formats.encodeCoco(labels, width, height, {}, { shape: 'polygon' }).annotations;
+  assert.equal(segmentation.length, 1);
+  assert.deepEqual(filled(segmentation, width, height), mask(labels, 1));
+});
+
+test('DAVIS PNG: indices and palette', () => {
+  each((labels, width, height) => {
+    const png = decode(formats.encodeDavis(labels, width, height), { checkCrc: true });
+    assert.deepEqual([png.width, png.height, png.depth, png.channels], [width, height, 8, 1]);
+    assert.deepEqual(Uint8Array.from(png.data), labels);
+    assert.deepEqual(png.palette, davisPalette());
+  });
+});
+
+test('MOTS: an archive of 16-bit images, the same bytes every time', () => {
+  const frames = [drawn('0012', '..12'), drawn('0001', '...1')];
+  const archive = formats.encodeCvatMots(frames, { names: { 0: 'background' } });
+  assert.deepEqual(formats.encodeCvatMots(frames, { names: { 0: 'background' } }), archive);
+  const files = unzipSync(archive);
+  assert.deepEqual(Object.keys(files), ['default/instances/labels.txt', 'default/instances/first.png', 'default/instances/frame-1.png']);
+  assert.equal(new TextDecoder().decode(files['default/instances/labels.txt']), 'background\nmotion-1\nmotion-2\n');
+  const png = decode(files['default/instances/first.png'], { checkCrc: true });
+  assert.equal(png.depth, 16);
+  assert.deepEqual([...png.data], [1001, 1001, 2002, 3003, 0, 0, 2002, 3003]);
+});
+
+describe('veronese.json', () => {
+  const meta = { image: 'a.png', names: { 1: 'car' }, motions: [{ label: 1, matrix: [0.1, 0, 1 / 3, 0, -0.1, 1e-300], residual: 2, group: 0 }] };
+
+  test('comes back as it was, through text', () => {
+    each((labels, width, height) => {
+      const document = JSON.parse(JSON.stringify(formats.encodeVeronese(labels, width, height, meta)));
+      assert.deepEqual(formats.decodeVeronese(document), { labels, width, height, image: 'a.png', meta });
+    });
+  });
+
+  test('what is none is refused', () => {
+    const good = formats.encodeVeronese(...Object.values(drawn('01')), meta);
+    const wrong = [
+      null, 5, [], {}, { ...good, format: 'other' }, { ...good, version: 2 }, { ...good, width: 0 }, { ...good, width: 1e9 },
+      { ...good, runs: [0, 1] }, { ...good, runs: [0, 1, 1] }, { ...good, runs: [0, 3] }, { ...good, runs: [0, 2, 1, 0] },
+      { ...good, runs: [0, 1, 256, 1] }, { ...good, runs: 'x' }, { ...good, motions: [{ label: 0, matrix: [1] }] }, { ...good, motions: {} },
+      { ...good, names: [] }, { ...good, names: { 0: 1 } }, { ...good, image: 5 },
+    ];
+    for (const document of wrong) assert.throws(() => formats.decodeVeronese(document), { name: 'VeroneseError', code: 'invalid-input' });
+  });
+});
+
+describe('what is known beside the labels', () => {
+  const { labels, width, height } = drawn('0112');
+
+  test('names, motions and a choice of labels', () => {
+    const matrix = [0, 0, 1, 0, 0, 2];
+    const meta = { image: 'a "b" & <c>.png', names: { 1: 'A & "B"' }, motions: [{ label: 1, matrix }], labels: [1] };
+    const coco = formats.encodeCoco(labels, width, height, meta);
+    assert.deepEqual(coco.annotations.map(({ category_id, attributes }) => [category_id, attributes]), [[2, { matrix }]]);
+    assert.equal(coco.images[0].file_name, meta.image);
+    const xml = formats.encodeCvatXml(labels, width, height, meta);
+    assert.ok(xml.includes('name="a &quot;b&quot; &amp; &lt;c&gt;.png"'));
+    assert.ok(xml.includes('<mask label="A &amp; &quot;B&quot;"'));
+  });
+
+  test('an empty image gives no mask', () => {
+    const nothing = new Uint8Array(6).fill(255);
+    assert.deepEqual(formats.encodeCoco(nothing, 3, 2).annotations, []);
+    assert.deepEqual(formats.encodeYolo(nothing, 3, 2), { text: '', names: [] });
+    assert.deepEqual(formats.encodeCocoRleCounts(new Uint8Array(6), 3, 2), { size: [2, 3], counts: [6] });
+  });
+});
+
+describe('wrong input is refused', () => {
+  const calls = {
+    ...Object.fromEntries(
+      Object.entries(formats)
+        .filter(([name]) => !['encodeCocoVideo', 'encodeCvatMots', 'decodeVeronese'].includes(name))
+        .map(([name, encode]) => [name, encode]),
+    ),
+    encodeCocoVideo: (labels, width, height) => formats.encodeCocoVideo([{ labels, width, height }]),
+    encodeCvatMots: (labels, width, height) => formats.encodeCvatMots([{ labels, width, height }]),
+  };
+  for (const [name, encode] of Object.entries(calls)) {
+    test(name, () => {
+      const wrong = [[new Uint8Array(5), 3, 2], [new Uint8Array(0), 0, 0], [new Uint8Array(6), 1.5, 4], [new Uint8Array(6), -3, -2], [new Uint8Array(4097), 4097, 1], [new Uint8Array(6), NaN, 2]];
+      for (const [labels, width, height] of wrong) {
+        assert.throws(() => encode(labels, width, height), { name: 'VeroneseError', code: 'invalid-input' });
+      }
+    });
+  }
+
+  test('frames of two sizes, no frame, two frames of one name, too many labels for MOTS', () => {
+    const frames = [drawn('01'), drawn('0', '1')];
+    for (const encode of [formats.encodeCocoVideo, formats.encodeCvatMots]) {
+      assert.throws(() => encode(frames), { code: 'frame-size-mismatch' });
+      assert.throws(() => encode([]), { code: 'invalid-input' });
+    }
+    const twice = [1, 2].map(() => ({ ...drawn('01'), image: 'a.png' }));
+    assert.throws(() => formats.encodeCvatMots(twice), { code: 'invalid-input' });
+    assert.throws(() => formats.encodeCvatMots([{ ...drawn('01'), image: '../a.png' }]), { code: 'invalid-input' });
+    const many = { labels: Uint8Array.from({ length: 65 }, (_, at) => at), width: 65, height: 1 };
+    assert.throws(() => formats.encodeCvatMots([many]), { code: 'invalid-input' });
+  });
+});

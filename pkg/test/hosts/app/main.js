@@ -1,0 +1,17 @@
+// What a page does: a direct call, one in a worker, a pool. Bundled or served as it is.
+
+import { Segmenter, segmentPair, segmentPairs } from 'veronese';
+import { first, second } from './frames.js';
+import { report } from './report.js';
+
+async function main() {
+  const direct = report(await segmentPair(first, second));
+  const segmenter = new Segmenter();
+  const inWorker = report(await segmenter.segmentPair(first, second));
+  segmenter.close();
+  const pooled = [];
+  for await (const { segmentation } of segmentPairs([{ first, second }, { first, second }], { jobs: 2 })) pooled.push(report(segmentation));
+  return { direct, inWorker, pooled };
+}
+
+globalThis.outcome = main().catch((error) => ({ error: `${error.code}: ${error.message}` }));

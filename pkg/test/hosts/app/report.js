@@ -1,0 +1,5 @@
+// What every host has to find: the same bits.
+
+export function report({ count, motions, labels }) {
+  return JSON.stringify({ count, motions, labels: Array.from(labels).join('') });
+}

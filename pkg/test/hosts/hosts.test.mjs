@@ -1,0 +1,257 @@
+// The packed package, installed and run where people run it. Every host has to find the same bits as a direct call in Node.
+
+import assert from 'node:assert/strict';
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { segmentPair } from 'veronese';
+import { png } from '../support/frames.mjs';
+import { pair } from '../support/moving.mjs';
+import { examples } from '../support/readme.mjs';
+import { hashOf, launch, outcomeOf, serve } from './browser.mjs';
+import { install, run } from './packed.mjs';
+import { report } from './app/report.js';
+
+const here = fileURLToPath(new URL('.', import.meta.url));
+const bin = (name) => join(here, 'node_modules', '.bin', name);
+
+let [app, tarball, remove, browser, expected] = [];
+before(async () => {
+  ({ app, tarball, remove } = install());
+  browser = await launch();
+  expected = report(await segmentPair(...pair()));
+});
+after(async () => {
+  await browser?.close();
+  remove?.();
+});
+
+function checkOutcome({ outcome, complaints }, kinds = ['direct', 'inWorker']) {
+  assert.equal(outcome.error, undefined);
+  assert.deepEqual(complaints, []);
+  for (const kind of kinds) assert.equal(outcome[kind], expected, kind);
+  for (const one of outcome.pooled ?? []) assert.equal(one, expected);
+}
+
+const WHOLE_PAGE = ['direct', 'inWorker', 'pooled'];
+const isWhole = ({ outcome }) => assert.deepEqual(Object.keys(outcome), WHOLE_PAGE);
+
+describe('plain Node', () => {
+  test('imports the installed package and runs it', () => {
+    checkOutcome({ outcome: JSON.parse(run(process.execPath, ['plain.mjs'], { cwd: app })), complaints: [] });
+  });
+
+  test('runs the installed program', () => {
+    assert.match(run('npx', ['--no-install', 'veronese', '--version'], { cwd: app }), /^veronese \d+\.\d+\.\d+\n$/);
+  });
+
+  test('reaches the module file and the manifest by their names', () => {
+    const script = `
+      const { readFileSync } = await import('node:fs');
+      const bytes = readFileSync(new URL(import.meta.resolve('veronese/veronese_bg.wasm')));
+      console.log((await WebAssembly.compile(bytes)) instanceof WebAssembly.Module, import.meta.resolve('veronese/package.json').length > 0);`;
+    assert.equal(run(process.execPath, ['--input-type=module', '--eval', script], { cwd: app }), 'true true\n');
+  });
+
+  test('every entry of package.json that is JavaScript can be imported, on a server too', () => {
+    const { exports } = JSON.parse(readFileSync(join(app, 'node_modules/veronese/package.json')));
+    const entries = Object.keys(exports).filter((name) => !/\.(wasm|json)$/.test(name) && name !== './worker');
+    assert.ok(entries.length >= 4);
+    for (const entry of entries) {
+      run(process.execPath, ['--input-type=module', '--eval', `await import(${JSON.stringify(join('veronese', entry))})`], { cwd: app });
+    }
+  });
+});
+
+describe('Vite 8', () => {
+  const quiet = { logLevel: 'error', configFile: false, clearScreen: false };
+
+  test('development server', async (t) => {
+    const { createServer } = await import('vite');
+    const server = await createServer({ ...quiet, root: app, server: { host: '127.0.0.1', port: 0, hmr: false, watch: null } });
+    t.after(() => server.close());
+    await server.listen();
+    const found = await outcomeOf(t, browser, `http://127.0.0.1:${server.httpServer.address().port}/`);
+    checkOutcome(found);
+    isWhole(found);
+  });
+
+  test('build', async (t) => {
+    const { build } = await import('vite');
+    await build({ ...quiet, root: app, build: { outDir: 'built-by-vite', emptyOutDir: true } });
+    const files = readdirSync(join(app, 'built-by-vite/assets'));
+    assert.equal(files.filter((name) => name.endsWith('.wasm')).length, 1, 'one module, whoever loads it');
+    const { address, missing } = await serve(t, join(app, 'built-by-vite'));
+    const found = await outcomeOf(t, browser, address);
+    checkOutcome(found);
+    isWhole(found);
+    assert.deepEqual(missing, []);
+  });
+
+  test('import on the server', async (t) => {
+    const { createServer } = await import('vite');
+    const server = await createServer({ ...quiet, root: app, appType: 'custom', server: { middlewareMode: true, hmr: false, watch: null, ws: false } });
+    t.after(() => server.close());
+    const module = await server.ssrLoadModule('/server.js');
+    assert.equal(module.render(), '<p>function function</p>');
+    assert.equal(await module.segment(), expected);
+  });
+});
+
+describe('webpack 5', () => {
+  async function build(options) {
+    const { default: webpack } = await import('webpack');
+    const stats = await new Promise((resolve, reject) => {
+      webpack({ mode: 'production', context: app, ...options }, (error, stats) => (error ? reject(error) : resolve(stats)));
+    });
+    assert.deepEqual(stats.toJson({ all: false, errors: true, warnings: true }).errors, []);
+    const warnings = stats.toJson({ all: false, warnings: true }).warnings.map(({ message }) => message);
+    assert.deepEqual(warnings.filter((message) => !/size limit|performance/i.test(message)), []);
+  }
+
+  test('build for the browser', async (t) => {
+    const path = join(app, 'built-by-webpack');
+    await build({ entry: './main.js', output: { path, filename: 'main.js' } });
+    copyFileSync(join(app, 'index.html'), join(path, 'index.html'));
+    const { address, missing } = await serve(t, path);
+    const found = await outcomeOf(t, browser, address);
+    checkOutcome(found);
+    isWhole(found);
+    assert.deepEqual(missing, []);
+  });
+
+  test('build for the server, everything bundled as Next does', async () => {
+    const path = join(app, 'built-for-server');
+    await build({
+      entry: './server.js',
+      target: 'node20',
+      experiments: { outputModule: true },
+      output: { path, filename: 'server.mjs', module: true, library: { type: 'module' }, chunkFormat: 'module' },
+    });
+    const script = `
+      const { render, segment } = await import(${JSON.stringify(String(pathToFileURL(join(path, 'server.mjs'))))});
+      console.log(render());
+      console.log(await segment());`;
+    assert.equal(run(process.execPath, ['--input-type=module', '--eval', script], { cwd: here }), `<p>function function</p>\n${expected}\n`);
+  });
+});
+
+describe('esbuild', () => {
+  async function build(options, folder) {
+    const { build } = await import('esbuild');
+    const outdir = join(app, folder);
+    const { errors, warnings } = await build({ absWorkingDir: app, bundle: true, minify: true, format: 'esm', outdir, logLevel: 'silent', ...options });
+    assert.deepEqual([errors, warnings], [[], []]);
+    writeFileSync(join(outdir, 'index.html'), readFileSync(join(app, 'index.html')));
+    return outdir;
+  }
+
+  test('veronese/inline in one file, the worker in another', async (t) => {
+    const folder = await build({ entryPoints: { main: 'inline.js', worker: 'veronese/worker' } }, 'inline-by-esbuild');
+    assert.deepEqual(readdirSync(folder).sort(), ['index.html', 'main.js', 'worker.js']);
+    const { address, missing } = await serve(t, folder);
+    checkOutcome(await outcomeOf(t, browser, address));
+    assert.deepEqual(missing, []);
+  });
+
+  test('the module as a file that esbuild copies', async (t) => {
+    const folder = await build({ entryPoints: { main: 'copied.js' }, loader: { '.wasm': 'file' } }, 'copied-by-esbuild');
+    const { address, missing } = await serve(t, folder);
+    checkOutcome(await outcomeOf(t, browser, address), ['direct']);
+    assert.deepEqual(missing, []);
+  });
+});
+
+describe('without a bundler, under a strict content security policy', () => {
+  /** The page, its import map and the policy that allows that map, the page's own files, WebAssembly, and nothing else. */
+  async function page(t, script, policy = (map) => `default-src 'none'; script-src 'self' 'wasm-unsafe-eval' ${map}; worker-src 'self'; connect-src 'self'; img-src data:`) {
+    const map = JSON.stringify({ imports: { veronese: '/node_modules/veronese/dist/web.js' } });
+    writeFileSync(join(app, 'strict.html'), `<!doctype html>
+<link rel="icon" href="data:," />
+<script type="importmap">${map}</script>
+<script type="module" src="/${script}"></script>
+`);
+    return serve(t, app, { 'Content-Security-Policy': policy(hashOf(map)) });
+  }
+
+  test('by an import map: direct, in a worker, in a pool', async (t) => {
+    const { address, missing } = await page(t, 'main.js');
+    const found = await outcomeOf(t, browser, `${address}strict.html`);
+    checkOutcome(found);
+    isWhole(found);
+    assert.deepEqual(missing, []);
+  });
+
+  test('in a Web Worker of the page', async (t) => {
+    const { address, missing } = await page(t, 'own-worker.js');
+    checkOutcome(await outcomeOf(t, browser, `${address}strict.html`), ['direct']);
+    assert.deepEqual(missing, []);
+  });
+
+  test('a policy that forbids WebAssembly is an error with a code, not a silence', async (t) => {
+    const { address } = await page(t, 'main.js', (map) => `default-src 'none'; script-src 'self' ${map}; worker-src 'self'; connect-src 'self'; img-src data:`);
+    const { outcome } = await outcomeOf(t, browser, `${address}strict.html`);
+    assert.match(outcome.error, /^wasm-load-failed: .*(Content Security Policy|unsafe-eval)/);
+  });
+});
+
+describe('the examples of README.md', () => {
+  test('the page', async (t) => {
+    const [page] = examples('html page');
+    for (const [name, picture] of [['first', pair()[0]], ['second', pair()[1]]]) writeFileSync(join(app, `${name}.png`), png(picture));
+    writeFileSync(join(app, 'example.html'), page.replace('<canvas', '<link rel="icon" href="data:," /><canvas'));
+    const { address, missing } = await serve(t, app);
+    const tab = await browser.newPage();
+    t.after(() => tab.close());
+    await tab.goto(`${address}example.html`);
+    await tab.waitForFunction(() => /^\d+ motions$/.test(document.title), undefined, { timeout: 60_000 });
+    assert.equal(await tab.title(), `${JSON.parse(expected).count} motions`);
+    const painted = await tab.evaluate(() => {
+      const canvas = document.querySelector('#masks');
+      const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+      return data.reduce((sum, value, index) => sum + Number(index % 4 === 3 && value > 0), 0);
+    });
+    assert.equal(painted, [...JSON.parse(expected).labels].filter((label) => label !== '0').length);
+    assert.deepEqual(missing, []);
+  });
+
+  test('the bundled one', async (t) => {
+    const [code] = examples('js bundler');
+    writeFileSync(join(app, 'example.js'), `import { first, second } from './frames.js';\n${code}\nglobalThis.outcome = { count };\n`);
+    const { build } = await import('esbuild');
+    const outdir = join(app, 'example-by-esbuild');
+    await build({ absWorkingDir: app, bundle: true, format: 'esm', outdir, entryPoints: { main: 'example.js', worker: 'veronese/worker' }, logLevel: 'silent' });
+    copyFileSync(join(app, 'index.html'), join(outdir, 'index.html'));
+    const { address } = await serve(t, outdir);
+    const { outcome, complaints } = await outcomeOf(t, browser, address);
+    assert.deepEqual([outcome, complaints], [{ count: JSON.parse(expected).count }, []]);
+  });
+});
+
+describe('the package looked at by others', () => {
+  test('publint finds nothing', async () => {
+    const { publint } = await import('publint');
+    const { formatMessage } = await import('publint/utils');
+    const pkgDir = join(app, 'node_modules/veronese');
+    const { messages, pkg } = await publint({ pkgDir, pack: false, strict: true, level: 'suggestion' });
+    assert.deepEqual(messages.map((message) => formatMessage(message, pkg)), []);
+  });
+
+  test('Are The Types Wrong? finds nothing: it ends with an error if it does', () => {
+    // The module's file is for bundlers to copy; there is nothing in it that types could describe.
+    const text = run(bin('attw'), [tarball, '--exclude-entrypoints', './veronese_bg.wasm', '--profile', 'esm-only', '--format', 'ascii', '--no-emoji', '--no-color']);
+    for (const entry of ['veronese', 'veronese/slim', 'veronese/worker', 'veronese/codecs']) assert.ok(text.includes(`"${entry}"`), entry);
+  });
+
+  for (const [module, moduleResolution] of [['NodeNext', 'NodeNext'], ['ESNext', 'Bundler']]) {
+    test(`strict TypeScript compiles against it, resolving as ${moduleResolution} does`, () => {
+      const folder = join(app, `types-${moduleResolution}`);
+      mkdirSync(folder);
+      copyFileSync(join(here, '../types/sample.ts'), join(folder, 'sample.ts'));
+      const options = { strict: true, exactOptionalPropertyTypes: true, noUncheckedIndexedAccess: true, noEmit: true, target: 'ES2022', lib: ['ES2022', 'DOM', 'DOM.Iterable'], types: [], module, moduleResolution };
+      writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions: options, include: ['.'] }));
+      run(bin('tsc'), ['-p', folder]);
+    });
+  }
+});

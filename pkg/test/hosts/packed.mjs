@@ -1,0 +1,39 @@
+// The package as a user gets it: packed, installed from the tarball into an empty project, with frames to segment.
+
+import { spawnSync } from 'node:child_process';
+import { cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { pair } from '../support/moving.mjs';
+
+const here = (path) => fileURLToPath(new URL(path, import.meta.url));
+
+/** Runs a program to its end; throws with what it said where it fails. */
+export function run(program, args, options = {}) {
+  const { status, stdout, stderr, error } = spawnSync(program, args, { encoding: 'utf8', timeout: 120_000, ...options });
+  if (status !== 0) throw new Error(`${program} ${args.join(' ')}: ${error?.message ?? `code ${status}`}\n${stdout}\n${stderr}`);
+  return stdout;
+}
+
+/** Makes the project and returns its folder and the tarball; `remove()` takes both away. */
+export function install() {
+  const folder = mkdtempSync(join(tmpdir(), 'veronese-hosts-'));
+  const [{ filename }] = JSON.parse(run('npm', ['pack', '--json', '--ignore-scripts', '--pack-destination', folder], { cwd: here('../..') }));
+  const tarball = join(folder, filename);
+  const app = join(folder, 'app');
+  cpSync(here('./app'), app, { recursive: true });
+  writeFileSync(join(app, 'package.json'), '{ "name": "app", "private": true, "type": "module" }\n');
+  writeFileSync(join(app, 'frames.js'), framesModule());
+  run('npm', ['install', '--no-audit', '--no-fund', '--prefer-offline', '--omit=dev', tarball], { cwd: app });
+  return { app, tarball, remove: () => rmSync(folder, { recursive: true, force: true }) };
+}
+
+/** The frames as a module without a dependency, so that every host segments the same bytes. */
+function framesModule() {
+  const [first, second] = pair().map(({ data }) => Buffer.from(data).toString('base64'));
+  return `const frame = (text) => ({ data: Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0)), width: 64, height: 48 });
+export const first = frame('${first}');
+export const second = frame('${second}');
+`;
+}

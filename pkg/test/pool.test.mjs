@@ -1,0 +1,210 @@
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
+import { Worker } from 'node:worker_threads';
+import { segmentPair, segmentPairs, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
+import { inOrder } from '../dist/ordered.js';
+import { frame, pair } from './support/frames.mjs';
+import { failure, timeless } from './support/shapes.mjs';
+
+const SIZE = { width: 64, height: 48 };
+
+/** A pair whose square moves by (x, 1), with its number beside it. */
+function input(number) {
+  const [first, second] = pair({ ...SIZE, square: [number % 4, 1] });
+  return { first, second, number };
+}
+
+/** A pool that ends with the test. */
+function pool(t, options) {
+  const made = new SegmenterPool(options);
+  t.after(() => made.close());
+  return made;
+}
+
+async function all(outcomes) {
+  const list = [];
+  for await (const outcome of outcomes) list.push(outcome);
+  return list;
+}
+
+describe('SegmenterPool', () => {
+  test('is a Segmenter with as many workers as there are calls, and not more than jobs', async (t) => {
+    let started = 0;
+    const file = new URL('../dist/worker-node.js', import.meta.url);
+    const worker = () => {
+      started += 1;
+      return new Worker(file);
+    };
+    const two = pool(t, { jobs: 2, worker });
+    assert.ok(two instanceof Segmenter);
+    assert.equal(two.jobs, 2);
+    const direct = timeless(await segmentPair(...pair()));
+    assert.deepEqual(timeless(await two.segmentPair(...pair())), direct);
+    assert.equal(started, 1, 'one call, one worker');
+    const results = await Promise.all(Array.from({ length: 5 }, () => two.segmentPair(...pair())));
+    for (const result of results) assert.deepEqual(timeless(result), direct);
+    assert.equal(started, 2);
+  });
+
+  test('compiles the module once for all workers', async (t) => {
+    const { compile } = WebAssembly;
+    let compiled = 0;
+    t.mock.method(WebAssembly, 'compile', (bytes) => {
+      compiled += 1;
+      return compile(bytes);
+    });
+    const three = pool(t, { jobs: 3 });
+    await Promise.all(Array.from({ length: 6 }, () => three.segmentPair(...pair())));
+    assert.equal(compiled, 1);
+  });
+
+  test('a cancelled call leaves the others alone', async (t) => {
+    const two = pool(t, { jobs: 2 });
+    const controller = new AbortController();
+    const large = pair({ width: 1024, height: 1024 });
+    const begun = Promise.withResolvers?.() ?? deferred();
+    const cancelled = two.segmentPair(...large, { signal: controller.signal, onProgress: () => begun.resolve() });
+    const others = Array.from({ length: 4 }, () => two.segmentPair(...pair()));
+    await begun.promise;
+    const since = performance.now();
+    controller.abort('enough');
+    const error = await failure(cancelled);
+    assert.ok(performance.now() - since < 1000);
+    assert.equal(error.code, 'cancelled');
+    for (const other of others) assert.equal((await other).width, 64);
+  });
+
+  test('refuses a number of jobs that is none', () => {
+    for (const jobs of [0, -1, 1.5, 257, NaN, '2', null]) {
+      assert.throws(() => new SegmenterPool({ jobs }), { name: 'VeroneseError', code: 'invalid-option' }, String(jobs));
+    }
+  });
+});
+
+describe('segmentPairs', () => {
+  test('gives the direct results in the order of the pairs, with what came in', async () => {
+    const inputs = Array.from({ length: 9 }, (_, number) => input(number));
+    const outcomes = await all(segmentPairs(inputs, { jobs: 3, seed: 4 }));
+    assert.deepEqual(outcomes.map(({ index }) => index), [0, 1, 2, 3, 4, 5, 6, 7, 8]);
+    for (const [index, outcome] of outcomes.entries()) {
+      assert.equal(outcome.input, inputs[index]);
+      const { first, second } = inputs[index];
+      assert.deepEqual(timeless(outcome.segmentation), timeless(await segmentPair(first, second, { seed: 4 })));
+    }
+  });
+
+  test('takes the frame before from each pair', async () => {
+    const [outcome] = await all(segmentPairs([{ ...input(1), before: frame(-1, SIZE) }], { jobs: 1 }));
+    assert.equal(outcome.segmentation.settings.before, true);
+  });
+
+  test('takes pairs only when there is room: at most two for each worker, however slow the reader', async () => {
+    let taken = 0;
+    let returned = false;
+    async function* source() {
+      try {
+        for (;;) yield input(taken++);
+      } finally {
+        returned = true;
+      }
+    }
+    let read = 0;
+    for await (const { segmentation } of segmentPairs(source(), { jobs: 2 })) {
+      assert.equal(segmentation.width, 64);
+      read += 1;
+      await setTimeout(100);
+      assert.ok(taken - read <= 4, `${taken} taken, ${read} read`);
+      if (read === 6) break;
+    }
+    assert.ok(returned, 'leaving the loop ends the source');
+  });
+
+  test('one bad pair is an outcome with an error, the rest goes on', async () => {
+    const bad = [{ first: frame(0), second: frame(1, { width: 70 }) }, {}, undefined, { first: frame(0) }];
+    const inputs = [input(0), ...bad, input(1)];
+    const outcomes = await all(segmentPairs(inputs, { jobs: 2 }));
+    assert.deepEqual(
+      outcomes.map(({ error }) => error?.code),
+      [undefined, 'frame-size-mismatch', 'invalid-input', 'invalid-input', 'invalid-input', undefined],
+    );
+    assert.ok(outcomes[1].error instanceof VeroneseError);
+    assert.equal(outcomes[5].segmentation.width, 64);
+  });
+
+  test('reports progress with the number of the pair', async () => {
+    const seen = new Map();
+    const onProgress = ({ pair, stage, index, of }) => {
+      assert.ok(index < of && stage.length > 0);
+      seen.set(pair, (seen.get(pair) ?? 0) + 1);
+    };
+    await all(segmentPairs([input(0), input(1), input(2)], { jobs: 2, onProgress }));
+    assert.deepEqual([...seen.keys()].sort(), [0, 1, 2]);
+    assert.equal(new Set(seen.values()).size, 1, 'as many stages each');
+  });
+
+  test('a signal ends it at once, even while the source lets it wait', async () => {
+    const controller = new AbortController();
+    async function* source() {
+      yield input(0);
+      await new Promise(() => {});
+    }
+    const outcomes = segmentPairs(source(), { jobs: 2, signal: controller.signal });
+    assert.equal((await outcomes.next()).value.index, 0, 'a slow source does not hold back the answer that is there');
+    const next = failure(outcomes.next());
+    const since = performance.now();
+    controller.abort('enough');
+    const error = await next;
+    assert.ok(performance.now() - since < 1000);
+    assert.equal(error.code, 'cancelled');
+    assert.equal(error.cause, 'enough');
+    assert.equal((await failure(all(segmentPairs([input(0)], { signal: AbortSignal.abort() })))).code, 'cancelled');
+  });
+
+  test('what the source throws comes after the answers to what it gave', async () => {
+    const mine = new Error('mine');
+    async function* source() {
+      yield input(0);
+      yield input(1);
+      throw mine;
+    }
+    const seen = [];
+    const error = await failure((async () => {
+      for await (const { index } of segmentPairs(source(), { jobs: 1 })) seen.push(index);
+    })());
+    assert.equal(error, mine);
+    assert.deepEqual(seen, [0, 1]);
+  });
+
+  test('takes promises of pairs, and no pairs at all', async () => {
+    assert.equal((await all(segmentPairs([Promise.resolve(input(0))], { jobs: 1 })))[0].segmentation.width, 64);
+    assert.deepEqual(await all(segmentPairs([])), []);
+  });
+
+  test('refuses what is no iterable and options that do not exist', async () => {
+    assert.equal((await failure(all(segmentPairs(42)))).code, 'invalid-input');
+    const [outcome] = await all(segmentPairs([input(0)], { jobs: 1, nonsense: 1 }));
+    assert.equal(outcome.error.code, 'invalid-option');
+  });
+});
+
+describe('inOrder', () => {
+  test('keeps the order whatever finishes first, and the number under way', async () => {
+    let [busy, most] = [0, 0];
+    const work = async (milliseconds, index) => {
+      most = Math.max(most, ++busy);
+      await setTimeout(milliseconds);
+      busy -= 1;
+      return index;
+    };
+    const answers = await all(inOrder([30, 1, 20, 2, 10, 1, 1], work, { room: 3, stop: () => new Error('stopped') }));
+    assert.deepEqual(answers, [0, 1, 2, 3, 4, 5, 6]);
+    assert.equal(most, 3);
+  });
+});
+
+function deferred() {
+  const made = {};
+  made.promise = new Promise((resolve) => (made.resolve = resolve));
+  return made;
+}

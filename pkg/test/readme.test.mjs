@@ -1,0 +1,66 @@
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, readdirSync, readFileSync, symlinkSync, writeFileSync } from 'node:fs';
+import { describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { frame, png } from './support/frames.mjs';
+import { temporaryFolder } from './support/program.mjs';
+import { examples } from './support/readme.mjs';
+
+/** A project with the package and the files that the examples speak of. */
+function project(t) {
+  const folder = temporaryFolder(t);
+  mkdirSync(folder.path('node_modules', '.bin'), { recursive: true });
+  symlinkSync(fileURLToPath(new URL('..', import.meta.url)), folder.path('node_modules', 'veronese'));
+  symlinkSync('../veronese/bin/veronese.js', folder.path('node_modules', '.bin', 'veronese'));
+  mkdirSync(folder.path('frames'));
+  for (let k = 0; k < 4; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(frame(k / 2)));
+  folder.file('first.png', png(frame(0)));
+  folder.file('second.png', png(frame(1)));
+  return folder;
+}
+
+/** What an example calls `first` and `second` where it does not make them itself. */
+const FRAMES = `
+import { readFileSync as readFrame } from 'node:fs';
+import { decodeImage as decodeFrame } from 'veronese/codecs';
+const [first, second] = await Promise.all(['first.png', 'second.png'].map((name) => decodeFrame(readFrame(name))));
+`;
+
+describe('README.md', () => {
+  const ofNode = examples('js node');
+  for (const [index, code] of ofNode.entries()) {
+    test(`example ${index + 1} for Node: ${code.split('\n').find((line) => /segment|decode/.test(line))}`, (t) => {
+      const folder = project(t);
+      const own = /const first\b|let first\b/.test(code);
+      const file = folder.file('example.mjs', own ? code : FRAMES + code);
+      const { status, stdout, stderr } = spawnSync(process.execPath, [file], { cwd: folder.path('.'), encoding: 'utf8', timeout: 60_000 });
+      assert.equal(status, 0, stderr);
+      if (code.includes('console.log')) assert.notEqual(stdout, '');
+      if (code.includes("'labels.png'")) assert.ok(existsSync(folder.path('labels.png')));
+    });
+  }
+
+  test('there are such examples', () => assert.ok(ofNode.length >= 4));
+
+  test('the commands', { skip: process.platform === 'win32' }, (t) => {
+    const folder = project(t);
+    const [commands] = examples('sh run');
+    const { status, stderr } = spawnSync('sh', ['-e', '-c', commands], { cwd: folder.path('.'), encoding: 'utf8', timeout: 120_000 });
+    assert.equal(status, 0, stderr);
+    assert.ok(existsSync(folder.path('masks', 'overlay.png')));
+    assert.deepEqual(readdirSync(folder.path('results')), ['000000-f0', '000001-f1', '000002-f2']);
+    assert.equal(readFileSync(folder.path('lines.jsonl'), 'utf8').trim().split('\n').length, 3);
+    assert.deepEqual(readdirSync(folder.path('results-of-machine-1')), ['000000-f0']);
+  });
+
+  test('every error code has its place in the types', async () => {
+    const types = readFileSync(new URL('../types/index.d.ts', import.meta.url), 'utf8');
+    const known = new Set([...types.matchAll(/^ {2}\| '([a-z-]+)'/gm)].map(([, code]) => code));
+    const sources = new URL('../src/', import.meta.url);
+    for (const name of readdirSync(sources).filter((name) => name.endsWith('.ts'))) {
+      const used = readFileSync(new URL(name, sources), 'utf8').matchAll(/new VeroneseError\('([a-z-]+)'/g);
+      for (const [, code] of used) assert.ok(known.has(code), `${name}: ${code}`);
+    }
+  });
+});

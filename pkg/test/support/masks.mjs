@@ -1,0 +1,71 @@
+// Label images to encode: the cases that break encoders, then random ones. Seeded: the same every time.
+
+/** Numbers from 0 to 1 (mulberry32). */
+export function random(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) >>> 0;
+    let value = Math.imul(state ^ (state >>> 15), state | 1);
+    value ^= value + Math.imul(value ^ (value >>> 7), value | 61);
+    return ((value ^ (value >>> 14)) >>> 0) / 2 ** 32;
+  };
+}
+
+/** A label image of rows of text: `.` is 255, digits are labels. */
+export function drawn(...rows) {
+  const labels = Uint8Array.from(rows.join(''), (character) => (character === '.' ? 255 : Number(character)));
+  return { labels, width: rows[0].length, height: rows.length };
+}
+
+const CASES = [
+  drawn('.'),
+  drawn('0'),
+  drawn('...', '...'),
+  drawn('111', '111'),
+  drawn('....', '.2..', '....'),
+  drawn('00000', '01110', '01010', '01110', '00000'),
+  drawn('1.1', '.1.', '1.1'),
+  drawn('.1.', '1.1', '.1.'),
+  drawn('1111111', '1.1.1.1', '1111111', '1.1.1.1', '1111111'),
+  drawn('1111111', '1.....1', '1.111.1', '1.1.1.1', '1.111.1', '1.....1', '1111111'),
+  drawn('11111', '1.111', '11.11', '111.1', '11111'),
+  drawn('0123456789'),
+  drawn('1', '.', '1', '.'),
+  drawn('1111', '1..1', '1.11', '1111'),
+];
+
+/** At least `count` label images. */
+export function labelImages(count) {
+  const next = random(7);
+  const whole = (from, to) => from + Math.floor(next() * (to - from + 1));
+  const images = [...CASES];
+  while (images.length < count) {
+    const [width, height] = [whole(1, 40), whole(1, 40)];
+    const labels = new Uint8Array(width * height).fill(next() < 0.5 ? 0 : 255);
+    if (images.length % 3 === 0) {
+      // Noise: everything touches everything at corners, holes in holes.
+      const most = whole(1, 4);
+      const density = next();
+      labels.forEach((_, at) => {
+        if (next() < density) labels[at] = whole(0, most);
+      });
+    } else {
+      for (let shape = whole(1, 8); shape > 0; shape--) {
+        const label = next() < 0.3 ? 255 : whole(0, 5);
+        const [cx, cy, rx, ry] = [next() * width, next() * height, 1 + next() * 12, 1 + next() * 12];
+        const round = next() < 0.5;
+        labels.forEach((_, at) => {
+          const [u, v] = [((at % width) - cx) / rx, (Math.floor(at / width) - cy) / ry];
+          if (round ? u * u + v * v < 1 : Math.max(Math.abs(u), Math.abs(v)) < 1) labels[at] = label;
+        });
+      }
+    }
+    images.push({ labels, width, height });
+  }
+  return images;
+}
+
+/** The labels that are there, without 255. */
+export function present(labels) {
+  return [...new Set(labels)].filter((label) => label !== 255).sort((a, b) => a - b);
+}

@@ -1,0 +1,10 @@
+// The examples of README.md, by what stands behind the language of their fences.
+
+import { readFileSync } from 'node:fs';
+
+const text = readFileSync(new URL('../../README.md', import.meta.url), 'utf8');
+
+/** The code of all fences of a kind: `js node`, `sh run`, `html page`, `js bundler`. */
+export function examples(kind) {
+  return [...text.matchAll(/^```([^\n]*)\n([\s\S]*?)^```$/gm)].filter(([, info]) => info === kind).map(([, , code]) => code);
+}

@@ -1,0 +1,45 @@
+// Types of `veronese/element-class`: the element's class, for a name of your own.
+
+import type { Pixels, Progress, Segmentation, VeroneseError } from './index.js';
+
+/** What a frame can be given as: an address, a file, a bitmap, or pixels. */
+export type FrameSource = string | URL | Blob | ImageBitmap | Pixels;
+
+export interface VeroneseSegmenterEventMap extends HTMLElementEventMap {
+  progress: CustomEvent<Progress> & ProgressEvent;
+  result: CustomEvent<Segmentation>;
+  error: CustomEvent<VeroneseError> & ErrorEvent;
+}
+
+/**
+ * Two frames in, their masks over the first one.
+ *
+ * Attributes: `first` and `second` (addresses of images), `motions` (`auto` or 1 to 10), `quality` (`fast` or `best`), `seed`,
+ * `grouped` (masks are groups of motions). The element segments when it is connected and whenever one of them changes.
+ *
+ * Events: `progress`, `result` and `error`, each with its `detail`. None bubbles.
+ *
+ * CSS: `--veronese-opacity`, `--veronese-background`, `--veronese-font`, `--veronese-status-colour`,
+ * `--veronese-status-background`, `--veronese-colour-K` of mask K; parts `picture`, `frame`, `masks`, `status`.
+ */
+export class VeroneseSegmenterElement extends HTMLElement {
+  static readonly observedAttributes: string[];
+  /** The last result. */
+  readonly result: Segmentation | undefined;
+  /** Sets both frames at once, also from pixels, and segments them. */
+  setFrames(first: FrameSource, second: FrameSource): Promise<Segmentation>;
+  /** Segments the frames with the attributes as they are; a new call ends the one before, which rejects with code `cancelled`. */
+  segment(): Promise<Segmentation>;
+  /** Stops at once; the last result stays. */
+  abort(): void;
+  /** One number per pixel: labels, or groups where the element is `grouped`; 255 is unlabelled. */
+  labels(): Uint8Array | undefined;
+  /** 255 where the label (or group) is, 0 elsewhere. */
+  mask(wanted: number): Uint8Array | undefined;
+  addEventListener<K extends keyof VeroneseSegmenterEventMap>(
+    type: K,
+    listener: (this: VeroneseSegmenterElement, event: VeroneseSegmenterEventMap[K]) => unknown,
+    options?: boolean | AddEventListenerOptions,
+  ): void;
+  addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
+}

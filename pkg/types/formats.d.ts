@@ -1,0 +1,254 @@
+// The types of `veronese/formats`: masks in the forms that annotation tools read. See docs/formats.md for each format.
+
+import type { Matrix } from './index.js';
+
+/** A motion as it travels with the masks; the motions of a `Segmentation` fit. */
+export interface FormatMotion {
+  label: number;
+  matrix: Matrix;
+  pixels?: number;
+  share?: number;
+  residual?: number;
+  bbox?: [number, number, number, number];
+  group?: number;
+}
+
+/** What is known beside the labels. Everything is optional. */
+export interface FormatMeta {
+  /** Name of the image that the masks lie on; default `first.png`. */
+  image?: string;
+  /** Names by label; default `motion-0`, `motion-1` … */
+  names?: Readonly<Record<number, string>>;
+  /** The motions of the masks. */
+  motions?: readonly FormatMotion[];
+  /** Only these labels are written; default all but 255, which is never a mask. `encodeDavis` and `encodeVeronese` write all. */
+  labels?: readonly number[];
+}
+
+/** One frame of a video: one label per pixel, row by row; the same label is the same object in all frames. */
+export interface LabelFrame {
+  labels: Uint8Array;
+  width: number;
+  height: number;
+  /** Name of the frame's file. */
+  image?: string;
+}
+
+export interface FormatOptions<Shape extends string> {
+  shape?: Shape;
+  /** Polygons may leave the border by so many pixels to have fewer vertices; default 0: exact. */
+  tolerance?: number;
+}
+
+export interface CocoRle {
+  size: [height: number, width: number];
+  counts: string;
+}
+
+export interface CocoRleCounts {
+  size: [height: number, width: number];
+  counts: number[];
+}
+
+export interface CocoDocument {
+  info: { description: string };
+  images: { id: number; file_name: string; width: number; height: number }[];
+  categories: { id: number; name: string }[];
+  annotations: {
+    id: number;
+    image_id: number;
+    category_id: number;
+    iscrowd: 0 | 1;
+    area: number;
+    bbox: [number, number, number, number];
+    segmentation: CocoRle | number[][];
+    attributes?: { matrix: Matrix };
+  }[];
+}
+
+export interface CocoVideoDocument {
+  info: { description: string };
+  videos: { id: number; width: number; height: number; length: number; file_names: string[] }[];
+  categories: { id: number; name: string }[];
+  annotations: {
+    id: number;
+    video_id: number;
+    category_id: number;
+    iscrowd: 0 | 1;
+    width: number;
+    height: number;
+    segmentations: (CocoRle | null)[];
+    bboxes: ([number, number, number, number] | null)[];
+    areas: (number | null)[];
+  }[];
+}
+
+export interface CvatShape {
+  type: 'mask';
+  /** The label's name: CVAT's requests want its `label_id` instead, which the project knows. */
+  label: string;
+  frame: number;
+  occluded: boolean;
+  source: 'auto';
+  points: number[];
+}
+
+export interface LabelStudioResult {
+  id: string;
+  type: 'brushlabels' | 'polygonlabels';
+  from_name: string;
+  to_name: string;
+  original_width: number;
+  original_height: number;
+  image_rotation: 0;
+  value:
+    | { format: 'rle'; rle: number[]; brushlabels: string[] }
+    | { points: [number, number][]; closed: true; polygonlabels: string[] };
+}
+
+export interface LabelStudioTask {
+  data: { image: string };
+  predictions: { model_version: string; result: LabelStudioResult[] }[];
+}
+
+export interface LabelMeShape {
+  label: string;
+  points: [number, number][];
+  group_id: number;
+  description: string;
+  shape_type: 'mask' | 'polygon';
+  flags: Record<string, boolean>;
+  mask: string | null;
+}
+
+export interface LabelMeDocument {
+  version: string;
+  flags: Record<string, boolean>;
+  shapes: LabelMeShape[];
+  imagePath: string;
+  imageData: null;
+  imageHeight: number;
+  imageWidth: number;
+}
+
+export interface YoloFiles {
+  /** The annotation file: one line per label. */
+  text: string;
+  /** Names of the classes: the number at the beginning of a line counts them from 0. */
+  names: string[];
+}
+
+export interface SuperviselyAnnotation {
+  description: string;
+  tags: never[];
+  size: { height: number; width: number };
+  objects: {
+    classTitle: string;
+    geometryType: 'bitmap';
+    description: string;
+    tags: never[];
+    bitmap: { data: string; origin: [number, number] };
+  }[];
+}
+
+export interface WebAnnotation {
+  '@context': string;
+  id: string;
+  type: 'Annotation';
+  body: { type: 'TextualBody'; purpose: 'tagging'; value: string }[];
+  target: { source: string; selector: { type: 'SvgSelector'; value: string } };
+}
+
+export interface VeroneseDocument {
+  format: 'veronese';
+  version: 1;
+  image: string;
+  width: number;
+  height: number;
+  convention: string;
+  motions: FormatMotion[];
+  names: Record<number, string>;
+  /** Label, length, label, length … row by row. */
+  runs: number[];
+}
+
+/** COCO's compressed run lengths of one mask: everything but 0 is set. Throws `invalid-input`, as every call here. */
+export function encodeCocoRle(mask: Uint8Array, width: number, height: number): CocoRle;
+
+/** The same as plain counts. */
+export function encodeCocoRleCounts(mask: Uint8Array, width: number, height: number): CocoRleCounts;
+
+/** A COCO instances file, of run lengths or of polygons whose holes hang on bridges. */
+export function encodeCoco(
+  labels: Uint8Array,
+  width: number,
+  height: number,
+  meta?: FormatMeta,
+  options?: FormatOptions<'rle' | 'polygon'>,
+): CocoDocument;
+
+/** A YouTube-VIS file; `frame-size-mismatch` where the frames differ in size. */
+export function encodeCocoVideo(frames: readonly LabelFrame[], meta?: FormatMeta): CocoVideoDocument;
+
+/** CVAT for images 1.1. */
+export function encodeCvatXml(
+  labels: Uint8Array,
+  width: number,
+  height: number,
+  meta?: FormatMeta,
+  options?: FormatOptions<'mask' | 'polygon'>,
+): string;
+
+/** Shapes for CVAT's REST interface and SDK. */
+export function encodeCvatPoints(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): CvatShape[];
+
+/** A zip archive in CVAT's MOTS PNG layout, without the frames; 64 labels at most. */
+export function encodeCvatMots(frames: readonly LabelFrame[], meta?: FormatMeta): Uint8Array;
+
+/** A Label Studio task with its predictions. Names must be those of the project's labelling configuration. */
+export function encodeLabelStudio(
+  labels: Uint8Array,
+  width: number,
+  height: number,
+  meta?: FormatMeta,
+  options?: FormatOptions<'brush' | 'polygon'> & { fromName?: string; toName?: string; modelVersion?: string },
+): LabelStudioTask;
+
+/** A LabelMe file. */
+export function encodeLabelMe(
+  labels: Uint8Array,
+  width: number,
+  height: number,
+  meta?: FormatMeta,
+  options?: FormatOptions<'mask' | 'polygon'>,
+): LabelMeDocument;
+
+/** YOLO segmentation: one line per label, parts and holes joined by bridges. */
+export function encodeYolo(
+  labels: Uint8Array,
+  width: number,
+  height: number,
+  meta?: FormatMeta,
+  options?: { tolerance?: number },
+): YoloFiles;
+
+/** An 8-bit indexed PNG whose index is the label, in the DAVIS palette. */
+export function encodeDavis(labels: Uint8Array, width: number, height: number): Uint8Array;
+
+/** A Supervisely annotation of bitmaps. */
+export function encodeSupervisely(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): SuperviselyAnnotation;
+
+/** W3C Web Annotations, one per label, with an SVG selector. */
+export function encodeWebAnnotation(
+  labels: Uint8Array,
+  width: number,
+  height: number,
+  meta?: FormatMeta,
+  options?: { tolerance?: number },
+): WebAnnotation[];
+
+/** Labels, names and motions without loss. */
+export function encodeVeronese(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): VeroneseDocument;
+
+/** What {@link encodeVeronese} wrote. Throws `invalid-input` for anything else. */
+export function decodeVeronese(document: unknown): LabelFrame & { meta: FormatMeta };

@@ -1,0 +1,3 @@
+// The file of the workers: to be started by `new Worker`, not imported for anything.
+
+export {};

@@ -1,0 +1,132 @@
+// Label Studio from PyPI in an environment of its own, and what we prove with it.
+
+import { spawn } from 'node:child_process';
+import { createWriteStream, existsSync, mkdirSync, readFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { createRequire } from 'node:module';
+import { dirname, join } from 'node:path';
+import { setTimeout as sleep } from 'node:timers/promises';
+
+import { root, toolsFolder, which } from './project.mjs';
+import { Stop, longStep, run } from './run.mjs';
+
+const VERSION = '1.23.2';
+const VENV = join(toolsFolder, 'label-studio');
+const USER = { email: 'proof@example.com', password: 'only-for-the-proof', token: '0123456789abcdef0123456789abcdef01234567' };
+/** The database is made at the first start: minutes on a slow machine. */
+const PATIENCE = 600_000;
+
+/** Installs Label Studio unless it is there. */
+export async function prepareLabelStudio() {
+  const pip = join(VENV, 'bin', 'pip');
+  if (existsSync(pip) && (await run(pip, ['show', 'label-studio'], { output: 'collect' })).stdout.includes(`Version: ${VERSION}`)) return;
+  if (!which('python3')) throw new Stop('Label Studio needs Python: install python3 with its venv module.');
+  await longStep('Making a Python environment', 'It could not be made: install the venv module (Debian: `apt-get install python3-venv`).', 'python3', ['-m', 'venv', VENV]);
+  await longStep('Installing Label Studio (some minutes)', 'Label Studio could not be installed.', pip, ['install', '--quiet', `label-studio==${VERSION}`]);
+}
+
+/** Starts it on loopback with a new database in `folder`; `stop()` ends it. */
+export async function startLabelStudio(folder, port) {
+  mkdirSync(folder, { recursive: true });
+  const env = {
+    ...process.env,
+    LABEL_STUDIO_BASE_DATA_DIR: folder,
+    LABEL_STUDIO_ENABLE_LEGACY_API_TOKEN: 'true',
+    // The backend and the frames are on this computer, which a studio on the open net has to refuse.
+    ML_BLOCK_LOCAL_IP: 'false',
+    SSRF_PROTECTION_ENABLED: 'false',
+    COLLECT_ANALYTICS: 'false',
+    LATEST_VERSION_CHECK: 'false',
+  };
+  const args = ['start', '--no-browser', '--internal-host', '127.0.0.1', '--port', String(port)];
+  const user = ['--username', USER.email, '--password', USER.password, '--user-token', USER.token];
+  const child = spawn(join(VENV, 'bin', 'label-studio'), [...args, ...user], { env, stdio: ['ignore', 'pipe', 'pipe'] });
+  const log = createWriteStream(join(folder, 'log.txt'));
+  child.stdout.pipe(log);
+  child.stderr.pipe(log);
+  const address = `http://127.0.0.1:${port}`;
+  const studio = { address, ...USER, stop: () => child.kill() };
+  const since = Date.now();
+  while (!(await fetch(`${address}/health`).then(({ ok }) => ok, () => false))) {
+    if (child.exitCode !== null) throw new Stop(`Label Studio ended with code ${child.exitCode}; it said:\n${readFileSync(join(folder, 'log.txt'))}`);
+    if (Date.now() - since > PATIENCE) {
+      studio.stop();
+      throw new Stop('Label Studio did not answer within ten minutes.');
+    }
+    await sleep(1000);
+  }
+  return studio;
+}
+
+/** Serves two frames to the studio's page, which paints on them and therefore wants to be allowed to. */
+export async function serveFrames(paths) {
+  const server = createServer((request, response) => {
+    const path = paths[/^\/(\d)\.png$/.exec(request.url)?.[1]];
+    if (!path) return response.writeHead(404).end();
+    return response.writeHead(200, { 'Content-Type': 'image/png', 'Access-Control-Allow-Origin': '*' }).end(readFileSync(path));
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const address = `http://127.0.0.1:${server.address().port}`;
+  return { addresses: paths.map((_, index) => `${address}/${index}.png`), close: () => server.close() };
+}
+
+const CONFIG = `<View>
+  <BrushLabels name="moving" toName="first">
+    <Label value="moving-1" background="#e6194b"/><Label value="moving-2" background="#3cb44b"/><Label value="moving-3" background="#4363d8"/>
+  </BrushLabels>
+  <View style="display: flex; gap: 2em">
+    <View style="width: 50%"><Image name="first" value="$first"/></View>
+    <View style="width: 50%"><Image name="second" value="$second"/></View>
+  </View>
+</View>`;
+
+/** By the studio's interface: a project, our backend, a task with two frames, predictions. Returns what it then holds. */
+export async function predictions(studio, backend, [first, second]) {
+  const api = async (method, path, body) => {
+    const headers = { Authorization: `Token ${studio.token}`, 'Content-Type': 'application/json' };
+    const response = await fetch(`${studio.address}/api/${path}`, { method, headers, ...(body && { body: JSON.stringify(body) }) });
+    const text = await response.text();
+    if (!response.ok) throw new Stop(`${method} /api/${path} answered ${response.status}: ${text.slice(0, 2000)}`);
+    return text === '' ? undefined : JSON.parse(text);
+  };
+  const project = await api('POST', 'projects', { title: 'What moves', label_config: CONFIG, show_collab_predictions: true });
+  const connection = await api('POST', 'ml', { url: backend, project: project.id, title: 'Veronese' });
+  await api('POST', `projects/${project.id}/import?return_task_ids=true`, [{ data: { first, second } }]);
+  const { tasks } = await api('GET', `tasks?project=${project.id}`);
+  const selectedItems = { all: false, included: tasks.map(({ id }) => id) };
+  await api('POST', `dm/actions?id=retrieve_tasks_predictions&project=${project.id}`, { selectedItems, ordering: [] });
+  const found = await api('GET', `predictions?task=${tasks[0].id}`);
+  await api('PATCH', `projects/${project.id}`, { model_version: found[0]?.model_version });
+  return { project: project.id, task: tasks[0].id, state: connection.state ?? connection.readable_state, found };
+}
+
+/** Pixels of a stored brush as the studio's own library decodes them: one byte for each, 0 or 255. */
+export async function decodedByStudio(rle) {
+  const program = 'import json,sys; from label_studio_sdk.converter.brush import decode_rle; print(json.dumps(decode_rle(json.loads(sys.argv[1])).tolist()[3::4]))';
+  const { code, stdout, text } = await run(join(VENV, 'bin', 'python'), ['-c', program, JSON.stringify(rle)], { output: 'collect' });
+  if (code !== 0) throw new Stop(`The studio's library could not decode a mask:\n${text}`);
+  return JSON.parse(stdout);
+}
+
+/** Signs in as a person would and takes a picture of the task with its masks. */
+export async function picture(studio, { project, task }, chromiumPath, file) {
+  const { chromium } = createRequire(join(root, 'www', 'package.json'))('@playwright/test');
+  const browser = await chromium.launch({ executablePath: chromiumPath, args: ['--no-sandbox', '--disable-background-networking'] });
+  try {
+    const page = await browser.newPage({ viewport: { width: 1600, height: 900 } });
+    await page.goto(`${studio.address}/user/login/`);
+    await page.fill('input[name=email]', studio.email);
+    await page.fill('input[name=password]', studio.password);
+    await Promise.all([page.waitForURL((url) => !url.pathname.includes('login')), page.click('button[type=submit]')]);
+    await page.goto(`${studio.address}/projects/${project}/data?task=${task}`);
+    await page.waitForSelector('.konvajs-content canvas', { timeout: 120_000 });
+    // The masks are decoded and painted after the frames.
+    await page.waitForLoadState('networkidle').catch(() => undefined);
+    await sleep(3000);
+    mkdirSync(dirname(file), { recursive: true });
+    await page.screenshot({ path: file });
+    return await page.evaluate(() => document.body.innerText);
+  } finally {
+    await browser.close();
+  }
+}

@@ -1,0 +1,73 @@
+// npm run sizes: what a user of the package downloads, as a table in docs/sizes.md.
+
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { dirname, join, relative } from 'node:path';
+import { brotliCompressSync, gzipSync } from 'node:zlib';
+
+import { buildModules, buildPackage } from './lib/builds.mjs';
+import { prepare } from './lib/prepare.mjs';
+import { root } from './lib/project.mjs';
+import { command, must } from './lib/run.mjs';
+
+const PKG = join(root, 'pkg');
+const FILE = 'docs/sizes.md';
+const ROWS = [
+  ['the core module, for browser and Node', ['wasm/veronese_bg.wasm']],
+  ['JavaScript of `veronese` in a browser', ['dist/web.js']],
+  ['JavaScript of `veronese/worker`', ['dist/worker.js']],
+  ['JavaScript of `veronese/slim`', ['dist/slim.js']],
+  ['`veronese/inline`, the module inside', ['dist/inline.js']],
+  ['`veronese/formats`', ['dist/formats/index.js']],
+  ['`veronese/element`', ['dist/element.js']],
+  ['the module with image codecs, for Node alone', ['wasm/codecs/veronese_codecs_bg.wasm']],
+];
+
+await command(async () => {
+  await prepare();
+  await buildModules();
+  await buildPackage();
+  const rows = ROWS.filter(([, files]) => files.every(exists)).map(([title, files]) => {
+    const bytes = [...new Set(files.flatMap((file) => withImports(file)))].map((file) => readFileSync(join(PKG, file)));
+    const sum = (measure) => bytes.reduce((total, content) => total + measure(content), 0);
+    const sizes = [sum(({ length }) => length), sum((content) => gzipSync(content, { level: 9 }).length), sum((content) => brotliCompressSync(content).length)];
+    return `| ${[title, bytes.length, ...sizes.map(kilobytes)].join(' | ')} |`;
+  });
+  const { stdout } = await must('The package could not be packed.', 'npm', ['pack', '--dry-run', '--json', '--ignore-scripts'], {
+    cwd: PKG,
+    output: 'collect',
+  });
+  const [{ size, unpackedSize, entryCount }] = JSON.parse(stdout);
+  const text = [
+    '# Sizes',
+    '',
+    'Kilobytes of 1024 bytes, each with every file it imports, as they are in the package: unminified. Written by `npm run sizes`.',
+    '',
+    '| | files | as it is | gzip | brotli |',
+    '|---|---:|---:|---:|---:|',
+    ...rows,
+    `| what \`npm install\` fetches | ${entryCount} | ${kilobytes(unpackedSize)} | ${kilobytes(size)} | |`,
+    '',
+  ].join('\n');
+  writeFileSync(join(root, FILE), text);
+  console.log(`${text}\nWritten to ${FILE}.`);
+});
+
+function exists(file) {
+  return statSync(join(PKG, file), { throwIfNoEntry: false })?.isFile() === true;
+}
+
+/** A file and all that it imports, below the package's folder. */
+function withImports(file, seen = new Set()) {
+  if (seen.has(file)) return [...seen];
+  seen.add(file);
+  if (!file.endsWith('.js')) return [...seen];
+  const text = readFileSync(join(PKG, file), 'utf8');
+  for (const [, place] of text.matchAll(/(?:from |import )'(\.[^']+)'/g)) {
+    withImports(relative(PKG, join(PKG, dirname(file), place)), seen);
+  }
+  return [...seen];
+}
+
+function kilobytes(bytes) {
+  return (bytes / 1024).toFixed(1);
+}

@@ -1,0 +1,62 @@
+//! Where every motion fits badly, each is compared by a larger standard deviation.
+//!
+//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only nearly right: limbs,
+//! cloth, water, parallax, blur. Costs there saturate for all motions, right and wrong, and what is left of their difference is
+//! chance. How well the best motion fits around a pixel says by how much the variance is too small; costs are taken again with the
+//! variance that fits. Where the model holds, as it does in most frames nearly everywhere, nothing changes.
+
+use super::views::cheapest;
+use crate::alignment::cost::CostModel;
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+
+/// Standard deviation of the window in which the fit is judged, pixels.
+const WINDOW: f32 = 4.0;
+/// Smallest cost, averaged over a window, that the noise alone does not explain.
+const EXPECTED: f32 = 0.8;
+/// Largest ratio of standard deviations.
+const LARGEST: f32 = 3.0;
+
+/// Costs of the labels with the variance that the surroundings ask for; what is infinite stays.
+///
+/// The mean of the saturated costs grows about as the standard deviation of the residuals.
+pub(crate) fn allow_for_misfit(costs: &mut [Plane]) {
+    let model = CostModel::LABELS;
+    let mut best = cheapest(costs, f32::INFINITY);
+    best.values_mut().iter_mut().filter(|b| !b.is_finite()).for_each(|b| *b = model.outside());
+    let misfit = gaussian(&best, WINDOW);
+    for cost in costs {
+        for (c, misfit) in cost.values_mut().iter_mut().zip(misfit.values()).filter(|(c, _)| c.is_finite()) {
+            let ratio = (misfit / EXPECTED).clamp(1.0, LARGEST);
+            // e / (1 + e/T) with e / ratio² in place of e.
+            let share = *c / model.truncation;
+            *c /= ratio * ratio * (1.0 - share) + share;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn where_one_motion_fits_nothing_changes_and_where_none_does_the_better_one_is_told_apart() {
+        let plane = |good: f32, bad: f32| Plane::from_fn(80, 40, move |x, _| if x < 40 { good } else { bad });
+        let mut costs = [plane(0.4, 1.4), plane(1.9, 1.9)];
+        let before = costs.clone();
+        allow_for_misfit(&mut costs);
+        for k in 0..2 {
+            assert_eq!(costs[k].at(10, 20), before[k].at(10, 20));
+        }
+        let gap = |costs: &[Plane; 2]| costs[1].at(70, 20) - costs[0].at(70, 20);
+        assert!(gap(&costs) > 1.3 * gap(&before), "{} was {}", gap(&costs), gap(&before));
+    }
+
+    #[test]
+    fn what_is_saturated_or_unseen_stays_so() {
+        let mut costs = [Plane::filled(20, 20, CostModel::LABELS.truncation), Plane::filled(20, 20, f32::INFINITY)];
+        let before = costs.clone();
+        allow_for_misfit(&mut costs);
+        assert_eq!(costs, before);
+    }
+}

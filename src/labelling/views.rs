@@ -1,0 +1,84 @@
+//! Costs in two views: what the second frame hides, the frame before often shows.
+//!
+//! Which view a pixel is looked at in is decided for all motions together: each view counts by how well its best motion explains
+//! the surroundings. Taking the cheaper view of each motion by itself would give every motion two chances to fit by accident.
+
+use crate::alignment::cost::{CostModel, View, cost_in};
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::frame::pyramid::Level;
+use crate::motion::AffineMotion;
+
+/// Standard deviation of the window over which it is judged how well a view explains a pixel, pixels.
+const WINDOW: f32 = 1.5;
+/// Difference of the smallest costs in both views at which only the better one counts is half of this.
+const TRANSITION: f32 = 0.3;
+
+/// Cost of every motion at every pixel; infinite where it moves the pixel out of every view.
+pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+    let all = |view| motions.iter().map(|m| cost_in(level, view, m, CostModel::LABELS)).collect::<Vec<Plane>>();
+    let mut costs = all(View::Second);
+    if level.before.is_none() {
+        return costs;
+    }
+    let before = all(View::Before);
+    let (later, earlier) = (unexplained(&costs), unexplained(&before));
+    for (cost, before) in costs.iter_mut().zip(&before) {
+        let views = later.values().iter().zip(earlier.values());
+        for ((c, b), (later, earlier)) in cost.values_mut().iter_mut().zip(before.values()).zip(views) {
+            let share = ((earlier - later) / TRANSITION + 0.5).clamp(0.0, 1.0);
+            *c = match (c.is_finite(), b.is_finite()) {
+                (true, true) => share * *c + (1.0 - share) * b,
+                (true, false) => *c,
+                (false, _) => *b,
+            };
+        }
+    }
+    costs
+}
+
+/// The smallest cost of any motion, gathered over windows.
+fn unexplained(costs: &[Plane]) -> Plane {
+    gaussian(&cheapest(costs, CostModel::LABELS.truncation), WINDOW)
+}
+
+/// The smallest of the costs at every pixel, at most `most`.
+pub(crate) fn cheapest(costs: &[Plane], most: f32) -> Plane {
+    let Some(first) = costs.first() else { return Plane::filled(0, 0, 0.0) };
+    let mut cheapest = Plane::filled(first.width(), first.height(), most);
+    for cost in costs {
+        cheapest.values_mut().iter_mut().zip(cost.values()).for_each(|(l, c)| *l = l.min(*c));
+    }
+    cheapest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::pyramid::build;
+
+    fn noise(seed: u64) -> Plane {
+        let mut random = crate::random::Random::from_seed(seed);
+        Plane::from_fn(64, 48, |_, _| random.uniform(0.0, 255.0) as f32)
+    }
+
+    #[test]
+    fn what_the_second_frame_hides_is_looked_at_in_the_frame_before() {
+        // Nothing moves, but something covers the left half of the second frame.
+        let (first, cover) = (noise(1), noise(2));
+        let second = Plane::from_fn(64, 48, |x, y| if x < 32 { cover.at(x, y) } else { first.at(x, y) });
+        let motions = [AffineMotion::STATIC, AffineMotion::translation(5.0, 0.0)];
+        let mean = |plane: &Plane, columns: std::ops::Range<usize>| {
+            let values: Vec<f32> = (4..44).flat_map(|y| plane.row(y)[columns.clone()].to_vec()).collect();
+            values.iter().sum::<f32>() / values.len() as f32
+        };
+        let alone = costs_in_views(&build(first.clone(), second.clone(), None, 24)[0], &motions);
+        let both = costs_in_views(&build(first.clone(), second, Some(first), 24)[0], &motions);
+        assert!(mean(&alone[0], 6..26) > 1.5 && mean(&both[0], 6..26) < 0.1);
+        assert!(mean(&both[0], 38..58) < 0.1);
+        // The wrong motion fits no better with two views than with one.
+        for columns in [6..26, 38..56] {
+            assert!(mean(&both[1], columns.clone()) > mean(&alone[1], columns) - 0.1);
+        }
+    }
+}

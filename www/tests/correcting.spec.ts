@@ -1,0 +1,104 @@
+//! Strokes and merges change the masks as said, and are undone and done again.
+
+import { type Page } from '@playwright/test';
+
+import { differences, done, expect, labelsOnCanvas, open, test } from './support.js';
+
+/** Draws a stroke between two places of the picture, 0…1. */
+async function stroke(page: Page, from: readonly [number, number], to: readonly [number, number]): Promise<void> {
+  const box = (await page.locator('.layers').boundingBox())!;
+  const at = ([x, y]: readonly [number, number]): [number, number] => [box.x + x * box.width, box.y + y * box.height];
+  await page.mouse.move(...at(from));
+  await page.mouse.down();
+  await page.mouse.move(...at(to), { steps: 8 });
+  await page.mouse.up();
+  await expect(page.locator('#status')).toHaveText(/^Solved again/);
+  await done(page);
+}
+
+test('a brush stroke says what belongs to a mask, and undo takes it back', async ({ page }) => {
+  await open(page, 'groups');
+  const found = await labelsOnCanvas(page);
+  const at = (x: number, y: number): number => Math.floor(y * 432) * 768 + Math.floor(x * 768);
+  const ground = at(0.75, 0.5);
+  expect(found[ground]).toBe(0);
+
+  await page.keyboard.press('p');
+  await expect(page.locator('#tools [value=brush]')).toBeChecked();
+  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+  await stroke(page, [0.7, 0.5], [0.8, 0.5]);
+  const painted = await labelsOnCanvas(page);
+  for (let x = 0.7; x <= 0.8; x += 0.01) expect(painted[at(x, 0.5)]).toBe(1);
+  // Far away next to nothing has changed.
+  expect(differences(painted.slice(0, 768 * 60), found.slice(0, 768 * 60))).toBeLessThan(50);
+
+  await page.locator('#undo').click();
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+  await page.keyboard.press('Control+Shift+z');
+  expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
+  await page.keyboard.press('Control+z');
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+  await expect(page.locator('#undo')).toBeDisabled();
+});
+
+test('an eraser stroke takes pixels out of a mask', async ({ page }) => {
+  await open(page, 'groups');
+  const found = await labelsOnCanvas(page);
+  const inside = Math.floor(0.35 * 432) * 768 + Math.floor(0.22 * 768);
+  const mask = found[inside]!;
+  expect(mask).toBeGreaterThan(0);
+  await page.locator('#tools [value=eraser]').check();
+  await page.locator(`#motions > li[data-mask="${mask}"] .motion-words`).click();
+  await stroke(page, [0.2, 0.35], [0.25, 0.35]);
+  const erased = await labelsOnCanvas(page);
+  for (let x = 0.2; x <= 0.25; x += 0.01) expect(erased[Math.floor(0.35 * 432) * 768 + Math.floor(x * 768)]).not.toBe(mask);
+});
+
+test('masks are merged into one and taken apart again', async ({ page }) => {
+  await open(page, 'groups');
+  const found = await labelsOnCanvas(page);
+  const rows = page.locator('#motions > li');
+  const count = await rows.count();
+  await rows.nth(1).getByText('More', { exact: true }).click();
+  await rows.nth(1).locator('[data-action=merge]').selectOption('2');
+  await expect(rows).toHaveCount(count - 1);
+  expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
+  await page.locator('#undo').click();
+  await expect(rows).toHaveCount(count);
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+  await page.locator('#redo').click();
+  await rows.nth(1).getByText('More', { exact: true }).click();
+  await rows.nth(1).getByRole('button', { name: 'Take apart' }).click();
+  expect(await rows.count()).toBeGreaterThan(count - 1);
+});
+
+test('a stroke with a merged mask means any of its motions', async ({ page }) => {
+  await open(page, 'groups');
+  const rows = page.locator('#motions > li');
+  await rows.nth(1).getByText('More', { exact: true }).click();
+  await rows.nth(1).locator('[data-action=merge]').selectOption('2');
+  const merged = await labelsOnCanvas(page);
+  await page.keyboard.press('p');
+  await rows.nth(1).locator('.motion-words').click();
+  // Through what is in the mask already: nothing that it says is new.
+  await stroke(page, [0.2, 0.4], [0.24, 0.4]);
+  const painted = await labelsOnCanvas(page);
+  expect(differences(painted, merged) / painted.length).toBeLessThan(0.03);
+});
+
+test('a stroke is drawn by keyboard alone', async ({ page }) => {
+  await open(page, 'groups');
+  const found = await labelsOnCanvas(page);
+  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+  await page.keyboard.press('p');
+  await page.locator('.layers').focus();
+  for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Space');
+  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Space');
+  await expect(page.locator('#status')).toHaveText(/^Solved again/);
+  const painted = await labelsOnCanvas(page);
+  // From the middle 20 radii of 8 pixels to the right, then 6.
+  for (let x = 384 + 160; x <= 384 + 208; x++) expect(painted[216 * 768 + x]).toBe(1);
+  expect(differences(painted, found)).toBeGreaterThan(0);
+});
