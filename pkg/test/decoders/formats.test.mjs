@@ -9,10 +9,10 @@ import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import * as formats from 'veronese/formats';
-import { labelImages, present } from './support/masks.mjs';
+import { labelImages, present } from '../support/masks.mjs';
 
 const python = fileURLToPath(
-  new URL(process.platform === 'win32' ? '../../.tools/python/Scripts/python.exe' : '../../.tools/python/bin/python', import.meta.url),
+  new URL(process.platform === 'win32' ? '../../../.tools/python/Scripts/python.exe' : '../../../.tools/python/bin/python', import.meta.url),
 );
 const base64 = (bytes) => Buffer.from(bytes).toString('base64');
 
@@ -51,7 +51,7 @@ describe('decoded by the tools themselves, the same pixels', { skip }, () => {
   test('the decoders run', () => {
     const cases = images.map(({ labels, width, height }) => ({ labels: base64(labels), width, height, encoded: encoded(labels, width, height) }));
     writeFileSync(join(folder, 'cases.json'), JSON.stringify(cases));
-    const script = fileURLToPath(new URL('support/decode.py', import.meta.url));
+    const script = fileURLToPath(new URL('../support/decode.py', import.meta.url));
     const { status, stdout, stderr } = spawnSync(python, ['-B', script, folder], { encoding: 'utf8', maxBuffer: 2 ** 26 });
     assert.equal(status, 0, stderr);
     report = JSON.parse(stdout);
