@@ -21,7 +21,8 @@ export async function prepareNpmPackages(folder = '.') {
     `Installing ${what} (about half a minute)`,
     `${what[0].toUpperCase()}${what.slice(1)} could not be installed. See above; if it is the network, run the command again.`,
     'npm',
-    ['ci', '--no-audit', '--no-fund'],
+    // `ci` wants every optional package of every system in the lock file; BullMQ has some that are not to be had everywhere.
+    [...(folder === SCALE_OUT ? ['install', '--no-save'] : ['ci']), '--no-audit', '--no-fund'],
     { cwd: join(root, folder) },
   );
 }
