@@ -10,7 +10,7 @@ import { command, must } from './lib/run.mjs';
 
 const OUT = join(root, 'out', 'docs');
 /** Files of hand-written types: one for each thing that can be imported. */
-const ENTRIES = ['index', 'slim', 'codecs', 'formats', 'element'].map((name) => `pkg/types/${name}.d.ts`);
+const ENTRIES = ['index', 'slim', 'codecs', 'formats', 'element-class', 'element'].map((name) => `pkg/types/${name}.d.ts`);
 
 await command(async () => {
   await prepare();
