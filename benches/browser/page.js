@@ -67,9 +67,9 @@ globalThis.bench = {
 
   /** Bytes of memory of a fresh instance after one call. */
   async memory(quality, size) {
-    const glue = await import('/pkg/dist/glue.js');
+    const { glue } = await import('/pkg/build/glue.js');
     const response = await fetch('/pkg/wasm/veronese_bg.wasm');
-    const { memory } = await glue.default({ module_or_path: await WebAssembly.compileStreaming(response) });
+    const { memory } = await glue.instantiate(await WebAssembly.compileStreaming(response));
     const { first, second } = frames.get(size);
     glue.segmentPair(first, second, undefined, { quality }, undefined);
     return memory.buffer.byteLength;

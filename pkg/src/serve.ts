@@ -1,6 +1,6 @@
 // The worker's side: one task at a time, answered by messages.
 
-import * as glue from './glue.js';
+import { glue } from './glue.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { errorMessage } from './errors.js';
