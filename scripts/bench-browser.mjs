@@ -162,6 +162,7 @@ async function measured(browser, address, { rounds, sizes, cases }) {
       if (OURS.includes(name)) {
         entry.stages = stageMedians(calls[size][name].map((call) => call.stages));
         entry.native = nativeMedians(native.map((round) => round[size][name]));
+        entry.firstWarmedUp = fresh.warmedUp[size][name];
         entry.memoryBytes = fresh.memory[size][name];
       }
       bySize[size][name] = { ...entry, overlap, count };
@@ -171,13 +172,15 @@ async function measured(browser, address, { rounds, sizes, cases }) {
   return { readyMs, ...(opencv && { peersReadyMs: { opencv, jsfeat } }), sizes: bySize };
 }
 
-/** One page after another, each in a context without cache: time until ready, first call, memory. */
+/** One page after another, each in a context without cache: time until ready, first call, first call warmed up, memory. */
 async function freshPages(browser, address, sizes, cases) {
   const ready = {};
   const first = {};
+  const warmedUp = {};
   const memory = {};
   for (const size of sizes) {
     first[size] = {};
+    warmedUp[size] = {};
     memory[size] = {};
     for (const name of cases) {
       console.log(`Fresh pages: ${name}, ${size}`);
@@ -192,6 +195,14 @@ async function freshPages(browser, address, sizes, cases) {
       }
       first[size][name] = median(firsts);
       if (OURS.includes(name)) {
+        const warm = [];
+        for (let k = 0; k < FRESH_PAGES; k += 1) {
+          await onPage(browser, address, async (page) => {
+            await page.evaluate((size) => globalThis.bench.prepare(size), size);
+            warm.push(await page.evaluate((task) => globalThis.bench.warmedUp(...task), [name, size]));
+          });
+        }
+        warmedUp[size][name] = median(warm);
         memory[size][name] = await onPage(browser, address, async (page) => {
           await page.evaluate((size) => globalThis.bench.prepare(size), size);
           return page.evaluate(([name, size]) => globalThis.bench.memory(name, size), [name, size]);
@@ -199,7 +210,7 @@ async function freshPages(browser, address, sizes, cases) {
       }
     }
   }
-  return { ready: Object.fromEntries(Object.entries(ready).map(([k, v]) => [k, median(v)])), first, memory };
+  return { ready: Object.fromEntries(Object.entries(ready).map(([k, v]) => [k, median(v)])), first, warmedUp, memory };
 }
 
 /** All cases of all sizes in one page and natively, by turns, so that whatever else the machine does slows all of them. */

@@ -65,6 +65,19 @@ globalThis.bench = {
     return { milliseconds, stages: result?.milliseconds, count: result?.count, overlap };
   },
 
+  /** Milliseconds of the first call in a worker that was told to warm up before. */
+  async warmedUp(quality, size) {
+    await loadVeronese();
+    const { first, second } = frames.get(size);
+    const segmenter = new veronese.Segmenter();
+    await segmenter.warmUp();
+    const start = performance.now();
+    await segmenter.segmentPair(first, second, { quality });
+    const milliseconds = performance.now() - start;
+    segmenter.close();
+    return milliseconds;
+  },
+
   /** Bytes of memory of a fresh instance after one call. */
   async memory(quality, size) {
     const { glue } = await import('/pkg/build/glue.js');

@@ -32,21 +32,22 @@ function downloads({ wasmGzip, jsGzip, readyMs, peers, peersReadyMs }) {
   return table(['', 'download, gzip', 'ready after'], rows);
 }
 
-/** `first`: on a fresh page; `overlap`: mean intersection over union of the true labels with those found. */
+/** `first`: on a fresh page, `firstWarmedUp`: there after `warmUp()`; `overlap`: mean intersection over union of the true labels with those found. */
 function calls({ sizes }) {
   const rows = Object.entries(sizes).flatMap(([size, cases]) =>
-    Object.entries(cases).map(([name, { median, best, first, overlap, memoryBytes }]) => [
+    Object.entries(cases).map(([name, { median, best, first, firstWarmedUp, overlap, memoryBytes }]) => [
       times(size),
       TITLES[name],
       ms(median),
       ms(best),
-      `${ms(first)} (${(first / median).toFixed(1)} ×)`,
+      beside(first, median),
+      firstWarmedUp ? beside(firstWarmedUp, median) : '',
       cases.farneback ? (median / cases.farneback.median).toFixed(2) : '',
       overlap === undefined ? '' : overlap.toFixed(3),
       memoryBytes ? mib(memoryBytes) : '',
     ]),
   );
-  return table(['frames', 'call', 'median', 'best', 'first call', '÷ Farneback', 'overlap', 'memory, MiB'], rows);
+  return table(['frames', 'call', 'median', 'best', 'first call', 'warmed up', '÷ Farneback', 'overlap', 'memory, MiB'], rows);
 }
 
 function workers({ workers: { size, onePairsPerSecond, twoPairsPerSecond, ratio } }) {
@@ -98,6 +99,11 @@ function table(head, rows) {
 
 function ms(value) {
   return value.toFixed(value < 1000 ? 1 : 0);
+}
+
+/** A time and how many times another it is. */
+function beside(value, other) {
+  return `${ms(value)} (${(value / other).toFixed(1)} ×)`;
 }
 
 function kib(bytes) {
