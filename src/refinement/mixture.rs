@@ -14,7 +14,7 @@
 //! freezes the first assignment. (3) The sum of squares after a step is predicted from the quadratic model, which saves
 //! one pass over the data per iteration; near convergence the prediction is exact.
 
-use super::exponential::exp_of_negative;
+use super::exponential::power_of_two;
 use super::samples::{BLOCK, Block, Row, Samples};
 use super::symmetric::{Matrix6, cholesky, quadratic_form, solve};
 
@@ -97,9 +97,9 @@ impl Mixture {
         self.shares[i] / (self.sigma * 2.506_628_274_631_000_5) // √(2π)
     }
 
-    /// What the squared distance is multiplied with in the exponent.
+    /// What the squared distance is multiplied with in the exponent to base 2.
     fn exponent(&self) -> f64 {
-        -0.5 / (self.sigma * self.sigma)
+        -0.5 * std::f64::consts::LOG2_E / (self.sigma * self.sigma)
     }
 }
 
@@ -124,7 +124,7 @@ impl Scratch {
         // All motions in one loop: its many constants are loaded once.
         let exponent = mixture.exponent();
         for (density, d) in self.density.as_flattened_mut().iter_mut().zip(self.distance.as_flattened()) {
-            *density = exp_of_negative(exponent * d * d);
+            *density = power_of_two(exponent * d * d);
         }
         for (i, densities) in self.density.iter_mut().enumerate() {
             let peak = mixture.peak(i);
