@@ -20,13 +20,10 @@ pub(super) fn homogeneous(positions: &[[f64; 2]]) -> Vec<[f64; 3]> {
 
 /// Rows of P̃_n, column-major.
 fn embedded_columns(degree: usize, x: &[[f64; 3]], y: &[[f64; 3]]) -> Vec<f64> {
-    products(&kept_pairs(degree), x.len(), &embed_columns(degree, y), &embed_columns(degree, x))
-}
-
-/// The products of the kept pairs of monomials, column-major.
-pub(super) fn products(pairs: &[(usize, usize)], rows: usize, of_y: &[f64], of_x: &[f64]) -> Vec<f64> {
-    let mut block = Vec::with_capacity(rows * pairs.len());
-    for &(row, column) in pairs {
+    let (of_y, of_x) = (embed_columns(degree, y), embed_columns(degree, x));
+    let rows = x.len();
+    let mut block = Vec::with_capacity(rows * unknowns(degree));
+    for (row, column) in kept_pairs(degree) {
         let y = &of_y[row * rows..(row + 1) * rows];
         let x = &of_x[column * rows..(column + 1) * rows];
         block.extend(y.iter().zip(x).map(|(a, b)| a * b));

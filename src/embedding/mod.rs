@@ -9,6 +9,7 @@
 //! [`Measurements::normalised`](crate::Measurements::normalised).
 
 mod embedded;
+mod moments;
 pub mod monomials;
 mod multibody;
 pub mod rank;
@@ -16,5 +17,6 @@ mod taubin;
 pub mod veronese;
 
 pub use embedded::{EmbeddedData, embedded_matrix};
+pub(crate) use moments::Refitting;
 pub use multibody::MultibodyMotion;
 pub use taubin::taubin_motion;

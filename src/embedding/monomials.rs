@@ -24,12 +24,13 @@ pub const fn unknowns(degree: usize) -> usize {
 
 /// All monomials of degree `degree`, in the paper's order.
 pub fn exponents(degree: usize) -> Vec<Exponents> {
-    each(degree).collect()
-}
-
-/// The same, one after another.
-pub(super) fn each(degree: usize) -> impl Iterator<Item = Exponents> {
-    (0..=degree).rev().flat_map(move |a| (0..=degree - a).rev().map(move |b| [a, b, degree - a - b]))
+    let mut all = Vec::with_capacity(count(degree));
+    for a in (0..=degree).rev() {
+        for b in (0..=degree - a).rev() {
+            all.push([a, b, degree - a - b]);
+        }
+    }
+    all
 }
 
 /// The place of a monomial in [`exponents`] of its degree.

@@ -1,12 +1,12 @@
 //! The multibody affine motion 𝒜 (Lemma 1): all motions in one matrix, linear in the embedded data.
 
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DVector};
 
 use super::embedded::EmbeddedData;
 use super::monomials::{Exponents, count, exponents, index, kept_pairs, structural_zeros};
-use super::veronese::{derivatives_into, embed, embed_into, jacobian};
+use super::veronese::{embed, jacobian};
 use crate::error::{Error, Result};
-use crate::linear::NullVector;
+use crate::linear::{NullVector, Triangle};
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 
@@ -64,13 +64,17 @@ impl MultibodyMotion {
 
     /// The same from data already embedded.
     pub fn from_embedded(data: &EmbeddedData) -> Self {
-        let mut triangle = data.triangle().clone();
+        Self::from_triangle(data.degree(), data.triangle().clone())
+    }
+
+    /// The same from R of the embedded data.
+    pub(super) fn from_triangle(degree: usize, mut triangle: Triangle) -> Self {
         let lengths = triangle.scale_columns();
         let mut null = NullVector::of(&triangle).vector;
         for (value, length) in null.iter_mut().zip(&lengths) {
             *value /= length;
         }
-        Self::from_coefficients(data.degree(), &null)
+        Self::from_coefficients(degree, &null)
     }
 
     /// The degree n: the number of motions.
@@ -91,32 +95,6 @@ impl MultibodyMotion {
     /// ν_n(y)ᵀ 𝒜 ν_n(x), the left side of (7).
     pub fn evaluate(&self, x: [f64; 3], y: [f64; 3]) -> f64 {
         embed(self.degree, y).dot(&self.multibody_flow(x))
-    }
-
-    /// [`evaluate`](Self::evaluate) and [`gradient_y`](Self::gradient_y) at many measurements, in order.
-    pub(crate) fn values_and_gradients(&self, measurements: &Measurements) -> Vec<(f64, [f64; 3])> {
-        let length = count(self.degree);
-        let (mut of_x, mut of_y) = (vec![0.0; length], vec![0.0; length]);
-        let mut flow = vec![0.0; length];
-        let place = measurements.iter().map(|([x, y], derivatives)| ([x, y, 1.0], derivatives));
-        place
-            .map(|(x, y)| {
-                embed_into(self.degree, x, &mut of_x);
-                flow.fill(0.0);
-                for (column, v) in self.matrix.column_iter().zip(&of_x) {
-                    flow.iter_mut().zip(column.iter()).for_each(|(f, a)| *f += a * v);
-                }
-                let flow = DVectorView::from_slice(&flow, length);
-                let along = |values: &[f64]| DVectorView::from_slice(values, length).dot(&flow);
-                embed_into(self.degree, y, &mut of_y);
-                let value = along(&of_y);
-                let gradient = [0, 1, 2].map(|k| {
-                    derivatives_into(self.degree, k, y, &mut of_y);
-                    along(&of_y)
-                });
-                (value, gradient)
-            })
-            .collect()
     }
 
     /// Its derivatives by y. Where x and y belong to motion i, they are parallel to the flow A_i x.

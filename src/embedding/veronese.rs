@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::monomials::{count, each};
+use super::monomials::{count, exponents};
 use crate::options::MAX_MOTIONS;
 
 /// Powers 0…n of one number; those beyond n are not meant.
@@ -14,62 +14,42 @@ fn powers(value: f64, degree: usize) -> [f64; MAX_MOTIONS + 1] {
     all
 }
 
-/// ν_n(v), length M_n, in the order of [`exponents`](super::monomials::exponents).
+/// ν_n(v), length M_n, in the order of [`exponents`].
 pub fn embed(degree: usize, v: [f64; 3]) -> DVector<f64> {
-    let mut values = vec![0.0; count(degree)];
-    embed_into(degree, v, &mut values);
-    DVector::from_vec(values)
-}
-
-/// [`embed`] into a place of length M_n.
-pub(super) fn embed_into(degree: usize, v: [f64; 3], values: &mut [f64]) {
     let [p, q, r] = v.map(|value| powers(value, degree));
-    for (value, [a, b, c]) in values.iter_mut().zip(each(degree)) {
-        *value = p[a] * q[b] * r[c];
-    }
+    DVector::from_iterator(count(degree), exponents(degree).into_iter().map(|[a, b, c]| p[a] * q[b] * r[c]))
 }
 
 /// The Jacobian of ν_n at v, M_n×3: column k holds the derivatives by the k-th variable.
 pub fn jacobian(degree: usize, v: [f64; 3]) -> DMatrix<f64> {
-    let mut result = DMatrix::zeros(count(degree), 3);
-    for (k, mut column) in result.column_iter_mut().enumerate() {
-        derivatives_into(degree, k, v, column.as_mut_slice());
-    }
-    result
-}
-
-/// Column k of [`jacobian`] into a place of length M_n.
-pub(super) fn derivatives_into(degree: usize, k: usize, v: [f64; 3], values: &mut [f64]) {
     let p = v.map(|value| powers(value, degree));
-    let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-    for (value, e) in values.iter_mut().zip(each(degree)) {
-        *value = match e[k] {
+    let all = exponents(degree);
+    DMatrix::from_fn(all.len(), 3, |row, k| {
+        let (e, i, j) = (all[row], (k + 1) % 3, (k + 2) % 3);
+        match e[k] {
             0 => 0.0,
             power => power as f64 * p[k][power - 1] * p[i][e[i]] * p[j][e[j]],
-        };
-    }
-}
-
-/// ν_n of many vectors, column-major: `result[monomial * vectors.len() + j]` belongs to vector j.
-pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
-    columns(degree, vectors, |v, values| embed_into(degree, v, values))
-}
-
-/// The derivatives of ν_n by variable k at many vectors, laid out as in [`embed_columns`].
-pub(super) fn derivative_columns(degree: usize, k: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
-    columns(degree, vectors, |v, values| derivatives_into(degree, k, v, values))
-}
-
-/// What `of` says of each vector, M_n values, as columns over all vectors.
-fn columns(degree: usize, vectors: &[[f64; 3]], of: impl Fn([f64; 3], &mut [f64])) -> Vec<f64> {
-    let rows = vectors.len();
-    let mut result = vec![0.0; rows * count(degree)];
-    let mut values = vec![0.0; count(degree)];
-    for (j, v) in vectors.iter().enumerate() {
-        of(*v, &mut values);
-        for (column, value) in result.chunks_exact_mut(rows).zip(&values) {
-            column[j] = *value;
         }
+    })
+}
+
+/// ν_n of many vectors, column-major: `result[monomial * vectors.len() + j]` belongs to vector j. The same bits as [`embed`], for
+/// any degree.
+pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
+    let rows = vectors.len();
+    // Powers 0…n of each variable, as columns.
+    let powers = [0, 1, 2].map(|k| {
+        let mut columns = vec![1.0; rows];
+        for power in 0..degree {
+            columns.extend_from_within(power * rows..);
+            columns[(power + 1) * rows..].iter_mut().zip(vectors).for_each(|(value, v)| *value *= v[k]);
+        }
+        columns
+    });
+    let mut result = Vec::with_capacity(rows * count(degree));
+    for e in exponents(degree) {
+        let [p, q, r] = [0, 1, 2].map(|k| &powers[k][e[k] * rows..][..rows]);
+        result.extend(p.iter().zip(q).zip(r).map(|((p, q), r)| p * q * r));
     }
     result
 }

@@ -20,6 +20,22 @@ impl Triangle {
         Triangle { size, values: vec![0.0; size * size] }
     }
 
+    /// R with RᵀR = `gram`, given column-major (only its upper part is read), after `ridge` times its own size was added to each
+    /// diagonal entry. No pivot's square falls below that.
+    pub(crate) fn of_gram(size: usize, mut gram: Vec<f64>, ridge: f64) -> Self {
+        for k in 0..size {
+            let (done, rest) = gram.split_at_mut(k * size);
+            let (column, below) = rest[..size].split_at_mut(k);
+            for (i, other) in done.chunks_exact(size).enumerate() {
+                column[i] = (column[i] - dot(&other[..i], &column[..i])) / other[i];
+            }
+            let added = (ridge * below[0]).max(f64::MIN_POSITIVE);
+            below[0] = (below[0] + added - dot(column, column)).max(added).sqrt();
+            below[1..].fill(0.0);
+        }
+        Triangle { size, values: gram }
+    }
+
     /// Number of rows and columns, m.
     pub fn size(&self) -> usize {
         self.size

@@ -10,10 +10,10 @@ use super::clustering::{Point, k_means};
 use super::local_flow::{LocalFlow, samples};
 use super::translated;
 use crate::alignment::cost::CostModel;
-use crate::embedding::{MultibodyMotion, monomials};
+use crate::embedding::{MultibodyMotion, Refitting, monomials};
 use crate::frame::Plane;
 use crate::frame::pyramid::Level;
-use crate::frame::warp::{Footprint, RowPath};
+use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
@@ -75,20 +75,24 @@ fn unexplained(
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut found = Vec::new();
+    let mut seen = [0.0; CHUNK];
     for y in 0..height {
         let path = RowPath::new(&scaled, 0, y);
-        for x in 0..width {
-            let (px, py) = path.at(x);
-            let at = Footprint::new(px, py, width, height);
-            let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));
-            if !at.inside || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
-                continue;
-            }
-            let r = at.sample(level.second.values()) - level.first.at(x, y);
-            let e = r * r / (level.noise * level.noise + looseness * level.energy.at(x, y));
-            let weight = e / (e + HALF_WEIGHT);
-            if weight > SMALLEST_WEIGHT {
-                found.push((x, y, weight));
+        for start in (0..width).step_by(CHUNK) {
+            let chunk = start..(start + CHUNK).min(width);
+            let at = Footprints::along(&path, start, width, height);
+            at.sample(level.second.values(), &mut seen[..chunk.len()]);
+            for (x, (&inside, seen)) in chunk.zip(at.inside.iter().zip(&seen)) {
+                let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));
+                if !inside || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
+                    continue;
+                }
+                let r = seen - level.first.at(x, y);
+                let e = r * r / (level.noise * level.noise + looseness * level.energy.at(x, y));
+                let weight = e / (e + HALF_WEIGHT);
+                if weight > SMALLEST_WEIGHT {
+                    found.push((x, y, weight));
+                }
             }
         }
     }
@@ -115,14 +119,15 @@ fn unexplained(
 
 /// The flows (pixels of the level) that a polynomial of one degree gives, one per group of pixels.
 fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
+    let refitting = Refitting::new(&data.measurements, degree);
     let mut weights = data.weights.clone();
     let mut readings = Vec::new();
     let mut close = 0.0;
     for _ in 0..ROUNDS {
-        let Ok(polynomial) = MultibodyMotion::estimate(&weighted(&data.measurements, &weights, degree), degree) else {
-            return Vec::new();
-        };
-        readings = read_off(&polynomial, &data.measurements);
+        // A weight belongs to a row; only their ratios count.
+        let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
+        weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
+        readings = read_off(&refitting, &refitting.fit(&weights));
         let distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
         close = 1.5 * median_f64(&distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
@@ -132,16 +137,6 @@ fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
         }
     }
     group(&readings, data.measurements.positions(), close, 2 * degree + 1)
-}
-
-/// Rows of the embedded matrix weighted by w: since ν_n(y) is homogeneous of degree n, that is y scaled by w^(1/n).
-fn weighted(measurements: &Measurements, weights: &[f64], degree: usize) -> Measurements {
-    let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
-    let derivatives = measurements.derivatives().iter().zip(weights).map(|(y, w)| {
-        let scale = libm::pow(w / largest, 1.0 / degree as f64);
-        y.map(|v| v * scale)
-    });
-    Measurements::new(measurements.positions().to_vec(), derivatives.collect()).unwrap_or_else(|_| measurements.clone())
 }
 
 /// What differentiation says about a measurement.
@@ -154,8 +149,8 @@ struct Reading {
     distance: f64,
 }
 
-fn read_off(polynomial: &MultibodyMotion, measurements: &Measurements) -> Vec<Reading> {
-    let all = polynomial.values_and_gradients(measurements).into_iter();
+fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Vec<Reading> {
+    let all = refitting.read(polynomial).into_iter();
     all.map(|(value, g)| {
         let slope = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
         Reading { flow: [g[0] / g[2], g[1] / g[2]], slope, distance: value.abs() / (slope + 1e-9) }

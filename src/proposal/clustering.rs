@@ -15,6 +15,8 @@ pub(super) fn k_means(points: &[Point], groups: usize) -> Vec<usize> {
     let mut assignment = vec![0; points.len()];
     for _ in 0..MAX_ITERATIONS {
         let mut changed = false;
+        // Sum and number of the points of each group.
+        let mut sums = vec![([0.0; 4], 0.0); centres.len()];
         for (slot, point) in assignment.iter_mut().zip(points) {
             let mut nearest = (f64::INFINITY, 0);
             for (k, centre) in centres.iter().enumerate() {
@@ -25,13 +27,11 @@ pub(super) fn k_means(points: &[Point], groups: usize) -> Vec<usize> {
             }
             changed |= *slot != nearest.1;
             *slot = nearest.1;
+            let (sum, count) = &mut sums[nearest.1];
+            sum.iter_mut().zip(point).for_each(|(s, p)| *s += p);
+            *count += 1.0;
         }
-        for (k, centre) in centres.iter_mut().enumerate() {
-            let (mut sum, mut count) = ([0.0; 4], 0.0);
-            for (point, _) in points.iter().zip(&assignment).filter(|&(_, &a)| a == k) {
-                count += 1.0;
-                sum.iter_mut().zip(point).for_each(|(s, p)| *s += p);
-            }
+        for (centre, (sum, count)) in centres.iter_mut().zip(sums) {
             if count > 0.0 {
                 *centre = sum.map(|s| s / count);
             }
