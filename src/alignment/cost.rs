@@ -10,6 +10,7 @@
 //! half-pixel shift beats the truth in flat areas.
 
 use crate::frame::Plane;
+use crate::frame::lanes::each;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::motion::AffineMotion;
@@ -75,7 +76,7 @@ pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Pl
         let unseen = plane.values_mut().iter_mut().zip(before.values()).filter(|(c, _)| !c.is_finite());
         unseen.for_each(|(c, b)| *c = *b);
     }
-    plane.values_mut().iter_mut().for_each(|c| *c = if c.is_finite() { *c } else { model.outside() });
+    each(plane.values_mut(), |c| if c.is_finite() { c } else { model.outside() });
     plane
 }
 
@@ -127,24 +128,35 @@ fn view_cost(
     let correlation = level.noise_correlation();
     let mut out = Vec::with_capacity(width * height);
     let (mut samples, mut costs) = ([0.0; CHUNK], [0.0; CHUNK]);
+    let (mut values, mut energies) = ([0.0; CHUNK], [0.0; CHUNK]);
     for y in 0..height {
         let path = RowPath::new(scaled, 0, y);
         let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
         for (k, (first, energy)) in rows.enumerate() {
             let at = Footprints::along(&path, k * CHUNK, width, height);
             at.sample(view.values(), &mut samples[..first.len()]);
-            let seen = samples.iter().zip(&at.inside).zip(at.fx.iter().zip(&at.fy));
-            let pixels = costs.iter_mut().zip(first).zip(energy).zip(seen);
-            for (((cost, first), energy), ((sample, inside), (fx, fy))) in pixels {
-                let residual = sample - first * (1.0 + gain) - bias;
-                let variance = noise * interpolation_variance(*fx, *fy, correlation) + looseness * energy;
+            let count = first.len();
+            let (first, energy) = (whole(first, &mut values), whole(energy, &mut energies));
+            // Beyond the row's end something is computed that nobody looks at: a loop of known length has no rest.
+            for k in 0..CHUNK {
+                let residual = samples[k] - first[k] * (1.0 + gain) - bias;
+                let variance = noise * interpolation_variance(at.fx[k], at.fy[k], correlation) + looseness * energy[k];
                 let explained = model.of(residual, variance);
-                *cost = if *inside { explained } else { outside };
+                costs[k] = if at.inside[k] { explained } else { outside };
             }
-            out.extend_from_slice(&costs[..first.len()]);
+            out.extend_from_slice(&costs[..count]);
         }
     }
     Plane::from_vec(width, height, out)
+}
+
+/// A part of a row at the length of a chunk: itself, or a copy of it with anything behind.
+fn whole<'a>(part: &'a [f32], space: &'a mut [f32; CHUNK]) -> &'a [f32; CHUNK] {
+    if let Some(chunk) = part.first_chunk() {
+        return chunk;
+    }
+    space[..part.len()].copy_from_slice(part);
+    space
 }
 
 /// Sum of a cost plane.

@@ -1,6 +1,7 @@
 //! Separable filters with replicated borders: blur, halving, gradients, median.
 
 use super::Plane;
+use super::lanes::{LANES, each_with};
 
 /// Weights of a normalised Gaussian, from the centre outwards, cut at 3σ.
 fn gaussian_weights(sigma: f32) -> Vec<f32> {
@@ -155,44 +156,51 @@ pub(crate) fn median5(plane: &Plane) -> Plane {
     let mut columns: [Vec<f32>; 5] = std::array::from_fn(|_| vec![0.0; width + 4]);
     for y in 0..height {
         let rows: [&[f32]; 5] = std::array::from_fn(|k| plane.row((y + k).saturating_sub(2).min(height - 1)));
-        sort_columns(rows, columns.each_mut().map(|c| &mut c[2..width + 2]));
+        let whole = width - width % LANES;
+        (0..whole).step_by(LANES).for_each(|x| sort_columns::<LANES>(rows, x, &mut columns));
+        (whole..width).for_each(|x| sort_columns::<1>(rows, x, &mut columns));
         for column in &mut columns {
             let (first, last) = (column[2], column[width + 1]);
             column[..2].fill(first);
             column[width + 2..].fill(last);
         }
-        medians(columns.each_ref().map(Vec::as_slice), out.row_mut(y));
+        let out = out.row_mut(y);
+        (0..whole).step_by(LANES).for_each(|x| medians::<LANES>(&columns, x, out));
+        (whole..width).for_each(|x| medians::<1>(&columns, x, out));
     }
     out
 }
 
-/// The five values of each column by size: `sorted[0]` gets the smallest.
-fn sort_columns(rows: [&[f32]; 5], sorted: [&mut [f32]; 5]) {
-    let [a, b, c, d, e] = rows;
-    let [p, q, r, s, t] = sorted;
-    let n = p.len();
-    let (a, b, c, d, e) = (&a[..n], &b[..n], &c[..n], &d[..n], &e[..n]);
-    let (q, r, s, t) = (&mut q[..n], &mut r[..n], &mut s[..n], &mut t[..n]);
-    for x in 0..n {
-        let mut v = [a[x], b[x], c[x], d[x], e[x]];
+/// The five values of each of the columns x…x+N−1 by size: `sorted[0]` gets the smallest, two places further on.
+#[inline(always)]
+fn sort_columns<const N: usize>(rows: [&[f32]; 5], x: usize, sorted: &mut [Vec<f32>; 5]) {
+    let rows = rows.map(|row| &row[x..x + N]);
+    let mut block = [[0.0; N]; 5];
+    for l in 0..N {
+        let mut v = rows.map(|row| row[l]);
         for (i, j) in [(0, 1), (3, 4), (2, 4), (2, 3), (0, 3), (0, 2), (1, 4), (1, 3), (1, 2)] {
             order(&mut v, i, j);
         }
-        [p[x], q[x], r[x], s[x], t[x]] = v;
+        (0..5).for_each(|k| block[k][l] = v[k]);
+    }
+    for (sorted, block) in sorted.iter_mut().zip(&block) {
+        sorted[x + 2..x + 2 + N].copy_from_slice(block);
     }
 }
 
-/// Medians of windows of five neighbouring columns.
-fn medians(columns: [&[f32]; 5], out: &mut [f32]) {
-    let n = out.len();
-    let window: [[&[f32]; 5]; 5] = columns.map(|column| std::array::from_fn(|k| &column[k..k + n]));
-    for (x, o) in out.iter_mut().enumerate() {
-        let [a, b, c, d, e] = window.map(|row| row.map(|column| column[x]));
+/// Medians of the windows of five neighbouring columns from x, …, x+N−1 on.
+#[inline(always)]
+fn medians<const N: usize>(columns: &[Vec<f32>; 5], x: usize, out: &mut [f32]) {
+    let window: [[&[f32]; 5]; 5] = columns.each_ref().map(|column| std::array::from_fn(|k| &column[x + k..x + k + N]));
+    let mut block = [0.0; N];
+    for l in 0..N {
+        let [a, b, c, d, e] = window.map(|row| row.map(|column| column[l]));
         let ([.., a0, a1], [.., b0, b1, b2]) = (largest_last::<2>(a), largest_last::<3>(b));
         let [_, c0, c1, c2, _] = extremes_apart(c);
         let ([d0, d1, d2, ..], [e0, e1, ..]) = (smallest_first::<3>(d), smallest_first::<2>(e));
-        *o = median_of_13([a0, a1, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1]);
+        block[l] = median_of_13([a0, a1, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1]);
     }
+    out[x..x + N].copy_from_slice(&block);
 }
 
 /// Puts the smaller of two values first. The same comparison decides both, so that nothing is lost, whatever the values.
@@ -257,12 +265,12 @@ pub(crate) fn eroded(mask: &Plane) -> Plane {
     let mut padded = vec![f32::INFINITY; width + 2];
     for y in 0..height {
         let (above, below) = (mask.row(y.saturating_sub(1)), mask.row((y + 1).min(height - 1)));
-        for (((p, a), b), c) in padded[1..=width].iter_mut().zip(above).zip(mask.row(y)).zip(below) {
-            *p = smaller(smaller(*a, *b), *c);
-        }
-        for (((o, a), b), c) in out.row_mut(y).iter_mut().zip(&padded).zip(&padded[1..]).zip(&padded[2..]) {
-            *o = smaller(smaller(*a, *b), *c);
-        }
+        let middle = &mut padded[1..=width];
+        middle.copy_from_slice(above);
+        each_with(middle, [mask.row(y), below], |a, [b, c]| smaller(smaller(a, b), c));
+        let out = out.row_mut(y);
+        out.copy_from_slice(&padded[..width]);
+        each_with(out, [&padded[1..], &padded[2..]], |a, [b, c]| smaller(smaller(a, b), c));
     }
     out
 }

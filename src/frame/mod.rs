@@ -2,6 +2,7 @@
 
 mod derivatives;
 pub(crate) mod filter;
+pub(crate) mod lanes;
 mod plane;
 pub(crate) mod pyramid;
 pub(crate) mod warp;

@@ -72,6 +72,8 @@ impl Footprint {
 
 /// Pixels of a row that are looked at together.
 pub(crate) const CHUNK: usize = 64;
+/// Pixels of them that are sampled together, whether the row goes on that far or not.
+const BLOCK: usize = 16;
 
 /// [`Footprint`]s of neighbouring pixels.
 pub(crate) struct Footprints {
@@ -118,13 +120,24 @@ impl Footprints {
     pub(crate) fn sample(&self, values: &[f32], out: &mut [f32]) {
         // On the last column and row a neighbour is missing; its weight is zero there, so that any value will do.
         let Some(last) = values.len().checked_sub(1) else { return };
-        for (((o, &index), fx), fy) in out.iter_mut().zip(&self.index).zip(&self.fx).zip(&self.fy) {
-            let index = index as usize;
-            let (a, b) = (values[index.min(last)], values[(index + 1).min(last)]);
-            let (c, d) = (values[(index + self.width).min(last)], values[(index + self.width + 1).min(last)]);
-            let top = a + fx * (b - a);
-            let bottom = c + fx * (d - c);
-            *o = top + fy * (bottom - top);
+        let block = |from: usize| {
+            let mut samples = [0.0; BLOCK];
+            for l in 0..BLOCK {
+                let (index, fx, fy) = (self.index[from + l] as usize, self.fx[from + l], self.fy[from + l]);
+                let (a, b) = (values[index.min(last)], values[(index + 1).min(last)]);
+                let (c, d) = (values[(index + self.width).min(last)], values[(index + self.width + 1).min(last)]);
+                let top = a + fx * (b - a);
+                let bottom = c + fx * (d - c);
+                samples[l] = top + fy * (bottom - top);
+            }
+            samples
+        };
+        for (from, out) in (0..CHUNK).step_by(BLOCK).zip(out.chunks_mut(BLOCK)) {
+            let samples = block(from);
+            match out.first_chunk_mut::<BLOCK>() {
+                Some(out) => *out = samples,
+                None => out.iter_mut().zip(samples).for_each(|(o, sample)| *o = sample),
+            }
         }
     }
 }

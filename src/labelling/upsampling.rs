@@ -5,6 +5,7 @@
 //! there is nothing to decide. Most tiles are such.
 
 use crate::frame::Plane;
+use crate::frame::lanes::{each, each_with};
 
 /// Radius of the filter's windows, full-size pixels.
 const RADIUS: usize = 4;
@@ -192,17 +193,17 @@ impl Patch {
             middle.fill(0.0);
             for k in 0..=2 * RADIUS {
                 let row = &self.row((y + k).saturating_sub(RADIUS).min(height - 1))[skipped..];
-                middle.iter_mut().zip(row).for_each(|(m, v)| *m += v);
+                each_with(middle, [row], |m, [v]| m + v);
             }
-            middle.iter_mut().for_each(|m| *m *= WEIGHT);
+            each(middle, |m| m * WEIGHT);
             let (first, last) = (padded[left], padded[left + touched.len() - 1]);
             padded[..left].fill(first);
             padded[left + touched.len()..].fill(last);
             let row = mean.row_mut(y);
             for k in 0..=2 * RADIUS {
-                row.iter_mut().zip(&padded[k..]).for_each(|(m, v)| *m += v);
+                each_with(row, [&padded[k..]], |m, [v]| m + v);
             }
-            row.iter_mut().for_each(|m| *m *= WEIGHT);
+            each(row, |m| m * WEIGHT);
         }
         mean
     }

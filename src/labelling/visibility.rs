@@ -4,6 +4,7 @@ use super::mask_of;
 use crate::alignment::cost::inverse;
 use crate::frame::Plane;
 use crate::frame::filter::eroded;
+use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::warp;
 use crate::motion::AffineMotion;
@@ -48,9 +49,7 @@ pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> 
 fn covered(level: &Level, motion: &AffineMotion, landed: &[Plane], own: usize) -> Plane {
     let mut cover = Plane::filled(level.width(), level.height(), 0.0);
     for (_, mask) in landed.iter().enumerate().skip(1).filter(|&(other, _)| other != own) {
-        for (c, m) in cover.values_mut().iter_mut().zip(mask.values()) {
-            *c = c.max(*m);
-        }
+        each_with(cover.values_mut(), [mask.values()], |c, [m]| if m > c { m } else { c });
     }
     warp(&cover, &level.scaled(motion))
 }

@@ -121,14 +121,12 @@ impl Scratch {
         for (i, motion) in mixture.motions.iter().enumerate() {
             gradients(block, motion, &mut self.distance[i], &mut self.by_u[i], &mut self.by_v[i]);
         }
-        // All motions in one loop: its many constants are loaded once.
         let exponent = mixture.exponent();
-        for (density, d) in self.density.as_flattened_mut().iter_mut().zip(self.distance.as_flattened()) {
-            *density = power_of_two(exponent * d * d);
-        }
-        for (i, densities) in self.density.iter_mut().enumerate() {
+        for (i, (density, distance)) in self.density.iter_mut().zip(&self.distance).enumerate() {
             let peak = mixture.peak(i);
-            densities.iter_mut().for_each(|density| *density *= peak);
+            for j in 0..BLOCK {
+                density[j] = power_of_two(exponent * distance[j] * distance[j]) * peak;
+            }
         }
     }
 }

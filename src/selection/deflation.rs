@@ -6,6 +6,7 @@ use crate::alignment::cost::{Photometric, total};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
+use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
 use crate::labelling::components::{Connectivity, components};
 use crate::motion::AffineMotion;
@@ -38,9 +39,7 @@ const WORTH_A_TRY: f64 = 0.25;
 /// Where, and by how much, a cost plane is below another: the difference gathered over windows.
 fn improvement(current: &Plane, cost: &Plane) -> Plane {
     let mut difference = current.clone();
-    for (d, c) in difference.values_mut().iter_mut().zip(cost.values()) {
-        *d -= c;
-    }
+    each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
     gaussian(&difference, WINDOW)
 }
 
@@ -69,9 +68,7 @@ fn blocks(plane: &Plane) -> Plane {
 /// The gain estimated on block means.
 fn rough_gain(current: &Plane, cost: &Plane) -> f64 {
     let mut difference = current.clone();
-    for (d, c) in difference.values_mut().iter_mut().zip(cost.values()) {
-        *d -= c;
-    }
+    each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
     gain_of(&gaussian(&difference, WINDOW / BLOCK as f32)) * (BLOCK * BLOCK) as f64
 }
 

@@ -11,6 +11,7 @@ pub(crate) use refit::refit;
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
+use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -36,9 +37,7 @@ impl Layer {
 pub(crate) fn smallest_cost(layers: &[Layer]) -> Plane {
     let mut smallest = layers[0].cost.clone();
     for layer in &layers[1..] {
-        for (s, c) in smallest.values_mut().iter_mut().zip(layer.cost.values()) {
-            *s = s.min(*c);
-        }
+        each_with(smallest.values_mut(), [layer.cost.values()], |s, [c]| if c < s { c } else { s });
     }
     smallest
 }

@@ -5,6 +5,7 @@ use crate::alignment::cost::Photometric;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::{eroded, gaussian};
+use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
 
 /// Priors against linear terms: of the dominant motion (it has most of the frame) and of the others.
@@ -47,11 +48,10 @@ fn region_of(layers: &[Layer], k: usize) -> Option<Plane> {
     let cost = &layers[k].cost;
     let mut region = Plane::filled(cost.width(), cost.height(), 1.0);
     for (other, layer) in layers.iter().enumerate().filter(|&(other, _)| other != k) {
-        let costs = cost.values().iter().zip(layer.cost.values());
-        for (r, (own, value)) in region.values_mut().iter_mut().zip(costs) {
+        each_with(region.values_mut(), [cost.values(), layer.cost.values()], |r, [own, value]| {
             let wins = if k < other { own <= value } else { own < value };
-            *r = if wins { *r } else { 0.0 };
-        }
+            if wins { r } else { 0.0 }
+        });
     }
     let pixels = region.values().iter().filter(|&&w| w > 0.0).count();
     if pixels < SMALLEST_REGION {
