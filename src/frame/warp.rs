@@ -21,6 +21,11 @@ impl RowPath {
         RowPath { start: [x0 as f64 + u, y as f64 + v], step: [1.0 + a[0], a[3]] }
     }
 
+    /// The same positions in pixels a `factor`-th as large.
+    pub(crate) fn times(self, factor: f64) -> RowPath {
+        RowPath { start: self.start.map(|s| factor * s), step: self.step.map(|s| factor * s) }
+    }
+
     /// Position of the k-th pixel of the row.
     #[inline(always)]
     pub(crate) fn at(&self, k: usize) -> (f32, f32) {

@@ -61,6 +61,10 @@ pub(crate) struct Settings {
     pub(crate) most: usize,
     /// Number of motions below which none is taken away again.
     pub(crate) least: usize,
+    /// Standard deviation of the window over which the gain of a motion is gathered, pixels of the level.
+    pub(crate) gain_window: f32,
+    /// How often labels are corrected for occlusion.
+    pub(crate) visibility_rounds: usize,
     /// How labels hold together.
     pub(crate) coherence: Coherence,
     /// What is left out.
@@ -72,17 +76,19 @@ impl Settings {
     pub(crate) fn of(options: &SegmentOptions) -> Settings {
         let best = Settings {
             work_side: 448,
-            base_side: 320,
+            base_side: 224,
             smallest_side: 24,
             degrees: 3,
             measurements: 2000,
             tiles: 48,
             tries: 4,
-            price: [60.0, 120.0],
+            price: [60.0, 30.0],
             hypothesis_price: 300.0,
             most: 7,
             least: 1,
-            coherence: Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
+            gain_window: 2.0,
+            visibility_rounds: 2,
+            coherence: Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST, sharpening: Solver::BEST },
             #[cfg(feature = "ablation")]
             without: None,
         };
@@ -95,7 +101,9 @@ impl Settings {
                 measurements: 1000,
                 tiles: 24,
                 tries: 2,
-                coherence: Coherence { solver: Solver::FAST, ..best.coherence },
+                visibility_rounds: 1,
+                gain_window: 1.5,
+                coherence: Coherence { solver: Solver::FAST, sharpening: Solver::Messages { levels: crate::knob("SLV", 4.0) as usize, iterations: crate::knob("SIT", 2.0) as usize }, ..best.coherence },
                 ..best
             },
         };

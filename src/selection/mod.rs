@@ -14,7 +14,7 @@ use crate::frame::filter::gaussian;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
-/// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the level.
+/// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the second frame.
 const WINDOW: f32 = 2.0;
 
 /// A motion and what it costs at every pixel of a level, gathered over windows.
@@ -27,7 +27,7 @@ pub(crate) struct Layer {
 impl Layer {
     /// A motion looked at on a level.
     pub(crate) fn new(level: &Level, motion: AffineMotion) -> Layer {
-        Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW) }
+        Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32) }
     }
 }
 
