@@ -44,7 +44,7 @@ pub(crate) fn best_fit(measurements: &Measurements, options: &FitOptions, progre
     let mut hypotheses = |n| algebraic_hypotheses(&normalised, n, &mut random);
     let (fit, tried) = match options.motions {
         MotionCount::Given(n) => {
-            let fit = search.fit(n, &hypotheses(n));
+            let fit = search.fit(n, &hypotheses(n), f64::INFINITY);
             let score = score(&mut search, &fit);
             (fit, vec![(n, score)])
         }

@@ -18,6 +18,7 @@
 
 use super::mixture::{Mixture, Normal, Stop, Workspace, nearest_distances, own_distances};
 use super::samples::Samples;
+use super::selection::score;
 use super::subset;
 use crate::order::{median_f64, sort_few};
 use crate::random::Random;
@@ -53,6 +54,8 @@ const STALE_CLEAN: usize = 1;
 const CLEAN: f64 = 0.02;
 /// Close pairs are taken apart at most so many times.
 const UNTANGLINGS: usize = 3;
+/// By so much less the score must be to win before this is worth while; measured, it lowers the score by 24 at most.
+const HOPELESS: f64 = 40.0;
 /// Motions of the pool with an entry beyond this are nothing any more.
 const LARGEST: f64 = 1e3;
 
@@ -92,8 +95,9 @@ impl<'a> Search<'a> {
         self.all
     }
 
-    /// The most likely n motions found, on all measurements. `hypotheses` are motions worth trying; there may be none.
-    pub(crate) fn fit(&mut self, n: usize, hypotheses: &[[f64; 6]]) -> Mixture {
+    /// The most likely n motions found, on all measurements. `hypotheses` are motions worth trying; there may be none. Where the
+    /// score is far above `rival`, that of another n, the last effort is saved.
+    pub(crate) fn fit(&mut self, n: usize, hypotheses: &[[f64; 6]], rival: f64) -> Mixture {
         let mut best = self.start(n, hypotheses);
         let mut stale = 0;
         for round in 1..=ROUNDS {
@@ -104,9 +108,11 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        for _ in 0..UNTANGLINGS {
-            if !self.untangle(&mut best) {
-                break;
+        if rival == f64::INFINITY || score(self, &best) < rival + HOPELESS {
+            for _ in 0..UNTANGLINGS {
+                if !self.untangle(&mut best) {
+                    break;
+                }
             }
         }
         let start = Mixture::new(best.motions, best.sigma);

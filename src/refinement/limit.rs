@@ -23,7 +23,7 @@ fn losses(protocol: &Protocol, trials: u64) -> u64 {
         let samples = Samples::new(&normalised);
         let truth = problem.motions.iter().map(|motion| normalisation.apply(motion).matrix).collect();
         let limit = Workspace::default().maximise(&samples, Mixture::new(truth, 0.03), LONG);
-        let found = Search::new(&samples, 1).fit(protocol.motions, &[]);
+        let found = Search::new(&samples, 1).fit(protocol.motions, &[], f64::INFINITY);
         found.log_likelihood < limit.log_likelihood - 0.5
     };
     (0..trials).filter(lost).count() as u64

@@ -14,7 +14,7 @@
 //! freezes the first assignment. (3) The sum of squares after a step is predicted from the quadratic model, which saves
 //! one pass over the data per iteration; near convergence the prediction is exact.
 
-use super::exponential::exp_of_negative;
+use super::exponential::power_of_two;
 use super::samples::{BLOCK, Block, Row, Samples};
 use super::symmetric::{Matrix6, cholesky, quadratic_form, solve};
 
@@ -78,12 +78,11 @@ impl Mixture {
         for (b, block) in samples.blocks().iter().enumerate() {
             let mut best = [self.outliers * OUTLIER_DENSITY; BLOCK];
             let mut label = [None; BLOCK];
-            for (i, motion) in self.motions.iter().enumerate() {
-                distances(block, motion, &mut scratch);
-                densities(self.peak(i), self.exponent(), &mut scratch);
+            scratch.fill(block, self);
+            for (i, densities) in scratch.density.iter().enumerate() {
                 for j in 0..BLOCK {
-                    if scratch.density[j] > best[j] {
-                        best[j] = scratch.density[j];
+                    if densities[j] > best[j] {
+                        best[j] = densities[j];
                         label[j] = Some(i);
                     }
                 }
@@ -98,25 +97,39 @@ impl Mixture {
         self.shares[i] / (self.sigma * 2.506_628_274_631_000_5) // √(2π)
     }
 
-    /// What the squared distance is multiplied with in the exponent.
+    /// What the squared distance is multiplied with in the exponent to base 2.
     fn exponent(&self) -> f64 {
-        -0.5 / (self.sigma * self.sigma)
+        -0.5 * std::f64::consts::LOG2_E / (self.sigma * self.sigma)
     }
 }
 
-/// What one pass knows about one block and one motion.
-#[derive(Clone)]
+/// What one pass knows about one block: a row per motion of everything.
+#[derive(Default)]
 struct Scratch {
-    distance: Row,
+    distance: Vec<Row>,
     /// Derivative of the distance by the flow's first and second component.
-    by_u: Row,
-    by_v: Row,
-    density: Row,
+    by_u: Vec<Row>,
+    by_v: Vec<Row>,
+    density: Vec<Row>,
 }
 
-impl Default for Scratch {
-    fn default() -> Self {
-        Scratch { distance: [0.0; BLOCK], by_u: [0.0; BLOCK], by_v: [0.0; BLOCK], density: [0.0; BLOCK] }
+impl Scratch {
+    fn fill(&mut self, block: &Block, mixture: &Mixture) {
+        for rows in [&mut self.distance, &mut self.by_u, &mut self.by_v, &mut self.density] {
+            rows.resize(mixture.motions.len(), [0.0; BLOCK]);
+        }
+        for (i, motion) in mixture.motions.iter().enumerate() {
+            gradients(block, motion, &mut self.distance[i], &mut self.by_u[i], &mut self.by_v[i]);
+        }
+        // All motions in one loop: its many constants are loaded once.
+        let exponent = mixture.exponent();
+        for (density, d) in self.density.as_flattened_mut().iter_mut().zip(self.distance.as_flattened()) {
+            *density = power_of_two(exponent * d * d);
+        }
+        for (i, densities) in self.density.iter_mut().enumerate() {
+            let peak = mixture.peak(i);
+            densities.iter_mut().for_each(|density| *density *= peak);
+        }
     }
 }
 
@@ -153,7 +166,8 @@ pub(crate) struct Normal {
 /// The buffers of the iteration, kept between calls.
 #[derive(Default)]
 pub(crate) struct Workspace {
-    scratch: Vec<Scratch>,
+    scratch: Scratch,
+    factors: Factors,
     sums: Vec<Sums>,
 }
 
@@ -182,36 +196,33 @@ impl Workspace {
 
     /// One pass over the data: fills the sums, sets the likelihood, returns the outliers' total weight.
     fn pass(&mut self, samples: &Samples, mixture: &mut Mixture) -> f64 {
-        let n = mixture.motions.len();
-        self.scratch.resize_with(n, Scratch::default);
         self.sums.clear();
-        self.sums.resize(n, Sums::default());
+        self.sums.resize(mixture.motions.len(), Sums::default());
         let background = mixture.outliers * OUTLIER_DENSITY;
-        let exponent = mixture.exponent();
         let mut outlier_weight = [0.0; LANES];
         let mut log_likelihood = 0.0;
         for (b, block) in samples.blocks().iter().enumerate() {
+            self.scratch.fill(block, mixture);
             let mut total = [background; BLOCK];
-            for (i, scratch) in self.scratch.iter_mut().enumerate() {
-                distances(block, &mixture.motions[i], scratch);
-                densities(mixture.peak(i), exponent, scratch);
-                for j in 0..BLOCK {
-                    total[j] += scratch.density[j];
-                }
+            for densities in &self.scratch.density {
+                total.iter_mut().zip(densities).for_each(|(t, density)| *t += density);
             }
-            for part in total[..samples.filled(b)].chunks(FACTORS) {
+            let filled = samples.filled(b);
+            for part in total[..filled].chunks(FACTORS) {
                 log_likelihood += libm::log(part.iter().product());
             }
-            for j in 0..BLOCK {
-                total[j] = block.present[j] / total[j];
+            for (t, present) in total.iter_mut().zip(&block.present) {
+                *t = present / *t;
             }
-            for lanes in total.chunks_exact(LANES) {
+            for lanes in total.as_chunks::<LANES>().0 {
                 for l in 0..LANES {
                     outlier_weight[l] += background * lanes[l];
                 }
             }
-            for (scratch, sums) in self.scratch.iter().zip(&mut self.sums) {
-                sums.add(block, scratch, &total);
+            let lanes = filled.next_multiple_of(LANES);
+            for (i, sums) in self.sums.iter_mut().enumerate() {
+                self.factors.fill(&self.scratch, i, &total);
+                sums.add(block, &self.factors, lanes);
             }
         }
         mixture.log_likelihood = log_likelihood;
@@ -264,41 +275,76 @@ impl Normal {
     }
 }
 
-impl Sums {
-    /// Adds a block: `inverse[j]` is what turns the densities of measurement j into weights.
-    #[inline]
-    fn add(&mut self, block: &Block, scratch: &Scratch, inverse: &Row) {
-        let (mut uu, mut uv, mut vv) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
-        let (mut du, mut dv) = ([0.0; BLOCK], [0.0; BLOCK]);
-        let (mut weight, mut squares) = ([0.0; BLOCK], [0.0; BLOCK]);
+/// What the coordinates of each measurement of a block are multiplied with in the sums of one motion.
+struct Factors {
+    uu: Row,
+    uv: Row,
+    vv: Row,
+    du: Row,
+    dv: Row,
+    weight: Row,
+    squares: Row,
+}
+
+impl Default for Factors {
+    fn default() -> Self {
+        let [uu, uv, vv, du, dv, weight, squares] = [[0.0; BLOCK]; 7];
+        Factors { uu, uv, vv, du, dv, weight, squares }
+    }
+}
+
+impl Factors {
+    /// `inverse[j]` is what turns the densities of measurement j into weights.
+    fn fill(&mut self, scratch: &Scratch, i: usize, inverse: &Row) {
+        let [density, by_u, by_v, distance] =
+            [&scratch.density, &scratch.by_u, &scratch.by_v, &scratch.distance].map(|rows| &rows[i]);
         for j in 0..BLOCK {
-            let w = scratch.density[j] * inverse[j];
-            let (a, b, d) = (scratch.by_u[j], scratch.by_v[j], scratch.distance[j]);
+            let w = density[j] * inverse[j];
+            let (a, b, d) = (by_u[j], by_v[j], distance[j]);
             let (wa, wb) = (w * a, w * b);
-            uu[j] = wa * a;
-            uv[j] = wa * b;
-            vv[j] = wb * b;
-            du[j] = wa * d;
-            dv[j] = wb * d;
-            weight[j] = w;
-            squares[j] = w * d * d;
+            self.uu[j] = wa * a;
+            self.uv[j] = wa * b;
+            self.vv[j] = wb * b;
+            self.du[j] = wa * d;
+            self.dv[j] = wb * d;
+            self.weight[j] = w;
+            self.squares[j] = w * d * d;
         }
-        add_products(&mut self.uu, &uu, block);
-        add_products(&mut self.uv, &uv, block);
-        add_products(&mut self.vv, &vv, block);
-        for j in (0..BLOCK).step_by(LANES) {
+    }
+}
+
+/// The first `length` entries of a row, by lanes. A length that the compiler does not know keeps it from unrolling the loops over
+/// a whole block, for which there are not enough registers.
+#[inline(always)]
+fn by_lanes(row: &Row, length: usize) -> &[Sum] {
+    row[..length.min(BLOCK)].as_chunks().0
+}
+
+impl Sums {
+    /// Adds the first `length` measurements of a block.
+    fn add(&mut self, block: &Block, factors: &Factors, length: usize) {
+        add_products(&mut self.uu, &factors.uu, block, length);
+        add_products(&mut self.uv, &factors.uv, block, length);
+        add_products(&mut self.vv, &factors.vv, block, length);
+        let (mut gradient, [mut weight, mut squares]) = (self.gradient, [self.weight, self.squares]);
+        let row = |row| by_lanes(row, length).iter();
+        for (((x, y), du), dv) in row(&block.x).zip(row(&block.y)).zip(row(&factors.du)).zip(row(&factors.dv)) {
             for l in 0..LANES {
-                let (x, y) = (block.x[j + l], block.y[j + l]);
-                self.gradient[0][l] += du[j + l] * x;
-                self.gradient[1][l] += du[j + l] * y;
-                self.gradient[2][l] += du[j + l];
-                self.gradient[3][l] += dv[j + l] * x;
-                self.gradient[4][l] += dv[j + l] * y;
-                self.gradient[5][l] += dv[j + l];
-                self.weight[l] += weight[j + l];
-                self.squares[l] += squares[j + l];
+                gradient[0][l] += du[l] * x[l];
+                gradient[1][l] += du[l] * y[l];
+                gradient[2][l] += du[l];
+                gradient[3][l] += dv[l] * x[l];
+                gradient[4][l] += dv[l] * y[l];
+                gradient[5][l] += dv[l];
             }
         }
+        for (w, s) in row(&factors.weight).zip(row(&factors.squares)) {
+            for l in 0..LANES {
+                weight[l] += w[l];
+                squares[l] += s[l];
+            }
+        }
+        (self.gradient, self.weight, self.squares) = (gradient, weight, squares);
     }
 
     fn total(&self) -> Normal {
@@ -328,60 +374,59 @@ fn add_up(sum: &Sum) -> f64 {
     (sum[0] + sum[2]) + (sum[1] + sum[3])
 }
 
-/// Adds `factor·(xx, xy, x, yy, y, 1)` over a block.
-#[inline]
-fn add_products(sums: &mut [Sum; 6], factor: &Row, block: &Block) {
+/// Adds `factor·(xx, xy, x, yy, y, 1)` over the first `length` measurements of a block.
+fn add_products(sums: &mut [Sum; 6], factor: &Row, block: &Block, length: usize) {
     let mut s = *sums;
-    for j in (0..BLOCK).step_by(LANES) {
+    let row = |row| by_lanes(row, length).iter();
+    let squares = row(&block.xx).zip(row(&block.xy)).zip(row(&block.yy));
+    for (((f, x), y), ((xx, xy), yy)) in row(factor).zip(row(&block.x)).zip(row(&block.y)).zip(squares) {
         for l in 0..LANES {
-            let f = factor[j + l];
-            s[0][l] += f * block.xx[j + l];
-            s[1][l] += f * block.xy[j + l];
-            s[2][l] += f * block.x[j + l];
-            s[3][l] += f * block.yy[j + l];
-            s[4][l] += f * block.y[j + l];
-            s[5][l] += f;
+            s[0][l] += f[l] * xx[l];
+            s[1][l] += f[l] * xy[l];
+            s[2][l] += f[l] * x[l];
+            s[3][l] += f[l] * yy[l];
+            s[4][l] += f[l] * y[l];
+            s[5][l] += f[l];
         }
     }
     *sums = s;
 }
 
-/// Distances of a block's measurements to a motion, and their derivatives by the flow.
-#[inline]
-fn distances(block: &Block, a: &[f64; 6], out: &mut Scratch) {
-    for j in 0..BLOCK {
-        let (x, y) = (block.x[j], block.y[j]);
-        let u = a[0] * x + a[1] * y + a[2];
-        let v = a[3] * x + a[4] * y + a[5];
-        let r = block.ix[j] * u + block.iy[j] * v + block.it[j];
-        let shrink = 1.0 / (u * u + v * v + 1.0).sqrt();
-        let d = r * shrink;
-        let along = d * shrink;
-        out.distance[j] = d;
-        out.by_u[j] = (block.ix[j] - along * u) * shrink;
-        out.by_v[j] = (block.iy[j] - along * v) * shrink;
-    }
+/// The flow at measurement j of a block, `1/√(u² + v² + 1)`, and its distance to the motion.
+#[inline(always)]
+fn distance(block: &Block, a: &[f64; 6], j: usize) -> ([f64; 2], f64, f64) {
+    let (x, y) = (block.x[j], block.y[j]);
+    let u = a[0] * x + a[1] * y + a[2];
+    let v = a[3] * x + a[4] * y + a[5];
+    let r = block.ix[j] * u + block.iy[j] * v + block.it[j];
+    let shrink = 1.0 / (u * u + v * v + 1.0).sqrt();
+    ([u, v], shrink, r * shrink)
 }
 
-/// Densities from distances.
-#[inline]
-fn densities(peak: f64, exponent: f64, out: &mut Scratch) {
+/// Distances of a block's measurements to a motion.
+fn distances(block: &Block, a: &[f64; 6]) -> Row {
+    std::array::from_fn(|j| distance(block, a, j).2)
+}
+
+/// The same, and their derivatives by the flow.
+fn gradients(block: &Block, a: &[f64; 6], out: &mut Row, by_u: &mut Row, by_v: &mut Row) {
     for j in 0..BLOCK {
-        let d = out.distance[j];
-        out.density[j] = peak * exp_of_negative(exponent * d * d);
+        let ([u, v], shrink, d) = distance(block, a, j);
+        let along = d * shrink;
+        out[j] = d;
+        by_u[j] = (block.ix[j] - along * u) * shrink;
+        by_v[j] = (block.iy[j] - along * v) * shrink;
     }
 }
 
 /// The smallest absolute distance of every measurement to any of the motions.
 pub(crate) fn nearest_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<f64> {
     let mut nearest = Vec::with_capacity(samples.len());
-    let mut scratch = Scratch::default();
     for (b, block) in samples.blocks().iter().enumerate() {
         let mut least = [f64::INFINITY; BLOCK];
         for motion in motions {
-            distances(block, motion, &mut scratch);
-            for j in 0..BLOCK {
-                least[j] = least[j].min(scratch.distance[j].abs());
+            for (least, d) in least.iter_mut().zip(distances(block, motion)) {
+                *least = smaller(*least, d.abs());
             }
         }
         nearest.extend_from_slice(&least[..samples.filled(b)]);
@@ -392,14 +437,13 @@ pub(crate) fn nearest_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<
 /// For each motion the absolute distances of the measurements that are nearest to it.
 pub(crate) fn own_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<Vec<f64>> {
     let mut own = vec![Vec::new(); motions.len()];
-    let mut scratch = Scratch::default();
     for (b, block) in samples.blocks().iter().enumerate() {
         let mut least = [f64::INFINITY; BLOCK];
         let mut nearest = [0; BLOCK];
         for (i, motion) in motions.iter().enumerate() {
-            distances(block, motion, &mut scratch);
+            let distance = distances(block, motion);
             for j in 0..BLOCK {
-                let d = scratch.distance[j].abs();
+                let d = distance[j].abs();
                 if d < least[j] {
                     (least[j], nearest[j]) = (d, i);
                 }
@@ -415,9 +459,13 @@ pub(crate) fn own_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<Vec<
 /// Appends the squared distances of all measurements to one motion, cut at `cap²`; single precision is enough to compare by.
 pub(crate) fn capped_squares(samples: &Samples, motion: &[f64; 6], cap: f64, out: &mut Vec<f32>) {
     let most = cap * cap;
-    let mut scratch = Scratch::default();
     for (b, block) in samples.blocks().iter().enumerate() {
-        distances(block, motion, &mut scratch);
-        out.extend(scratch.distance[..samples.filled(b)].iter().map(|d| (d * d).min(most) as f32));
+        out.extend(distances(block, motion)[..samples.filled(b)].iter().map(|d| smaller(most, d * d) as f32));
     }
+}
+
+/// The smaller of two numbers: one instruction, other than `min`, which asks whether one is NaN.
+#[inline(always)]
+fn smaller(a: f64, b: f64) -> f64 {
+    if b < a { b } else { a }
 }

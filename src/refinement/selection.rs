@@ -35,11 +35,11 @@ pub(crate) fn select(
     largest: usize,
     mut hypotheses: impl FnMut(usize) -> Vec<[f64; 6]>,
 ) -> Selection {
-    let mut fit = search.fit(1, &hypotheses(1));
+    let mut fit = search.fit(1, &hypotheses(1), f64::INFINITY);
     let mut tried = vec![(1, score(search, &fit))];
     let mut best = tried[0].1;
     for n in 2..=largest {
-        let candidate = search.fit(n, &hypotheses(n));
+        let candidate = search.fit(n, &hypotheses(n), best);
         let score = score(search, &candidate);
         tried.push((n, score));
         if score < best {
@@ -56,9 +56,9 @@ pub(crate) fn select(
 fn reconsider(search: &mut Search<'_>, fit: &mut Mixture, tried: &mut [(usize, f64)]) {
     while fit.motions.len() > 1 {
         let n = fit.motions.len() - 1;
-        let smaller = search.fit(n, &[]);
-        let score = score(search, &smaller);
         let kept = tried[n].1;
+        let smaller = search.fit(n, &[], kept);
+        let score = score(search, &smaller);
         tried[n - 1].1 = tried[n - 1].1.min(score);
         if score >= kept {
             break;
