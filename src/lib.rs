@@ -82,7 +82,3 @@ pub use pipeline::{
 pub use points::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED, fit_motions};
 pub use progress::{Progress, Stage};
 pub use random::Random;
-
-pub(crate) fn knob(name: &str, default: f64) -> f64 {
-    std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-}

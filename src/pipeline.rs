@@ -124,7 +124,7 @@ pub(crate) struct Work {
     base: usize,
     /// Index of the level on which labels are drafted.
     draft: usize,
-    /// The first frame unblurred, at the sizes of the levels down to that of the draft.
+    /// The first frame unblurred, at the sizes of the levels down to the base level.
     pictures: Vec<Picture>,
     /// Coarse colour of every working pixel.
     palette: Palette,
@@ -147,11 +147,12 @@ impl Work {
         let empty = || Plane::filled(1, 1, 0.0);
         let (one, two) = (blurred.next().unwrap_or_else(empty), blurred.next().unwrap_or_else(empty));
         let levels = build(one, two, blurred.next(), settings.smallest_side);
-        let base =
-            levels.iter().position(|l| l.width().max(l.height()) <= settings.base_side).unwrap_or(levels.len() - 1);
+        let within = |side: usize| {
+            levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1)
+        };
+        let (base, draft) = (within(settings.base_side), within(settings.draft_side));
         let mut pictures = vec![picture];
-        let draft = base;
-        while pictures.len() <= draft {
+        while pictures.len() <= base.max(draft) {
             let last = &pictures[pictures.len() - 1];
             pictures.push(Picture { luminance: halve(&last.luminance), colours: last.colours.each_ref().map(halve) });
         }

@@ -18,7 +18,7 @@ use crate::motion::AffineMotion;
 /// Size of a tile, working pixels.
 const TILE: [usize; 2] = [32, 8];
 /// How far around a tile labels compete in it, coarse pixels.
-const MARGIN: usize = 2;
+const MARGIN: usize = 4;
 /// What a label costs where it does not compete.
 const FAR: f32 = 1e3;
 
@@ -92,7 +92,7 @@ impl Coarse<'_> {
     fn contested(&self, width: usize, height: usize) -> Vec<Tile> {
         let rows = self.labels.len() / self.width;
         let near = |from: usize, to: usize, size: usize| {
-            (from / self.step).saturating_sub(crate::knob("MARGIN", 4.0) as usize)..((to - 1) / self.step + crate::knob("MARGIN", 4.0) as usize + 1).min(size)
+            (from / self.step).saturating_sub(MARGIN)..((to - 1) / self.step + MARGIN + 1).min(size)
         };
         let mut tiles = Vec::new();
         for top in (0..height).step_by(TILE[1]) {
@@ -149,7 +149,7 @@ impl<'a> Comparisons<'a> {
                     }
                 }
                 for ((c, seen), x) in row.iter_mut().zip(&mut seen).zip(tile.columns.clone()) {
-                    *c = allowed_for(*c, if crate::knob("MIS", 1.0) > 0.0 { coarse.misfit.values()[coarse.pixel(x, y)] } else { 1.0 });
+                    *c = allowed_for(*c, coarse.misfit.values()[coarse.pixel(x, y)]);
                     *seen = seen.min(*c);
                 }
             }
@@ -168,7 +168,7 @@ impl<'a> Comparisons<'a> {
                     if coarse.barred.get(label).is_some_and(|barred| barred[p]) {
                         cost += CostModel::ESTIMATION.truncation;
                     }
-                    if coarse.hidden.get(label).is_some_and(|hidden| hidden[p] && crate::knob("HID", 1.0) > 0.0) {
+                    if coarse.hidden.get(label).is_some_and(|hidden| hidden[p]) {
                         cost = cost.min(most);
                     }
                     if let Some(colours) = coarse.colours {

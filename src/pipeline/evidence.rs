@@ -1,9 +1,8 @@
 //! What the number of motions rests on: description lengths with fewer and with more motions than were found.
 
 use super::Work;
-use super::masks::{COARSE_PIXEL, Labelled};
+use super::masks::{Labelled, borders, left_over};
 use super::settings::Settings;
-use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;
 use crate::labelling::description::{length, price_of_motion, worth};
 use crate::labelling::energy::label_costs;
@@ -13,19 +12,17 @@ use crate::options::MAX_MOTIONS;
 use crate::points::Candidate;
 
 /// Description lengths: of what was found, of what remains as the least worthy motions are taken away, and of one more. Labels are
-/// solved for each on the level of the draft, by costs without occlusion and colour.
+/// solved for each at the base level, by costs without occlusion and colour.
 pub(super) fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
-    let level = &work.levels[work.draft];
+    let level = &work.levels[work.base];
     let width = level.width();
     let n = labelled.motions.len();
     let motions: Vec<AffineMotion> =
         labelled.motions.iter().chain(&labelled.left_out).copied().take(MAX_MOTIONS).collect();
-    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
-    if work.draft > 0 {
-        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= COARSE_PIXEL);
-    }
+    let mut raw = left_over(level, &motions);
     let mut costs = label_costs(level, &motions, settings.coherence);
-    let solve = |costs: &[Plane]| labelled.borders.solve(costs, Solver::FAST);
+    let borders = borders(work, work.base, settings);
+    let solve = |costs: &[Plane]| borders.solve(costs, Solver::FAST);
     let one_more = (motions.len() > n).then(|| length(&raw, &solve(&costs), width));
     raw.truncate(n);
     costs.truncate(n);

@@ -22,16 +22,14 @@ const REACH_SHARE: f64 = 0.25;
 /// … and at least this many pixels of the working size.
 const SMALLEST_REACH: usize = 12;
 /// Nats of a pixel of a coarser level beside those of a working pixel: it stands for four, whose noise is not independent.
-pub(super) const COARSE_PIXEL: f32 = 2.0;
+const COARSE_PIXEL: f32 = 2.0;
 /// Smoothness on a coarser level as a share of that of the working size: half as many pixels lie along a border.
 const COARSE_SMOOTHNESS: f32 = 0.7;
 
-/// Motions (pixels of the working size) and the label of each pixel, with what they were decided by.
+/// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Vec<u8>,
-    /// Prices of borders on the level of [`Work::draft`].
-    pub(super) borders: Borders,
     /// The best motion that is not among them: it did not pay for itself, here or when motions were selected.
     pub(super) left_out: Option<AffineMotion>,
 }
@@ -71,20 +69,35 @@ pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled 
     }
     let width = work.finest().width();
     draft.clean(width);
-    let Draft { motions, labels, borders, left_out, .. } = draft;
-    Labelled { motions, labels, borders, left_out }
+    let Draft { motions, labels, left_out, .. } = draft;
+    Labelled { motions, labels, left_out }
+}
+
+/// Prices of borders on a level.
+pub(super) fn borders(work: &Work, index: usize, settings: &Settings) -> Borders {
+    let level = &work.levels[index];
+    let mut coherence = settings.coherence;
+    coherence.smoothness *= if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
+    if settings.has(Part::Edges) {
+        Borders::new(&work.pictures[index], level.noise, coherence)
+    } else {
+        Borders::uniform(level.width(), level.height(), coherence)
+    }
+}
+
+/// What every motion leaves unexplained on a level, in the costs of working pixels.
+pub(super) fn left_over(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
+    if level.index > 0 {
+        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= COARSE_PIXEL);
+    }
+    raw
 }
 
 impl<'a> Draft<'a> {
     fn new(work: &'a Work, found: Found, settings: &'a Settings) -> Draft<'a> {
         let level = &work.levels[work.draft];
-        let mut coherence = settings.coherence;
-        coherence.smoothness *= if work.draft == 0 { 1.0 } else { COARSE_SMOOTHNESS };
-        let borders = if settings.has(Part::Edges) {
-            Borders::new(&work.pictures[work.draft], level.noise, coherence)
-        } else {
-            Borders::uniform(level.width(), level.height(), coherence)
-        };
+        let borders = borders(work, work.draft, settings);
         let motions: Vec<AffineMotion> = found.layers.into_iter().map(|layer| layer.motion).collect();
         let mut draft = Draft {
             level,
@@ -113,11 +126,7 @@ impl<'a> Draft<'a> {
     }
 
     fn weigh(&mut self) {
-        self.raw = self.motions.iter().map(|m| cost(self.level, m, CostModel::ESTIMATION)).collect();
-        if self.level.index > 0 {
-            let values = self.raw.iter_mut().flat_map(|plane| plane.values_mut());
-            values.for_each(|v| *v *= COARSE_PIXEL);
-        }
+        self.raw = left_over(self.level, &self.motions);
         self.costs = self.survey.costs.clone();
     }
 

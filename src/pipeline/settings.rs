@@ -43,6 +43,8 @@ pub(crate) struct Settings {
     pub(crate) work_side: usize,
     /// Longer side of the base level at most, pixels.
     pub(crate) base_side: usize,
+    /// Longer side of the level on which labels are drafted at most, pixels.
+    pub(crate) draft_side: usize,
     /// The coarsest level keeps the shorter side at least this long, pixels.
     pub(crate) smallest_side: usize,
     /// Highest degree of the multibody polynomial.
@@ -77,6 +79,7 @@ impl Settings {
         let best = Settings {
             work_side: 448,
             base_side: 224,
+            draft_side: 320,
             smallest_side: 24,
             degrees: 3,
             measurements: 2000,
@@ -97,13 +100,14 @@ impl Settings {
             Quality::Fast => Settings {
                 work_side: 320,
                 base_side: 160,
+                draft_side: 160,
                 degrees: 2,
                 measurements: 1000,
                 tiles: 24,
                 tries: 2,
                 visibility_rounds: 1,
                 gain_window: 1.5,
-                coherence: Coherence { solver: Solver::FAST, sharpening: Solver::Messages { levels: crate::knob("SLV", 4.0) as usize, iterations: crate::knob("SIT", 2.0) as usize }, ..best.coherence },
+                coherence: Coherence { solver: Solver::FAST, sharpening: Solver::FAST, ..best.coherence },
                 ..best
             },
         };
