@@ -146,9 +146,10 @@ impl<'a> Comparison<'a> {
         let correlation = level.noise_correlation();
         let path = level.path(&self.scaled, left, y);
         let mut samples = [0.0; CHUNK];
+        let mut at = Footprints::new();
         let rows = level.first.row(y)[left..].chunks(CHUNK).zip(level.energy.row(y)[left..].chunks(CHUNK));
         for (k, (costs, (first, energy))) in costs.chunks_mut(CHUNK).zip(rows).enumerate() {
-            let at = Footprints::along(&path, k * CHUNK, self.view.width(), self.view.height());
+            at.follow(&path, k * CHUNK, self.view.width(), self.view.height());
             at.sample(self.view.values(), &mut samples[..costs.len()]);
             let seen = samples.iter().zip(&at.inside).zip(at.fx.iter().zip(&at.fy));
             let pixels = costs.iter_mut().zip(first).zip(energy).zip(seen);
@@ -185,15 +186,23 @@ pub(crate) fn lane_sum(row: &[f32]) -> f32 {
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const SMALLEST: f32 = 0.5;
     const LARGEST: f32 = 8.0;
+    /// Of more pixels than this a quarter is looked at.
+    const MANY: usize = 16_384;
+    let thinned;
+    let mut level = level;
+    if level.first.values().len() > MANY {
+        thinned = level.thinned(2);
+        level = &thinned;
+    }
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
-    let mut samples = [0.0; CHUNK];
+    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..level.height() {
         let path = level.path(&scaled, 0, y);
         let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
         for (k, (first, energy)) in rows.enumerate() {
-            let at = Footprints::along(&path, k * CHUNK, level.second.width(), level.second.height());
+            at.follow(&path, k * CHUNK, level.second.width(), level.second.height());
             at.sample(level.second.values(), &mut samples[..first.len()]);
             for x in (0..first.len()).filter(|&x| at.inside[x] && energy[x] <= flat) {
                 let q = interpolation_variance(at.fx[x], at.fy[x], level.noise_correlation());

@@ -222,12 +222,12 @@ impl RowBuffers {
         let energy = &level.energy.row(y)[columns.clone()];
         let (dx, dy) = (&level.first_dx.row(y)[columns.clone()], &level.first_dy.row(y)[columns.clone()]);
         let weights = support.weights.map(|w| &w.row(y)[columns]);
-        let (mut given, mut second) = ([1.0; CHUNK], [0.0; CHUNK]);
+        let (mut given, mut second, mut at) = ([1.0; CHUNK], [0.0; CHUNK], Footprints::new());
         let (mut second_dx, mut second_dy) = ([0.0; CHUNK], [0.0; CHUNK]);
         for start in (0..first.len()).step_by(CHUNK) {
             let chunk = start..(start + CHUNK).min(first.len());
             let n = chunk.len();
-            let at = Footprints::along(&path, start, width, height);
+            at.follow(&path, start, width, height);
             at.sample(level.second.values(), &mut second[..n]);
             at.sample(level.second_dx.values(), &mut second_dx[..n]);
             at.sample(level.second_dy.values(), &mut second_dy[..n]);

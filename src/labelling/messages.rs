@@ -73,6 +73,11 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
     let mut bound = f64::NEG_INFINITY;
     for iteration in 0..=iterations {
+        if iterations <= FEW && iteration < iterations {
+            grid.forward(None);
+            grid.backward();
+            continue;
+        }
         // The first pass over messages that are all zero would read out the costs alone: still an answer.
         let energy = grid.forward(Some(&mut labels));
         if energy < lowest {
@@ -92,6 +97,9 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     grid.descend(&mut best, 2);
     Solution { labels: best, bound }
 }
+
+/// So few iterations are all done before the labels are read out.
+const FEW: usize = 2;
 
 /// On the coarse levels the messages only have to point the right way.
 const COARSE_ITERATIONS: usize = 3;

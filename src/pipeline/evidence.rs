@@ -22,7 +22,7 @@ pub(super) fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) ->
     let mut raw = left_over(level, &motions);
     let mut costs = label_costs(level, &motions, settings.coherence);
     let borders = borders(work, work.base, settings);
-    let solve = |costs: &[Plane]| borders.solve(costs, Solver::FAST);
+    let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
     let one_more = (motions.len() > n).then(|| length(&raw, &solve(&costs), width));
     raw.truncate(n);
     costs.truncate(n);

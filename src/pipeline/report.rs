@@ -252,7 +252,7 @@ pub(super) fn describe(
 fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], first: &Plane, second: &Plane) -> Vec<f64> {
     let (width, height) = (first.width(), first.height());
     let mut sums = vec![(0.0, 0usize); motions.len()];
-    let mut samples = [0.0; CHUNK];
+    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for (y, row) in labels.chunks_exact(width).enumerate() {
         let mut start = 0;
         for run in row.chunk_by(|a, b| a == b) {
@@ -263,7 +263,7 @@ fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], firs
             let left = boxes[k][0];
             let path = RowPath::new(motion, left, y);
             for (part, values) in first.row(y)[columns.clone()].chunks(CHUNK).enumerate() {
-                let at = Footprints::along(&path, columns.start - left + part * CHUNK, width, height);
+                at.follow(&path, columns.start - left + part * CHUNK, width, height);
                 at.sample(second.values(), &mut samples[..values.len()]);
                 let seen = values.iter().zip(&samples).zip(&at.inside);
                 for ((value, sample), _) in seen.filter(|(_, inside)| **inside) {

@@ -104,10 +104,10 @@ impl Settings {
                 degrees: 2,
                 measurements: 1000,
                 tiles: 24,
-                tries: 2,
+                tries: 1,
                 visibility_rounds: 1,
                 gain_window: 1.5,
-                coherence: Coherence { solver: Solver::FAST, sharpening: Solver::FAST, ..best.coherence },
+                coherence: Coherence { solver: Solver::FAST, sharpening: Solver::LIGHT, ..best.coherence },
                 ..best
             },
         };
