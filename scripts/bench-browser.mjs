@@ -1,6 +1,10 @@
-// npm run bench:browser: the package in headless Chromium beside OpenCV.js and jsfeat, on the same frames, calls in turn.
-// Options: --rounds N (default 30), --sizes 320x240,640x480,…, --scaling (also time and memory against pixels and motions).
-// Writes out/bench/browser.json and prints tables.
+// npm run bench:browser: the package in headless Chromium beside OpenCV.js and jsfeat, on the same frames, calls in turn, and
+// beside the same source compiled natively. Writes out/bench/browser.json and prints tables. Options:
+//   --rounds N                 calls of each kind (30)
+//   --sizes 320x240,640x480,…  sizes of the frames (320x240,640x480,1280x720)
+//   --scaling                  also time and memory against pixels and motions (some minutes)
+//   --alone                    without the others; nothing is installed
+//   --write-docs               writes the tables to docs/performance.md as well
 
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
@@ -9,16 +13,22 @@ import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { gzipSync } from 'node:zlib';
 
+import { partsOf } from './lib/browser-tables.mjs';
 import { buildModules, buildPackage } from './lib/builds.mjs';
+import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root, toolsFolder } from './lib/project.mjs';
 import { Stop, command, longStep, must } from './lib/run.mjs';
 import { serve } from './lib/static-server.mjs';
+import { exponent, median } from './lib/statistics.mjs';
 
+const PAGE = 'docs/performance.md';
+const FRAMES = join(root, 'out/bench/frames');
+const NATIVE = ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--'];
 const PEERS = { '@techstark/opencv-js': '5.0.0-release.1', jsfeat: '0.0.8' };
 const PEER_FILES = { opencv: '@techstark/opencv-js/dist/opencv.js', jsfeat: 'jsfeat/build/jsfeat-min.js' };
 const OURS = ['fast', 'best'];
-const CASES = [...OURS, 'farneback', 'opencvPipeline', 'jsfeat'];
+const THEIRS = ['farneback', 'opencvPipeline', 'jsfeat'];
 /** Fresh pages for each case and size: what a first call takes, and how long until it can be made. */
 const FRESH_PAGES = 3;
 /** One and two workers by turns. */
@@ -27,36 +37,54 @@ const THROUGHPUT_PAIRS = 12;
 /** 0.05 to 16.8 megapixels, the largest frame there may be. */
 const SCALES = ['256x192', '512x384', '1024x768', '2048x1536', '3264x2448', '4096x4096'];
 const SCALING_ROUNDS = 3;
+/** Megapixels above which the exponents are fitted: below, the work does not depend on the frame's size. */
+const LARGE = 0.5;
+const MOST_MOTIONS = 10;
 const HOST = '127.0.0.1';
+/** Without the page's own policy: OpenCV.js makes functions from text when it starts. */
+const HEADERS = { 'X-Content-Type-Options': 'nosniff' };
 
 await command(async (args) => {
-  const { rounds, sizes, scaling } = options(args);
+  const { rounds, sizes, scaling, alone, writeDocs } = options(args);
+  const cases = alone ? OURS : [...OURS, ...THEIRS];
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
   await buildModules();
   await buildPackage();
-  await preparePeers();
+  if (!alone) await preparePeers();
   await writeFrames(sizes);
-  const server = await serve(root, { host: HOST });
+  const server = await serve(root, { host: HOST, headers: HEADERS });
   const address = `http://${HOST}:${server.address().port}/benches/browser/page.html`;
   const browser = await playwright().launch({ executablePath: chromium.path });
   try {
-    const report = { ...downloads(), ...(await measured(browser, address, rounds, sizes)) };
-    if (scaling) report.scaling = await scaled(browser, address, sizes[Math.min(1, sizes.length - 1)]);
+    const middle = sizes[Math.min(1, sizes.length - 1)];
+    const report = {
+      date: new Date().toISOString().slice(0, 10),
+      machine: { processor: cpus()[0].model, cores: cpus().length, chromium: browser.version() },
+      rounds,
+      ...downloads(alone),
+      ...(await measured(browser, address, { rounds, sizes, cases })),
+      workers: await throughput(browser, address, middle),
+      ...(scaling && { scaling: await scaled(browser, address, middle) }),
+    };
     write(report);
-    print(report, browser.version(), rounds);
+    const parts = partsOf(report);
+    console.log(`\n${Object.values(parts).join('\n\n')}`);
+    if (writeDocs) writeMarked(PAGE, parts);
   } finally {
     await browser.close();
     server.close();
     server.closeAllConnections();
+    rmSync(FRAMES, { recursive: true, force: true });
   }
 });
 
 function options(args) {
-  const text = { type: 'string' };
+  const [text, flag] = [{ type: 'string' }, { type: 'boolean', default: false }];
   let values;
   try {
-    ({ values } = parseArgs({ args, options: { rounds: text, sizes: text, scaling: { type: 'boolean' } } }));
+    const known = { rounds: text, sizes: text, scaling: flag, alone: flag, 'write-docs': flag };
+    ({ values } = parseArgs({ args, options: known }));
   } catch (error) {
     throw new Stop(error.message);
   }
@@ -64,7 +92,8 @@ function options(args) {
   const sizes = (values.sizes ?? '320x240,640x480,1280x720').split(',');
   if (!Number.isInteger(rounds) || rounds < 1) throw new Stop('--rounds must be a whole number from 1.');
   if (!sizes.every((size) => /^\d+x\d+$/.test(size))) throw new Stop('--sizes must look like 320x240,640x480.');
-  return { rounds, sizes, scaling: values.scaling === true };
+  if (values.alone && values['write-docs']) throw new Stop('--write-docs writes the comparison: leave --alone out.');
+  return { rounds, sizes, scaling: values.scaling, alone: values.alone, writeDocs: values['write-docs'] };
 }
 
 /** The others are nobody's dependency: they are installed here, at fixed versions, into a folder of their own. */
@@ -86,11 +115,9 @@ async function preparePeers() {
 
 /** Generated pairs with their true labels, where the page fetches them. */
 async function writeFrames(sizes) {
-  const folder = join(root, 'out/bench/frames');
-  mkdirSync(folder, { recursive: true });
+  mkdirSync(FRAMES, { recursive: true });
   console.log('Generating the frames (building the native program first if it has changed) …');
-  const program = ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--', 'scenes', folder, ...sizes];
-  await must('The frames could not be generated.', 'cargo', program);
+  await must('The frames could not be generated.', 'cargo', [...NATIVE, 'scenes', FRAMES, ...sizes]);
 }
 
 function playwright() {
@@ -98,61 +125,64 @@ function playwright() {
 }
 
 /** Bytes to download, gzip -9: the module, and the JavaScript that the entry for browsers imports. */
-function downloads() {
+function downloads(alone) {
   const read = (path) => readFileSync(join(root, path));
   const zipped = (path) => gzipSync(read(path), { level: 9 }).length;
   const scripts = new Set();
   const follow = (path) => {
     if (scripts.has(path)) return;
     scripts.add(path);
-    for (const [, name] of read(path).toString().matchAll(/^(?:import|export) .*?from '\.\/([^']+)'/gm)) {
+    for (const [, name] of read(path).toString().matchAll(/^(?:import|export) .*?from "\.\/([^"]+)"/gm)) {
       follow(`pkg/dist/${name}`);
     }
   };
   follow('pkg/dist/web.js');
+  const ours = {
+    wasmGzip: zipped('pkg/wasm/veronese_bg.wasm'),
+    jsGzip: [...scripts].reduce((sum, path) => sum + zipped(path), 0),
+  };
+  if (alone) return ours;
   const peers = {};
   for (const [name, path] of Object.entries(PEER_FILES)) peers[name] = { gzip: zipped(`.tools/peers/node_modules/${path}`) };
   peers.opencv.version = PEERS['@techstark/opencv-js'];
   peers.jsfeat.version = PEERS.jsfeat;
-  return {
-    wasmGzip: zipped('pkg/wasm/veronese_bg.wasm'),
-    jsGzip: [...scripts].reduce((sum, path) => sum + zipped(path), 0),
-    peers,
-  };
+  return { ...ours, peers };
 }
 
-async function measured(browser, address, rounds, sizes) {
-  const fresh = await freshPages(browser, address, sizes);
-  const workers = await throughput(browser, address, sizes[Math.min(1, sizes.length - 1)]);
-  const found = await interleaved(browser, address, rounds, sizes);
+async function measured(browser, address, { rounds, sizes, cases }) {
+  const fresh = await freshPages(browser, address, sizes, cases);
+  const { calls, native } = await interleaved(browser, address, { rounds, sizes, cases });
   const bySize = {};
   for (const size of sizes) {
     bySize[size] = {};
-    for (const name of CASES) {
-      const calls = found[size][name];
-      const times = calls.map((call) => call.milliseconds);
-      const entry = { median: quantile(times, 0.5), best: Math.min(...times), first: fresh.first[size][name] };
+    for (const name of cases) {
+      const times = calls[size][name].map((call) => call.milliseconds);
+      const { overlap, count } = calls[size][name][0];
+      const entry = { median: median(times), best: Math.min(...times), first: fresh.first[size][name] };
       if (OURS.includes(name)) {
-        entry.stages = stageMedians(calls);
+        entry.stages = stageMedians(calls[size][name].map((call) => call.stages));
+        entry.native = nativeMedians(native.map((round) => round[size][name]));
+        entry.firstWarmedUp = fresh.warmedUp[size][name];
         entry.memoryBytes = fresh.memory[size][name];
       }
-      const { overlap, count } = calls[0];
       bySize[size][name] = { ...entry, overlap, count };
     }
   }
-  const peersReady = { opencv: fresh.ready.farneback, jsfeat: fresh.ready.jsfeat };
-  return { readyMs: fresh.ready.ours, peersReadyMs: peersReady, workers, rounds, sizes: bySize };
+  const { ours: readyMs, farneback: opencv, jsfeat } = fresh.ready;
+  return { readyMs, ...(opencv && { peersReadyMs: { opencv, jsfeat } }), sizes: bySize };
 }
 
-/** One page after another, each in a context without cache: time until ready, first call, memory. */
-async function freshPages(browser, address, sizes) {
+/** One page after another, each in a context without cache: time until ready, first call, first call warmed up, memory. */
+async function freshPages(browser, address, sizes, cases) {
   const ready = {};
   const first = {};
+  const warmedUp = {};
   const memory = {};
   for (const size of sizes) {
     first[size] = {};
+    warmedUp[size] = {};
     memory[size] = {};
-    for (const name of CASES) {
+    for (const name of cases) {
       console.log(`Fresh pages: ${name}, ${size}`);
       const firsts = [];
       for (let k = 0; k < FRESH_PAGES; k += 1) {
@@ -163,8 +193,16 @@ async function freshPages(browser, address, sizes) {
           firsts.push((await call(page, name, size)).milliseconds);
         });
       }
-      first[size][name] = quantile(firsts, 0.5);
+      first[size][name] = median(firsts);
       if (OURS.includes(name)) {
+        const warm = [];
+        for (let k = 0; k < FRESH_PAGES; k += 1) {
+          await onPage(browser, address, async (page) => {
+            await page.evaluate((size) => globalThis.bench.prepare(size), size);
+            warm.push(await page.evaluate((task) => globalThis.bench.warmedUp(...task), [name, size]));
+          });
+        }
+        warmedUp[size][name] = median(warm);
         memory[size][name] = await onPage(browser, address, async (page) => {
           await page.evaluate((size) => globalThis.bench.prepare(size), size);
           return page.evaluate(([name, size]) => globalThis.bench.memory(name, size), [name, size]);
@@ -172,24 +210,28 @@ async function freshPages(browser, address, sizes) {
       }
     }
   }
-  return { ready: Object.fromEntries(Object.entries(ready).map(([k, v]) => [k, quantile(v, 0.5)])), first, memory };
+  return { ready: Object.fromEntries(Object.entries(ready).map(([k, v]) => [k, median(v)])), first, warmedUp, memory };
 }
 
-/** All cases of all sizes in one page, by turns, so that whatever else the machine does slows all of them. */
-async function interleaved(browser, address, rounds, sizes) {
-  const found = Object.fromEntries(sizes.map((size) => [size, Object.fromEntries(CASES.map((name) => [name, []]))]));
+/** All cases of all sizes in one page and natively, by turns, so that whatever else the machine does slows all of them. */
+async function interleaved(browser, address, { rounds, sizes, cases }) {
+  const calls = Object.fromEntries(sizes.map((size) => [size, Object.fromEntries(cases.map((name) => [name, []]))]));
+  const native = [];
   await onPage(browser, address, async (page) => {
-    for (const name of CASES) await page.evaluate((name) => globalThis.bench.load(name), name);
+    for (const name of cases) await page.evaluate((name) => globalThis.bench.load(name), name);
     for (const size of sizes) {
       await page.evaluate((size) => globalThis.bench.prepare(size), size);
-      for (const name of CASES) for (let k = 0; k < 2; k += 1) await call(page, name, size); // not counted
+      for (const name of cases) for (let k = 0; k < 2; k += 1) await call(page, name, size); // not counted
     }
     for (let round = 0; round < rounds; round += 1) {
       if (round % 5 === 0) console.log(`Round ${round + 1} of ${rounds}`);
-      for (const size of sizes) for (const name of CASES) found[size][name].push(await call(page, name, size));
+      for (const size of sizes) for (const name of cases) calls[size][name].push(await call(page, name, size));
+      const stages = ['stages', FRAMES, ...sizes];
+      const { stdout } = await must('The native program failed.', 'cargo', [...NATIVE, ...stages], { output: 'collect' });
+      native.push(JSON.parse(stdout));
     }
   });
-  return found;
+  return { calls, native };
 }
 
 async function throughput(browser, address, size) {
@@ -197,13 +239,14 @@ async function throughput(browser, address, size) {
   await onPage(browser, address, async (page) => {
     await page.evaluate((size) => globalThis.bench.prepare(size), size);
     for (let round = 0; round < THROUGHPUT_ROUNDS; round += 1) {
+      console.log(`Workers: round ${round + 1} of ${THROUGHPUT_ROUNDS}`);
       for (const workers of [1, 2]) {
         const task = [workers, THROUGHPUT_PAIRS, size];
         rates[workers].push(await page.evaluate((task) => globalThis.bench.throughput(...task), task));
       }
     }
   });
-  const [one, two] = [quantile(rates[1], 0.5), quantile(rates[2], 0.5)];
+  const [one, two] = [median(rates[1]), median(rates[2])];
   return { size, onePairsPerSecond: one, twoPairsPerSecond: two, ratio: two / one };
 }
 
@@ -213,28 +256,27 @@ async function scaled(browser, address, from) {
   for (const size of SCALES) {
     console.log(`Scaling: ${size}`);
     const [width, height] = size.split('x').map(Number);
-    const entry = { size, megapixels: (width * height) / 1e6 };
+    const entry = { size, megapixels: (width * height) / 1e6, memory: {} };
     for (const quality of OURS) {
-      await onPage(browser, address, async (page) => {
-        await page.evaluate((from) => globalThis.bench.prepare(from), from);
-        await page.evaluate(([from, to]) => globalThis.bench.resize(from, to), [from, size]);
+      entry[quality] = await onResized(browser, address, from, size, async (page) => {
         await page.evaluate((name) => globalThis.bench.load(name), quality);
         const times = [];
         for (let k = 0; k < SCALING_ROUNDS + 1; k += 1) times.push((await call(page, quality, size)).milliseconds);
-        entry[quality] = quantile(times.slice(1), 0.5); // the first warms up
+        return median(times.slice(1)); // the first warms up
       });
+      entry.memory[quality] = await onResized(browser, address, from, size, (page) =>
+        page.evaluate(([name, size]) => globalThis.bench.memory(name, size), [quality, size]),
+      );
     }
-    entry.memoryBytes = await onPage(browser, address, async (page) => {
-      await page.evaluate((from) => globalThis.bench.prepare(from), from);
-      await page.evaluate(([from, to]) => globalThis.bench.resize(from, to), [from, size]);
-      return page.evaluate(([name, size]) => globalThis.bench.memory(name, size), ['best', size]);
-    });
     pixels.push(entry);
   }
   const motions = [];
   await onPage(browser, address, async (page) => {
     await page.evaluate((from) => globalThis.bench.prepare(from), from);
-    for (let n = 1; n <= 10; n += 1) {
+    await page.evaluate((name) => globalThis.bench.load(name), OURS[0]);
+    for (const quality of OURS) await call(page, quality, from); // not counted
+    for (let n = 1; n <= MOST_MOTIONS; n += 1) {
+      console.log(`Scaling: ${n} motions`);
       const entry = { motions: n };
       for (const quality of OURS) {
         const times = [];
@@ -242,29 +284,23 @@ async function scaled(browser, address, from) {
           const task = [n, quality, from];
           times.push((await page.evaluate((task) => globalThis.bench.given(...task), task)).milliseconds);
         }
-        entry[quality] = quantile(times, 0.5);
+        entry[quality] = median(times);
       }
       motions.push(entry);
     }
   });
-  const large = pixels.filter(({ megapixels }) => megapixels > 0.5);
+  const large = pixels.filter(({ megapixels }) => megapixels > LARGE);
+  const byPixels = (value) => exponent(large.map((entry) => [entry.megapixels, value(entry)]));
   const exponents = {
-    fastByPixels: exponent(large, 'megapixels', 'fast'),
-    bestByPixels: exponent(large, 'megapixels', 'best'),
-    memoryByPixels: exponent(large, 'megapixels', 'memoryBytes'),
-    fastByMotions: exponent(motions, 'motions', 'fast'),
-    bestByMotions: exponent(motions, 'motions', 'best'),
+    pixels: {
+      fast: byPixels(({ fast }) => fast),
+      best: byPixels(({ best }) => best),
+      memoryFast: byPixels(({ memory }) => memory.fast),
+      memoryBest: byPixels(({ memory }) => memory.best),
+    },
+    motions: Object.fromEntries(OURS.map((name) => [name, exponent(motions.map((entry) => [entry.motions, entry[name]]))])),
   };
-  return { pixels, motions, exponents };
-}
-
-/** Of the power law through points: the slope of the straight line through their logarithms. */
-function exponent(points, x, y) {
-  const logs = points.map((point) => [Math.log(point[x]), Math.log(point[y])]);
-  const mean = (k) => logs.reduce((sum, log) => sum + log[k], 0) / logs.length;
-  const [mx, my] = [mean(0), mean(1)];
-  const covariance = logs.reduce((sum, [p, q]) => sum + (p - mx) * (q - my), 0);
-  return covariance / logs.reduce((sum, [p]) => sum + (p - mx) ** 2, 0);
+  return { size: from, pixels, motions, exponents };
 }
 
 async function onPage(browser, address, work) {
@@ -280,20 +316,27 @@ async function onPage(browser, address, work) {
   }
 }
 
+/** A fresh page with the frames of one size scaled to another. */
+function onResized(browser, address, from, to, work) {
+  return onPage(browser, address, async (page) => {
+    await page.evaluate((from) => globalThis.bench.prepare(from), from);
+    await page.evaluate(([from, to]) => globalThis.bench.resize(from, to), [from, to]);
+    return work(page);
+  });
+}
+
 function call(page, name, size) {
   return page.evaluate(([name, size]) => globalThis.bench.run(name, size), [name, size]);
 }
 
+/** Medians of the stages of calls that say how long each took. */
 function stageMedians(calls) {
-  const names = Object.keys(calls[0].stages).filter((name) => name !== 'total');
-  return Object.fromEntries(names.map((name) => [name, quantile(calls.map((call) => call.stages[name] ?? 0), 0.5)]));
+  const names = Object.keys(calls[0]).filter((name) => name !== 'total');
+  return Object.fromEntries(names.map((name) => [name, median(calls.map((stages) => stages[name] ?? 0))]));
 }
 
-function quantile(values, share) {
-  const sorted = [...values].sort((a, b) => a - b);
-  const place = share * (sorted.length - 1);
-  const [below, above] = [Math.floor(place), Math.ceil(place)];
-  return sorted[below] + (place - below) * (sorted[above] - sorted[below]);
+function nativeMedians(calls) {
+  return { median: median(calls.map(({ total }) => total)), stages: stageMedians(calls) };
 }
 
 function write(report) {
@@ -301,47 +344,4 @@ function write(report) {
   mkdirSync(join(root, 'out/bench'), { recursive: true });
   writeFileSync(`${path}.new`, `${JSON.stringify(report, undefined, 2)}\n`);
   renameSync(`${path}.new`, path);
-  rmSync(join(root, 'out/bench/frames'), { recursive: true, force: true });
-}
-
-function print({ wasmGzip, jsGzip, peers, readyMs, peersReadyMs, workers, sizes, scaling }, version, rounds) {
-  const kib = (bytes) => `${(bytes / 1024).toFixed(1)} KiB`;
-  const ms = (value) => value.toFixed(1);
-  console.log(`\n${cpus()[0].model}, Chromium ${version}, ${rounds} rounds in turn on one thread, milliseconds\n`);
-  console.log('| | download (gzip) | ready |\n|---|---|---|');
-  console.log(`| Veronese | ${kib(wasmGzip)} + ${kib(jsGzip)} JavaScript | ${ms(readyMs)} |`);
-  console.log(`| OpenCV.js ${peers.opencv.version} | ${kib(peers.opencv.gzip)} | ${ms(peersReadyMs.opencv)} |`);
-  console.log(`| jsfeat ${peers.jsfeat.version} | ${kib(peers.jsfeat.gzip)} | ${ms(peersReadyMs.jsfeat)} |`);
-  console.log('\n| size | call | median | best | first | ÷ Farneback | overlap | memory |\n|---|---|---|---|---|---|---|---|');
-  for (const [size, cases] of Object.entries(sizes)) {
-    for (const [name, { median, best, first, overlap, memoryBytes }] of Object.entries(cases)) {
-      const ratio = (median / cases.farneback.median).toFixed(2);
-      const rest = [ratio, overlap === undefined ? '' : overlap.toFixed(3), memoryBytes ? kib(memoryBytes) : ''];
-      console.log(`| ${[size, name, ms(median), ms(best), ms(first), ...rest].join(' | ')} |`);
-    }
-  }
-  const stages = Object.keys(Object.values(sizes)[0].fast.stages);
-  console.log(`\n| size | quality | ${stages.join(' | ')} |\n|---|---|${'---|'.repeat(stages.length)}`);
-  for (const [size, cases] of Object.entries(sizes)) {
-    for (const name of OURS) {
-      console.log(`| ${[size, name, ...stages.map((stage) => ms(cases[name].stages[stage] ?? 0))].join(' | ')} |`);
-    }
-  }
-  const { size, onePairsPerSecond, twoPairsPerSecond, ratio } = workers;
-  console.log(
-    `\nPairs of ${size} per second, fast: ${ms(onePairsPerSecond)} in one worker, ${ms(twoPairsPerSecond)} in two (${ratio.toFixed(2)} times)`,
-  );
-  if (scaling) printScaling(scaling);
-}
-
-function printScaling({ pixels, motions, exponents }) {
-  console.log('\n| size | megapixels | fast, ms | best, ms | memory, MiB |\n|---|---|---|---|---|');
-  for (const { size, megapixels, fast, best, memoryBytes } of pixels) {
-    const cells = [megapixels.toFixed(2), fast.toFixed(0), best.toFixed(0), (memoryBytes / 2 ** 20).toFixed(0)];
-    console.log(`| ${[size, ...cells].join(' | ')} |`);
-  }
-  console.log('\n| motions given | fast, ms | best, ms |\n|---|---|---|');
-  for (const { motions: n, fast, best } of motions) console.log(`| ${n} | ${fast.toFixed(0)} | ${best.toFixed(0)} |`);
-  const list = Object.entries(exponents).map(([name, value]) => `${name} ${value.toFixed(2)}`);
-  console.log(`\nExponents (pixels: above half a megapixel): ${list.join(', ')}`);
 }

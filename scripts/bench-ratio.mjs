@@ -9,6 +9,7 @@ import { buildModules, buildPackage } from './lib/builds.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { command, must } from './lib/run.mjs';
+import { median, quantile } from './lib/statistics.mjs';
 
 const ROUNDS = 7;
 const PROBLEMS = 8;
@@ -92,7 +93,7 @@ function print(times) {
   console.log(`${cpus()[0].model}, Node ${process.versions.node}, ${ROUNDS} rounds in turn, milliseconds: median [quartiles]\n`);
   console.log('| call | native | WebAssembly in Node | ratio |\n|---|---|---|---|');
   for (const [name, { native, wasm }] of Object.entries(times)) {
-    const ratio = (quantile(wasm, 0.5) / quantile(native, 0.5)).toFixed(2);
+    const ratio = (median(wasm) / median(native)).toFixed(2);
     console.log(`| ${TITLES[name]} | ${spread(native)} | ${spread(wasm)} | ${ratio} |`);
   }
 }
@@ -100,12 +101,4 @@ function print(times) {
 function spread(values) {
   const [low, middle, high] = [0.25, 0.5, 0.75].map((share) => quantile(values, share).toFixed(1));
   return `${middle} [${low}, ${high}]`;
-}
-
-function quantile(values, share) {
-  const sorted = [...values].sort((a, b) => a - b);
-  const place = share * (sorted.length - 1);
-  const below = Math.floor(place);
-  const above = Math.ceil(place);
-  return sorted[below] + (place - below) * (sorted[above] - sorted[below]);
 }

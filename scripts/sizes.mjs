@@ -62,7 +62,7 @@ function withImports(file, seen = new Set()) {
   seen.add(file);
   if (!file.endsWith('.js')) return [...seen];
   const text = readFileSync(join(PKG, file), 'utf8');
-  for (const [, place] of text.matchAll(/(?:from |import )'(\.[^']+)'/g)) {
+  for (const [, place] of text.matchAll(/(?:from |import )"(\.[^"]+)"/g)) {
     withImports(relative(PKG, join(PKG, dirname(file), place)), seen);
   }
   return [...seen];

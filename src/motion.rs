@@ -81,6 +81,7 @@ impl AffineMotion {
     }
 
     /// Whether all six entries are finite.
+    #[inline(never)]
     pub fn is_finite(&self) -> bool {
         self.matrix.iter().all(|a| a.is_finite())
     }

@@ -1,11 +1,17 @@
 //! Orders and medians of numbers, in one place and without the standard library's sorting: results must not depend on how equals
-//! fall, and each of its routines brings several kilobytes for every type and order it is used with.
+//! fall, and each of its routines brings several kilobytes for every type and order it is used with. For the same reason the work
+//! itself is never inlined.
 
 use std::cmp::Ordering;
 
 /// Indices by increasing key; equals by index. NaN comes last (−NaN first).
 pub(crate) fn ascending(keys: impl IntoIterator<Item = f64>) -> Vec<usize> {
-    let keys: Vec<u64> = keys.into_iter().map(order_of).collect();
+    merged(keys.into_iter().map(order_of).collect())
+}
+
+/// Indices by increasing key: sorted by merging.
+#[inline(never)]
+fn merged(keys: Vec<u64>) -> Vec<usize> {
     let mut order: Vec<usize> = (0..keys.len()).collect();
     let mut merged = order.clone();
     // Runs of 1, 2, 4 … in order are merged by twos; the left one goes first among equals.
@@ -49,12 +55,14 @@ pub(crate) fn sort_few<T: Copy>(values: &mut [T], compare: impl Fn(&T, &T) -> Or
 }
 
 /// The upper median, which is a value of the list; `None` of nothing.
+#[inline(never)]
 pub(crate) fn median(values: &[f32]) -> Option<f32> {
     // Widening keeps value and order.
     middle(values.iter().map(|&v| order_of(f64::from(v))).collect()).map(|v| v as f32)
 }
 
 /// The same in double precision.
+#[inline(never)]
 pub(crate) fn median_f64(values: &[f64]) -> Option<f64> {
     middle(values.iter().map(|&v| order_of(v)).collect())
 }
@@ -73,6 +81,7 @@ fn value_of(order: u64) -> f64 {
 }
 
 /// The upper median of values given by their order: digit after digit, from the first, those with the middle one's digit are kept.
+#[inline(never)]
 fn middle(mut left: Vec<u64>) -> Option<f64> {
     let mut rank = left.len() / 2;
     for digit in (0..8).rev() {

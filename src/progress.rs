@@ -26,6 +26,7 @@ impl<'a> Stages<'a> {
     }
 
     /// Reports that `name` begins. Unknown names are a mistake of ours, caught in tests.
+    #[inline(never)]
     pub(crate) fn begin(&mut self, name: &'static str) {
         let index = self.names.iter().position(|&n| n == name);
         debug_assert!(index.is_some(), "stage {name} is not in the list");

@@ -11,6 +11,7 @@ pub struct Random {
 
 impl Random {
     /// A generator whose whole sequence follows from `seed`.
+    #[inline(never)]
     pub fn from_seed(seed: u64) -> Self {
         let mut z = seed;
         let state = std::array::from_fn(|_| {
@@ -52,6 +53,7 @@ impl Random {
     }
 
     /// Standard normal, by Marsaglia's polar method.
+    #[inline(never)]
     pub fn normal(&mut self) -> f64 {
         // Each try succeeds with probability π/4: 64 failures in a row happen once in 10^42.
         for _ in 0..64 {
@@ -65,6 +67,7 @@ impl Random {
     }
 
     /// `count` different indices below `total`, in random order (all of them where there are fewer).
+    #[inline(never)]
     pub fn choose(&mut self, total: usize, count: usize) -> Vec<usize> {
         let mut indices: Vec<usize> = (0..total).collect();
         let count = count.min(total);

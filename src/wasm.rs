@@ -8,17 +8,19 @@
 //! not be called again (the package starts a fresh one).
 
 use js_sys::{Array, Function, Object, Reflect, Uint8Array, Uint8ClampedArray};
-use serde::Serialize;
 use wasm_bindgen::prelude::*;
 use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
 
 use crate::{
     AffineMotion, Correction, Error, FitOptions, Frame, MAX_MOTIONS, MAX_SIDE, MIN_SIDE, Measurements, Method,
-    MotionCount, MotionFit, Quality, SegmentOptions, Segmentation, SegmentedMotion, Stage,
+    MotionCount, Quality, SegmentOptions, Stage,
 };
+use plain::{Record, add_fit, add_segmentation, segmented_motions};
+
+mod plain;
 
 /// Version of the JSON.
-const REPORT_VERSION: u32 = 1;
+const REPORT_VERSION: f64 = 1.0;
 const SOFTWARE: &str = concat!("veronese ", env!("CARGO_PKG_VERSION"));
 /// 2⁵³ − 1: the largest whole number that JavaScript counts to without gaps.
 const MAX_SAFE_INTEGER: f64 = 9_007_199_254_740_991.0;
@@ -54,26 +56,25 @@ pub fn segment_pair(
     let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
     let segmentation = crate::segment_pair(&first, &second, before.as_ref(), &options, &mut listener(on_stage))
         .map_err(Failure::from)?;
-    let report = PairReport {
-        version: REPORT_VERSION,
-        segmentation: &segmentation,
-        settings: PairSettings {
-            motions: options.motions.into(),
-            quality: match options.quality {
-                Quality::Fast => "fast",
-                Quality::Best => "best",
-            },
-            mark_unknown: options.mark_unknown,
-            before: before.is_some(),
-            seed: options.seed,
-            software: SOFTWARE,
-        },
+    let quality = match options.quality {
+        Quality::Fast => "fast",
+        Quality::Best => "best",
     };
-    let object = plain(&report, &segmentation.labels)?;
-    if let Some(confidence) = &segmentation.confidence {
-        Reflect::set(&object, &"confidence".into(), &Uint8Array::from(&confidence[..]))?;
+    let settings = Record::new()
+        .set("motions", &motions_asked(options.motions))
+        .text("quality", quality)
+        .set("markUnknown", &options.mark_unknown.into())
+        .set("before", &before.is_some().into())
+        .number("seed", options.seed as f64)
+        .text("software", SOFTWARE);
+    let report = add_segmentation(Record::new().number("version", REPORT_VERSION), &segmentation)
+        .set("settings", &settings.into_value())
+        .bytes("labels", &segmentation.labels);
+    Ok(match &segmentation.confidence {
+        Some(confidence) => report.bytes("confidence", confidence),
+        None => report,
     }
-    Ok(object)
+    .into_value())
 }
 
 /// [`segment_pair`] for two `ImageData`, as `getImageData` gives them.
@@ -118,7 +119,11 @@ pub fn relabel(
     let progress = &mut listener(on_stage);
     let relabelled = crate::relabel(&first, &second, before.as_ref(), &correction, &options, progress);
     let relabelled = relabelled.map_err(Failure::from)?;
-    plain(&RelabelReport { motions: &relabelled.motions, unlabelled: relabelled.unlabelled }, &relabelled.labels)
+    let report = Record::new()
+        .set("motions", &segmented_motions(&relabelled.motions))
+        .count("unlabelled", relabelled.unlabelled)
+        .bytes("labels", &relabelled.labels);
+    Ok(report.into_value())
 }
 
 /// Solves the paper's Problem 1 on measurements: `positions` holds x, y of each, `derivatives` I_x, I_y, I_t.
@@ -139,20 +144,19 @@ pub fn fit_motions(
     let fit = measurements
         .and_then(|measurements| crate::fit_motions(&measurements, &options, &mut listener(on_stage)))
         .map_err(Failure::from)?;
-    let report = PointsReport {
-        version: REPORT_VERSION,
-        fit: &fit,
-        settings: PointsSettings {
-            motions: options.motions.into(),
-            method: match options.method {
-                Method::Paper => "paper",
-                Method::Best => "best",
-            },
-            seed: options.seed,
-            software: SOFTWARE,
-        },
+    let method = match options.method {
+        Method::Paper => "paper",
+        Method::Best => "best",
     };
-    plain(&report, &fit.labels)
+    let settings = Record::new()
+        .set("motions", &motions_asked(options.motions))
+        .text("method", method)
+        .number("seed", options.seed as f64)
+        .text("software", SOFTWARE);
+    let report = add_fit(Record::new().number("version", REPORT_VERSION), &fit)
+        .set("settings", &settings.into_value())
+        .bytes("labels", &fit.labels);
+    Ok(report.into_value())
 }
 
 /// Replaces the canvas's top-left width × height pixels by the colours of the labels: `palette` holds RGBA for label 0, 1, …;
@@ -356,8 +360,7 @@ fn rows<const N: usize>(name: &str, values: &[f64]) -> Result<Vec<[f64; N]>, Fai
     Ok(rows.to_vec())
 }
 
-/// The options' own entries that are not `undefined`. By hand, because serde-wasm-bindgen asks only for the fields it knows:
-/// a misspelt option would silently be left out.
+/// The options' own entries that are not `undefined`: all of them, so that a misspelt one is not silently left out.
 fn entries(options: &JsValue) -> Result<Vec<(String, JsValue)>, Failure> {
     if options.is_undefined() {
         return Ok(Vec::new());
@@ -455,67 +458,10 @@ fn unknown(name: &str, known: &str) -> Failure {
     Failure::option(format!("there is no option '{name}'; there are {known}"))
 }
 
-/// A report as a plain object, and its labels as an array of its own.
-fn plain(report: &impl Serialize, labels: &[u8]) -> Result<JsValue, JsValue> {
-    let object = report.serialize(&serde_wasm_bindgen::Serializer::json_compatible())?;
-    Reflect::set(&object, &"labels".into(), &Uint8Array::from(labels))?;
-    Ok(object)
-}
-
-#[derive(Serialize)]
-struct PairReport<'a> {
-    version: u32,
-    #[serde(flatten)]
-    segmentation: &'a Segmentation,
-    settings: PairSettings,
-}
-
-#[derive(Serialize)]
-struct RelabelReport<'a> {
-    motions: &'a [SegmentedMotion],
-    unlabelled: usize,
-}
-
-#[derive(Serialize)]
-#[serde(rename_all = "camelCase")]
-struct PairSettings {
-    motions: Motions,
-    quality: &'static str,
-    mark_unknown: bool,
-    before: bool,
-    seed: u64,
-    software: &'static str,
-}
-
-#[derive(Serialize)]
-struct PointsReport<'a> {
-    version: u32,
-    #[serde(flatten)]
-    fit: &'a MotionFit,
-    settings: PointsSettings,
-}
-
-#[derive(Serialize)]
-struct PointsSettings {
-    motions: Motions,
-    method: &'static str,
-    seed: u64,
-    software: &'static str,
-}
-
 /// `"auto"` or a number.
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Motions {
-    Auto(&'static str),
-    Given(usize),
-}
-
-impl From<MotionCount> for Motions {
-    fn from(count: MotionCount) -> Motions {
-        match count {
-            MotionCount::Auto => Motions::Auto("auto"),
-            MotionCount::Given(n) => Motions::Given(n),
-        }
+fn motions_asked(count: MotionCount) -> JsValue {
+    match count {
+        MotionCount::Auto => "auto".into(),
+        MotionCount::Given(n) => (n as f64).into(),
     }
 }

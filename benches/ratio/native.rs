@@ -1,6 +1,6 @@
 //! The native half of `npm run bench:ratio`: `native inputs DIR` writes the inputs of every case to files that both halves
 //! read, `native times DIR` prints how many milliseconds each took, as JSON. `native scenes DIR 640x480 …` writes the pairs of
-//! frames of `npm run bench:browser`.
+//! frames of `npm run bench:browser`, and `native stages DIR 640x480 …` prints how long each stage takes on them.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../../tests/support/protocol.rs"]
@@ -13,7 +13,9 @@ use std::time::Instant;
 
 use protocol::Protocol;
 use veronese::scene::{SceneOptions, generate};
-use veronese::{FitOptions, Frame, Measurements, MotionCount, Quality, SegmentOptions, fit_motions, segment_pair};
+use veronese::{
+    FitOptions, Frame, Measurements, MotionCount, Quality, SegmentOptions, Stage, fit_motions, segment_pair,
+};
 
 /// Problems of each number of motions.
 const PROBLEMS: u64 = 8;
@@ -22,6 +24,7 @@ const MOTIONS: [usize; 3] = [2, 3, 4];
 const SCENE: u64 = 7;
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;
+const QUALITIES: [(&str, Quality); 2] = [("fast", Quality::Fast), ("best", Quality::Best)];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -29,7 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["inputs", folder] => write_inputs(Path::new(folder)),
         ["times", folder] => print_times(Path::new(folder)),
         ["scenes", folder, ref sizes @ ..] => sizes.iter().try_for_each(|size| write_scene(Path::new(folder), size)),
-        _ => Err("usage: native inputs|times DIR | scenes DIR WIDTHxHEIGHT…".into()),
+        ["stages", folder, ref sizes @ ..] => print_stages(Path::new(folder), sizes),
+        _ => Err("usage: native inputs|times DIR | scenes|stages DIR WIDTHxHEIGHT…".into()),
     }
 }
 
@@ -52,12 +56,51 @@ fn write_inputs(folder: &Path) -> Result<(), Box<dyn Error>> {
 
 /// RGBA bytes of both frames and one label per pixel of the first.
 fn write_scene(folder: &Path, size: &str) -> Result<(), Box<dyn Error>> {
-    let (width, height) = size.split_once('x').ok_or("a size looks like 640x480")?;
-    let options = SceneOptions { width: width.parse()?, height: height.parse()?, ..SceneOptions::default() };
-    let scene = generate(&SceneOptions { seed: SCENE, ..options })?;
+    let (width, height) = sides(size)?;
+    let scene = generate(&SceneOptions { width, height, seed: SCENE, ..SceneOptions::default() })?;
     for (name, bytes) in [("first", &scene.rgba[1]), ("second", &scene.rgba[2]), ("labels", &scene.labels)] {
         fs::write(folder.join(format!("{name}-{size}")), bytes)?;
     }
+    Ok(())
+}
+
+fn sides(size: &str) -> Result<(usize, usize), Box<dyn Error>> {
+    let (width, height) = size.split_once('x').ok_or("a size looks like 640x480")?;
+    Ok((width.parse()?, height.parse()?))
+}
+
+/// Milliseconds of one call for each size and quality: in all, and of each stage (one that is entered again goes on).
+fn print_stages(folder: &Path, sizes: &[&str]) -> Result<(), Box<dyn Error>> {
+    let mut rows = Vec::new();
+    for size in sizes {
+        let (width, height) = sides(size)?;
+        let frame = |name: &str| {
+            let bytes = fs::read(folder.join(format!("{name}-{size}")))?;
+            Ok::<_, Box<dyn Error>>(Frame::from_rgba(width, height, &bytes)?)
+        };
+        let (first, second) = (frame("first")?, frame("second")?);
+        let mut cells = Vec::new();
+        for (name, quality) in QUALITIES {
+            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let (mut begun, start) = (Vec::<(&str, Instant)>::new(), Instant::now());
+            let mut listen = |stage: Stage| begun.push((stage.name, Instant::now()));
+            std::hint::black_box(segment_pair(&first, &second, None, &options, &mut listen)?);
+            let end = Instant::now();
+            let mut laps = vec![("total", 1e3 * (end - start).as_secs_f64())];
+            for (k, &(stage, since)) in begun.iter().enumerate() {
+                let until = begun.get(k + 1).map_or(end, |&(_, next)| next);
+                let time = 1e3 * (until - since).as_secs_f64();
+                match laps.iter_mut().find(|(known, _)| *known == stage) {
+                    Some((_, sum)) => *sum += time,
+                    None => laps.push((stage, time)),
+                }
+            }
+            let laps: Vec<String> = laps.iter().map(|(stage, time)| format!("\"{stage}\": {time}")).collect();
+            cells.push(format!("\"{name}\": {{{}}}", laps.join(", ")));
+        }
+        rows.push(format!("\"{size}\": {{{}}}", cells.join(", ")));
+    }
+    println!("{{{}}}", rows.join(", "));
     Ok(())
 }
 
@@ -74,7 +117,7 @@ fn print_times(folder: &Path) -> Result<(), Box<dyn Error>> {
     }
     let frame = |name: &str| Ok::<_, Box<dyn Error>>(Frame::from_rgba(WIDTH, HEIGHT, &fs::read(folder.join(name))?)?);
     let (first, second) = (frame("first")?, frame("second")?);
-    for (name, quality) in [("fast", Quality::Fast), ("best", Quality::Best)] {
+    for (name, quality) in QUALITIES {
         let options = SegmentOptions { quality, ..SegmentOptions::default() };
         let time =
             milliseconds(|| segment_pair(&first, &second, None, &options, &mut |_| {}).map(|found| found.count))?;

@@ -1,34 +1,49 @@
-// Takes the JavaScript that wasm-bindgen wrote beside each module into dist, with two changes, and the core module as text;
-// part of `npm run build`.
+// Takes the JavaScript that wasm-bindgen wrote beside each module to the compiled sources, with the calls that are used and a
+// loader of our own, and the core module as text; part of `npm run build`.
 
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
+const CALLS = ['segmentPair', 'relabel', 'fitMotions', 'paintLabels', 'paintLabelsOffscreen'];
+const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [
-  { from: '../wasm/veronese.js', to: '../dist/glue.js' },
-  { from: '../wasm/codecs/veronese_codecs.js', to: '../dist/glue-codecs.js' },
+  { from: '../wasm/veronese.js', to: '../build/glue.js', calls: CALLS },
+  { from: '../wasm/codecs/veronese_codecs.js', to: '../build/glue-codecs.js', calls: [...CALLS, ...FILE_CALLS] },
 ];
 
-mkdirSync(new URL('../dist/', import.meta.url), { recursive: true });
-for (const { from, to } of MODULES) {
-  writeFileSync(new URL(to, import.meta.url), adapted(readGlue(new URL(from, import.meta.url))));
+mkdirSync(new URL('../build/', import.meta.url), { recursive: true });
+for (const { from, to, calls } of MODULES) {
+  writeFileSync(new URL(to, import.meta.url), adapted(readGlue(new URL(from, import.meta.url)), calls));
 }
 
 // The module inside of JavaScript, for veronese/inline.
 const module = readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url));
 const packed = deflateSync(module, { level: 9 }).toString('base64');
-writeFileSync(new URL('../dist/inline-module.js', import.meta.url), `export const packed = '${packed}';\n`);
+writeFileSync(new URL('../build/inline-module.js', import.meta.url), `export const packed = '${packed}';\n`);
 
-function adapted(glue) {
-  // Where the module lies is said in one place (web.ts, node.ts). A second URL would make bundlers look for a second file.
-  const place = /module_or_path = new URL\('[^']+', import\.meta\.url\);/g;
-  if (glue.match(place)?.length !== 1 || !glue.includes('wasmInstance, wasm;')) {
-    console.error('veronese: the glue of this wasm-bindgen looks different: read pkg/scripts/glue.mjs');
+/** One object of the calls, from which whatever bundles the rest sees what nobody uses. */
+function adapted(glue, calls) {
+  // Two thirds of the loader are for sources that loading.ts knows better; what is left needs four lines.
+  const loader = /\nasync function __wbg_load\([\s\S]*\nexport \{ initSync, __wbg_init as default \};\n$/;
+  const parts = ['function __wbg_finalize_init(instance, module)', 'function __wbg_get_imports()', 'wasmInstance, wasm;'];
+  const missing = [...parts, ...calls.map((name) => `export function ${name}(`)].filter((part) => !glue.includes(part));
+  if (!loader.test(glue) || missing.length > 0) {
+    console.error(`veronese: the glue of this wasm-bindgen looks different (${missing}): read pkg/scripts/glue.mjs`);
     process.exit(1);
   }
-  const withoutPlace = glue.replace(place, "throw new Error('no module was given');");
-  // The glue keeps its one instance for ever. After a panic an instance cannot be trusted: let the package ask for a new one.
-  return `${withoutPlace}\nexport function forgetInstance() {\n    wasm = undefined;\n}\n`;
+  return `${glue.replace(loader, '')}
+async function instantiate(module) {
+    if (wasm === undefined) __wbg_finalize_init(await WebAssembly.instantiate(module, __wbg_get_imports()), module);
+    return wasm;
+}
+
+// The glue keeps its one instance for ever. After a panic an instance cannot be trusted: the package asks for a new one.
+function forgetInstance() {
+    wasm = undefined;
+}
+
+export const glue = { instantiate, forgetInstance, ${calls.join(', ')} };
+`;
 }
 
 function readGlue(file) {

@@ -14,10 +14,10 @@ import type {
   WasmSource,
 } from '../types/index.js';
 import type { Core } from './core.js';
+import type { CoreGlue } from './glue.js';
 import { cancelled, VeroneseError } from './errors.js';
 import { colourBytes, davisPalette } from './palette.js';
 
-type CoreGlue = typeof import('./glue.js');
 type OnStage = Parameters<CoreGlue['fitMotions']>[3];
 
 export class Api {

@@ -1,6 +1,6 @@
 // Image files under Node: the second WebAssembly build, which has everything of the first and reads and writes files.
 
-import * as glue from './glue-codecs.js';
+import { glue } from './glue-codecs.js';
 import type { Picture } from '../types/codecs.js';
 import { Api } from './api.js';
 import { Core } from './core.js';

@@ -6,7 +6,9 @@ import { compile, loadFailed, type Read } from './loading.js';
 
 /** What the generated glue has in every build. */
 export interface Glue {
-  default(source: { module_or_path: WebAssembly.Module }): Promise<unknown>;
+  /** Makes the instance, unless there is one. */
+  instantiate(module: WebAssembly.Module): Promise<unknown>;
+  /** Lets go of the instance: the next initialisation makes a new one. */
   forgetInstance(): void;
 }
 
@@ -53,7 +55,7 @@ export class Core<G extends Glue> {
   async #instantiate(source?: WasmSource | Promise<WasmSource>): Promise<void> {
     const module = await this.module(source);
     try {
-      await this.#glue.default({ module_or_path: module });
+      await this.#glue.instantiate(module);
       this.#live = true;
     } catch (thrown) {
       // A module, but not ours: do not keep it.

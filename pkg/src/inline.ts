@@ -1,6 +1,6 @@
 // The entry that holds its module: for bundlers that lose files, and for pages of one file.
 
-import * as glue from './glue.js';
+import { glue } from './glue.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { VeroneseError } from './errors.js';

@@ -23,10 +23,11 @@ export type Task =
       evidence: Uint16Array;
       options: RelabelOptions;
     }
-  | { call: 'fitMotions'; measurements: PointMeasurements; options: FitOptions };
+  | { call: 'fitMotions'; measurements: PointMeasurements; options: FitOptions }
+  | { call: 'warmUp' };
 
 /** What a task gives. */
-export type Result = Segmentation | MotionFit;
+export type Result = Segmentation | MotionFit | undefined;
 
 /** The compiled module comes with the first task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };

@@ -2,7 +2,7 @@
 
 import { availableParallelism } from 'node:os';
 import { Worker } from 'node:worker_threads';
-import * as glue from './glue.js';
+import { glue } from './glue.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { read } from './reading.js';

@@ -74,6 +74,10 @@ export function segmenters(host: Host) {
       return (await this.#pool.run({ call: 'fitMotions', measurements: checked, options: rest }, call)) as MotionFit;
     }
 
+    async warmUp(): Promise<void> {
+      await this.#pool.run({ call: 'warmUp' });
+    }
+
     close(): void {
       this.#pool.close();
     }

@@ -1,11 +1,12 @@
 // The worker's side: one task at a time, answered by messages.
 
-import * as glue from './glue.js';
+import { glue } from './glue.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { errorMessage } from './errors.js';
-import type { CallOptions } from '../types/index.js';
-import type { Reply, Request, Task } from './messages.js';
+import type { CallOptions, Segmentation } from '../types/index.js';
+import type { Reply, Request, Result, Task } from './messages.js';
+import { warmUp } from './warming.js';
 
 /** Answers one request at a time: the page sends the next when it has the answer to the last. */
 export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (request: Request) => Promise<void> {
@@ -17,8 +18,7 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
         post({ kind: 'progress', progress }, []);
       };
       const result = await perform(api, task, { onProgress });
-      const arrays = [result.labels, ...('confidence' in result && result.confidence ? [result.confidence] : [])];
-      post({ kind: 'done', result }, arrays.map(({ buffer }) => buffer as ArrayBuffer));
+      post({ kind: 'done', result }, buffersOf(result));
     } catch (thrown) {
       // An exception in an asynchronous handler would not reach the page by itself.
       post({ kind: 'failed', error: errorMessage(thrown) }, []);
@@ -26,7 +26,7 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
   };
 }
 
-function perform(api: Api, task: Task, call: CallOptions) {
+function perform(api: Api, task: Task, call: CallOptions): Promise<Result> {
   switch (task.call) {
     case 'segmentPair':
       return api.segmentPair(task.first, task.second, { ...task.options, ...call });
@@ -34,5 +34,13 @@ function perform(api: Api, task: Task, call: CallOptions) {
       return api.relabel(task.first, task.second, task.segmentation, task.evidence, { ...task.options, ...call });
     case 'fitMotions':
       return api.fitMotions(task.measurements, { ...task.options, ...call });
+    case 'warmUp':
+      return warmUp(api).then(() => undefined);
   }
+}
+
+/** What is handed over instead of copied. */
+function buffersOf(result: Result): ArrayBuffer[] {
+  const { labels, confidence }: Partial<Pick<Segmentation, 'labels' | 'confidence'>> = result ?? {};
+  return [labels, confidence].filter((array) => array !== undefined).map(({ buffer }) => buffer as ArrayBuffer);
 }

@@ -1,6 +1,6 @@
 // The entry without places: the module and the workers' file are the caller's to name.
 
-import * as glue from './glue.js';
+import { glue } from './glue.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { VeroneseError } from './errors.js';

@@ -1,6 +1,6 @@
 // The entry for browsers, workers and bundlers.
 
-import * as glue from './glue.js';
+import { glue } from './glue.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { segmenters } from './segmenter.js';

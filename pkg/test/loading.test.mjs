@@ -4,10 +4,10 @@ import { readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { describe, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import * as glue from '../dist/glue.js';
-import { Api } from '../dist/api.js';
-import { Core } from '../dist/core.js';
-import { read } from '../dist/reading.js';
+import { glue } from '../build/glue.js';
+import { Api } from '../build/api.js';
+import { Core } from '../build/core.js';
+import { read } from '../build/reading.js';
 import { pair } from './support/frames.mjs';
 import { checkPair, failure } from './support/shapes.mjs';
 import { temporaryFolder } from './support/program.mjs';
@@ -100,9 +100,9 @@ describe('after a trap', () => {
     let instance;
     const glue = {
       made: 0,
-      async default({ module_or_path }) {
+      async instantiate(module) {
         if (instance) return;
-        instance = await WebAssembly.instantiate(module_or_path, {});
+        instance = await WebAssembly.instantiate(module, {});
         glue.made++;
       },
       forgetInstance: () => (instance = undefined),

@@ -36,6 +36,15 @@ describe('Segmenter', () => {
     assert.deepEqual(there, direct);
   });
 
+  test('warms up, changes nothing by it, and is ended in the middle of it by close()', async (t) => {
+    const worker = segmenter(t);
+    assert.equal(await worker.warmUp(), undefined);
+    assert.deepEqual(timeless(await worker.segmentPair(...pair())), timeless(await segmentPair(...pair())));
+    const again = failure(worker.warmUp());
+    worker.close();
+    assert.equal((await again).code, 'cancelled');
+  });
+
   test('does many calls in their order', async (t) => {
     const worker = segmenter(t);
     const order = [];

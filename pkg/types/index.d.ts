@@ -316,6 +316,12 @@ export class Segmenter {
     options?: RelabelOptions,
   ): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
+  /**
+   * Starts the worker and has it segment a small pair of its own for a moment, beside the page, so that the engine has compiled to
+   * the end what calls spend their time in: a first call otherwise takes two to three times as long as later ones. One worker warms
+   * up for all instances of the module on the page. Other calls to the same worker wait meanwhile; `close()` ends it.
+   */
+  warmUp(): Promise<void>;
   /** Ends the worker; calls under way reject with code `cancelled`. The next call starts a fresh one. */
   close(): void;
 }

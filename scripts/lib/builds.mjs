@@ -43,12 +43,12 @@ export async function buildModules() {
   }
 }
 
-/** The npm package: the JavaScript beside the modules, and TypeScript to JavaScript. */
+/** The npm package: the JavaScript beside the modules, TypeScript to JavaScript, and all of it joined into few files. */
 export async function buildPackage() {
   const glue = MODULES.flatMap(({ name, folder }) => [`${folder}/${name}.js`, `${folder}/${name}.d.ts`]);
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
   const inputs = [...sources, ...glue, 'package-lock.json'];
-  await step('the npm package', 'pkg/dist', ['pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>
+  await step('the npm package', 'pkg/dist', ['pkg/build/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>
     must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
   );
 }

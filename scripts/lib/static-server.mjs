@@ -25,12 +25,15 @@ const TYPES = {
 };
 const ATTEMPTS = 20;
 
-/** Serves `folder` and returns the server once it listens; without a wish for a port the next free one is taken. */
-export async function serve(folder, { port, host }) {
+/**
+ * Serves `folder` and returns the server once it listens; without a wish for a port the next free one is taken. `headers` go with
+ * every answer.
+ */
+export async function serve(folder, { port, host, headers = HEADERS }) {
   const first = port ?? 4173;
   const last = port === undefined ? first + ATTEMPTS : first;
   for (let candidate = first; candidate <= last; candidate += 1) {
-    const server = createServer((request, response) => answer(folder, request, response));
+    const server = createServer((request, response) => answer({ folder, headers }, request, response));
     const error = await listening(server, candidate, host);
     if (!error) return server;
     if (error.code !== 'EADDRINUSE') throw new Stop(`The page cannot be served on port ${candidate}: ${error.message}.`);
@@ -46,13 +49,16 @@ function listening(server, port, host) {
   });
 }
 
-function answer(folder, request, response) {
-  if (request.method !== 'GET' && request.method !== 'HEAD') return refuse(response, 405, 'Only GET and HEAD.');
+function answer({ folder, headers }, request, response) {
+  const refuse = (code, sentence) => {
+    response.writeHead(code, { ...headers, 'Content-Type': 'text/plain; charset=utf-8' });
+    response.end(`${sentence}\n`);
+  };
+  if (request.method !== 'GET' && request.method !== 'HEAD') return refuse(405, 'Only GET and HEAD.');
   const path = fileFor(folder, request.url);
-  if (!path) return refuse(response, 404, 'Not found.');
+  if (!path) return refuse(404, 'Not found.');
   const type = TYPES[extname(path).toLowerCase()] ?? 'application/octet-stream';
-  const headers = { ...HEADERS, 'Content-Type': type, 'Content-Length': statSync(path).size, 'Cache-Control': 'no-cache' };
-  response.writeHead(200, headers);
+  response.writeHead(200, { ...headers, 'Content-Type': type, 'Content-Length': statSync(path).size, 'Cache-Control': 'no-cache' });
   if (request.method === 'HEAD') return response.end();
   return createReadStream(path).on('error', () => response.destroy()).pipe(response);
 }
@@ -68,9 +74,4 @@ function fileFor(folder, url) {
   } catch {
     return undefined; // No such file, or an address that is none.
   }
-}
-
-function refuse(response, code, sentence) {
-  response.writeHead(code, { ...HEADERS, 'Content-Type': 'text/plain; charset=utf-8' });
-  response.end(`${sentence}\n`);
 }

@@ -67,6 +67,7 @@ pub(crate) enum View {
 
 /// Cost of a motion (of the working frame) at every pixel of a level; in the frame before, where there is one, where the pixel
 /// leaves the second.
+#[inline(never)]
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
     let mut plane = cost_in(level, View::Second, motion, model);
     if level.before.is_some() {
@@ -79,6 +80,7 @@ pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Pl
 }
 
 /// Cost of a motion in one view; infinite where the displaced position lies outside, or where there is no such view.
+#[inline(never)]
 pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: CostModel) -> Plane {
     let (plane, moved) = match view {
         View::Second => (Some(&level.second), Some(*motion)),
@@ -98,6 +100,7 @@ pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photo
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
+#[inline(never)]
 pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
     let a = &motion.matrix;
     let (p, q, r, s) = (1.0 + a[0], a[1], a[3], 1.0 + a[4]);

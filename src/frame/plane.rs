@@ -1,20 +1,30 @@
 //! A rectangle of `f32` values, row by row: every image quantity of the pipeline.
 
 /// Width × height values, row-major; (0, 0) is the top-left pixel.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct Plane {
     width: usize,
     height: usize,
     values: Vec<f32>,
 }
 
+// Making a plane takes long enough for a call: inlined, it would be in the module at eighty places.
+impl Clone for Plane {
+    #[inline(never)]
+    fn clone(&self) -> Plane {
+        Plane { width: self.width, height: self.height, values: self.values.clone() }
+    }
+}
+
 impl Plane {
     /// A plane of one value.
+    #[inline(never)]
     pub fn filled(width: usize, height: usize, value: f32) -> Plane {
         Plane { width, height, values: vec![value; width * height] }
     }
 
     /// A plane from its values, row by row; cut or filled with zeros where their number is not width × height.
+    #[inline(never)]
     pub fn from_vec(width: usize, height: usize, mut values: Vec<f32>) -> Plane {
         debug_assert_eq!(values.len(), width * height);
         values.resize(width * height, 0.0);

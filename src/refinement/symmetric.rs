@@ -5,6 +5,7 @@ pub(crate) type Matrix6 = [[f64; 6]; 6];
 
 /// The lower triangular L with `L Lᵀ = matrix`; pivots that are not positive are raised to the smallest positive number,
 /// so that the factor always exists (callers add a ridge first, which makes that an exception).
+#[inline(never)]
 pub(crate) fn cholesky(matrix: &Matrix6) -> Matrix6 {
     let mut l = [[0.0; 6]; 6];
     for j in 0..6 {

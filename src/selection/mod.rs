@@ -26,6 +26,7 @@ pub(crate) struct Layer {
 
 impl Layer {
     /// A motion looked at on a level.
+    #[inline(never)]
     pub(crate) fn new(level: &Level, motion: AffineMotion) -> Layer {
         Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW) }
     }

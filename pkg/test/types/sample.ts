@@ -38,6 +38,8 @@ export async function browser(canvas: HTMLCanvasElement, first: ImageData, secon
 
 export async function node(first: Uint8Array, second: Uint8Array): Promise<MotionFit | ErrorCode> {
   const segmenter = new Segmenter(WebAssembly.compile(new Uint8Array(8)));
+  const warm: Promise<void> = segmenter.warmUp();
+  await warm;
   try {
     const frames: Pixels[] = [await decodeImage(first), await decodeImage(second)];
     await segmenter.segmentPair(frames[0] as Pixels, frames[1] as Pixels);

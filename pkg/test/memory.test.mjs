@@ -1,0 +1,95 @@
+// What the module holds. Its memory never shrinks, so its size is the most that was ever in use at once.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { describe, test } from 'node:test';
+import { glue } from '../build/glue.js';
+import { frame, pair, points } from './support/frames.mjs';
+
+const MIB = 2 ** 20;
+const module = new WebAssembly.Module(readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url)));
+
+/** The size of a fresh instance's memory in MiB, whenever it is asked. */
+async function freshMemory() {
+  glue.forgetInstance();
+  const { memory } = await glue.instantiate(module);
+  return () => memory.buffer.byteLength / MIB;
+}
+
+function segment([first, second], options, before) {
+  return glue.segmentPair(first, second, before, options, () => {});
+}
+
+/** Labels solved again where every pixel may have every label. */
+function relabel([first, second], { motions, labels }, quality) {
+  const matrices = Float64Array.from(motions.flatMap(({ matrix }) => matrix));
+  const groups = Uint8Array.from(motions, ({ group }) => group);
+  const evidence = new Uint16Array(labels.length).fill(2 ** motions.length - 1);
+  return glue.relabel(first, second, undefined, matrices, groups, labels, evidence, { quality }, () => {});
+}
+
+describe('after a few calls, further ones take no more memory', () => {
+  const small = pair();
+  const larger = pair({ width: 160, height: 120 });
+  const { positions, derivatives } = points(300, 1, 0.5);
+  const cases = {
+    fast: () => segment(larger, { quality: 'fast' }),
+    best: () => segment(larger, { quality: 'best' }),
+    'frames of two sizes by turns': () => {
+      segment(larger, { quality: 'fast' });
+      segment(small, { quality: 'best' });
+    },
+    'with everything that can be asked for': () => {
+      segment(small, { quality: 'best', confidence: true, markUnknown: true }, frame(-1));
+    },
+    'labels again': () => relabel(small, segment(small, { quality: 'fast' }), 'fast'),
+    measurements: () => glue.fitMotions(positions, derivatives, {}, () => {}),
+    'calls that are refused': () => {
+      assert.throws(() => segment(larger, { quality: 'good' }), { code: 'invalid-option' });
+      assert.throws(() => segment([larger[0], small[0]], {}), { code: 'frame-size-mismatch' });
+    },
+  };
+  for (const [title, call] of Object.entries(cases)) {
+    test(title, async () => {
+      const size = await freshMemory();
+      for (let k = 0; k < 4; k++) call();
+      const settled = size();
+      for (let k = 0; k < 24; k++) call();
+      assert.equal(size(), settled);
+    });
+  }
+});
+
+describe('the most that is in use', () => {
+  for (const quality of ['fast', 'best']) {
+    test(`${quality}, 640 × 480: at most 48 MiB`, async () => {
+      const size = await freshMemory();
+      segment(pair({ width: 640, height: 480 }), { quality });
+      assert.ok(size() <= 48, `${size()} MiB`);
+    });
+  }
+
+  test('the largest frames there may be, with all that takes memory: at most 1 GiB', async () => {
+    const size = await freshMemory();
+    const [first, second, before] = [0, 1, -1].map((t) => tiled(frame(t, { width: 512, height: 512 }), 8));
+    const result = segment([first, second], { quality: 'best', confidence: true, markUnknown: true }, before);
+    assert.equal(result.labels.length, 4096 * 4096);
+    relabel([first, second], result, 'best');
+    assert.ok(size() <= 1024, `${size()} MiB`);
+    const error = { code: 'frame-size-unsupported', message: /4097×4096.*between \d+ and 4096/ };
+    const tooWide = { data: new Uint8Array(4 * 4097 * 4096), width: 4097, height: 4096 };
+    assert.throws(() => segment([tooWide, tooWide], {}), error);
+  });
+});
+
+/** The frame `times` times beside and below itself. */
+function tiled({ data, width, height }, times) {
+  const row = 4 * width;
+  const band = new Uint8Array(times * data.length);
+  for (let y = 0; y < height; y++) {
+    for (let k = 0; k < times; k++) band.set(data.subarray(y * row, (y + 1) * row), (y * times + k) * row);
+  }
+  const all = new Uint8Array(times * band.length);
+  for (let k = 0; k < times; k++) all.set(band, k * band.length);
+  return { data: all, width: times * width, height: times * height };
+}

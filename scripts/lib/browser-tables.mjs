@@ -1,0 +1,124 @@
+// What `npm run bench:browser` found, as tables in Markdown: for the terminal and for docs/performance.md.
+
+const QUALITIES = ['fast', 'best'];
+const TITLES = {
+  fast: '`segmentPair`, fast',
+  best: '`segmentPair`, best',
+  farneback: 'OpenCV.js, Farneback’s flow alone',
+  opencvPipeline: 'OpenCV.js, flow to labels',
+  jsfeat: 'jsfeat, corners tracked',
+};
+
+/** The parts of a report by name; those of what was not measured are left out. */
+export function partsOf(report) {
+  return {
+    browser: [origin(report), downloads(report), calls(report), workers(report)].join('\n\n'),
+    stages: stages(report),
+    ...(report.scaling && { scaling: [pixels(report.scaling), motions(report.scaling)].join('\n\n') }),
+  };
+}
+
+function origin({ machine, rounds, date }) {
+  const { processor, cores, chromium } = machine;
+  return `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: calls by turns, ${rounds} of each, on one thread; milliseconds.`;
+}
+
+function downloads({ wasmGzip, jsGzip, readyMs, peers, peersReadyMs }) {
+  const rows = [['Veronese', `${kib(wasmGzip)} + ${kib(jsGzip)} JavaScript`, ms(readyMs)]];
+  if (peers) {
+    rows.push([`OpenCV.js ${peers.opencv.version}`, kib(peers.opencv.gzip), ms(peersReadyMs.opencv)]);
+    rows.push([`jsfeat ${peers.jsfeat.version}`, kib(peers.jsfeat.gzip), ms(peersReadyMs.jsfeat)]);
+  }
+  return table(['', 'download, gzip', 'ready after'], rows);
+}
+
+/** `first`: on a fresh page, `firstWarmedUp`: there after `warmUp()`; `overlap`: mean intersection over union of the true labels with those found. */
+function calls({ sizes }) {
+  const rows = Object.entries(sizes).flatMap(([size, cases]) =>
+    Object.entries(cases).map(([name, { median, best, first, firstWarmedUp, overlap, memoryBytes }]) => [
+      times(size),
+      TITLES[name],
+      ms(median),
+      ms(best),
+      beside(first, median),
+      firstWarmedUp ? beside(firstWarmedUp, median) : '',
+      cases.farneback ? (median / cases.farneback.median).toFixed(2) : '',
+      overlap === undefined ? '' : overlap.toFixed(3),
+      memoryBytes ? mib(memoryBytes) : '',
+    ]),
+  );
+  return table(['frames', 'call', 'median', 'best', 'first call', 'warmed up', '÷ Farneback', 'overlap', 'memory, MiB'], rows);
+}
+
+function workers({ workers: { size, onePairsPerSecond, twoPairsPerSecond, ratio } }) {
+  const rates = `${onePairsPerSecond.toFixed(1)} in one worker, ${twoPairsPerSecond.toFixed(1)} in two`;
+  return `Pairs of ${times(size)} pixels per second, fast: ${rates} (${ratio.toFixed(2)} times as many).`;
+}
+
+/** Medians of the same source natively and in the browser, on the same frames and by turns. */
+function stages({ sizes }) {
+  const names = Object.keys(Object.values(sizes)[0].fast.stages);
+  const rows = Object.entries(sizes).flatMap(([size, cases]) =>
+    QUALITIES.flatMap((quality) => {
+      const { median, stages, native } = cases[quality];
+      const browser = [median, ...names.map((name) => stages[name] ?? 0)];
+      const alone = [native.median, ...names.map((name) => native.stages[name] ?? 0)];
+      return [
+        [times(size), quality, 'native', ...alone.map(ms)],
+        ['', '', 'browser', ...browser.map(ms)],
+        ['', '', 'ratio', ...browser.map((value, k) => (alone[k] > 0 ? (value / alone[k]).toFixed(2) : ''))],
+      ];
+    }),
+  );
+  return table(['frames', 'quality', '', 'in all', ...names], rows);
+}
+
+function pixels({ pixels, exponents }) {
+  const rows = pixels.map(({ size, megapixels, fast, best, memory }) => [
+    times(size),
+    megapixels.toFixed(2),
+    ms(fast),
+    ms(best),
+    mib(memory.fast),
+    mib(memory.best),
+  ]);
+  const { fast, best, memoryFast, memoryBest } = exponents.pixels;
+  rows.push(['exponent above half a megapixel', '', power(fast), power(best), power(memoryFast), power(memoryBest)]);
+  return table(['frames', 'megapixels', 'fast', 'best', 'memory, fast, MiB', 'memory, best, MiB'], rows);
+}
+
+function motions({ size, motions, exponents }) {
+  const rows = motions.map(({ motions: n, fast, best }) => [String(n), ms(fast), ms(best)]);
+  rows.push(['exponent', power(exponents.motions.fast), power(exponents.motions.best)]);
+  return `The number of motions given, ${times(size)} pixels:\n\n${table(['motions', 'fast', 'best'], rows)}`;
+}
+
+function table(head, rows) {
+  return [head, head.map(() => '---'), ...rows].map((cells) => `| ${cells.join(' | ')} |`).join('\n');
+}
+
+function ms(value) {
+  return value.toFixed(value < 1000 ? 1 : 0);
+}
+
+/** A time and how many times another it is. */
+function beside(value, other) {
+  return `${ms(value)} (${(value / other).toFixed(1)} ×)`;
+}
+
+function kib(bytes) {
+  return `${(bytes / 1024).toFixed(1)} KiB`;
+}
+
+function mib(bytes) {
+  return (bytes / 2 ** 20).toFixed(1);
+}
+
+function power(value) {
+  return value.toFixed(2);
+}
+
+/** "640x480" as it is printed. */
+function times(size) {
+  return size.replace('x', ' × ');
+}
