@@ -10,7 +10,7 @@ const TILES = 3;
 /** Displacements between the frames, pixels; the first is the background's. */
 const MOTIONS = [[0.3, 0.2], [2, 1], [-1, 2], [1, -2]] as const;
 /** Calls go on until this time has passed. */
-const MILLISECONDS = 250;
+const MILLISECONDS = 500;
 
 /** Segments a pair of its own again and again for a moment. */
 export async function warmUp(api: Api): Promise<void> {

@@ -317,7 +317,7 @@ export class Segmenter {
   ): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
   /**
-   * Starts the worker and has it segment a small pair of its own for a moment, beside the page, so that the engine has compiled to
+   * Starts the worker and has it segment a small pair of its own for half a second or more, beside the page, so that the engine has compiled to
    * the end what calls spend their time in: a first call otherwise takes two to three times as long as later ones. One worker warms
    * up for all instances of the module on the page. Other calls to the same worker wait meanwhile; `close()` ends it.
    */
