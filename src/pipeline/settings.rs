@@ -65,6 +65,8 @@ pub(crate) struct Settings {
     pub(crate) least: usize,
     /// Standard deviation of the window over which the gain of a motion is gathered, pixels of the level.
     pub(crate) gain_window: f32,
+    /// Rounds of refinement of all motions after each that is added.
+    pub(crate) refits: usize,
     /// How often labels are corrected for occlusion.
     pub(crate) visibility_rounds: usize,
     /// How labels hold together.
@@ -90,6 +92,7 @@ impl Settings {
             most: 7,
             least: 1,
             gain_window: 2.0,
+            refits: 1,
             visibility_rounds: 2,
             coherence: Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST, sharpening: Solver::BEST },
             #[cfg(feature = "ablation")]
@@ -107,6 +110,7 @@ impl Settings {
                 tries: 1,
                 visibility_rounds: 1,
                 gain_window: 1.5,
+                refits: 0,
                 coherence: Coherence { solver: Solver::FAST, sharpening: Solver::LIGHT, ..best.coherence },
                 ..best
             },

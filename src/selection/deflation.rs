@@ -22,6 +22,8 @@ pub(crate) struct Deflation {
     pub(crate) tries: usize,
     /// Standard deviation of the window over which a gain is gathered, pixels.
     pub(crate) window: f32,
+    /// Rounds of refinement of all motions after each that is added.
+    pub(crate) refits: usize,
 }
 
 /// Gain per pixel that is no gain: windows at borders, chance.
@@ -111,7 +113,7 @@ pub(crate) fn add_motions(
             Some((brings, layer)) if brings >= how.price => layers.push(layer),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
-        refit(level, layers, 1);
+        refit(level, layers, how.refits);
     }
 }
 
