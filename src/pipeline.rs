@@ -147,9 +147,8 @@ impl Work {
         let empty = || Plane::filled(1, 1, 0.0);
         let (one, two) = (blurred.next().unwrap_or_else(empty), blurred.next().unwrap_or_else(empty));
         let levels = build(one, two, blurred.next(), settings.smallest_side);
-        let within = |side: usize| {
-            levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1)
-        };
+        let within =
+            |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let (base, draft) = (within(settings.base_side), within(settings.draft_side));
         let mut pictures = vec![picture];
         while pictures.len() <= base.max(draft) {

@@ -90,8 +90,15 @@ pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: C
 
 /// Cost with a change of brightness that has not been taken out of the second frame yet.
 pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
-    Comparison { level, view: &level.second, scaled: level.scaled(motion), photometric, model, outside: model.outside() }
-        .plane()
+    Comparison {
+        level,
+        view: &level.second,
+        scaled: level.scaled(motion),
+        photometric,
+        model,
+        outside: model.outside(),
+    }
+    .plane()
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.

@@ -140,7 +140,8 @@ pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest
         if last.width().min(last.height()) < 2 * smallest {
             break;
         }
-        let next = Level::new(last.index + 1, halve(&last.first), halve(&last.second), last.before.as_deref().map(halve));
+        let next =
+            Level::new(last.index + 1, halve(&last.first), halve(&last.second), last.before.as_deref().map(halve));
         levels.push(next);
     }
     levels

@@ -55,13 +55,7 @@ impl Footprint {
         let (cx, cy) = (x.max(0.0).min(right_edge), y.max(0.0).min(lower_edge));
         // The upper left pixel is never on the last column or row: what lies there has the weights 1.
         let (ix, iy) = ((cx as usize).min(width - 2), (cy as usize).min(height - 2));
-        Footprint {
-            index: iy * width + ix,
-            width,
-            fx: cx - ix as f32,
-            fy: cy - iy as f32,
-            inside,
-        }
+        Footprint { index: iy * width + ix, width, fx: cx - ix as f32, fy: cy - iy as f32, inside }
     }
 
     /// The bilinear sample of a plane of the size that the footprint was made for.

@@ -186,8 +186,13 @@ mod tests {
     use super::*;
     use crate::frame::pyramid::build;
 
-    const COHERENCE: Coherence =
-        Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST, sharpening: Solver::FAST };
+    const COHERENCE: Coherence = Coherence {
+        smoothness: 8.0,
+        departure: 0.05,
+        draft_solver: Solver::FAST,
+        solver: Solver::BEST,
+        sharpening: Solver::FAST,
+    };
 
     fn noise(seed: u64) -> Plane {
         let mut random = crate::random::Random::from_seed(seed);

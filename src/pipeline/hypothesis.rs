@@ -22,7 +22,13 @@ const CLEARLY: f64 = 0.9;
 impl Settings {
     /// How motions are added at the base level (0) and at finer ones (1).
     fn deflation(&self, stage: usize) -> Deflation {
-        Deflation { price: self.price[stage], most: self.most, tries: self.tries, window: self.gain_window, refits: self.refits }
+        Deflation {
+            price: self.price[stage],
+            most: self.most,
+            tries: self.tries,
+            window: self.gain_window,
+            refits: self.refits,
+        }
     }
 
     fn refit(&self, level: &Level, layers: &mut [Layer], rounds: usize) {

@@ -157,12 +157,10 @@ impl<'a> Draft<'a> {
     /// Labels of the working size from those of the draft.
     fn sharpen(&mut self, work: &Work) {
         let step = 1 << work.draft;
-        let colours = self
-            .hears_colours()
-            .then(|| ColourPrices::learned(&work.palette.thinned(step), &self.costs, &self.labels));
+        let colours =
+            self.hears_colours().then(|| ColourPrices::learned(&work.palette.thinned(step), &self.costs, &self.labels));
         let visible = self.motions.len() < 2 || !self.settings.has(Part::Visibility);
-        let hidden =
-            if visible { Vec::new() } else { hidden_under(self.level, &self.motions, &self.labels) };
+        let hidden = if visible { Vec::new() } else { hidden_under(self.level, &self.motions, &self.labels) };
         let coarse = Coarse {
             width: self.level.width(),
             labels: &self.labels,

@@ -11,7 +11,7 @@ use crate::frame::filter::gaussian;
 use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
-use crate::labelling::description::{counts};
+use crate::labelling::description::counts;
 use crate::labelling::groups::groups;
 use crate::labelling::upsampling::{enlarged, upsample};
 use crate::labelling::visibility::hidden;

@@ -94,7 +94,13 @@ impl Settings {
             gain_window: 2.0,
             refits: 1,
             visibility_rounds: 2,
-            coherence: Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST, sharpening: Solver::BEST },
+            coherence: Coherence {
+                smoothness: 8.0,
+                departure: 0.05,
+                draft_solver: Solver::FAST,
+                solver: Solver::BEST,
+                sharpening: Solver::BEST,
+            },
             #[cfg(feature = "ablation")]
             without: None,
         };
