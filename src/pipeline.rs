@@ -1,6 +1,7 @@
 //! Two frames in, masks out: the image pipeline as its stages in order, and nothing else.
 
 mod correction;
+mod evidence;
 mod hypothesis;
 mod masks;
 mod report;
@@ -121,7 +122,10 @@ pub(crate) struct Work {
     levels: Vec<Level>,
     /// Index of the level on which motions are first looked for.
     base: usize,
-    picture: Picture,
+    /// Index of the level on which labels are drafted.
+    draft: usize,
+    /// The first frame unblurred, at the sizes of the levels down to the base level.
+    pictures: Vec<Picture>,
     /// Coarse colour of every working pixel.
     palette: Palette,
     /// Full-size pixels per working pixel.
@@ -143,9 +147,15 @@ impl Work {
         let empty = || Plane::filled(1, 1, 0.0);
         let (one, two) = (blurred.next().unwrap_or_else(empty), blurred.next().unwrap_or_else(empty));
         let levels = build(one, two, blurred.next(), settings.smallest_side);
-        let base =
-            levels.iter().position(|l| l.width().max(l.height()) <= settings.base_side).unwrap_or(levels.len() - 1);
-        Work { levels, base, picture, palette, reduction }
+        let within =
+            |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
+        let (base, draft) = (within(settings.base_side), within(settings.draft_side));
+        let mut pictures = vec![picture];
+        while pictures.len() <= base.max(draft) {
+            let last = &pictures[pictures.len() - 1];
+            pictures.push(Picture { luminance: halve(&last.luminance), colours: last.colours.each_ref().map(halve) });
+        }
+        Work { levels, base, draft, pictures, palette, reduction }
     }
 
     /// Finds the dominant motion, takes the change of brightness (if there may be one) out of the second frame, measures the noise.

@@ -12,7 +12,7 @@
 use crate::frame::Plane;
 use crate::frame::lanes::each;
 use crate::frame::pyramid::Level;
-use crate::frame::warp::{CHUNK, Footprints, RowPath};
+use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
 use crate::order::median;
 
@@ -83,21 +83,23 @@ pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Pl
 /// Cost of a motion in one view; infinite where the displaced position lies outside, or where there is no such view.
 #[inline(never)]
 pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: CostModel) -> Plane {
-    let (plane, moved) = match view {
-        View::Second => (Some(&level.second), Some(*motion)),
-        View::Before => (level.before.as_ref(), inverse(motion)),
-    };
-    match (plane, moved) {
-        (Some(plane), Some(moved)) => {
-            view_cost(level, plane, &level.scaled(&moved), Photometric::default(), model, f32::INFINITY)
-        }
-        _ => Plane::filled(level.width(), level.height(), f32::INFINITY),
+    match Comparison::new(level, view, motion, model) {
+        Some(comparison) => comparison.plane(),
+        None => Plane::filled(level.width(), level.height(), f32::INFINITY),
     }
 }
 
 /// Cost with a change of brightness that has not been taken out of the second frame yet.
 pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
-    view_cost(level, &level.second, &level.scaled(motion), photometric, model, model.outside())
+    Comparison {
+        level,
+        view: &level.second,
+        scaled: level.scaled(motion),
+        photometric,
+        model,
+        outside: model.outside(),
+    }
+    .plane()
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
@@ -113,41 +115,62 @@ pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
     Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
 }
 
-/// Cost in one view, `outside` where a pixel leaves it.
-fn view_cost(
-    level: &Level,
-    view: &Plane,
-    scaled: &AffineMotion,
+/// A level's first frame compared with another along a motion.
+pub(crate) struct Comparison<'a> {
+    level: &'a Level,
+    view: &'a Plane,
+    scaled: AffineMotion,
     photometric: Photometric,
     model: CostModel,
+    /// Cost of a pixel that leaves the view.
     outside: f32,
-) -> Plane {
-    let (width, height) = (level.width(), level.height());
-    let (noise, looseness) = (level.noise * level.noise, model.looseness * model.looseness);
-    let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
-    let correlation = level.noise_correlation();
-    let mut out = Vec::with_capacity(width * height);
-    let (mut samples, mut costs) = ([0.0; CHUNK], [0.0; CHUNK]);
-    let (mut values, mut energies) = ([0.0; CHUNK], [0.0; CHUNK]);
-    for y in 0..height {
-        let path = RowPath::new(scaled, 0, y);
-        let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
-        for (k, (first, energy)) in rows.enumerate() {
-            let at = Footprints::along(&path, k * CHUNK, width, height);
-            at.sample(view.values(), &mut samples[..first.len()]);
-            let count = first.len();
+}
+
+impl<'a> Comparison<'a> {
+    /// With one view; pixels that leave it cost infinitely much. None where there is no such view.
+    pub(crate) fn new(level: &'a Level, view: View, motion: &AffineMotion, model: CostModel) -> Option<Comparison<'a>> {
+        let (view, moved) = match view {
+            View::Second => (&*level.second, *motion),
+            View::Before => (level.before.as_deref()?, inverse(motion)?),
+        };
+        let scaled = level.scaled(&moved);
+        Some(Comparison { level, view, scaled, photometric: Photometric::default(), model, outside: f32::INFINITY })
+    }
+
+    fn plane(&self) -> Plane {
+        let (width, height) = (self.level.width(), self.level.height());
+        let mut plane = Plane::filled(width, height, 0.0);
+        for y in 0..height {
+            self.row(y, 0, plane.row_mut(y));
+        }
+        plane
+    }
+
+    /// Costs of row y from column `left` on, as many as there are places.
+    pub(crate) fn row(&self, y: usize, left: usize, costs: &mut [f32]) {
+        let level = self.level;
+        let (noise, looseness) = (level.noise * level.noise, self.model.looseness * self.model.looseness);
+        let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / 128.0) as f32);
+        let correlation = level.noise_correlation();
+        let path = level.path(&self.scaled, left, y);
+        let (mut samples, mut found) = ([0.0; CHUNK], [0.0; CHUNK]);
+        let (mut values, mut energies) = ([0.0; CHUNK], [0.0; CHUNK]);
+        let mut at = Footprints::new();
+        let rows = level.first.row(y)[left..].chunks(CHUNK).zip(level.energy.row(y)[left..].chunks(CHUNK));
+        for (k, (costs, (first, energy))) in costs.chunks_mut(CHUNK).zip(rows).enumerate() {
+            at.follow(&path, k * CHUNK, self.view.width(), self.view.height());
+            at.sample(self.view.values(), &mut samples[..costs.len()]);
             let (first, energy) = (whole(first, &mut values), whole(energy, &mut energies));
             // Beyond the row's end something is computed that nobody looks at: a loop of known length has no rest.
             for k in 0..CHUNK {
                 let residual = samples[k] - first[k] * (1.0 + gain) - bias;
                 let variance = noise * interpolation_variance(at.fx[k], at.fy[k], correlation) + looseness * energy[k];
-                let explained = model.of(residual, variance);
-                costs[k] = if at.inside[k] { explained } else { outside };
+                let explained = self.model.of(residual, variance);
+                found[k] = if at.inside[k] { explained } else { self.outside };
             }
-            out.extend_from_slice(&costs[..count]);
+            costs.copy_from_slice(&found[..costs.len()]);
         }
     }
-    Plane::from_vec(width, height, out)
 }
 
 /// A part of a row at the length of a chunk: itself, or a copy of it with anything behind.
@@ -182,15 +205,23 @@ pub(crate) fn lane_sum(row: &[f32]) -> f32 {
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const SMALLEST: f32 = 0.5;
     const LARGEST: f32 = 8.0;
+    /// Of more pixels than this a quarter is looked at.
+    const MANY: usize = 16_384;
+    let thinned;
+    let mut level = level;
+    if level.first.values().len() > MANY {
+        thinned = level.thinned(2);
+        level = &thinned;
+    }
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
-    let mut samples = [0.0; CHUNK];
+    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..level.height() {
-        let path = RowPath::new(&scaled, 0, y);
+        let path = level.path(&scaled, 0, y);
         let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
         for (k, (first, energy)) in rows.enumerate() {
-            let at = Footprints::along(&path, k * CHUNK, level.width(), level.height());
+            at.follow(&path, k * CHUNK, level.second.width(), level.second.height());
             at.sample(level.second.values(), &mut samples[..first.len()]);
             for x in (0..first.len()).filter(|&x| at.inside[x] && energy[x] <= flat) {
                 let q = interpolation_variance(at.fx[x], at.fy[x], level.noise_correlation());

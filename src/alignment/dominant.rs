@@ -24,10 +24,11 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -
     if shift != AffineMotion::STATIC {
         candidates.push(shift);
     }
-    let mut best = static_candidate(&levels[base], start, brightness);
+    let finest = &levels[base].thinned(2);
+    let mut best = static_candidate(finest, start, brightness);
     for candidate in candidates {
-        let (motion, photometric) = descend(levels, base, candidate, start, brightness);
-        let sum = total(&cost_with(&levels[base], &motion, photometric, CostModel::ESTIMATION));
+        let (motion, photometric) = descend(levels, base, finest, candidate, start, brightness);
+        let sum = total(&cost_with(finest, &motion, photometric, CostModel::ESTIMATION));
         if sum < best.0 {
             best = (sum, motion, photometric);
         }
@@ -73,6 +74,7 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
 fn descend(
     levels: &[Level],
     base: usize,
+    finest: &Level,
     mut motion: AffineMotion,
     mut photometric: Photometric,
     brightness: bool,
@@ -81,6 +83,7 @@ fn descend(
         Alignment { freedom: Freedom::Affine, iterations: 5, robustness: 6.0, ridge: 1e-3, photometric: brightness };
     let translation = Alignment { freedom: Freedom::Translation, iterations: 6, robustness: 9.0, ..affine };
     for (index, level) in levels.iter().enumerate().skip(base).rev() {
+        let level = if index == base { finest } else { level };
         let support = Support::everything(level);
         if index + 1 == levels.len() {
             motion = align(level, &motion, &support, &mut photometric, translation);
@@ -99,14 +102,16 @@ fn static_candidate(level: &Level, mut photometric: Photometric, brightness: boo
         photometric = refit_brightness(level, photometric);
     }
     let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::ESTIMATION));
-    (cost - STATIC_BONUS, AffineMotion::STATIC, photometric)
+    (cost - STATIC_BONUS / (level.stride * level.stride) as f64, AffineMotion::STATIC, photometric)
 }
 
 /// One reweighted least squares step of bias and gain between frames that are already aligned.
 fn refit_brightness(level: &Level, photometric: Photometric) -> Photometric {
     let variance = f64::from(level.noise * level.noise);
     let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (&first, &second) in level.first.values().iter().zip(level.second.values()) {
+    for p in 0..level.first.values().len() {
+        let (x, y) = (p % level.width(), p / level.width());
+        let (first, second) = (level.first.values()[p], level.second.at(x * level.stride, y * level.stride));
         let i = f64::from(first) / 128.0;
         let r = f64::from(second) - f64::from(first) - photometric.bias - photometric.gain * i;
         let robust = 4.0 / (4.0 + r * r / variance);

@@ -9,7 +9,7 @@ use nalgebra::{SMatrix, SVector};
 use super::cost::{CostModel, Photometric};
 use crate::frame::Plane;
 use crate::frame::pyramid::Level;
-use crate::frame::warp::{CHUNK, Footprints, RowPath};
+use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
 
 /// Which entries of the motion are free.
@@ -210,22 +210,24 @@ impl RowBuffers {
         how: Alignment,
         y: usize,
     ) {
-        let (width, height) = (level.width(), level.height());
+        let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
         let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
+        // The mean of both gradients, per pixel of this level.
+        let half = 0.5 * level.stride as f32;
         let columns = support.columns.clone();
-        let path = RowPath::new(motion, columns.start, y);
+        let path = level.path(motion, columns.start, y);
         let first = &level.first.row(y)[columns.clone()];
         let energy = &level.energy.row(y)[columns.clone()];
         let (dx, dy) = (&level.first_dx.row(y)[columns.clone()], &level.first_dy.row(y)[columns.clone()]);
         let weights = support.weights.map(|w| &w.row(y)[columns]);
-        let (mut given, mut second) = ([1.0; CHUNK], [0.0; CHUNK]);
+        let (mut given, mut second, mut at) = ([1.0; CHUNK], [0.0; CHUNK], Footprints::new());
         let (mut second_dx, mut second_dy) = ([0.0; CHUNK], [0.0; CHUNK]);
         for start in (0..first.len()).step_by(CHUNK) {
             let chunk = start..(start + CHUNK).min(first.len());
             let n = chunk.len();
-            let at = Footprints::along(&path, start, width, height);
+            at.follow(&path, start, width, height);
             at.sample(level.second.values(), &mut second[..n]);
             at.sample(level.second_dx.values(), &mut second_dx[..n]);
             at.sample(level.second_dy.values(), &mut second_dy[..n]);
@@ -243,8 +245,8 @@ impl RowBuffers {
                 let counts = (given[k] > 1e-3) & at.inside[k];
                 let counted = |value: f32| if counts { value } else { 0.0 };
                 weight[k] = counted(given[k] / variance * robust * robust);
-                gx[k] = counted(0.5 * (dx[k] + second_dx[k]));
-                gy[k] = counted(0.5 * (dy[k] + second_dy[k]));
+                gx[k] = counted(half * (dx[k] + second_dx[k]));
+                gy[k] = counted(half * (dy[k] + second_dy[k]));
                 residuals[k] = counted(residual);
             }
         }

@@ -1,7 +1,10 @@
 //! The frames at several sizes, with their gradients: what alignment and labelling look at.
 
+use std::rc::Rc;
+
 use super::Plane;
 use super::filter::{gradients, halve};
+use super::warp::RowPath;
 use crate::motion::AffineMotion;
 
 /// Standard deviation of the blur put on both frames before anything else, pixels: without it bilinear warping, which
@@ -19,18 +22,20 @@ pub(crate) struct Level {
     /// 0 for the working size.
     pub(crate) index: u32,
     pub(crate) first: Plane,
-    pub(crate) second: Plane,
-    pub(crate) before: Option<Plane>,
-    /// Gradients of the first frame.
+    pub(crate) second: Rc<Plane>,
+    pub(crate) before: Option<Rc<Plane>>,
+    /// Gradients of the first frame, per pixel of the second.
     pub(crate) first_dx: Plane,
     pub(crate) first_dy: Plane,
     /// Gradients of the second frame.
-    pub(crate) second_dx: Plane,
-    pub(crate) second_dy: Plane,
+    pub(crate) second_dx: Rc<Plane>,
+    pub(crate) second_dy: Rc<Plane>,
     /// Squared gradient length of the first frame.
     pub(crate) energy: Plane,
     /// Standard deviation of the residual of a right motion in flat areas, grey levels (set by `noise`).
     pub(crate) noise: f32,
+    /// Distance of the first frame's pixels in pixels of the second: 1, or more where the level is [`thinned`](Level::thinned).
+    pub(crate) stride: usize,
 }
 
 impl Level {
@@ -41,7 +46,19 @@ impl Level {
         for (e, dy) in energy.values_mut().iter_mut().zip(first_dy.values()) {
             *e = *e * *e + dy * dy;
         }
-        Level { index, first, second, before, first_dx, first_dy, second_dx, second_dy, energy, noise: 4.0 }
+        Level {
+            index,
+            first,
+            second: Rc::new(second),
+            before: before.map(Rc::new),
+            first_dx,
+            first_dy,
+            second_dx: Rc::new(second_dx),
+            second_dy: Rc::new(second_dy),
+            energy,
+            noise: 4.0,
+            stride: 1,
+        }
     }
 
     pub(crate) fn width(&self) -> usize {
@@ -54,7 +71,35 @@ impl Level {
 
     /// Size of a pixel in pixels of the working frame.
     pub(crate) fn pixel(&self) -> f64 {
-        f64::from(1u32 << self.index)
+        f64::from(1u32 << self.index) * self.stride as f64
+    }
+
+    /// The level with every `stride`-th pixel of the first frame in every `stride`-th row, compared with the whole second frame: a
+    /// sample of the pixels, as sharp as they are.
+    pub(crate) fn thinned(&self, stride: usize) -> Level {
+        let thin = |plane: &Plane| {
+            let (width, height) = (plane.width().div_ceil(stride), plane.height().div_ceil(stride));
+            let rows = plane.values().chunks_exact(plane.width()).step_by(stride);
+            Plane::from_vec(width, height, rows.flat_map(|row| row.iter().copied().step_by(stride)).collect())
+        };
+        Level {
+            index: self.index,
+            first: thin(&self.first),
+            second: self.second.clone(),
+            before: self.before.clone(),
+            first_dx: thin(&self.first_dx),
+            first_dy: thin(&self.first_dy),
+            second_dx: self.second_dx.clone(),
+            second_dy: self.second_dy.clone(),
+            energy: thin(&self.energy),
+            noise: self.noise,
+            stride: self.stride * stride,
+        }
+    }
+
+    /// Where a motion in pixels of this level takes the pixels of row `y` from column `x0` on, in pixels of the second frame.
+    pub(crate) fn path(&self, scaled: &AffineMotion, x0: usize, y: usize) -> RowPath {
+        RowPath::new(scaled, x0, y).times(self.stride as f64)
     }
 
     /// A motion of the working frame in pixels of this level.
@@ -81,9 +126,9 @@ impl Level {
     /// Takes gain and bias out of the second frame: `(I − bias) / (1 + gain/128)`.
     pub(crate) fn compensate(&mut self, bias: f64, gain: f64) {
         let (scale, bias) = ((1.0 / (1.0 + gain / 128.0)) as f32, bias as f32);
-        self.second.values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
+        Rc::make_mut(&mut self.second).values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
         for plane in [&mut self.second_dx, &mut self.second_dy] {
-            plane.values_mut().iter_mut().for_each(|v| *v *= scale);
+            Rc::make_mut(plane).values_mut().iter_mut().for_each(|v| *v *= scale);
         }
     }
 }
@@ -95,7 +140,8 @@ pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest
         if last.width().min(last.height()) < 2 * smallest {
             break;
         }
-        let next = Level::new(last.index + 1, halve(&last.first), halve(&last.second), last.before.as_ref().map(halve));
+        let next =
+            Level::new(last.index + 1, halve(&last.first), halve(&last.second), last.before.as_deref().map(halve));
         levels.push(next);
     }
     levels

@@ -21,6 +21,11 @@ impl RowPath {
         RowPath { start: [x0 as f64 + u, y as f64 + v], step: [1.0 + a[0], a[3]] }
     }
 
+    /// The same positions in pixels a `factor`-th as large.
+    pub(crate) fn times(self, factor: f64) -> RowPath {
+        RowPath { start: self.start.map(|s| factor * s), step: self.step.map(|s| factor * s) }
+    }
+
     /// Position of the k-th pixel of the row.
     #[inline(always)]
     pub(crate) fn at(&self, k: usize) -> (f32, f32) {
@@ -28,12 +33,12 @@ impl RowPath {
     }
 }
 
-/// Where a sample falls: index of its upper left pixel, steps to the right and lower neighbours, weights, and whether it lies inside.
+/// Where a sample falls in a plane of at least 2 × 2 pixels: index of its upper left pixel, weights of those to the right and below,
+/// and whether it lies inside.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Footprint {
     index: usize,
-    right: usize,
-    down: usize,
+    width: usize,
     fx: f32,
     fy: f32,
     /// Whether the position lies within the plane.
@@ -48,22 +53,16 @@ impl Footprint {
         let inside = x >= 0.0 && y >= 0.0 && x <= right_edge && y <= lower_edge;
         // max before min: NaN becomes 0, so that an index is always valid.
         let (cx, cy) = (x.max(0.0).min(right_edge), y.max(0.0).min(lower_edge));
-        let (ix, iy) = (cx as usize, cy as usize);
-        Footprint {
-            index: iy * width + ix,
-            right: usize::from(ix + 1 < width),
-            down: if iy + 1 < height { width } else { 0 },
-            fx: cx - ix as f32,
-            fy: cy - iy as f32,
-            inside,
-        }
+        // The upper left pixel is never on the last column or row: what lies there has the weights 1.
+        let (ix, iy) = ((cx as usize).min(width - 2), (cy as usize).min(height - 2));
+        Footprint { index: iy * width + ix, width, fx: cx - ix as f32, fy: cy - iy as f32, inside }
     }
 
     /// The bilinear sample of a plane of the size that the footprint was made for.
     #[inline(always)]
     pub(crate) fn sample(&self, values: &[f32]) -> f32 {
-        let (a, b) = (values[self.index], values[self.index + self.right]);
-        let (c, d) = (values[self.index + self.down], values[self.index + self.down + self.right]);
+        let window = &values[self.index..self.index + self.width + 2];
+        let (a, b, c, d) = (window[0], window[1], window[self.width], window[self.width + 1]);
         let top = a + self.fx * (b - a);
         let bottom = c + self.fx * (d - c);
         top + self.fy * (bottom - top)
@@ -72,10 +71,8 @@ impl Footprint {
 
 /// Pixels of a row that are looked at together.
 pub(crate) const CHUNK: usize = 64;
-/// Pixels of them that are sampled together, whether the row goes on that far or not.
-const BLOCK: usize = 16;
 
-/// [`Footprint`]s of neighbouring pixels.
+/// [`Footprint`]s of neighbouring pixels, placed anew as often as needed.
 pub(crate) struct Footprints {
     index: [u32; CHUNK],
     width: usize,
@@ -87,57 +84,47 @@ pub(crate) struct Footprints {
 }
 
 impl Footprints {
-    /// Footprints of the pixels `from`, `from + 1`, … of a path in a plane of the given size.
+    pub(crate) fn new() -> Footprints {
+        Footprints { index: [0; CHUNK], width: 0, fx: [0.0; CHUNK], fy: [0.0; CHUNK], inside: [false; CHUNK] }
+    }
+
+    /// Puts them at the pixels `from`, `from + 1`, … of a path in a plane of the given size.
     #[inline(never)]
-    pub(crate) fn along(path: &RowPath, from: usize, width: usize, height: usize) -> Footprints {
+    pub(crate) fn follow(&mut self, path: &RowPath, from: usize, width: usize, height: usize) {
         let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
         for (k, (x, y)) in x.iter_mut().zip(&mut y).enumerate() {
             let k = f64::from((from + k) as u32 as i32);
             (*x, *y) = ((path.start[0] + path.step[0] * k) as f32, (path.start[1] + path.step[1] * k) as f32);
         }
-        Footprints::new(&x, &y, width, height)
+        self.place(&x, &y, width, height);
     }
 
-    /// Footprints of positions in a plane of the given size.
+    /// Puts them at positions in a plane of the given size.
     #[inline(never)] // Used in many places; a call for 64 pixels costs nothing, a copy in each place a kilobyte.
-    pub(crate) fn new(x: &[f32; CHUNK], y: &[f32; CHUNK], width: usize, height: usize) -> Footprints {
+    pub(crate) fn place(&mut self, x: &[f32; CHUNK], y: &[f32; CHUNK], width: usize, height: usize) {
         let (right_edge, lower_edge) = ((width - 1) as f32, (height - 1) as f32);
-        let mut all =
-            Footprints { index: [0; CHUNK], width, fx: [0.0; CHUNK], fy: [0.0; CHUNK], inside: [false; CHUNK] };
+        let (last_x, last_y) = (right_edge - 1.0, lower_edge - 1.0);
+        self.width = width;
         for k in 0..CHUNK {
             let (cx, cy) = (clamped(x[k], right_edge), clamped(y[k], lower_edge));
-            let ((ix, left), (iy, upper)) = (floor(cx), floor(cy));
-            all.index[k] = iy * width as u32 + ix;
-            (all.fx[k], all.fy[k]) = (cx - left, cy - upper);
-            all.inside[k] = (cx == x[k]) & (cy == y[k]);
+            let ((ix, left), (iy, upper)) = (floor(cx, last_x), floor(cy, last_y));
+            self.index[k] = iy * width as u32 + ix;
+            (self.fx[k], self.fy[k]) = (cx - left, cy - upper);
+            self.inside[k] = (cx == x[k]) & (cy == y[k]);
         }
-        all
     }
 
     /// Bilinear samples of a plane of the size that the footprints were made for, into as many places as there are, at most
     /// [`CHUNK`].
     #[inline(never)]
     pub(crate) fn sample(&self, values: &[f32], out: &mut [f32]) {
-        // On the last column and row a neighbour is missing; its weight is zero there, so that any value will do.
-        let Some(last) = values.len().checked_sub(1) else { return };
-        let block = |from: usize| {
-            let mut samples = [0.0; BLOCK];
-            for l in 0..BLOCK {
-                let (index, fx, fy) = (self.index[from + l] as usize, self.fx[from + l], self.fy[from + l]);
-                let (a, b) = (values[index.min(last)], values[(index + 1).min(last)]);
-                let (c, d) = (values[(index + self.width).min(last)], values[(index + self.width + 1).min(last)]);
-                let top = a + fx * (b - a);
-                let bottom = c + fx * (d - c);
-                samples[l] = top + fy * (bottom - top);
-            }
-            samples
-        };
-        for (from, out) in (0..CHUNK).step_by(BLOCK).zip(out.chunks_mut(BLOCK)) {
-            let samples = block(from);
-            match out.first_chunk_mut::<BLOCK>() {
-                Some(out) => *out = samples,
-                None => out.iter_mut().zip(samples).for_each(|(o, sample)| *o = sample),
-            }
+        let width = self.width;
+        for (((o, &index), fx), fy) in out.iter_mut().zip(&self.index).zip(&self.fx).zip(&self.fy) {
+            let Some(window) = values.get(index as usize..index as usize + width + 2) else { return };
+            let (a, b, c, d) = (window[0], window[1], window[width], window[width + 1]);
+            let top = a + fx * (b - a);
+            let bottom = c + fx * (d - c);
+            *o = top + fy * (bottom - top);
         }
     }
 }
@@ -149,24 +136,27 @@ fn clamped(v: f32, edge: f32) -> f32 {
     if v < edge { v } else { edge }
 }
 
-/// The largest whole number up to `v`, 0 ≤ v < 2²², as both types. Adding 2²³ leaves no bits for a fraction: the sum is
+/// The largest whole number up to `v`, 0 ≤ v < 2²², and up to `last`, as both types. Adding 2²³ leaves no bits for a fraction: the sum is
 /// rounded, its low bits are the number. The language's own conversion has cases to tell apart and is done one by one.
 #[inline(always)]
-fn floor(v: f32) -> (u32, f32) {
+fn floor(v: f32, last: f32) -> (u32, f32) {
     const SHIFT: f32 = 8_388_608.0;
-    let shifted = v + SHIFT;
-    let (rounded, bits) = (shifted - SHIFT, shifted.to_bits() & 0x007f_ffff);
-    if rounded > v { (bits.wrapping_sub(1), rounded - 1.0) } else { (bits, rounded) }
+    let rounded = (v + SHIFT) - SHIFT;
+    let below = if rounded > v { rounded - 1.0 } else { rounded };
+    let below = if below < last { below } else { last };
+    ((below + SHIFT).to_bits() & 0x007f_ffff, below)
 }
 
 /// The plane seen along the motion: value at (x, y) is the sample at (x, y) + A (x, y), replicated outside.
 pub(crate) fn warp(plane: &Plane, motion: &AffineMotion) -> Plane {
     let (width, height) = (plane.width(), plane.height());
     let mut out = Plane::filled(width, height, 0.0);
+    let mut at = Footprints::new();
     for y in 0..height {
         let path = RowPath::new(motion, 0, y);
         for (k, out) in out.row_mut(y).chunks_mut(CHUNK).enumerate() {
-            Footprints::along(&path, k * CHUNK, width, height).sample(plane.values(), out);
+            at.follow(&path, k * CHUNK, width, height);
+            at.sample(plane.values(), out);
         }
     }
     out
@@ -196,7 +186,8 @@ mod tests {
             places.push([random.uniform(-3.0, 26.0) as f32, random.uniform(-3.0, 20.0) as f32]);
         }
         let (x, y) = (std::array::from_fn(|k| places[k][0]), std::array::from_fn(|k| places[k][1]));
-        let many = Footprints::new(&x, &y, width, height);
+        let mut many = Footprints::new();
+        many.place(&x, &y, width, height);
         let mut samples = [0.0; CHUNK];
         many.sample(plane.values(), &mut samples);
         for (k, &[x, y]) in places.iter().enumerate() {
@@ -205,7 +196,8 @@ mod tests {
             assert_eq!(samples[k].to_bits(), one.sample(plane.values()).to_bits(), "({x}, {y})");
         }
         let path = RowPath::new(&AffineMotion::new([0.03, 0.2, -4.0, -0.1, 0.05, 9.0]), 2, 7);
-        let along = Footprints::along(&path, 3, width, height);
+        let mut along = Footprints::new();
+        along.follow(&path, 3, width, height);
         for k in 0..CHUNK {
             let (x, y) = path.at(3 + k);
             let one = Footprint::new(x, y, width, height);

@@ -49,22 +49,47 @@ impl Palette {
         }
         Palette { size: [width, height], indices }
     }
+
+    /// Every `step`-th pixel of every `step`-th row.
+    pub(crate) fn thinned(&self, step: usize) -> Palette {
+        let rows = self.indices.chunks_exact(self.size[0]).step_by(step);
+        let indices = rows.flat_map(|row| row.iter().copied().step_by(step)).collect();
+        Palette { size: self.size.map(|s| s.div_ceil(step)), indices }
+    }
 }
 
-/// Prices of the labels at every pixel, learned from the pixels that the motions place.
-pub(crate) fn appearance_costs(palette: &Palette, costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
-    let n = costs.len();
-    let [width, height] = palette.size;
-    let weights = evidence(costs, labels);
-    let trust = trust(palette, labels, &weights, n);
-    let table = posterior(palette, labels, &weights, n, |_| true);
-    (0..n)
-        .map(|label| {
-            let price =
-                |&c: &u16| (-STRENGTH * trust * trust * libm::logf(table[usize::from(c) * n + label])).min(LARGEST);
-            Plane::from_vec(width, height, palette.indices.iter().map(price).collect())
-        })
-        .collect()
+/// What each colour costs under each label.
+#[derive(Clone, Debug)]
+pub(crate) struct ColourPrices {
+    /// Of all labels for the first colour, for the second, …
+    table: Vec<f32>,
+    labels: usize,
+}
+
+impl ColourPrices {
+    /// Learned from the pixels that the motions place.
+    pub(crate) fn learned(palette: &Palette, costs: &[Plane], labels: &[u8]) -> ColourPrices {
+        let n = costs.len();
+        let weights = evidence(costs, labels);
+        let trust = trust(palette, labels, &weights, n);
+        let mut table = posterior(palette, labels, &weights, n, |_| true);
+        table.iter_mut().for_each(|p| *p = (-STRENGTH * trust * trust * libm::logf(*p)).min(LARGEST));
+        ColourPrices { table, labels: n }
+    }
+
+    /// The price of a label for the colour of a pixel.
+    #[inline(always)]
+    pub(crate) fn of(&self, palette: &Palette, pixel: usize, label: usize) -> f32 {
+        self.table[usize::from(palette.indices[pixel]) * self.labels + label]
+    }
+}
+
+/// Adds to the costs what the colours say.
+pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8]) {
+    let prices = ColourPrices::learned(palette, costs, labels);
+    for (label, cost) in costs.iter_mut().enumerate() {
+        cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += prices.of(palette, p, label));
+    }
 }
 
 /// How well the colours of one half of the blocks tell the labels of the other: information per pixel as a share of what the
@@ -133,6 +158,16 @@ mod tests {
         ([cost(false), cost(true)], labels)
     }
 
+    /// What the colours add.
+    fn said(palette: &Palette, costs: &[Plane; 2], labels: &[u8]) -> [Plane; 2] {
+        let mut with = costs.clone();
+        add_colours(&mut with, palette, labels);
+        for (with, without) in with.iter_mut().zip(costs) {
+            with.values_mut().iter_mut().zip(without.values()).for_each(|(w, o)| *w -= o);
+        }
+        with
+    }
+
     fn frame(colour: impl Fn(usize, usize) -> [u8; 3]) -> Frame {
         let rgba: Vec<u8> = (0..72 * 48)
             .flat_map(|p| colour(p % 72, p / 72))
@@ -147,11 +182,11 @@ mod tests {
     fn colours_that_tell_the_labels_apart_are_heard_and_others_are_not() {
         let (costs, labels) = costs(72, 48);
         let telling = frame(|x, _| if x < 36 { [200, 30, 30] } else { [30, 30, 200] });
-        let said = appearance_costs(&Palette::new(&telling, 72, 48), &costs, &labels);
+        let said = said(&Palette::new(&telling, 72, 48), &costs, &labels);
         assert!(said[1].at(10, 20) > said[0].at(10, 20) + 0.5);
         assert!(said[0].at(60, 20) > said[1].at(60, 20) + 0.5);
         let shared = frame(|x, y| if (x / 2 + y / 2) % 2 == 0 { [200, 30, 30] } else { [30, 30, 200] });
-        let said = appearance_costs(&Palette::new(&shared, 72, 48), &costs, &labels);
+        let said = self::said(&Palette::new(&shared, 72, 48), &costs, &labels);
         assert!((said[0].at(10, 20) - said[1].at(10, 20)).abs() < 0.01);
     }
 }

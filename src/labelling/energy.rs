@@ -1,7 +1,7 @@
 //! Which pixel goes with which motion: cost of each motion at each pixel, plus a price for every border between labels that is
 //! lower where the image has an edge.
 
-use super::misfit::allow_for_misfit;
+use super::misfit::{allowed_for, misfit};
 use super::potts::{Potts, Solver, minimise};
 use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;
@@ -20,6 +20,8 @@ pub(crate) struct Coherence {
     pub(crate) draft_solver: Solver,
     /// Who minimises at the end.
     pub(crate) solver: Solver,
+    /// Who minimises where the labels of a coarser level are the start.
+    pub(crate) sharpening: Solver,
 }
 
 /// Share of λ that remains at the strongest image edge.
@@ -61,10 +63,14 @@ pub(crate) struct Borders {
 
 impl Borders {
     pub(crate) fn new(picture: &Picture, noise: f32, coherence: Coherence) -> Borders {
+        let price = Self::price(picture, noise, coherence);
+        Self::with(picture.luminance.width(), picture.luminance.height(), price)
+    }
+
+    /// The price of a border between two neighbours, by their indices.
+    pub(crate) fn price(picture: &Picture, noise: f32, coherence: Coherence) -> impl Fn(usize, usize) -> f32 {
         let step = SMALLEST_STEP.max(NOISE_STEPS * noise);
-        Self::with(picture.luminance.width(), picture.luminance.height(), |p, q| {
-            coherence.smoothness * (EDGE_SHARE + (1.0 - EDGE_SHARE) * libm::expf(-picture.step(p, q) / step))
-        })
+        move |p, q| coherence.smoothness * (EDGE_SHARE + (1.0 - EDGE_SHARE) * libm::expf(-picture.step(p, q) / step))
     }
 
     /// Borders that cost the same everywhere.
@@ -79,6 +85,31 @@ impl Borders {
         }
     }
 
+    /// Takes the prices of a part of the grid from the picture.
+    pub(crate) fn follow(
+        &mut self,
+        picture: &Picture,
+        noise: f32,
+        coherence: Coherence,
+        columns: std::ops::Range<usize>,
+        rows: std::ops::Range<usize>,
+    ) {
+        let (width, height) = (self.horizontal.width(), self.horizontal.height());
+        let price = Self::price(picture, noise, coherence);
+        for y in rows {
+            for x in columns.clone() {
+                let p = y * width + x;
+                self.horizontal.values_mut()[p] = price(p, y * width + (x + 1).min(width - 1));
+                self.vertical.values_mut()[p] = price(p, (y + 1).min(height - 1) * width + x);
+            }
+        }
+    }
+
+    /// The labels of least energy, at most that of those given.
+    pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Vec<u8> {
+        minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, Some(labels))
+    }
+
     /// The labels of least energy.
     pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Vec<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, None)
@@ -91,29 +122,54 @@ impl Borders {
 /// that keep the pixel inside. An object costs at least what says nothing by itself, and the dominant motion at most that: an object
 /// does not win pixels by leaving the frame with them.
 pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
-    let mut costs = costs_in_views(level, motions);
-    allow_for_misfit(&mut costs);
-    let neutral = CostModel::LABELS.outside();
-    let seen = cheapest(&costs, f32::INFINITY);
-    for (k, cost) in costs.iter_mut().enumerate() {
-        for (c, seen) in cost.values_mut().iter_mut().zip(seen.values()).filter(|(c, _)| !c.is_finite()) {
-            *c = match (k, seen.is_finite()) {
-                (_, false) => neutral,
-                (0, true) => seen.min(neutral),
-                (_, true) => seen.max(neutral),
-            };
-        }
-        if k > 0 {
-            add_departure(cost, coherence);
-        }
-    }
-    costs
+    surveyed(level, motions, coherence).costs
 }
 
-/// What an object pays for its pixels.
-fn add_departure(cost: &mut Plane, coherence: Coherence) {
-    cost.values_mut().iter_mut().for_each(|c| *c += coherence.departure);
-    let price = FRAME_BORDER * coherence.smoothness;
+/// [`label_costs`] with what was found on the way.
+pub(crate) struct Survey {
+    pub(crate) costs: Vec<Plane>,
+    /// Share of the second frame in the costs, where there is a frame before.
+    pub(crate) shares: Option<Plane>,
+    pub(crate) misfit: Plane,
+}
+
+pub(crate) fn surveyed(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Survey {
+    let (mut costs, shares) = costs_in_views(level, motions);
+    let misfit = misfit(&costs);
+    for cost in &mut costs {
+        cost.values_mut().iter_mut().zip(misfit.values()).for_each(|(c, m)| *c = allowed_for(*c, *m));
+    }
+    let seen = cheapest(&costs, f32::INFINITY);
+    for (k, cost) in costs.iter_mut().enumerate() {
+        cost.values_mut().iter_mut().zip(seen.values()).for_each(|(c, seen)| *c = as_label(k, *c, *seen, coherence));
+        if k > 0 {
+            pay_at_the_border(cost, coherence);
+        }
+    }
+    Survey { costs, shares, misfit }
+}
+
+/// What a motion costs as a label, where it costs `cost` and the cheapest of those that keep the pixel inside `seen`.
+#[inline(always)]
+pub(crate) fn as_label(label: usize, cost: f32, seen: f32, coherence: Coherence) -> f32 {
+    let neutral = CostModel::LABELS.outside();
+    let departure = if label == 0 { 0.0 } else { coherence.departure };
+    let cost = match (cost.is_finite(), label, seen.is_finite()) {
+        (true, ..) => cost,
+        (_, _, false) => neutral,
+        (_, 0, true) => seen.min(neutral),
+        (_, _, true) => seen.max(neutral),
+    };
+    cost + departure
+}
+
+/// What an object pays for a pixel on the frame's border, for each border that it lies on.
+pub(crate) fn border_price(coherence: Coherence) -> f32 {
+    FRAME_BORDER * coherence.smoothness
+}
+
+fn pay_at_the_border(cost: &mut Plane, coherence: Coherence) {
+    let price = border_price(coherence);
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
         cost.row_mut(y).iter_mut().for_each(|c| *c += price);
@@ -130,8 +186,13 @@ mod tests {
     use super::*;
     use crate::frame::pyramid::build;
 
-    const COHERENCE: Coherence =
-        Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST };
+    const COHERENCE: Coherence = Coherence {
+        smoothness: 8.0,
+        departure: 0.05,
+        draft_solver: Solver::FAST,
+        solver: Solver::BEST,
+        sharpening: Solver::FAST,
+    };
 
     fn noise(seed: u64) -> Plane {
         let mut random = crate::random::Random::from_seed(seed);

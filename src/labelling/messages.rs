@@ -73,6 +73,11 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
     let mut bound = f64::NEG_INFINITY;
     for iteration in 0..=iterations {
+        if iterations <= FEW && iteration < iterations {
+            grid.forward(None);
+            grid.backward();
+            continue;
+        }
         // The first pass over messages that are all zero would read out the costs alone: still an answer.
         let energy = grid.forward(Some(&mut labels));
         if energy < lowest {
@@ -92,6 +97,9 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     grid.descend(&mut best, 2);
     Solution { labels: best, bound }
 }
+
+/// So few iterations are all done before the labels are read out.
+const FEW: usize = 2;
 
 /// On the coarse levels the messages only have to point the right way.
 const COARSE_ITERATIONS: usize = 3;
@@ -281,26 +289,33 @@ impl<const L: usize> Grid<L> {
         }
     }
 
-    /// Iterated conditional modes: every pixel takes the label that is cheapest given its four neighbours, until nothing
-    /// changes or for `sweeps` sweeps. Never raises the energy.
+    /// Iterated conditional modes: every pixel beside one with another label takes the label that is cheapest given its four
+    /// neighbours, until nothing changes or for `sweeps` sweeps. Never raises the energy.
     fn descend(&self, labels: &mut [u8], sweeps: usize) {
         let width = self.width;
         for _ in 0..sweeps {
             let mut changed = false;
             for p in 0..labels.len() {
                 let own = labels[p];
+                let left = if p > 0 { labels[p - 1] } else { own };
+                let up = if p >= width { labels[p - width] } else { own };
+                let right = labels.get(p + 1).copied().unwrap_or(own);
+                let below = labels.get(p + width).copied().unwrap_or(own);
+                if left == own && up == own && right == own && below == own {
+                    continue;
+                }
                 let mut price = self.costs[p];
                 let mut pay = |label: u8, weight: f32| add_change(&mut price, label, weight);
                 // Where there is no neighbour, the weight is zero (of p − 1 at the end of the row above, of p at the last).
                 let [to_right, to_below] = self.weights[p];
                 if p > 0 {
-                    pay(labels[p - 1], self.weights[p - 1][0]);
+                    pay(left, self.weights[p - 1][0]);
                 }
-                pay(labels.get(p + 1).copied().unwrap_or(own), to_right);
+                pay(right, to_right);
                 if p >= width {
-                    pay(labels[p - width], self.weights[p - width][1]);
+                    pay(up, self.weights[p - width][1]);
                 }
-                pay(labels.get(p + width).copied().unwrap_or(own), to_below);
+                pay(below, to_below);
                 let best = first_lowest(&price);
                 if price[best] < price[usize::from(own) % L] {
                     labels[p] = best as u8;

@@ -17,27 +17,37 @@ const EXPECTED: f32 = 0.8;
 /// Largest ratio of standard deviations.
 const LARGEST: f32 = 3.0;
 
-/// Costs of the labels with the variance that the surroundings ask for; what is infinite stays.
+/// By how much larger the variance of each pixel is than the noise's, from the labels' costs.
 ///
 /// The mean of the saturated costs grows about as the standard deviation of the residuals.
-pub(crate) fn allow_for_misfit(costs: &mut [Plane]) {
-    let model = CostModel::LABELS;
+pub(crate) fn misfit(costs: &[Plane]) -> Plane {
     let mut best = cheapest(costs, f32::INFINITY);
-    best.values_mut().iter_mut().filter(|b| !b.is_finite()).for_each(|b| *b = model.outside());
-    let misfit = gaussian(&best, WINDOW);
-    for cost in costs {
-        for (c, misfit) in cost.values_mut().iter_mut().zip(misfit.values()).filter(|(c, _)| c.is_finite()) {
-            let ratio = (misfit / EXPECTED).clamp(1.0, LARGEST);
-            // e / (1 + e/T) with e / ratio² in place of e.
-            let share = *c / model.truncation;
-            *c /= ratio * ratio * (1.0 - share) + share;
-        }
+    best.values_mut().iter_mut().filter(|b| !b.is_finite()).for_each(|b| *b = CostModel::LABELS.outside());
+    let mut misfit = gaussian(&best, WINDOW);
+    for m in misfit.values_mut() {
+        let ratio = (*m / EXPECTED).clamp(1.0, LARGEST);
+        *m = ratio * ratio;
     }
+    misfit
+}
+
+/// A cost with the variance that the surroundings ask for: e / (1 + e/T) with e / misfit in place of e. What is infinite stays.
+#[inline(always)]
+pub(crate) fn allowed_for(cost: f32, misfit: f32) -> f32 {
+    let share = cost / CostModel::LABELS.truncation;
+    if cost.is_finite() { cost / (misfit * (1.0 - share) + share) } else { cost }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn allow_for_misfit(costs: &mut [Plane]) {
+        let misfit = misfit(costs);
+        for cost in costs {
+            cost.values_mut().iter_mut().zip(misfit.values()).for_each(|(c, m)| *c = allowed_for(*c, *m));
+        }
+    }
 
     #[test]
     fn where_one_motion_fits_nothing_changes_and_where_none_does_the_better_one_is_told_apart() {

@@ -11,6 +11,7 @@ mod max_flow;
 mod messages;
 mod misfit;
 pub(crate) mod potts;
+pub(crate) mod sharpening;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;
 mod views;

@@ -38,6 +38,8 @@ pub(crate) enum Solver {
 impl Solver {
     /// For live use.
     pub(crate) const FAST: Solver = Solver::Messages { levels: 4, iterations: 2 };
+    /// For what is nearly decided.
+    pub(crate) const LIGHT: Solver = Solver::Messages { levels: 4, iterations: 1 };
     /// For keeping.
     pub(crate) const BEST: Solver = Solver::Messages { levels: 4, iterations: 10 };
 }

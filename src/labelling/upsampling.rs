@@ -41,8 +41,16 @@ fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner
     let guide = Patch::from_fn(tile.grown(2 * RADIUS), |x, y| guide.at(x, y));
     let filter = GuidedFilter::new(&guide, tile);
     let mut best = Patch::from_fn(tile.clone(), |_, _| f32::NEG_INFINITY);
-    for &label in labels {
-        let strength = filter.apply(&guide, &coarse.mask(label, guide.area.clone()), tile);
+    // The filter is linear and the masks sum to one everywhere: so do the strengths, and the last is what the others leave.
+    let mut rest = Patch::from_fn(tile.clone(), |_, _| 1.0);
+    for (k, &label) in labels.iter().enumerate() {
+        let strength = if k + 1 < labels.len() {
+            let strength = filter.apply(&guide, &coarse.mask(label, guide.area.clone()), tile);
+            rest.values.iter_mut().zip(&strength.values).for_each(|(r, s)| *r -= s);
+            strength
+        } else {
+            Patch { area: tile.clone(), values: std::mem::take(&mut rest.values) }
+        };
         for y in tile.rows() {
             let winner = &mut winner[y * tile.full.0..][tile.x.clone()];
             for ((b, w), s) in best.row_mut(y).iter_mut().zip(winner).zip(strength.row(y)) {

@@ -15,27 +15,34 @@ const WINDOW: f32 = 1.5;
 /// Difference of the smallest costs in both views at which only the better one counts is half of this.
 const TRANSITION: f32 = 0.3;
 
-/// Cost of every motion at every pixel; infinite where it moves the pixel out of every view.
-pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+/// Cost of every motion at every pixel, infinite where it moves the pixel out of every view; and the share of the later view, where
+/// there are two.
+pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Plane>, Option<Plane>) {
     let all = |view| motions.iter().map(|m| cost_in(level, view, m, CostModel::LABELS)).collect::<Vec<Plane>>();
     let mut costs = all(View::Second);
     if level.before.is_none() {
-        return costs;
+        return (costs, None);
     }
     let before = all(View::Before);
-    let (later, earlier) = (unexplained(&costs), unexplained(&before));
-    for (cost, before) in costs.iter_mut().zip(&before) {
-        let views = later.values().iter().zip(earlier.values());
-        for ((c, b), (later, earlier)) in cost.values_mut().iter_mut().zip(before.values()).zip(views) {
-            let share = ((earlier - later) / TRANSITION + 0.5).clamp(0.0, 1.0);
-            *c = match (c.is_finite(), b.is_finite()) {
-                (true, true) => share * *c + (1.0 - share) * b,
-                (true, false) => *c,
-                (false, _) => *b,
-            };
-        }
+    let mut shares = unexplained(&before);
+    for (share, later) in shares.values_mut().iter_mut().zip(unexplained(&costs).values()) {
+        *share = ((*share - later) / TRANSITION + 0.5).clamp(0.0, 1.0);
     }
-    costs
+    for (cost, before) in costs.iter_mut().zip(&before) {
+        let both = cost.values_mut().iter_mut().zip(before.values());
+        both.zip(shares.values()).for_each(|((c, b), share)| *c = mixed(*c, *b, *share));
+    }
+    (costs, Some(shares))
+}
+
+/// The cost of a pixel from its costs in both views, where the later one has a share.
+#[inline(always)]
+pub(crate) fn mixed(later: f32, earlier: f32, share: f32) -> f32 {
+    match (later.is_finite(), earlier.is_finite()) {
+        (true, true) => share * later + (1.0 - share) * earlier,
+        (true, false) => later,
+        (false, _) => earlier,
+    }
 }
 
 /// The smallest cost of any motion, gathered over windows.
@@ -73,8 +80,8 @@ mod tests {
             let values: Vec<f32> = (4..44).flat_map(|y| plane.row(y)[columns.clone()].to_vec()).collect();
             values.iter().sum::<f32>() / values.len() as f32
         };
-        let alone = costs_in_views(&build(first.clone(), second.clone(), None, 24)[0], &motions);
-        let both = costs_in_views(&build(first.clone(), second, Some(first), 24)[0], &motions);
+        let alone = costs_in_views(&build(first.clone(), second.clone(), None, 24)[0], &motions).0;
+        let both = costs_in_views(&build(first.clone(), second, Some(first), 24)[0], &motions).0;
         assert!(mean(&alone[0], 6..26) > 1.5 && mean(&both[0], 6..26) < 0.1);
         assert!(mean(&both[0], 38..58) < 0.1);
         // The wrong motion fits no better with two views than with one.

@@ -23,19 +23,30 @@ pub(crate) fn with_visibility(
     labels: &[u8],
     departure: f32,
 ) -> Vec<Plane> {
-    let landed: Vec<Plane> = (0..motions.len()).map(|k| moved_mask(level, &motions[k], labels, k)).collect();
-    let hide = |k: usize| {
-        let covered = covered(level, &motions[k], &landed, k);
-        let hidden = HIDDEN + if k == 0 { 0.0 } else { departure };
+    let hide = |(k, hidden): (usize, Vec<bool>)| {
+        let most = most_where_hidden(k, departure);
         let mut out = costs[k].clone();
-        for ((c, covered), label) in out.values_mut().iter_mut().zip(covered.values()).zip(labels) {
-            if *covered > 0.5 && (k == 0 || *label != 0) {
-                *c = c.min(hidden);
-            }
+        for (c, _) in out.values_mut().iter_mut().zip(hidden).filter(|(_, hidden)| *hidden) {
+            *c = c.min(most);
         }
         out
     };
-    (0..motions.len()).map(hide).collect()
+    hidden_under(level, motions, labels).into_iter().enumerate().map(hide).collect()
+}
+
+/// What a motion costs at most where it moves a pixel behind another object.
+pub(crate) fn most_where_hidden(label: usize, departure: f32) -> f32 {
+    HIDDEN + if label == 0 { 0.0 } else { departure }
+}
+
+/// For every motion the pixels at which it need not pay, as [`with_visibility`] has it.
+pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Vec<bool>> {
+    let landed: Vec<Plane> = (0..motions.len()).map(|k| moved_mask(level, &motions[k], labels, k)).collect();
+    let hidden = |k: usize| {
+        let covered = covered(level, &motions[k], &landed, k);
+        covered.values().iter().zip(labels).map(|(covered, label)| *covered > 0.5 && (k == 0 || *label != 0)).collect()
+    };
+    (0..motions.len()).map(hidden).collect()
 }
 
 /// Pixels of the dominant motion that it moves behind an object.

@@ -12,7 +12,7 @@ use super::settings::{Part, Settings};
 use crate::error::{Error, Result};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
-use crate::labelling::appearance::appearance_costs;
+use crate::labelling::appearance::add_colours;
 use crate::labelling::energy::{Borders, label_costs};
 use crate::labelling::upsampling::upsample;
 use crate::labelling::visibility::with_visibility;
@@ -194,13 +194,10 @@ impl Draft {
         let known: Vec<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
         if self.motions.len() > 1 {
             costs = with_visibility(level, &self.motions, &costs, &known, coherence.departure);
-            let said = appearance_costs(&work.palette, &costs, &known);
-            for (cost, said) in costs.iter_mut().zip(said) {
-                cost.values_mut().iter_mut().zip(said.values()).for_each(|(c, s)| *c += s);
-            }
+            add_colours(&mut costs, &work.palette, &known);
         }
-        let say = self.add_evidence(&mut costs, &work.picture.luminance);
-        let mut solved = Borders::new(&work.picture, level.noise, coherence).solve(&costs, coherence.solver);
+        let say = self.add_evidence(&mut costs, &work.pictures[0].luminance);
+        let mut solved = Borders::new(&work.pictures[0], level.noise, coherence).solve(&costs, coherence.solver);
         for (p, label) in solved.iter_mut().enumerate() {
             if say[p] < SMALLEST_SAY {
                 *label = self.labels[p];

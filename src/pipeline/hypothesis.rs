@@ -20,6 +20,17 @@ const PLAUSIBLE: f64 = 1.5;
 const CLEARLY: f64 = 0.9;
 
 impl Settings {
+    /// How motions are added at the base level (0) and at finer ones (1).
+    fn deflation(&self, stage: usize) -> Deflation {
+        Deflation {
+            price: self.price[stage],
+            most: self.most,
+            tries: self.tries,
+            window: self.gain_window,
+            refits: self.refits,
+        }
+    }
+
     fn refit(&self, level: &Level, layers: &mut [Layer], rounds: usize) {
         refit(level, layers, if self.has(Part::Refinement) { rounds } else { 0 });
     }
@@ -75,8 +86,7 @@ fn with_dominant(
     proposals.extend(rival);
     stages.begin("selection");
     let mut layers = vec![Layer::new(level, dominant)];
-    let how = Deflation { price: settings.price[0], most: settings.most, tries: settings.tries };
-    let left_out = add_motions(level, &mut layers, &proposals, how);
+    let left_out = add_motions(level, &mut layers, &proposals, settings.deflation(0));
     settings.refit(level, &mut layers, 1);
     let cost = total(&smallest_cost(&layers)) + settings.hypothesis_price * layers.len() as f64;
     (Found { layers, left_out }, cost)
@@ -91,10 +101,10 @@ pub(super) fn refine(work: &Work, found: Found, settings: &Settings) -> Found {
         prune(&mut layers, settings.price[0]);
     }
     for level in work.levels[..work.base].iter().rev() {
+        let level = &level.thinned(2);
         layers = layers.iter().map(|l| Layer::new(level, l.motion)).collect();
-        let look = level.index >= 1 || work.base == 1;
-        if look && settings.has(Part::FinerLevels) {
-            let how = Deflation { price: settings.price[1], most: settings.most, tries: 2 };
+        if settings.has(Part::FinerLevels) {
+            let how = Deflation { tries: 2, ..settings.deflation(1) };
             let proposals = fine_proposals(level, &layers);
             left_out = add_motions(level, &mut layers, &proposals, how).or(left_out);
         }

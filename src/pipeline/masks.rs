@@ -1,106 +1,147 @@
-//! Labels of the working size: solved, thinned out to what pays for itself, corrected for occlusion, split, cleaned.
+//! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion and
+//! split; sharpened at the working size; cleaned.
 
 use super::Work;
 use super::hypothesis::Found;
 use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;
-use crate::labelling::appearance::appearance_costs;
+use crate::frame::pyramid::Level;
+use crate::labelling::appearance::{ColourPrices, add_colours};
 use crate::labelling::components::absorb_small;
 use crate::labelling::description::{SMALLEST_SHARE, counts, worth};
-use crate::labelling::energy::{Borders, label_costs};
+use crate::labelling::energy::{Borders, Survey, surveyed};
 use crate::labelling::potts::Solver;
+use crate::labelling::sharpening::{Coarse, Fine, sharpened};
 use crate::labelling::splitting::{split_bodies, split_components};
-use crate::labelling::visibility::with_visibility;
+use crate::labelling::visibility::{hidden_under, with_visibility};
 use crate::motion::AffineMotion;
 
-/// Rounds of visibility.
-const VISIBILITY_ROUNDS: usize = 2;
 /// A label that came from a split competes only this far around its region, as a share of the root of its pixels …
 const REACH_SHARE: f64 = 0.25;
-/// … and at least this many pixels.
+/// … and at least this many pixels of the working size.
 const SMALLEST_REACH: usize = 12;
+/// Nats of a pixel of a coarser level beside those of a working pixel: it stands for four, whose noise is not independent.
+const COARSE_PIXEL: f32 = 2.0;
+/// Smoothness on a coarser level as a share of that of the working size: half as many pixels lie along a border.
+const COARSE_SMOOTHNESS: f32 = 0.7;
 
-/// Motions (pixels of the working size) and the label of each pixel, with what they were decided by.
+/// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Vec<u8>,
-    /// What every motion costs at every pixel, everything considered.
-    pub(super) costs: Vec<Plane>,
-    pub(super) borders: Borders,
     /// The best motion that is not among them: it did not pay for itself, here or when motions were selected.
     pub(super) left_out: Option<AffineMotion>,
 }
 
 /// A labelling in the making: motions, what each costs, who has which pixel.
 struct Draft<'a> {
-    work: &'a Work,
+    level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
     motions: Vec<AffineMotion>,
     /// Label costs.
     costs: Vec<Plane>,
+    /// The same before occlusion, with what they were made of.
+    survey: Survey,
     /// Estimation costs, for the description length.
     raw: Vec<Plane>,
     labels: Vec<u8>,
+    /// For every label the pixels that it cannot have; none where all labels compete everywhere.
+    barred: Vec<Vec<bool>>,
     /// What was taken away last, else what the selection left out.
     left_out: Option<AffineMotion>,
 }
 
 pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled {
-    let level = work.finest();
-    let mut draft = Draft {
-        work,
-        settings,
-        borders: if settings.has(Part::Edges) {
-            Borders::new(&work.picture, level.noise, settings.coherence)
-        } else {
-            Borders::uniform(level.width(), level.height(), settings.coherence)
-        },
-        costs: Vec::new(),
-        raw: Vec::new(),
-        labels: vec![0; level.width() * level.height()],
-        motions: found.layers.into_iter().map(|layer| layer.motion).collect(),
-        left_out: found.left_out,
-    };
-    draft.measure();
+    let mut draft = Draft::new(work, found, settings);
     draft.solve();
     draft.thin_out();
     draft.see();
     if draft.split() {
         draft.thin_out();
     }
-    draft.look();
-    draft.finish();
-    draft.clean();
-    let Draft { motions, labels, costs, borders, left_out, .. } = draft;
-    Labelled { motions, labels, costs, borders, left_out }
+    if work.draft == 0 {
+        draft.look(work);
+        draft.finish();
+    } else {
+        draft.sharpen(work);
+    }
+    let width = work.finest().width();
+    draft.clean(width);
+    let Draft { motions, labels, left_out, .. } = draft;
+    Labelled { motions, labels, left_out }
 }
 
-impl Draft<'_> {
+/// Prices of borders on a level.
+pub(super) fn borders(work: &Work, index: usize, settings: &Settings) -> Borders {
+    let level = &work.levels[index];
+    let mut coherence = settings.coherence;
+    coherence.smoothness *= if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
+    if settings.has(Part::Edges) {
+        Borders::new(&work.pictures[index], level.noise, coherence)
+    } else {
+        Borders::uniform(level.width(), level.height(), coherence)
+    }
+}
+
+/// What every motion leaves unexplained on a level, in the costs of working pixels.
+pub(super) fn left_over(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
+    if level.index > 0 {
+        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= COARSE_PIXEL);
+    }
+    raw
+}
+
+impl<'a> Draft<'a> {
+    fn new(work: &'a Work, found: Found, settings: &'a Settings) -> Draft<'a> {
+        let level = &work.levels[work.draft];
+        let borders = borders(work, work.draft, settings);
+        let motions: Vec<AffineMotion> = found.layers.into_iter().map(|layer| layer.motion).collect();
+        let mut draft = Draft {
+            level,
+            settings,
+            borders,
+            costs: Vec::new(),
+            survey: surveyed(level, &motions, settings.coherence),
+            raw: Vec::new(),
+            labels: vec![0; level.width() * level.height()],
+            barred: Vec::new(),
+            motions,
+            left_out: found.left_out,
+        };
+        draft.weigh();
+        draft
+    }
+
     fn size(&self) -> (usize, usize) {
-        (self.work.finest().width(), self.work.finest().height())
+        (self.level.width(), self.level.height())
     }
 
     /// Costs of all motions.
     fn measure(&mut self) {
-        let level = self.work.finest();
-        self.raw = self.motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
-        self.costs = label_costs(level, &self.motions, self.settings.coherence);
+        self.survey = surveyed(self.level, &self.motions, self.settings.coherence);
+        self.weigh();
+    }
+
+    fn weigh(&mut self) {
+        self.raw = left_over(self.level, &self.motions);
+        self.costs = self.survey.costs.clone();
     }
 
     fn solve(&mut self) {
         self.labels = self.borders.solve(&self.costs, self.settings.coherence.draft_solver);
     }
 
+    fn hears_colours(&self) -> bool {
+        self.motions.len() > 1 && self.settings.has(Part::Colour)
+    }
+
     /// Adds what the colours say.
-    fn look(&mut self) {
-        if self.motions.len() < 2 || !self.settings.has(Part::Colour) {
-            return;
-        }
-        let said = appearance_costs(&self.work.palette, &self.costs, &self.labels);
-        for (cost, said) in self.costs.iter_mut().zip(said) {
-            cost.values_mut().iter_mut().zip(said.values()).for_each(|(c, s)| *c += s);
+    fn look(&mut self, work: &Work) {
+        if self.hears_colours() {
+            add_colours(&mut self.costs, &work.palette, &self.labels);
         }
     }
 
@@ -111,6 +152,33 @@ impl Draft<'_> {
             _ => self.settings.coherence.solver,
         };
         self.labels = self.borders.solve(&self.costs, solver);
+    }
+
+    /// Labels of the working size from those of the draft.
+    fn sharpen(&mut self, work: &Work) {
+        let step = 1 << work.draft;
+        let colours =
+            self.hears_colours().then(|| ColourPrices::learned(&work.palette.thinned(step), &self.costs, &self.labels));
+        let visible = self.motions.len() < 2 || !self.settings.has(Part::Visibility);
+        let hidden = if visible { Vec::new() } else { hidden_under(self.level, &self.motions, &self.labels) };
+        let coarse = Coarse {
+            width: self.level.width(),
+            labels: &self.labels,
+            step,
+            misfit: &self.survey.misfit,
+            shares: self.survey.shares.as_ref(),
+            hidden: &hidden,
+            barred: &self.barred,
+            colours: colours.as_ref(),
+        };
+        let fine = Fine {
+            level: work.finest(),
+            picture: self.settings.has(Part::Edges).then(|| &work.pictures[0]),
+            palette: &work.palette,
+            motions: &self.motions,
+            coherence: self.settings.coherence,
+        };
+        self.labels = sharpened(&coarse, &fine, self.settings.coherence.sharpening);
     }
 
     /// Takes away the motion that is worth least, while that is less than nothing, and solves again.
@@ -133,21 +201,29 @@ impl Draft<'_> {
     fn remove(&mut self, k: usize) {
         self.motions.remove(k);
         self.costs.remove(k);
+        self.survey.costs.remove(k);
         self.raw.remove(k);
+        if k < self.barred.len() {
+            self.barred.remove(k);
+        }
     }
 
-    /// Corrects for occlusion, twice: what is hidden depends on the masks.
+    /// Corrects for occlusion, more than once: what is hidden depends on the masks.
     fn see(&mut self) {
         if self.motions.len() < 2 || !self.settings.has(Part::Visibility) {
             return;
         }
-        let unhidden = self.costs.clone();
-        for _ in 0..VISIBILITY_ROUNDS {
-            let departure = self.settings.coherence.departure;
-            self.costs = with_visibility(self.work.finest(), &self.motions, &unhidden, &self.labels, departure);
+        for _ in 0..self.settings.visibility_rounds {
+            self.uncover();
             self.solve();
         }
         self.thin_out();
+    }
+
+    /// Costs in which no motion pays for what it hides.
+    fn uncover(&mut self) {
+        let departure = self.settings.coherence.departure;
+        self.costs = with_visibility(self.level, &self.motions, &self.survey.costs, &self.labels, departure);
     }
 
     /// Splits regions that are several bodies. Returns whether there were any.
@@ -155,8 +231,8 @@ impl Draft<'_> {
         if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
             return false;
         }
-        let level = self.work.finest();
-        self.clean();
+        let level = self.level;
+        self.clean(level.width());
         let most = self.settings.most + 3;
         let parts = split_components(level, &mut self.motions, &mut self.labels, most);
         let bodies = split_bodies(level, &mut self.motions, &mut self.labels, most);
@@ -165,8 +241,7 @@ impl Draft<'_> {
         }
         self.measure();
         self.restrict();
-        let departure = self.settings.coherence.departure;
-        self.costs = with_visibility(level, &self.motions, &self.costs, &self.labels, departure);
+        self.uncover();
         self.solve();
         true
     }
@@ -175,21 +250,20 @@ impl Draft<'_> {
     fn restrict(&mut self) {
         let (width, height) = self.size();
         let sizes = counts(&self.labels, self.motions.len());
+        self.barred = vec![vec![false; self.labels.len()]];
         for k in 1..self.motions.len() {
-            let reach = SMALLEST_REACH.max((REACH_SHARE * (sizes[k] as f64).sqrt()) as usize);
+            let smallest = SMALLEST_REACH >> self.level.index;
+            let reach = smallest.max((REACH_SHARE * (sizes[k] as f64).sqrt()) as usize);
             let near = near_label(&self.labels, k as u8, width, height, reach);
-            for (c, near) in self.costs[k].values_mut().iter_mut().zip(near) {
-                if !near {
-                    *c += CostModel::ESTIMATION.truncation;
-                }
-            }
+            let pixels = self.survey.costs[k].values_mut().iter_mut().zip(&near);
+            pixels.filter(|(_, near)| !**near).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+            self.barred.push(near.into_iter().map(|near| !near).collect());
         }
     }
 
-    /// Gives small components to what surrounds them, and drops motions without pixels.
-    fn clean(&mut self) {
-        let (width, height) = self.size();
-        let smallest = (SMALLEST_SHARE * (width * height) as f64) as usize;
+    /// Gives small components to what surrounds them, and drops motions without pixels. Rows of labels are `width` long.
+    fn clean(&mut self, width: usize) {
+        let smallest = (SMALLEST_SHARE * self.labels.len() as f64) as usize;
         absorb_small(&mut self.labels, width, smallest);
         let sizes = counts(&self.labels, self.motions.len());
         let mut next = 0u8;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::Work;
+use super::evidence::evidence;
 use super::masks::Labelled;
 use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost};
@@ -10,14 +11,12 @@ use crate::frame::filter::gaussian;
 use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
-use crate::labelling::description::{counts, length, price_of_motion, worth};
-use crate::labelling::energy::label_costs;
+use crate::labelling::description::counts;
 use crate::labelling::groups::groups;
-use crate::labelling::potts::Solver;
 use crate::labelling::upsampling::{enlarged, upsample};
 use crate::labelling::visibility::hidden;
 use crate::motion::AffineMotion;
-use crate::options::{MAX_MOTIONS, SegmentOptions};
+use crate::options::SegmentOptions;
 use crate::order::descending;
 use crate::points::{Candidate, UNLABELLED};
 
@@ -222,41 +221,6 @@ fn mark(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], red
     }
 }
 
-/// Description lengths: of what was found, of what remains as the least worthy motions are taken away, and of one more.
-fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
-    let level = work.finest();
-    let width = level.width();
-    let mut raw: Vec<Plane> = labelled.motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
-    let mut costs = labelled.costs.clone();
-    let mut labels = labelled.labels.clone();
-    let mut candidates = Vec::new();
-    let found = length(&raw, &labels, width);
-    if raw.len() < MAX_MOTIONS {
-        // A motion that no pixel takes costs its six numbers.
-        let mut one_more = found + price_of_motion(labels.len());
-        if let Some(motion) = &labelled.left_out {
-            raw.push(cost(level, motion, CostModel::ESTIMATION));
-            let all: Vec<AffineMotion> = labelled.motions.iter().chain([motion]).copied().collect();
-            costs.extend(label_costs(level, &all, settings.coherence).pop());
-            one_more = one_more.min(length(&raw, &labelled.borders.solve(&costs, Solver::FAST), width));
-            raw.pop();
-            costs.pop();
-        }
-        candidates.push(Candidate { motions: raw.len() + 1, score: one_more });
-    }
-    candidates.push(Candidate { motions: raw.len(), score: found });
-    while raw.len() > 1 {
-        let worths = worth(&raw, &labels, width);
-        let Some((weakest, _)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
-        raw.remove(weakest);
-        costs.remove(weakest);
-        labels = labelled.borders.solve(&costs, Solver::FAST);
-        candidates.push(Candidate { motions: raw.len(), score: length(&raw, &labels, width) });
-    }
-    candidates.reverse();
-    candidates
-}
-
 /// Pixels, residuals, boxes and group numbers of the motions.
 pub(super) fn describe(
     motions: &[AffineMotion],
@@ -288,7 +252,7 @@ pub(super) fn describe(
 fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], first: &Plane, second: &Plane) -> Vec<f64> {
     let (width, height) = (first.width(), first.height());
     let mut sums = vec![(0.0, 0usize); motions.len()];
-    let mut samples = [0.0; CHUNK];
+    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for (y, row) in labels.chunks_exact(width).enumerate() {
         let mut start = 0;
         for run in row.chunk_by(|a, b| a == b) {
@@ -299,7 +263,7 @@ fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], firs
             let left = boxes[k][0];
             let path = RowPath::new(motion, left, y);
             for (part, values) in first.row(y)[columns.clone()].chunks(CHUNK).enumerate() {
-                let at = Footprints::along(&path, columns.start - left + part * CHUNK, width, height);
+                at.follow(&path, columns.start - left + part * CHUNK, width, height);
                 at.sample(second.values(), &mut samples[..values.len()]);
                 let seen = values.iter().zip(&samples).zip(&at.inside);
                 for ((value, sample), _) in seen.filter(|(_, inside)| **inside) {

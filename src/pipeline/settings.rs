@@ -43,6 +43,8 @@ pub(crate) struct Settings {
     pub(crate) work_side: usize,
     /// Longer side of the base level at most, pixels.
     pub(crate) base_side: usize,
+    /// Longer side of the level on which labels are drafted at most, pixels.
+    pub(crate) draft_side: usize,
     /// The coarsest level keeps the shorter side at least this long, pixels.
     pub(crate) smallest_side: usize,
     /// Highest degree of the multibody polynomial.
@@ -61,6 +63,12 @@ pub(crate) struct Settings {
     pub(crate) most: usize,
     /// Number of motions below which none is taken away again.
     pub(crate) least: usize,
+    /// Standard deviation of the window over which the gain of a motion is gathered, pixels of the level.
+    pub(crate) gain_window: f32,
+    /// Rounds of refinement of all motions after each that is added.
+    pub(crate) refits: usize,
+    /// How often labels are corrected for occlusion.
+    pub(crate) visibility_rounds: usize,
     /// How labels hold together.
     pub(crate) coherence: Coherence,
     /// What is left out.
@@ -72,17 +80,27 @@ impl Settings {
     pub(crate) fn of(options: &SegmentOptions) -> Settings {
         let best = Settings {
             work_side: 448,
-            base_side: 320,
+            base_side: 224,
+            draft_side: 320,
             smallest_side: 24,
             degrees: 3,
             measurements: 2000,
             tiles: 48,
             tries: 4,
-            price: [60.0, 120.0],
+            price: [60.0, 30.0],
             hypothesis_price: 300.0,
             most: 7,
             least: 1,
-            coherence: Coherence { smoothness: 8.0, departure: 0.05, draft_solver: Solver::FAST, solver: Solver::BEST },
+            gain_window: 2.0,
+            refits: 1,
+            visibility_rounds: 2,
+            coherence: Coherence {
+                smoothness: 8.0,
+                departure: 0.05,
+                draft_solver: Solver::FAST,
+                solver: Solver::BEST,
+                sharpening: Solver::BEST,
+            },
             #[cfg(feature = "ablation")]
             without: None,
         };
@@ -91,11 +109,15 @@ impl Settings {
             Quality::Fast => Settings {
                 work_side: 320,
                 base_side: 160,
+                draft_side: 160,
                 degrees: 2,
                 measurements: 1000,
                 tiles: 24,
-                tries: 2,
-                coherence: Coherence { solver: Solver::FAST, ..best.coherence },
+                tries: 1,
+                visibility_rounds: 1,
+                gain_window: 1.5,
+                refits: 0,
+                coherence: Coherence { solver: Solver::FAST, sharpening: Solver::LIGHT, ..best.coherence },
                 ..best
             },
         };

@@ -75,12 +75,12 @@ fn unexplained(
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut found = Vec::new();
-    let mut seen = [0.0; CHUNK];
+    let (mut seen, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..height {
         let path = RowPath::new(&scaled, 0, y);
         for start in (0..width).step_by(CHUNK) {
             let chunk = start..(start + CHUNK).min(width);
-            let at = Footprints::along(&path, start, width, height);
+            at.follow(&path, start, width, height);
             at.sample(level.second.values(), &mut seen[..chunk.len()]);
             for (x, (&inside, seen)) in chunk.zip(at.inside.iter().zip(&seen)) {
                 let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));

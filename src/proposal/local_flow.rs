@@ -42,6 +42,7 @@ pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Pla
     let mut out = Samples { gx: zero(), gy: zero(), residual: zero() };
     let (mut px, mut py) = ([0.0; CHUNK], [0.0; CHUNK]);
     let mut seen = [[0.0; CHUNK]; 3];
+    let mut at = Footprints::new();
     for y in 0..height {
         for start in (0..width).step_by(CHUNK) {
             let chunk = start..(start + CHUNK).min(width);
@@ -53,7 +54,7 @@ pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Pla
                 px[k] = x as f32 + du as f32 + u[k];
                 py[k] = y as f32 + dv as f32 + v[k];
             }
-            let at = Footprints::new(&px, &py, width, height);
+            at.place(&px, &py, width, height);
             for (seen, plane) in seen.iter_mut().zip([&level.second_dx, &level.second_dy, &level.second]) {
                 at.sample(plane.values(), &mut seen[..n]);
             }

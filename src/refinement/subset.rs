@@ -38,14 +38,14 @@ pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: 
         let (least, k) = best_beside(&nearest);
         chosen.push(k);
         cost = least;
-        nearest.iter_mut().zip(row(k)).for_each(|(a, &b)| *a = a.min(b));
+        lower(&mut nearest, row(k));
     }
     for _ in 0..if n > 1 { EXCHANGES } else { 0 } {
         let before = cost;
         for i in 0..n {
             nearest.fill(most);
             for (_, &k) in chosen.iter().enumerate().filter(|&(j, _)| j != i) {
-                nearest.iter_mut().zip(row(k)).for_each(|(a, &b)| *a = a.min(b));
+                lower(&mut nearest, row(k));
             }
             let (least, k) = best_beside(&nearest);
             if least < cost * (1.0 - 1e-9) {
@@ -58,6 +58,11 @@ pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: 
         }
     }
     chosen
+}
+
+/// `a_j ← min(a_j, b_j)`, without the question of `min` whether one is NaN.
+fn lower(a: &mut [f32], b: &[f32]) {
+    a.iter_mut().zip(b).for_each(|(a, &b)| *a = if b < *a { b } else { *a });
 }
 
 /// `Σ_j min(a_j, b_j)`.

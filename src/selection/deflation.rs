@@ -21,14 +21,18 @@ pub(crate) struct Deflation {
     pub(crate) most: usize,
     /// Proposals tried in earnest per round.
     pub(crate) tries: usize,
+    /// Standard deviation of the window over which a gain is gathered, pixels.
+    pub(crate) window: f32,
+    /// Rounds of refinement of all motions after each that is added.
+    pub(crate) refits: usize,
 }
 
-/// Standard deviation of the window over which a gain is gathered, pixels.
-const WINDOW: f32 = 3.0;
 /// Gain per pixel that is no gain: windows at borders, chance.
 const MARGIN: f32 = 0.35;
 /// Side of the blocks on which proposals are compared before the best are looked at in full.
 const BLOCK: usize = 4;
+/// Of the pixels of a block every second in every second row is looked at.
+const THINNING: usize = 2;
 /// A region of fewer pixels is no region.
 const SMALLEST_REGION: usize = 6;
 /// Prior against linear terms of a motion seen in a small region.
@@ -37,39 +41,39 @@ const RIDGE: f64 = 2e-2;
 const WORTH_A_TRY: f64 = 0.25;
 
 /// Where, and by how much, a cost plane is below another: the difference gathered over windows.
-fn improvement(current: &Plane, cost: &Plane) -> Plane {
+fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
     let mut difference = current.clone();
     each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
-    gaussian(&difference, WINDOW)
+    gaussian(&difference, window)
 }
 
 fn gain_of(improvement: &Plane) -> f64 {
     improvement.values().iter().map(|&d| f64::from((d - MARGIN).max(0.0))).sum()
 }
 
-/// Means over blocks: enough to order proposals.
-fn blocks(plane: &Plane) -> Plane {
+/// Means over blocks of `side` × `side` pixels: enough to order proposals.
+fn blocks(plane: &Plane, side: usize) -> Plane {
     let (width, height) = (plane.width(), plane.height());
-    let mut means = Plane::filled(width.div_ceil(BLOCK), height.div_ceil(BLOCK), 0.0);
+    let mut means = Plane::filled(width.div_ceil(side), height.div_ceil(side), 0.0);
     for y in 0..height {
-        for (sum, values) in means.row_mut(y / BLOCK).iter_mut().zip(plane.row(y).chunks(BLOCK)) {
+        for (sum, values) in means.row_mut(y / side).iter_mut().zip(plane.row(y).chunks(side)) {
             values.iter().for_each(|v| *sum += v);
         }
     }
     for y in 0..means.height() {
-        let rows = BLOCK.min(height - y * BLOCK);
+        let rows = side.min(height - y * side);
         for (x, mean) in means.row_mut(y).iter_mut().enumerate() {
-            *mean /= (rows * BLOCK.min(width - x * BLOCK)) as f32;
+            *mean /= (rows * side.min(width - x * side)) as f32;
         }
     }
     means
 }
 
 /// The gain estimated on block means.
-fn rough_gain(current: &Plane, cost: &Plane) -> f64 {
+fn rough_gain(current: &Plane, cost: &Plane, window: f32) -> f64 {
     let mut difference = current.clone();
     each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
-    gain_of(&gaussian(&difference, WINDOW / BLOCK as f32)) * (BLOCK * BLOCK) as f64
+    gain_of(&gaussian(&difference, window / BLOCK as f32)) * (BLOCK * BLOCK) as f64
 }
 
 /// Adds proposed motions to `layers` while each brings more than its price; refits all after each. Returns the best motion that
@@ -80,11 +84,13 @@ pub(crate) fn add_motions(
     proposals: &[AffineMotion],
     how: Deflation,
 ) -> Option<AffineMotion> {
-    let rough: Vec<Plane> = proposals.iter().map(|&m| blocks(&Layer::new(level, m).cost)).collect();
+    let thinned = level.thinned(THINNING);
+    let rough_cost = |&motion: &AffineMotion| blocks(&Layer::new(&thinned, motion).cost, BLOCK / THINNING);
+    let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
     loop {
         let current = smallest_cost(layers);
-        let current_blocks = blocks(&current);
-        let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost)).collect();
+        let current_blocks = blocks(&current, BLOCK);
+        let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
         let mut best: Option<(f64, Layer)> = None;
         let order = descending(gains.iter().copied());
         let next = order.first().map(|&k| proposals[k]);
@@ -95,7 +101,7 @@ pub(crate) fn add_motions(
             if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
-            let (brings, layer) = sharpened(level, &current, proposals[k]);
+            let (brings, layer) = sharpened(level, &current, proposals[k], how.window);
             if best.as_ref().is_none_or(|b| brings > b.0) {
                 best = Some((brings, layer));
             }
@@ -104,14 +110,14 @@ pub(crate) fn add_motions(
             Some((brings, layer)) if brings >= how.price => layers.push(layer),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
-        refit(level, layers, 1);
+        refit(level, layers, how.refits);
     }
 }
 
 /// A proposal refined on the region where it beats what is there, twice; and what it brings.
-fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion) -> (f64, Layer) {
+fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, Layer) {
     let mut layer = Layer::new(level, proposal);
-    let mut improved = improvement(current, &layer.cost);
+    let mut improved = improvement(current, &layer.cost, window);
     let mut brings = gain_of(&improved);
     for round in 0..2 {
         let Some(region) = heaviest_region(&improved, current, &layer.cost) else { break };
@@ -125,7 +131,7 @@ fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion) -> (f64, La
         }
         motion = align(level, &motion, &support, none, affine);
         let refined = Layer::new(level, motion);
-        let by_refined = improvement(current, &refined.cost);
+        let by_refined = improvement(current, &refined.cost, window);
         let better = gain_of(&by_refined);
         if better > brings {
             (layer, improved, brings) = (refined, by_refined, better);

@@ -11,17 +11,17 @@ use crate::order::descending;
 use crate::proposal::{Proposal, distinct, translated};
 
 /// Standard deviation of the window, pixels.
-const WINDOW: f32 = 4.0;
+const WINDOW: f32 = 1.33;
 /// Distance of the windows, pixels.
-const STRIDE: usize = 10;
+const STRIDE: usize = 5;
 /// Windows looked at, the most promising first.
 const WINDOWS: usize = 200;
 /// Proposals kept.
 const MOST: usize = 16;
 /// Steps shorter or longer than this are left out, pixels.
-const STEPS: (f64, f64) = (0.1, 2.0);
+const STEPS: (f64, f64) = (0.05, 2.0);
 /// Proposals closer than this are the same, pixels.
-const TOLERANCE: f64 = 0.2;
+const TOLERANCE: f64 = 0.1;
 /// Information added to every window.
 const FLAT: f32 = 0.02;
 
@@ -76,13 +76,16 @@ fn window_sums(level: &Level, layers: &[Layer], winners: &[usize]) -> [Plane; 5]
     let (width, height) = (level.width(), level.height());
     let scaled: Vec<AffineMotion> = layers.iter().map(|l| level.scaled(&l.motion)).collect();
     let noise = level.noise * level.noise;
+    let stride = level.stride as f64;
+    let half = 0.5 * level.stride as f32;
     let mut sums: [Plane; 5] = std::array::from_fn(|_| Plane::filled(width, height, 0.0));
     for y in 0..height {
         for x in 0..width {
             let [u, v] = scaled[winners[y * width + x]].flow(x as f64, y as f64);
-            let at = Footprint::new((x as f64 + u) as f32, (y as f64 + v) as f32, width, height);
-            let gx = 0.5 * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
-            let gy = 0.5 * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
+            let place = [x as f64 + u, y as f64 + v].map(|p| (stride * p) as f32);
+            let at = Footprint::new(place[0], place[1], level.second.width(), level.second.height());
+            let gx = half * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
+            let gy = half * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
             let r = at.sample(level.second.values()) - level.first.at(x, y);
             let weight = 1.0 / (noise + 0.02 * level.energy.at(x, y));
             for (plane, product) in sums.iter_mut().zip([gx * gx, gx * gy, gy * gy, gx * r, gy * r]) {

@@ -15,7 +15,7 @@ use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
-/// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the level.
+/// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the second frame.
 const WINDOW: f32 = 2.0;
 
 /// A motion and what it costs at every pixel of a level, gathered over windows.
@@ -29,7 +29,7 @@ impl Layer {
     /// A motion looked at on a level.
     #[inline(never)]
     pub(crate) fn new(level: &Level, motion: AffineMotion) -> Layer {
-        Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW) }
+        Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32) }
     }
 }
 
