@@ -10,7 +10,7 @@
 //! half-pixel shift beats the truth in flat areas.
 
 use crate::frame::Plane;
-use crate::frame::lanes::each;
+use crate::frame::lanes::{LANES, each};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
@@ -153,33 +153,41 @@ impl<'a> Comparison<'a> {
         let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / 128.0) as f32);
         let correlation = level.noise_correlation();
         let path = level.path(&self.scaled, left, y);
-        let (mut samples, mut found) = ([0.0; CHUNK], [0.0; CHUNK]);
-        let (mut values, mut energies) = ([0.0; CHUNK], [0.0; CHUNK]);
+        let mut samples = [0.0; CHUNK];
         let mut at = Footprints::new();
+        let cost = |sample: f32, first: f32, energy: f32, [fx, fy]: [f32; 2]| {
+            let residual = sample - first * (1.0 + gain) - bias;
+            let variance = noise * interpolation_variance(fx, fy, correlation) + looseness * energy;
+            self.model.of(residual, variance)
+        };
         let rows = level.first.row(y)[left..].chunks(CHUNK).zip(level.energy.row(y)[left..].chunks(CHUNK));
         for (k, (costs, (first, energy))) in costs.chunks_mut(CHUNK).zip(rows).enumerate() {
             at.follow(&path, k * CHUNK, self.view.width(), self.view.height());
             at.sample(self.view.values(), &mut samples[..costs.len()]);
-            let (first, energy) = (whole(first, &mut values), whole(energy, &mut energies));
-            // Beyond the row's end something is computed that nobody looks at: a loop of known length has no rest.
-            for k in 0..CHUNK {
-                let residual = samples[k] - first[k] * (1.0 + gain) - bias;
-                let variance = noise * interpolation_variance(at.fx[k], at.fy[k], correlation) + looseness * energy[k];
-                let explained = self.model.of(residual, variance);
-                found[k] = if at.inside[k] { explained } else { self.outside };
+            let (blocks, rest) = costs.as_chunks_mut::<LANES>();
+            let ((first, first_rest), (energy, energy_rest)) =
+                (first.as_chunks::<LANES>(), energy.as_chunks::<LANES>());
+            let places = [&samples, &at.fx, &at.fy].map(|values| values.as_chunks::<LANES>().0.iter());
+            let [samples_of, fx_of, fy_of] = places;
+            let done = blocks.as_flattened().len();
+            for (((block, first), energy), ((sample, fx), fy)) in
+                blocks.iter_mut().zip(first).zip(energy).zip(samples_of.zip(fx_of).zip(fy_of))
+            {
+                *block = std::array::from_fn(|l| cost(sample[l], first[l], energy[l], [fx[l], fy[l]]));
             }
-            costs.copy_from_slice(&found[..costs.len()]);
+            for (k, ((c, first), energy)) in rest.iter_mut().zip(first_rest).zip(energy_rest).enumerate() {
+                let k = done + k;
+                *c = cost(samples[k], *first, *energy, [at.fx[k], at.fy[k]]);
+            }
+            if !at.all_inside() {
+                costs
+                    .iter_mut()
+                    .zip(&at.inside)
+                    .filter(|(_, inside)| !**inside)
+                    .for_each(|(cost, _)| *cost = self.outside);
+            }
         }
     }
-}
-
-/// A part of a row at the length of a chunk: itself, or a copy of it with anything behind.
-fn whole<'a>(part: &'a [f32], space: &'a mut [f32; CHUNK]) -> &'a [f32; CHUNK] {
-    if let Some(chunk) = part.first_chunk() {
-        return chunk;
-    }
-    space[..part.len()].copy_from_slice(part);
-    space
 }
 
 /// Sum of a cost plane.

@@ -128,20 +128,22 @@ pub(crate) fn gradients(plane: &Plane) -> (Plane, Plane) {
     let mut difference = vec![0.0; width + 2];
     for y in 0..height {
         let (above, here, below) = (plane.row(y.saturating_sub(1)), plane.row(y), plane.row((y + 1).min(height - 1)));
-        for x in 0..width {
-            smooth[x + 1] = (3.0 * (above[x] + below[x]) + 10.0 * here[x]) / 32.0;
-            difference[x + 1] = (below[x] - above[x]) / 32.0;
+        for line in [&mut smooth, &mut difference] {
+            line[1..=width].copy_from_slice(above);
         }
+        each_with(&mut smooth[1..=width], [here, below], |a, [h, b]| (3.0 * (a + b) + 10.0 * h) / 32.0);
+        each_with(&mut difference[1..=width], [below], |a, [b]| (b - a) / 32.0);
         for line in [&mut smooth, &mut difference] {
             line[0] = line[1];
             line[width + 1] = line[width];
         }
-        for (x, o) in dx.row_mut(y).iter_mut().enumerate() {
-            *o = smooth[x + 2] - smooth[x];
-        }
-        for (x, o) in dy.row_mut(y).iter_mut().enumerate() {
-            *o = 3.0 * (difference[x] + difference[x + 2]) + 10.0 * difference[x + 1];
-        }
+        let (dx, dy) = (dx.row_mut(y), dy.row_mut(y));
+        dx.copy_from_slice(&smooth[..width]);
+        each_with(dx, [&smooth[2..]], |left, [right]| right - left);
+        dy.copy_from_slice(&difference[..width]);
+        each_with(dy, [&difference[1..], &difference[2..]], |left, [middle, right]| {
+            3.0 * (left + right) + 10.0 * middle
+        });
     }
     (dx, dy)
 }

@@ -9,7 +9,7 @@ pub(crate) const LANES: usize = 8;
 
 /// Replaces every value v by f(v).
 #[inline(always)]
-pub(crate) fn each(values: &mut [f32], f: impl Fn(f32) -> f32) {
+pub(crate) fn each<T: Copy>(values: &mut [T], f: impl Fn(T) -> T) {
     let (blocks, rest) = values.as_chunks_mut::<LANES>();
     for block in blocks {
         *block = block.map(&f);
@@ -21,7 +21,7 @@ pub(crate) fn each(values: &mut [f32], f: impl Fn(f32) -> f32) {
 
 /// Replaces every value v by f(v, w), w the values at the same place of `others`, as far as all go.
 #[inline(always)]
-pub(crate) fn each_with<const N: usize>(values: &mut [f32], others: [&[f32]; N], f: impl Fn(f32, [f32; N]) -> f32) {
+pub(crate) fn each_with<T: Copy, const N: usize>(values: &mut [T], others: [&[T]; N], f: impl Fn(T, [T; N]) -> T) {
     let count = others.iter().fold(values.len(), |least, other| least.min(other.len()));
     let (blocks, rest) = values[..count].as_chunks_mut::<LANES>();
     let others = others.map(|other| other[..count].as_chunks::<LANES>());
@@ -32,6 +32,15 @@ pub(crate) fn each_with<const N: usize>(values: &mut [f32], others: [&[f32]; N],
     for (k, value) in rest.iter_mut().enumerate() {
         *value = f(*value, others.map(|(_, rest)| rest[k]));
     }
+}
+
+/// A part of a row at the length of an array: itself, or a copy of it with anything behind.
+pub(crate) fn whole<'a, const N: usize>(part: &'a [f32], space: &'a mut [f32; N]) -> &'a [f32; N] {
+    if let Some(array) = part.first_chunk() {
+        return array;
+    }
+    space[..part.len()].copy_from_slice(part);
+    space
 }
 
 #[cfg(test)]

@@ -79,8 +79,11 @@ impl Level {
     pub(crate) fn thinned(&self, stride: usize) -> Level {
         let thin = |plane: &Plane| {
             let (width, height) = (plane.width().div_ceil(stride), plane.height().div_ceil(stride));
-            let rows = plane.values().chunks_exact(plane.width()).step_by(stride);
-            Plane::from_vec(width, height, rows.flat_map(|row| row.iter().copied().step_by(stride)).collect())
+            let mut values = Vec::with_capacity(width * height);
+            for row in plane.values().chunks_exact(plane.width()).step_by(stride) {
+                values.extend(row.iter().step_by(stride));
+            }
+            Plane::from_vec(width, height, values)
         };
         Level {
             index: self.index,

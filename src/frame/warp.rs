@@ -114,6 +114,11 @@ impl Footprints {
         }
     }
 
+    /// Whether every position lies within the plane.
+    pub(crate) fn all_inside(&self) -> bool {
+        self.inside.iter().fold(true, |all, inside| all & inside)
+    }
+
     /// Bilinear samples of a plane of the size that the footprints were made for, into as many places as there are, at most
     /// [`CHUNK`].
     #[inline(never)]

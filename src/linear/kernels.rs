@@ -4,6 +4,8 @@
 //! two lanes (the width of SSE2 and of WebAssembly's SIMD) and several columns are worked on together, so that a value once
 //! loaded serves many products. The order of the additions is fixed, and with it the bits of the result.
 
+use crate::frame::lanes::each_with;
+
 /// Two lanes: one 128-bit register.
 type Pair = [f64; 2];
 
@@ -30,9 +32,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 /// y ← y + factor·x over the common length.
 pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += factor * x;
-    }
+    each_with(y, [x], |y, [x]| y + factor * x);
 }
 
 /// Scales to unit length; false, and nothing useful in `vector`, where that is not possible (zero or not finite).

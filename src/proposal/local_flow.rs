@@ -5,6 +5,7 @@
 
 use crate::frame::Plane;
 use crate::frame::filter::{double, gaussian, median5};
+use crate::frame::lanes::{each_with, whole};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
@@ -41,6 +42,7 @@ pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Pla
     let zero = || Plane::filled(width, height, 0.0);
     let mut out = Samples { gx: zero(), gy: zero(), residual: zero() };
     let (mut px, mut py) = ([0.0; CHUNK], [0.0; CHUNK]);
+    let (mut flow_u, mut flow_v) = ([0.0; CHUNK], [0.0; CHUNK]);
     let mut seen = [[0.0; CHUNK]; 3];
     let mut at = Footprints::new();
     for y in 0..height {
@@ -48,7 +50,8 @@ pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Pla
             let chunk = start..(start + CHUNK).min(width);
             let n = chunk.len();
             let (u, v) = (&u.row(y)[chunk.clone()], &v.row(y)[chunk.clone()]);
-            for k in 0..n {
+            let (u, v) = (whole(u, &mut flow_u), whole(v, &mut flow_v));
+            for k in 0..CHUNK {
                 let x = (start + k) as u32 as i32;
                 let [du, dv] = scaled.flow(f64::from(x), y as f64);
                 px[k] = x as f32 + du as f32 + u[k];
@@ -59,13 +62,13 @@ pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Pla
                 at.sample(plane.values(), &mut seen[..n]);
             }
             let mean = |out: &mut Plane, first: &Plane, second: &[f32; CHUNK]| {
-                let pairs = first.row(y)[chunk.clone()].iter().zip(second);
-                out.row_mut(y)[chunk.clone()].iter_mut().zip(pairs).for_each(|(o, (a, b))| *o = 0.5 * (a + b));
+                let out = &mut out.row_mut(y)[chunk.clone()];
+                each_with(out, [&first.row(y)[chunk.clone()], second], |_, [a, b]| 0.5 * (a + b));
             };
             mean(&mut out.gx, &level.first_dx, &seen[0]);
             mean(&mut out.gy, &level.first_dy, &seen[1]);
-            let pairs = seen[2].iter().zip(&level.first.row(y)[chunk.clone()]);
-            out.residual.row_mut(y)[chunk].iter_mut().zip(pairs).for_each(|(o, (a, b))| *o = a - b);
+            let residual = &mut out.residual.row_mut(y)[chunk.clone()];
+            each_with(residual, [&seen[2], &level.first.row(y)[chunk]], |_, [a, b]| a - b);
         }
     }
     out
@@ -83,14 +86,10 @@ struct Windows {
 fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
     let mut weight = s.residual.clone();
-    for (w, energy) in weight.values_mut().iter_mut().zip(level.energy.values()) {
-        *w = 1.0 / (noise + *w * *w / 9.0 + 0.02 * energy);
-    }
+    each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| 1.0 / (noise + r * r / 9.0 + 0.02 * energy));
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();
-        for ((p, a), b) in product.values_mut().iter_mut().zip(a.values()).zip(b.values()) {
-            *p *= a * b;
-        }
+        each_with(product.values_mut(), [a.values(), b.values()], |p, [a, b]| p * (a * b));
         gaussian(&product, sigma)
     };
     Windows {

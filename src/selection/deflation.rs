@@ -6,7 +6,7 @@ use crate::alignment::cost::{Photometric, total};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
-use crate::frame::lanes::each_with;
+use crate::frame::lanes::{LANES, each_with};
 use crate::frame::pyramid::Level;
 use crate::labelling::components::{Connectivity, components};
 use crate::motion::AffineMotion;
@@ -48,7 +48,14 @@ fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
 }
 
 fn gain_of(improvement: &Plane) -> f64 {
-    improvement.values().iter().map(|&d| f64::from((d - MARGIN).max(0.0))).sum()
+    let gain = |d: f32| (d - MARGIN).max(0.0);
+    let (blocks, rest) = improvement.values().as_chunks::<LANES>();
+    let mut sum = 0.0;
+    for block in blocks {
+        block.map(gain).iter().for_each(|&g| sum += f64::from(g));
+    }
+    rest.iter().for_each(|&d| sum += f64::from(gain(d)));
+    sum
 }
 
 /// Means over blocks of `side` × `side` pixels: enough to order proposals.
