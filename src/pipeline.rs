@@ -120,8 +120,10 @@ fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
 pub(crate) struct Work {
     /// Level 0 is the working size.
     levels: Vec<Level>,
-    /// Index of the level on which motions are first looked for.
+    /// Index of the level on which the dominant motion is found and others are proposed.
     base: usize,
+    /// Index of the level on which motions are first selected, the base level or a finer one.
+    selection: usize,
     /// Index of the level on which labels are drafted.
     draft: usize,
     /// The first frame unblurred, at the sizes of the levels down to the base level.
@@ -150,12 +152,13 @@ impl Work {
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let (base, draft) = (within(settings.base_side), within(settings.draft_side));
+        let selection = within(settings.selection_side);
         let mut pictures = vec![picture];
         while pictures.len() <= base.max(draft) {
             let last = &pictures[pictures.len() - 1];
             pictures.push(Picture { luminance: halve(&last.luminance), colours: last.colours.each_ref().map(halve) });
         }
-        Work { levels, base, draft, pictures, palette, reduction }
+        Work { levels, base, selection, draft, pictures, palette, reduction }
     }
 
     /// Finds the dominant motion, takes the change of brightness (if there may be one) out of the second frame, measures the noise.

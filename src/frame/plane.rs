@@ -66,6 +66,13 @@ impl Plane {
         &mut self.values
     }
 
+    /// Every `stride`-th pixel of every `stride`-th row.
+    pub(crate) fn thinned(&self, stride: usize) -> Plane {
+        let (width, height) = (self.width.div_ceil(stride), self.height.div_ceil(stride));
+        let rows = self.values.chunks_exact(self.width).step_by(stride);
+        Plane::from_vec(width, height, rows.flat_map(|row| row.iter().copied().step_by(stride)).collect())
+    }
+
     /// Row y.
     #[inline]
     pub fn row(&self, y: usize) -> &[f32] {
