@@ -106,14 +106,37 @@ fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<
 
 /// Red, green, blue of a frame, halved to a width.
 fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
-    std::array::from_fn(|c| {
-        let values = frame.colours().iter().map(|colour| f32::from(colour[c])).collect();
-        let mut plane = Plane::from_vec(frame.width(), frame.height(), values);
-        while plane.width() > width {
-            plane = halve(&plane);
+    let mut planes = if frame.width() > width {
+        half_colours(frame)
+    } else {
+        let plane = |c: usize| frame.colours().iter().map(|colour| f32::from(colour[c])).collect();
+        std::array::from_fn(|c| Plane::from_vec(frame.width(), frame.height(), plane(c)))
+    };
+    while planes[0].width() > width {
+        planes = planes.each_ref().map(halve);
+    }
+    planes
+}
+
+/// Red, green, blue of a frame at half its size, smoothed by [1 2 1]/4: whole numbers until the end.
+fn half_colours(frame: &Frame) -> [Plane; 3] {
+    let (width, height) = (frame.width(), frame.height());
+    let row = |y: usize| frame.colours()[y * width..(y + 1) * width].as_flattened();
+    let mut sums = vec![0u16; 3 * (width + 2)];
+    let mut planes = [0; 3].map(|_| Vec::with_capacity(width.div_ceil(2) * height.div_ceil(2)));
+    for y in (0..height).step_by(2) {
+        let (above, here, below) = (row(y.saturating_sub(1)), row(y), row((y + 1).min(height - 1)));
+        for (((s, a), h), b) in sums[3..].iter_mut().zip(above).zip(here).zip(below) {
+            *s = u16::from(*a) + 2 * u16::from(*h) + u16::from(*b);
         }
-        plane
-    })
+        sums.copy_within(3..6, 0);
+        sums.copy_within(3 * width..3 * (width + 1), 3 * (width + 1));
+        for (c, plane) in planes.iter_mut().enumerate() {
+            let three = sums[c..].chunks(6).zip(sums[3 + c..].chunks(6)).zip(sums[6 + c..].chunks(6));
+            plane.extend(three.map(|((l, m), r)| f32::from(l[0] + 2 * m[0] + r[0]) / 16.0));
+        }
+    }
+    planes.map(|values| Plane::from_vec(width.div_ceil(2), height.div_ceil(2), values))
 }
 
 /// The frames at working size and below.
@@ -166,16 +189,16 @@ impl Work {
         let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
         for level in &mut self.levels {
             level.compensate(photometric.bias, photometric.gain);
-            level.noise = noise(level, &motion);
         }
         if motion != AffineMotion::STATIC {
-            let base = &self.levels[self.base];
+            let base = &mut self.levels[self.base];
+            base.noise = noise(base, &motion);
             let how =
                 Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: 1e-3, photometric: false };
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
-            for level in &mut self.levels {
-                level.noise = noise(level, &motion);
-            }
+        }
+        for level in &mut self.levels {
+            level.noise = noise(level, &motion);
         }
         motion
     }
