@@ -106,12 +106,12 @@ pub(crate) fn add_motions(
             if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
-            let (brings, layer) = sharpened(&thinned, &current_sample, proposals[k], how.window / THINNING as f32);
+            let (brings, layer) = refined(&thinned, &current_sample, proposals[k], how.window / THINNING as f32);
             if best.as_ref().is_none_or(|b| brings > b.0) {
                 best = Some((brings, layer));
             }
         }
-        match best.map(|(_, layer)| sharpened(level, &current, layer.motion, how.window)) {
+        match best.map(|(_, layer)| refined(level, &current, layer.motion, how.window)) {
             Some((brings, layer)) if brings >= how.price => layers.push(layer),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
@@ -119,7 +119,7 @@ pub(crate) fn add_motions(
 }
 
 /// A proposal refined on the region where it beats what is there, twice; and what it brings.
-fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, Layer) {
+fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, Layer) {
     let mut layer = Layer::new(level, proposal);
     let mut improved = improvement(current, &layer.cost, window);
     let mut brings = gain_of(&improved);
