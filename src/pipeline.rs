@@ -207,3 +207,35 @@ impl Work {
         &self.levels[0]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_of_half_the_size_are_weighted_means() {
+        for (width, height) in [(16usize, 16usize), (17, 19), (21, 16)] {
+            let bytes: Vec<u8> = (0..width * height * 4).map(|k| (k * k * 31 % 251) as u8).collect();
+            let frame = Frame::from_rgba(width, height, &bytes).unwrap();
+            let planes = half_colours(&frame);
+            for (c, plane) in planes.iter().enumerate() {
+                assert_eq!((plane.width(), plane.height()), (width.div_ceil(2), height.div_ceil(2)));
+                for y in 0..plane.height() {
+                    for x in 0..plane.width() {
+                        let mut sum = 0.0;
+                        for (dy, v) in [(-1i32, 1.0), (0, 2.0), (1, 1.0)] {
+                            for (dx, u) in [(-1i32, 1.0), (0, 2.0), (1, 1.0)] {
+                                let place = |at: usize, by: i32, size: usize| {
+                                    (2 * at).saturating_add_signed(by as isize).min(size - 1)
+                                };
+                                let p = place(y, dy, height) * width + place(x, dx, width);
+                                sum += u * v * f32::from(bytes[4 * p + c]);
+                            }
+                        }
+                        assert_eq!(plane.at(x, y), sum / 16.0);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -230,6 +230,43 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::pyramid::build;
+    use crate::random::Random;
+
+    fn level(before: bool) -> Level {
+        let mut random = Random::from_seed(5);
+        let mut noise = || Plane::from_fn(70, 50, |_, _| random.uniform(0.0, 255.0) as f32);
+        let (first, second, third) = (noise(), noise(), noise());
+        build(first, second, before.then_some(third), 64).remove(0)
+    }
+
+    const MOTION: AffineMotion = AffineMotion { matrix: [0.02, -0.01, 9.3, 0.03, 0.01, -4.6] };
+
+    #[test]
+    fn the_cost_of_an_area_is_that_part_of_the_whole() {
+        for level in [level(false), level(true)] {
+            let whole = cost(&level, &MOTION, CostModel::LABELS);
+            let area = Area { columns: 3..68, rows: 7..31 };
+            let part = cost_within(&level, &area, &MOTION, CostModel::LABELS);
+            assert_eq!((part.width(), part.height()), (65, 24));
+            for (k, y) in area.rows.clone().enumerate() {
+                for (a, b) in part.row(k).iter().zip(&whole.row(y)[area.columns.clone()]) {
+                    assert!((a - b).abs() < 1e-3, "row {y}: {a}, {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sample_of_the_pixels_costs_what_these_pixels_cost() {
+        let level = level(true);
+        let whole = cost(&level, &MOTION, CostModel::ESTIMATION);
+        let sample = cost(&level.thinned(3), &MOTION, CostModel::ESTIMATION);
+        assert_eq!((sample.width(), sample.height()), (24, 17));
+        for (a, b) in sample.values().iter().zip(whole.thinned(3).values()) {
+            assert!((a - b).abs() < 1e-3, "{a}, {b}");
+        }
+    }
 
     #[test]
     fn the_inverse_motion_leads_back() {

@@ -236,3 +236,106 @@ impl<'a> Comparisons<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::filter::gaussian;
+    use crate::frame::pyramid::build;
+    use crate::labelling::energy::surveyed;
+    use crate::labelling::visibility::hidden_under;
+    use crate::random::Random;
+
+    const COHERENCE: Coherence = Coherence {
+        smoothness: 8.0,
+        departure: 0.05,
+        draft_solver: Solver::FAST,
+        solver: Solver::BEST,
+        sharpening: Solver::FAST,
+    };
+    const SIZE: [usize; 2] = [192, 128];
+
+    /// Two squares, which move by (2, 0) and (0, -2), with odd corners, on a background at rest.
+    fn owner(x: usize, y: usize) -> u8 {
+        let within = |x0: usize, y0: usize| (x0..x0 + 37).contains(&x) && (y0..y0 + 33).contains(&y);
+        u8::from(within(21, 29)) + 2 * u8::from(within(143, 61))
+    }
+
+    fn frames() -> [Plane; 2] {
+        let mut random = Random::from_seed(3);
+        let mut texture = || {
+            let noise = Plane::from_fn(SIZE[0] + 8, SIZE[1] + 8, |_, _| random.uniform(0.0, 255.0) as f32);
+            gaussian(&noise, 0.8)
+        };
+        let textures = [texture(), texture(), texture()];
+        let motions = [(0, 0), (2, 0), (0, -2)];
+        let second = |x: usize, y: usize| {
+            let place = |k: usize| (x.wrapping_add_signed(-motions[k].0), y.wrapping_add_signed(-motions[k].1));
+            let k = [1, 2].into_iter().find(|&k| owner(place(k).0, place(k).1) == k as u8).unwrap_or(0);
+            (k, place(k))
+        };
+        [
+            Plane::from_fn(SIZE[0], SIZE[1], |x, y| textures[usize::from(owner(x, y))].at(x, y)),
+            Plane::from_fn(SIZE[0], SIZE[1], |x, y| {
+                let (k, (px, py)) = second(x, y);
+                textures[k].at(px, py)
+            }),
+        ]
+    }
+
+    #[test]
+    fn labels_of_half_the_size_get_the_borders_of_the_full_size() {
+        let [first, second] = frames();
+        let levels = build(first.clone(), second, None, 24);
+        let motions = [(0.0, 0.0), (2.0, 0.0), (0.0, -2.0)].map(|(u, v)| AffineMotion::translation(u, v));
+        let labels: Vec<u8> =
+            (0..SIZE[0] * SIZE[1] / 4).map(|p| owner(p % (SIZE[0] / 2) * 2, p / (SIZE[0] / 2) * 2)).collect();
+        let survey = surveyed(&levels[1], &motions, COHERENCE);
+        let hidden = hidden_under(&levels[1], &motions, &labels);
+        let coarse = Coarse {
+            width: SIZE[0] / 2,
+            labels: &labels,
+            step: 2,
+            misfit: &survey.misfit,
+            shares: None,
+            hidden: &hidden,
+            barred: &[],
+            colours: None,
+        };
+        let picture = Picture { luminance: first.clone(), colours: [0; 3].map(|_| first.clone()) };
+        let colours = vec![[128u8; 4]; SIZE[0] * SIZE[1]];
+        let frame = crate::frame::Frame::from_rgba(SIZE[0], SIZE[1], colours.as_flattened()).unwrap();
+        let palette = Palette::new(&frame, SIZE[0], SIZE[1]);
+        let fine = Fine {
+            level: &levels[0],
+            picture: Some(&picture),
+            palette: &palette,
+            motions: &motions,
+            coherence: COHERENCE,
+        };
+        // Each square by itself, and what lies between them is not looked at.
+        let found = regions(coarse.contested(SIZE[0], SIZE[1]));
+        assert_eq!(found.len(), 2);
+        assert!(!found[0].area.touches(&found[1].area));
+        let wrong = |labels: &[u8]| (0..labels.len()).filter(|&p| labels[p] != owner(p % SIZE[0], p / SIZE[0])).count();
+        let enlarged: Vec<u8> =
+            (0..SIZE[0] * SIZE[1]).map(|p| labels[coarse.pixel(p % SIZE[0], p / SIZE[0])]).collect();
+        let sharp = sharpened(&coarse, &fine, Solver::FAST);
+        assert!(wrong(&enlarged) > 100, "{} pixels are wrong at the start", wrong(&enlarged));
+        assert!(3 * wrong(&sharp) < 2 * wrong(&enlarged), "{} of {}", wrong(&sharp), wrong(&enlarged));
+        let apart = |p: usize| {
+            found.iter().all(|r| !r.area.columns.contains(&(p % SIZE[0])) || !r.area.rows.contains(&(p / SIZE[0])))
+        };
+        assert!((0..sharp.len()).filter(|&p| apart(p)).all(|p| sharp[p] == enlarged[p]));
+    }
+
+    #[test]
+    fn what_touches_is_one_region() {
+        let tile = |x: usize, y: usize| Tile { area: Area { columns: x..x + 4, rows: y..y + 4 }, labels: vec![0, 1] };
+        // The last tile joins two regions, whose rectangle then holds a third.
+        let found = regions(vec![tile(0, 0), tile(20, 0), tile(0, 8), tile(8, 8), tile(40, 40), tile(4, 4)]);
+        let sizes: Vec<usize> = found.iter().map(|region| region.tiles.len()).collect();
+        assert_eq!(sizes, [1, 1, 4]);
+        assert_eq!(found[2].area, Area { columns: 0..12, rows: 0..12 });
+    }
+}
