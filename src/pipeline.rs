@@ -106,22 +106,47 @@ fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<
 
 /// Red, green, blue of a frame, halved to a width.
 fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
-    std::array::from_fn(|c| {
-        let values = frame.colours().iter().map(|colour| f32::from(colour[c])).collect();
-        let mut plane = Plane::from_vec(frame.width(), frame.height(), values);
-        while plane.width() > width {
-            plane = halve(&plane);
+    let mut planes = if frame.width() > width {
+        half_colours(frame)
+    } else {
+        let plane = |c: usize| frame.colours().iter().map(|colour| f32::from(colour[c])).collect();
+        std::array::from_fn(|c| Plane::from_vec(frame.width(), frame.height(), plane(c)))
+    };
+    while planes[0].width() > width {
+        planes = planes.each_ref().map(halve);
+    }
+    planes
+}
+
+/// Red, green, blue of a frame at half its size, smoothed by [1 2 1]/4: whole numbers until the end.
+fn half_colours(frame: &Frame) -> [Plane; 3] {
+    let (width, height) = (frame.width(), frame.height());
+    let row = |y: usize| frame.colours()[y * width..(y + 1) * width].as_flattened();
+    let mut sums = vec![0u16; 3 * (width + 2)];
+    let mut planes = [0; 3].map(|_| Vec::with_capacity(width.div_ceil(2) * height.div_ceil(2)));
+    for y in (0..height).step_by(2) {
+        let (above, here, below) = (row(y.saturating_sub(1)), row(y), row((y + 1).min(height - 1)));
+        for (((s, a), h), b) in sums[3..].iter_mut().zip(above).zip(here).zip(below) {
+            *s = u16::from(*a) + 2 * u16::from(*h) + u16::from(*b);
         }
-        plane
-    })
+        sums.copy_within(3..6, 0);
+        sums.copy_within(3 * width..3 * (width + 1), 3 * (width + 1));
+        for (c, plane) in planes.iter_mut().enumerate() {
+            let three = sums[c..].chunks(6).zip(sums[3 + c..].chunks(6)).zip(sums[6 + c..].chunks(6));
+            plane.extend(three.map(|((l, m), r)| f32::from(l[0] + 2 * m[0] + r[0]) / 16.0));
+        }
+    }
+    planes.map(|values| Plane::from_vec(width.div_ceil(2), height.div_ceil(2), values))
 }
 
 /// The frames at working size and below.
 pub(crate) struct Work {
     /// Level 0 is the working size.
     levels: Vec<Level>,
-    /// Index of the level on which motions are first looked for.
+    /// Index of the level on which the dominant motion is found and others are proposed.
     base: usize,
+    /// Index of the level on which motions are first selected, the base level or a finer one.
+    selection: usize,
     /// Index of the level on which labels are drafted.
     draft: usize,
     /// The first frame unblurred, at the sizes of the levels down to the base level.
@@ -150,12 +175,13 @@ impl Work {
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let (base, draft) = (within(settings.base_side), within(settings.draft_side));
+        let selection = within(settings.selection_side);
         let mut pictures = vec![picture];
         while pictures.len() <= base.max(draft) {
             let last = &pictures[pictures.len() - 1];
             pictures.push(Picture { luminance: halve(&last.luminance), colours: last.colours.each_ref().map(halve) });
         }
-        Work { levels, base, draft, pictures, palette, reduction }
+        Work { levels, base, selection, draft, pictures, palette, reduction }
     }
 
     /// Finds the dominant motion, takes the change of brightness (if there may be one) out of the second frame, measures the noise.
@@ -163,21 +189,53 @@ impl Work {
         let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
         for level in &mut self.levels {
             level.compensate(photometric.bias, photometric.gain);
-            level.noise = noise(level, &motion);
         }
         if motion != AffineMotion::STATIC {
-            let base = &self.levels[self.base];
+            let base = &mut self.levels[self.base];
+            base.noise = noise(base, &motion);
             let how =
                 Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: 1e-3, photometric: false };
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
-            for level in &mut self.levels {
-                level.noise = noise(level, &motion);
-            }
+        }
+        for level in &mut self.levels {
+            level.noise = noise(level, &motion);
         }
         motion
     }
 
     fn finest(&self) -> &Level {
         &self.levels[0]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_of_half_the_size_are_weighted_means() {
+        for (width, height) in [(16usize, 16usize), (17, 19), (21, 16)] {
+            let bytes: Vec<u8> = (0..width * height * 4).map(|k| (k * k * 31 % 251) as u8).collect();
+            let frame = Frame::from_rgba(width, height, &bytes).unwrap();
+            let planes = half_colours(&frame);
+            for (c, plane) in planes.iter().enumerate() {
+                assert_eq!((plane.width(), plane.height()), (width.div_ceil(2), height.div_ceil(2)));
+                for y in 0..plane.height() {
+                    for x in 0..plane.width() {
+                        let mut sum = 0.0;
+                        for (dy, v) in [(-1i32, 1.0), (0, 2.0), (1, 1.0)] {
+                            for (dx, u) in [(-1i32, 1.0), (0, 2.0), (1, 1.0)] {
+                                let place = |at: usize, by: i32, size: usize| {
+                                    (2 * at).saturating_add_signed(by as isize).min(size - 1)
+                                };
+                                let p = place(y, dy, height) * width + place(x, dx, width);
+                                sum += u * v * f32::from(bytes[4 * p + c]);
+                            }
+                        }
+                        assert_eq!(plane.at(x, y), sum / 16.0);
+                    }
+                }
+            }
+        }
     }
 }

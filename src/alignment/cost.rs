@@ -10,6 +10,7 @@
 //! half-pixel shift beats the truth in flat areas.
 
 use crate::frame::Plane;
+use crate::frame::area::Area;
 use crate::frame::lanes::{LANES, each};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
@@ -68,11 +69,20 @@ pub(crate) enum View {
 
 /// Cost of a motion (of the working frame) at every pixel of a level; in the frame before, where there is one, where the pixel
 /// leaves the second.
-#[inline(never)]
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
-    let mut plane = cost_in(level, View::Second, motion, model);
+    cost_within(level, &Area::whole(level.width(), level.height()), motion, model)
+}
+
+/// [`cost`] of the pixels of an area alone, as a plane of its size.
+#[inline(never)]
+pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
+    let in_view = |view| match Comparison::new(level, view, motion, model) {
+        Some(comparison) => comparison.plane(area),
+        None => Plane::filled(area.width(), area.height(), f32::INFINITY),
+    };
+    let mut plane = in_view(View::Second);
     if level.before.is_some() {
-        let before = cost_in(level, View::Before, motion, model);
+        let before = in_view(View::Before);
         let unseen = plane.values_mut().iter_mut().zip(before.values()).filter(|(c, _)| !c.is_finite());
         unseen.for_each(|(c, b)| *c = *b);
     }
@@ -84,7 +94,7 @@ pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Pl
 #[inline(never)]
 pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: CostModel) -> Plane {
     match Comparison::new(level, view, motion, model) {
-        Some(comparison) => comparison.plane(),
+        Some(comparison) => comparison.plane(&Area::whole(level.width(), level.height())),
         None => Plane::filled(level.width(), level.height(), f32::INFINITY),
     }
 }
@@ -99,7 +109,7 @@ pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photo
         model,
         outside: model.outside(),
     }
-    .plane()
+    .plane(&Area::whole(level.width(), level.height()))
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
@@ -137,11 +147,10 @@ impl<'a> Comparison<'a> {
         Some(Comparison { level, view, scaled, photometric: Photometric::default(), model, outside: f32::INFINITY })
     }
 
-    fn plane(&self) -> Plane {
-        let (width, height) = (self.level.width(), self.level.height());
-        let mut plane = Plane::filled(width, height, 0.0);
-        for y in 0..height {
-            self.row(y, 0, plane.row_mut(y));
+    fn plane(&self, area: &Area) -> Plane {
+        let mut plane = Plane::filled(area.width(), area.height(), 0.0);
+        for (k, y) in area.rows.clone().enumerate() {
+            self.row(y, area.columns.start, plane.row_mut(k));
         }
         plane
     }
@@ -213,14 +222,10 @@ pub(crate) fn lane_sum(row: &[f32]) -> f32 {
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const SMALLEST: f32 = 0.5;
     const LARGEST: f32 = 8.0;
-    /// Of more pixels than this a quarter is looked at.
-    const MANY: usize = 16_384;
-    let thinned;
-    let mut level = level;
-    if level.first.values().len() > MANY {
-        thinned = level.thinned(2);
-        level = &thinned;
-    }
+    /// Pixels that are enough: of more a sample is looked at.
+    const ENOUGH: f64 = 8192.0;
+    let stride = (level.first.values().len() as f64 / ENOUGH).sqrt().ceil() as usize;
+    let level = &level.thinned(stride.max(1));
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
@@ -245,6 +250,43 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::frame::pyramid::build;
+    use crate::random::Random;
+
+    fn level(before: bool) -> Level {
+        let mut random = Random::from_seed(5);
+        let mut noise = || Plane::from_fn(70, 50, |_, _| random.uniform(0.0, 255.0) as f32);
+        let (first, second, third) = (noise(), noise(), noise());
+        build(first, second, before.then_some(third), 64).remove(0)
+    }
+
+    const MOTION: AffineMotion = AffineMotion { matrix: [0.02, -0.01, 9.3, 0.03, 0.01, -4.6] };
+
+    #[test]
+    fn the_cost_of_an_area_is_that_part_of_the_whole() {
+        for level in [level(false), level(true)] {
+            let whole = cost(&level, &MOTION, CostModel::LABELS);
+            let area = Area { columns: 3..68, rows: 7..31 };
+            let part = cost_within(&level, &area, &MOTION, CostModel::LABELS);
+            assert_eq!((part.width(), part.height()), (65, 24));
+            for (k, y) in area.rows.clone().enumerate() {
+                for (a, b) in part.row(k).iter().zip(&whole.row(y)[area.columns.clone()]) {
+                    assert!((a - b).abs() < 1e-3, "row {y}: {a}, {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sample_of_the_pixels_costs_what_these_pixels_cost() {
+        let level = level(true);
+        let whole = cost(&level, &MOTION, CostModel::ESTIMATION);
+        let sample = cost(&level.thinned(3), &MOTION, CostModel::ESTIMATION);
+        assert_eq!((sample.width(), sample.height()), (24, 17));
+        for (a, b) in sample.values().iter().zip(whole.thinned(3).values()) {
+            assert!((a - b).abs() < 1e-3, "{a}, {b}");
+        }
+    }
 
     #[test]
     fn the_inverse_motion_leads_back() {

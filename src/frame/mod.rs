@@ -1,5 +1,6 @@
 //! Pixels in, planes and measurements out. Knows no algebra.
 
+pub(crate) mod area;
 mod derivatives;
 pub(crate) mod filter;
 pub(crate) mod lanes;

@@ -66,6 +66,16 @@ impl Plane {
         &mut self.values
     }
 
+    /// Every `stride`-th pixel of every `stride`-th row.
+    pub(crate) fn thinned(&self, stride: usize) -> Plane {
+        let (width, height) = (self.width.div_ceil(stride), self.height.div_ceil(stride));
+        let mut values = Vec::with_capacity(width * height);
+        for row in self.values.chunks_exact(self.width).step_by(stride) {
+            values.extend(row.iter().step_by(stride));
+        }
+        Plane::from_vec(width, height, values)
+    }
+
     /// Row y.
     #[inline]
     pub fn row(&self, y: usize) -> &[f32] {

@@ -77,24 +77,16 @@ impl Level {
     /// The level with every `stride`-th pixel of the first frame in every `stride`-th row, compared with the whole second frame: a
     /// sample of the pixels, as sharp as they are.
     pub(crate) fn thinned(&self, stride: usize) -> Level {
-        let thin = |plane: &Plane| {
-            let (width, height) = (plane.width().div_ceil(stride), plane.height().div_ceil(stride));
-            let mut values = Vec::with_capacity(width * height);
-            for row in plane.values().chunks_exact(plane.width()).step_by(stride) {
-                values.extend(row.iter().step_by(stride));
-            }
-            Plane::from_vec(width, height, values)
-        };
         Level {
             index: self.index,
-            first: thin(&self.first),
+            first: self.first.thinned(stride),
             second: self.second.clone(),
             before: self.before.clone(),
-            first_dx: thin(&self.first_dx),
-            first_dy: thin(&self.first_dy),
+            first_dx: self.first_dx.thinned(stride),
+            first_dy: self.first_dy.thinned(stride),
             second_dx: self.second_dx.clone(),
             second_dy: self.second_dy.clone(),
-            energy: thin(&self.energy),
+            energy: self.energy.thinned(stride),
             noise: self.noise,
             stride: self.stride * stride,
         }

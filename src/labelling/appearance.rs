@@ -33,19 +33,22 @@ impl Palette {
     pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
         let step = frame.width().div_ceil(width).next_power_of_two();
         let mut indices = Vec::with_capacity(width * height);
-        for y in 0..height {
-            for x in 0..width {
-                let (mut sum, mut count) = ([0usize; 3], 0);
-                for v in y * step..((y + 1) * step).min(frame.height()) {
-                    for u in x * step..((x + 1) * step).min(frame.width()) {
-                        let colour = frame.colours()[v * frame.width() + u];
-                        sum.iter_mut().zip(colour).for_each(|(s, c)| *s += usize::from(c));
-                        count += 1;
+        for rows in frame.colours().chunks(frame.width() * step) {
+            let mut sums = vec![[0u32; 4]; width];
+            for row in rows.chunks(frame.width()) {
+                for ([red, green, blue, count], colours) in sums.iter_mut().zip(row.chunks(step)) {
+                    for [r, g, b] in colours {
+                        *red += u32::from(*r);
+                        *green += u32::from(*g);
+                        *blue += u32::from(*b);
                     }
+                    *count += colours.len() as u32;
                 }
-                let [r, g, b] = sum.map(|s| s * STEPS / (256 * count.max(1)));
-                indices.push(((r * STEPS + g) * STEPS + b) as u16);
             }
+            indices.extend(sums.iter().map(|[r, g, b, count]| {
+                let [r, g, b] = [r, g, b].map(|sum| sum * STEPS as u32 / (256 * count.max(&1)));
+                ((r * STEPS as u32 + g) * STEPS as u32 + b) as u16
+            }));
         }
         Palette { size: [width, height], indices }
     }

@@ -6,6 +6,7 @@ use super::potts::{Potts, Solver, minimise};
 use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
+use crate::frame::area::Area;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -85,22 +86,25 @@ impl Borders {
         }
     }
 
-    /// Takes the prices of a part of the grid from the picture.
+    /// Takes the prices of an area of the picture from it. The grid begins at the picture's pixel `corner`.
     pub(crate) fn follow(
         &mut self,
         picture: &Picture,
         noise: f32,
         coherence: Coherence,
-        columns: std::ops::Range<usize>,
-        rows: std::ops::Range<usize>,
+        area: &Area,
+        corner: [usize; 2],
     ) {
-        let (width, height) = (self.horizontal.width(), self.horizontal.height());
+        let (width, height) = (picture.luminance.width(), picture.luminance.height());
         let price = Self::price(picture, noise, coherence);
-        for y in rows {
-            for x in columns.clone() {
+        for y in area.rows.clone() {
+            let places = area.columns.start - corner[0]..area.columns.end - corner[0];
+            let horizontal = &mut self.horizontal.row_mut(y - corner[1])[places.clone()];
+            let vertical = &mut self.vertical.row_mut(y - corner[1])[places];
+            for ((h, v), x) in horizontal.iter_mut().zip(vertical).zip(area.columns.clone()) {
                 let p = y * width + x;
-                self.horizontal.values_mut()[p] = price(p, y * width + (x + 1).min(width - 1));
-                self.vertical.values_mut()[p] = price(p, (y + 1).min(height - 1) * width + x);
+                *h = price(p, y * width + (x + 1).min(width - 1));
+                *v = price(p, (y + 1).min(height - 1) * width + x);
             }
         }
     }

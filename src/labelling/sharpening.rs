@@ -1,7 +1,7 @@
 //! Labels of a coarser level at the working size: coarse labels decide what is there, fine costs where exactly it ends.
 //!
-//! Only tiles in which two labels meet, or nearly, are looked at, and only the labels near each compete. What is known of a
-//! neighbourhood rather than of a pixel (how well anything fits there, what is hidden, what the colours say) is taken from the
+//! Only tiles in which two labels meet, or nearly, are looked at, and only the labels near each compete; those that touch are solved
+//! together, on their own. What is known of a neighbourhood rather than of a pixel (how well anything fits there, what is hidden, what the colours say) is taken from the
 //! coarser level.
 
 use super::appearance::{ColourPrices, Palette};
@@ -12,6 +12,7 @@ use super::views::mixed;
 use super::visibility::most_where_hidden;
 use crate::alignment::cost::{Comparison, CostModel, View};
 use crate::frame::Plane;
+use crate::frame::area::Area;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -50,35 +51,81 @@ pub(crate) struct Fine<'a> {
 
 /// A tile and the labels that compete in it.
 struct Tile {
-    columns: std::ops::Range<usize>,
-    rows: std::ops::Range<usize>,
+    area: Area,
     labels: Vec<u8>,
+}
+
+/// Tiles that touch, and a rectangle around them. Its pixels that are in none of them keep their labels.
+struct Region {
+    area: Area,
+    tiles: Vec<Tile>,
 }
 
 /// The labels of the working size.
 pub(crate) fn sharpened(coarse: &Coarse<'_>, fine: &Fine<'_>, solver: Solver) -> Vec<u8> {
     let (width, height) = (fine.level.width(), fine.level.height());
     let mut labels: Vec<u8> = (0..width * height).map(|p| coarse.labels[coarse.pixel(p % width, p / width)]).collect();
-    let tiles = coarse.contested(width, height);
-    if tiles.is_empty() {
-        return labels;
-    }
-    let mut costs: Vec<Plane> = (0..fine.motions.len())
-        .map(|k| {
-            let cost = labels.iter().map(|&l| if usize::from(l) == k { 0.0 } else { FAR });
-            Plane::from_vec(width, height, cost.collect())
-        })
-        .collect();
-    let mut borders = Borders::uniform(width, height, fine.coherence);
     let comparisons = Comparisons::new(fine);
-    for tile in &tiles {
-        comparisons.fill(coarse, fine, tile, &mut costs);
-        if let Some(picture) = fine.picture {
-            borders.follow(picture, fine.level.noise, fine.coherence, tile.columns.clone(), tile.rows.clone());
+    for region in regions(coarse.contested(width, height)) {
+        region.solve(coarse, fine, &comparisons, solver, &mut labels);
+    }
+    labels
+}
+
+/// Tiles gathered into rectangles that do not touch.
+fn regions(tiles: Vec<Tile>) -> Vec<Region> {
+    let mut regions: Vec<Region> = Vec::new();
+    for tile in tiles {
+        let mut grown = Region { area: tile.area.clone(), tiles: vec![tile] };
+        while let Some(k) = regions.iter().position(|region| region.area.touches(&grown.area)) {
+            let other = regions.swap_remove(k);
+            grown.area = grown.area.with(&other.area);
+            grown.tiles.extend(other.tiles);
+        }
+        regions.push(grown);
+    }
+    regions
+}
+
+impl Region {
+    fn solve(
+        &self,
+        coarse: &Coarse<'_>,
+        fine: &Fine<'_>,
+        comparisons: &Comparisons<'_>,
+        solver: Solver,
+        labels: &mut [u8],
+    ) {
+        let (width, height) = (fine.level.width(), fine.level.height());
+        // What surrounds the tiles holds them with the labels that it keeps.
+        let area = self.area.grown(1, width, height);
+        let rows = || area.rows.clone().map(|y| y * width + area.columns.start..y * width + area.columns.end);
+        let start: Vec<u8> = rows().flat_map(|row| labels[row].iter().copied()).collect();
+        let mut present = [false; 256];
+        let competing = self.tiles.iter().flat_map(|tile| &tile.labels);
+        start.iter().chain(competing).for_each(|&l| present[usize::from(l)] = true);
+        let present: Vec<u8> = (0..=u8::MAX).filter(|&l| present[usize::from(l)]).collect();
+        let mut number = [0u8; 256];
+        present.iter().zip(0..).for_each(|(&l, k)| number[usize::from(l)] = k);
+        let fixed = |&label: &u8| {
+            let cost = start.iter().map(|&l| if l == label { 0.0 } else { FAR });
+            Plane::from_vec(area.width(), area.height(), cost.collect())
+        };
+        let mut costs: Vec<Plane> = present.iter().map(fixed).collect();
+        let mut borders = Borders::uniform(area.width(), area.height(), fine.coherence);
+        let corner = [area.columns.start, area.rows.start];
+        for tile in &self.tiles {
+            comparisons.fill(coarse, fine, tile, corner, &number, &mut costs);
+            if let Some(picture) = fine.picture {
+                borders.follow(picture, fine.level.noise, fine.coherence, &tile.area, corner);
+            }
+        }
+        let numbered: Vec<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();
+        let solved = borders.solve_from(&costs, solver, &numbered);
+        for (row, solved) in rows().zip(solved.chunks_exact(area.width())) {
+            labels[row].iter_mut().zip(solved).for_each(|(label, &k)| *label = present[usize::from(k)]);
         }
     }
-    labels = borders.solve_from(&costs, solver, &labels);
-    labels
 }
 
 impl Coarse<'_> {
@@ -105,7 +152,7 @@ impl Coarse<'_> {
                 }
                 let labels: Vec<u8> = (0..=u8::MAX).filter(|&l| present[usize::from(l)]).collect();
                 if labels.len() > 1 {
-                    tiles.push(Tile { columns: left..right, rows: top..bottom, labels });
+                    tiles.push(Tile { area: Area { columns: left..right, rows: top..bottom }, labels });
                 }
             }
         }
@@ -128,27 +175,36 @@ impl<'a> Comparisons<'a> {
         Comparisons { second: all(View::Second), before: all(View::Before) }
     }
 
-    /// The costs of the labels that compete in a tile.
-    fn fill(&self, coarse: &Coarse<'_>, fine: &Fine<'_>, tile: &Tile, costs: &mut [Plane]) {
+    /// The costs of the labels that compete in a tile, on planes that begin at `corner`; `number` says which is whose.
+    fn fill(
+        &self,
+        coarse: &Coarse<'_>,
+        fine: &Fine<'_>,
+        tile: &Tile,
+        corner: [usize; 2],
+        number: &[u8; 256],
+        costs: &mut [Plane],
+    ) {
         let (width, height) = (fine.level.width(), fine.level.height());
+        let Area { columns, rows: tile_rows } = &tile.area;
         let (mut earlier, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]]);
         let mut rows = vec![[0.0; TILE[0]]; tile.labels.len()];
-        for y in tile.rows.clone() {
+        for y in tile_rows.clone() {
             seen.fill(f32::INFINITY);
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
-                let row = &mut row[..tile.columns.len()];
+                let row = &mut row[..columns.len()];
                 match &self.second[label] {
-                    Some(second) => second.row(y, tile.columns.start, row),
+                    Some(second) => second.row(y, columns.start, row),
                     None => row.fill(f32::INFINITY),
                 }
                 if let (Some(before), Some(shares)) = (&self.before[label], coarse.shares) {
-                    before.row(y, tile.columns.start, &mut earlier[..row.len()]);
-                    for ((c, b), x) in row.iter_mut().zip(&earlier).zip(tile.columns.clone()) {
+                    before.row(y, columns.start, &mut earlier[..row.len()]);
+                    for ((c, b), x) in row.iter_mut().zip(&earlier).zip(columns.clone()) {
                         *c = mixed(*c, *b, shares.values()[coarse.pixel(x, y)]);
                     }
                 }
-                for ((c, seen), x) in row.iter_mut().zip(&mut seen).zip(tile.columns.clone()) {
+                for ((c, seen), x) in row.iter_mut().zip(&mut seen).zip(columns.clone()) {
                     *c = allowed_for(*c, coarse.misfit.values()[coarse.pixel(x, y)]);
                     *seen = seen.min(*c);
                 }
@@ -157,8 +213,8 @@ impl<'a> Comparisons<'a> {
             for (row, &label) in rows.iter().zip(&tile.labels) {
                 let label = usize::from(label);
                 let most = most_where_hidden(label, fine.coherence.departure);
-                let out = &mut costs[label].row_mut(y)[tile.columns.clone()];
-                for (((out, c), seen), x) in out.iter_mut().zip(row).zip(&seen).zip(tile.columns.clone()) {
+                let out = &mut costs[usize::from(number[label])].row_mut(y - corner[1])[columns.start - corner[0]..];
+                for (((out, c), seen), x) in out.iter_mut().zip(row).zip(&seen).zip(columns.clone()) {
                     let p = coarse.pixel(x, y);
                     let mut cost = as_label(label, *c, *seen, fine.coherence);
                     let borders = u8::from(x == 0 || x + 1 == width) + u8::from(y == 0 || y + 1 == height);
@@ -178,5 +234,108 @@ impl<'a> Comparisons<'a> {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::filter::gaussian;
+    use crate::frame::pyramid::build;
+    use crate::labelling::energy::surveyed;
+    use crate::labelling::visibility::hidden_under;
+    use crate::random::Random;
+
+    const COHERENCE: Coherence = Coherence {
+        smoothness: 8.0,
+        departure: 0.05,
+        draft_solver: Solver::FAST,
+        solver: Solver::BEST,
+        sharpening: Solver::FAST,
+    };
+    const SIZE: [usize; 2] = [192, 128];
+
+    /// Two squares, which move by (2, 0) and (0, -2), with odd corners, on a background at rest.
+    fn owner(x: usize, y: usize) -> u8 {
+        let within = |x0: usize, y0: usize| (x0..x0 + 37).contains(&x) && (y0..y0 + 33).contains(&y);
+        u8::from(within(21, 29)) + 2 * u8::from(within(143, 61))
+    }
+
+    fn frames() -> [Plane; 2] {
+        let mut random = Random::from_seed(3);
+        let mut texture = || {
+            let noise = Plane::from_fn(SIZE[0] + 8, SIZE[1] + 8, |_, _| random.uniform(0.0, 255.0) as f32);
+            gaussian(&noise, 0.8)
+        };
+        let textures = [texture(), texture(), texture()];
+        let motions = [(0, 0), (2, 0), (0, -2)];
+        let second = |x: usize, y: usize| {
+            let place = |k: usize| (x.wrapping_add_signed(-motions[k].0), y.wrapping_add_signed(-motions[k].1));
+            let k = [1, 2].into_iter().find(|&k| owner(place(k).0, place(k).1) == k as u8).unwrap_or(0);
+            (k, place(k))
+        };
+        [
+            Plane::from_fn(SIZE[0], SIZE[1], |x, y| textures[usize::from(owner(x, y))].at(x, y)),
+            Plane::from_fn(SIZE[0], SIZE[1], |x, y| {
+                let (k, (px, py)) = second(x, y);
+                textures[k].at(px, py)
+            }),
+        ]
+    }
+
+    #[test]
+    fn labels_of_half_the_size_get_the_borders_of_the_full_size() {
+        let [first, second] = frames();
+        let levels = build(first.clone(), second, None, 24);
+        let motions = [(0.0, 0.0), (2.0, 0.0), (0.0, -2.0)].map(|(u, v)| AffineMotion::translation(u, v));
+        let labels: Vec<u8> =
+            (0..SIZE[0] * SIZE[1] / 4).map(|p| owner(p % (SIZE[0] / 2) * 2, p / (SIZE[0] / 2) * 2)).collect();
+        let survey = surveyed(&levels[1], &motions, COHERENCE);
+        let hidden = hidden_under(&levels[1], &motions, &labels);
+        let coarse = Coarse {
+            width: SIZE[0] / 2,
+            labels: &labels,
+            step: 2,
+            misfit: &survey.misfit,
+            shares: None,
+            hidden: &hidden,
+            barred: &[],
+            colours: None,
+        };
+        let picture = Picture { luminance: first.clone(), colours: [0; 3].map(|_| first.clone()) };
+        let colours = vec![[128u8; 4]; SIZE[0] * SIZE[1]];
+        let frame = crate::frame::Frame::from_rgba(SIZE[0], SIZE[1], colours.as_flattened()).unwrap();
+        let palette = Palette::new(&frame, SIZE[0], SIZE[1]);
+        let fine = Fine {
+            level: &levels[0],
+            picture: Some(&picture),
+            palette: &palette,
+            motions: &motions,
+            coherence: COHERENCE,
+        };
+        // Each square by itself, and what lies between them is not looked at.
+        let found = regions(coarse.contested(SIZE[0], SIZE[1]));
+        assert_eq!(found.len(), 2);
+        assert!(!found[0].area.touches(&found[1].area));
+        let wrong = |labels: &[u8]| (0..labels.len()).filter(|&p| labels[p] != owner(p % SIZE[0], p / SIZE[0])).count();
+        let enlarged: Vec<u8> =
+            (0..SIZE[0] * SIZE[1]).map(|p| labels[coarse.pixel(p % SIZE[0], p / SIZE[0])]).collect();
+        let sharp = sharpened(&coarse, &fine, Solver::FAST);
+        assert!(wrong(&enlarged) > 100, "{} pixels are wrong at the start", wrong(&enlarged));
+        assert!(3 * wrong(&sharp) < 2 * wrong(&enlarged), "{} of {}", wrong(&sharp), wrong(&enlarged));
+        let apart = |p: usize| {
+            found.iter().all(|r| !r.area.columns.contains(&(p % SIZE[0])) || !r.area.rows.contains(&(p / SIZE[0])))
+        };
+        assert!((0..sharp.len()).filter(|&p| apart(p)).all(|p| sharp[p] == enlarged[p]));
+    }
+
+    #[test]
+    fn what_touches_is_one_region() {
+        let tile = |x: usize, y: usize| Tile { area: Area { columns: x..x + 4, rows: y..y + 4 }, labels: vec![0, 1] };
+        // The last tile joins two regions, whose rectangle then holds a third.
+        let found = regions(vec![tile(0, 0), tile(20, 0), tile(0, 8), tile(8, 8), tile(40, 40), tile(4, 4)]);
+        let sizes: Vec<usize> = found.iter().map(|region| region.tiles.len()).collect();
+        assert_eq!(sizes, [1, 1, 4]);
+        assert_eq!(found[2].area, Area { columns: 0..12, rows: 0..12 });
     }
 }

@@ -2,9 +2,10 @@
 
 use super::components::{Connectivity, components};
 use super::description::{SMALLEST_SHARE, price_of_motion};
-use crate::alignment::cost::{CostModel, Photometric, cost};
+use crate::alignment::cost::{CostModel, Photometric, cost_within};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
+use crate::frame::area::Area;
 use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
@@ -14,8 +15,10 @@ use crate::order::descending;
 const SMALLEST_PART: usize = 30;
 /// Softening of a part's border, pixels.
 const SOFTNESS: f32 = 0.7;
-/// Window over which the two halves compete, pixels.
+/// Window over which the two halves compete, pixels …
 const WINDOW: f32 = 2.5;
+/// … and how far it reaches.
+const REACH: usize = 8;
 /// Rounds of the two-body split.
 const ROUNDS: usize = 3;
 /// A half with a smaller share than this is none.
@@ -47,17 +50,19 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
         if parts.len() < 2 {
             continue;
         }
-        let together = cost(level, &motions[label], CostModel::ESTIMATION);
         let mut fits = Vec::new();
         for &part in &parts {
             let mask: Vec<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
             let inner = gaussian(&eroded(&Plane::from_vec(width, height, mask)), SOFTNESS);
             let motion = aligned_on(level, &motions[label], &inner, 4, 1e-2);
-            let alone = cost(level, &motion, CostModel::ESTIMATION);
+            let [x0, y0, x1, y1] = found.list[part].bounds;
+            let area = Area { columns: x0..x1 + 1, rows: y0..y1 + 1 };
+            let [together, alone] =
+                [motions[label], motion].map(|m| cost_within(level, &area, &m, CostModel::ESTIMATION));
             let mut gain = 0.0;
-            for (p, &id) in found.of.iter().enumerate() {
-                if id as usize == part {
-                    gain += 0.5 * f64::from(together.values()[p] - alone.values()[p]);
+            for y in area.rows.clone() {
+                for x in area.columns.clone().filter(|&x| found.of[y * width + x] as usize == part) {
+                    gain += 0.5 * f64::from(together.at(x - x0, y - y0) - alone.at(x - x0, y - y0));
                 }
             }
             fits.push((gain, motion, part));
@@ -110,6 +115,7 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
 /// Two motions that explain a region better than one, by more than their price, and which of its pixels go with the second.
 fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Vec<bool>)> {
     let (width, height) = (level.width(), level.height());
+    let around = Area::of(region, width).grown(REACH, width, height);
     let mut second = far_half(region, width);
     let mut pair = [*motion; 2];
     for _ in 0..ROUNDS {
@@ -120,21 +126,22 @@ fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
             *motion = aligned_on(level, motion, &mask, 3, 3e-2);
-            costs.push(gaussian(&cost(level, motion, CostModel::ESTIMATION), WINDOW));
+            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::ESTIMATION), WINDOW));
         }
         for (&p, s) in region.iter().zip(&mut second) {
-            *s = costs[1].values()[p] < costs[0].values()[p];
+            let place = around.index_of(p, width);
+            *s = costs[1].values()[place] < costs[0].values()[place];
         }
         let share = second.iter().filter(|s| **s).count() as f64 / region.len() as f64;
         if !(SMALLEST_HALF..=1.0 - SMALLEST_HALF).contains(&share) {
             return None;
         }
     }
-    let one = cost(level, motion, CostModel::ESTIMATION);
-    let two = pair.map(|m| cost(level, &m, CostModel::ESTIMATION));
+    let [one, two @ ..] = [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::ESTIMATION));
     let mut gain = 0.0;
     for (&p, &s) in region.iter().zip(&second) {
-        gain += 0.5 * f64::from(one.values()[p] - two[usize::from(s)].values()[p]);
+        let place = around.index_of(p, width);
+        gain += 0.5 * f64::from(one.values()[place] - two[usize::from(s)].values()[place]);
     }
     let price =
         price_of_motion(width * height) + PER_BORDER_PIXEL * inner_border(region, &second, width, height) as f64;

@@ -20,15 +20,9 @@ const PLAUSIBLE: f64 = 1.5;
 const CLEARLY: f64 = 0.9;
 
 impl Settings {
-    /// How motions are added at the base level (0) and at finer ones (1).
+    /// How motions are added at the level of the selection (0) and at finer ones (1).
     fn deflation(&self, stage: usize) -> Deflation {
-        Deflation {
-            price: self.price[stage],
-            most: self.most,
-            tries: self.tries,
-            window: self.gain_window,
-            refits: self.refits,
-        }
+        Deflation { price: self.price[stage], most: self.most, tries: self.tries, window: self.gain_window }
     }
 
     fn refit(&self, level: &Level, layers: &mut [Layer], rounds: usize) {
@@ -63,7 +57,7 @@ pub(super) fn best(
     winner
 }
 
-/// Motions of the base level under one hypothesis, and what they cost.
+/// Motions under one hypothesis, and what they cost.
 fn with_dominant(
     work: &Work,
     dominant: AffineMotion,
@@ -85,6 +79,7 @@ fn with_dominant(
     }
     proposals.extend(rival);
     stages.begin("selection");
+    let level = &work.levels[work.selection];
     let mut layers = vec![Layer::new(level, dominant)];
     let left_out = add_motions(level, &mut layers, &proposals, settings.deflation(0));
     settings.refit(level, &mut layers, 1);
@@ -92,15 +87,14 @@ fn with_dominant(
     (Found { layers, left_out }, cost)
 }
 
-/// Refines motions from the base level to the working size, adding what only shows there.
+/// Refines motions from the level of the selection to the working size, adding what only shows there.
 pub(super) fn refine(work: &Work, found: Found, settings: &Settings) -> Found {
     let Found { mut layers, mut left_out } = found;
-    let base = &work.levels[work.base];
-    settings.refit(base, &mut layers, 2);
+    settings.refit(&work.levels[work.selection], &mut layers, 2);
     if settings.least == 1 {
         prune(&mut layers, settings.price[0]);
     }
-    for level in work.levels[..work.base].iter().rev() {
+    for level in work.levels[..work.selection].iter().rev() {
         let level = &level.thinned(2);
         layers = layers.iter().map(|l| Layer::new(level, l.motion)).collect();
         if settings.has(Part::FinerLevels) {

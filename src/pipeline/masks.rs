@@ -194,7 +194,8 @@ impl<'a> Draft<'a> {
             }
             self.left_out = Some(self.motions[weakest]);
             self.remove(weakest);
-            self.solve();
+            // Only the pixels of the motion that went are open.
+            self.labels = self.borders.solve(&self.costs, Solver::LIGHT);
         }
     }
 

@@ -41,8 +41,10 @@ pub enum Part {
 pub(crate) struct Settings {
     /// Longer side of the working size at most, pixels: frames are halved until it holds.
     pub(crate) work_side: usize,
-    /// Longer side of the base level at most, pixels.
+    /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
     pub(crate) base_side: usize,
+    /// Longer side of the level on which motions are first selected at most, pixels.
+    pub(crate) selection_side: usize,
     /// Longer side of the level on which labels are drafted at most, pixels.
     pub(crate) draft_side: usize,
     /// The coarsest level keeps the shorter side at least this long, pixels.
@@ -65,8 +67,6 @@ pub(crate) struct Settings {
     pub(crate) least: usize,
     /// Standard deviation of the window over which the gain of a motion is gathered, pixels of the level.
     pub(crate) gain_window: f32,
-    /// Rounds of refinement of all motions after each that is added.
-    pub(crate) refits: usize,
     /// How often labels are corrected for occlusion.
     pub(crate) visibility_rounds: usize,
     /// How labels hold together.
@@ -81,18 +81,18 @@ impl Settings {
         let best = Settings {
             work_side: 448,
             base_side: 224,
+            selection_side: 320,
             draft_side: 320,
             smallest_side: 24,
             degrees: 3,
             measurements: 2000,
             tiles: 48,
-            tries: 4,
+            tries: 6,
             price: [60.0, 30.0],
             hypothesis_price: 300.0,
             most: 7,
             least: 1,
             gain_window: 2.0,
-            refits: 1,
             visibility_rounds: 2,
             coherence: Coherence {
                 smoothness: 8.0,
@@ -109,6 +109,7 @@ impl Settings {
             Quality::Fast => Settings {
                 work_side: 320,
                 base_side: 160,
+                selection_side: 160,
                 draft_side: 160,
                 degrees: 2,
                 measurements: 1000,
@@ -116,7 +117,6 @@ impl Settings {
                 tries: 1,
                 visibility_rounds: 1,
                 gain_window: 1.5,
-                refits: 0,
                 coherence: Coherence { solver: Solver::FAST, sharpening: Solver::LIGHT, ..best.coherence },
                 ..best
             },

@@ -1,7 +1,7 @@
 //! Greedy deflation: the motion that explains most of what is left is refined on its own region and added, until what is left
 //! would not pay for another.
 
-use super::{Layer, refit, smallest_cost};
+use super::{Layer, smallest_cost};
 use crate::alignment::cost::{Photometric, total};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
@@ -23,16 +23,14 @@ pub(crate) struct Deflation {
     pub(crate) tries: usize,
     /// Standard deviation of the window over which a gain is gathered, pixels.
     pub(crate) window: f32,
-    /// Rounds of refinement of all motions after each that is added.
-    pub(crate) refits: usize,
 }
 
 /// Gain per pixel that is no gain: windows at borders, chance.
 const MARGIN: f32 = 0.35;
-/// Side of the blocks on which proposals are compared before the best are looked at in full.
-const BLOCK: usize = 4;
-/// Of the pixels of a block every second in every second row is looked at.
+/// Proposals are tried on every second pixel of every second row …
 const THINNING: usize = 2;
+/// … and chosen for that by their means over blocks of this side.
+const BLOCK: usize = 4;
 /// A region of fewer pixels is no region.
 const SMALLEST_REGION: usize = 6;
 /// Prior against linear terms of a motion seen in a small region.
@@ -83,8 +81,11 @@ fn rough_gain(current: &Plane, cost: &Plane, window: f32) -> f64 {
     gain_of(&gaussian(&difference, window / BLOCK as f32)) * (BLOCK * BLOCK) as f64
 }
 
-/// Adds proposed motions to `layers` while each brings more than its price; refits all after each. Returns the best motion that
-/// was not added: there is none where nothing was proposed.
+/// Adds proposed motions to `layers` while each brings more than its price. Returns the best motion that was not added: there is
+/// none where nothing was proposed.
+///
+/// In every round all proposals are looked at roughly, the most promising are tried on a sample of the pixels, and the best of those
+/// is refined on all.
 pub(crate) fn add_motions(
     level: &Level,
     layers: &mut Vec<Layer>,
@@ -98,6 +99,7 @@ pub(crate) fn add_motions(
         let current = smallest_cost(layers);
         let current_blocks = blocks(&current, BLOCK);
         let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
+        let current_sample = current.thinned(THINNING);
         let mut best: Option<(f64, Layer)> = None;
         let order = descending(gains.iter().copied());
         let next = order.first().map(|&k| proposals[k]);
@@ -108,21 +110,20 @@ pub(crate) fn add_motions(
             if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
-            let (brings, layer) = sharpened(level, &current, proposals[k], how.window);
+            let (brings, layer) = refined(&thinned, &current_sample, proposals[k], how.window / THINNING as f32);
             if best.as_ref().is_none_or(|b| brings > b.0) {
                 best = Some((brings, layer));
             }
         }
-        match best {
+        match best.map(|(_, layer)| refined(level, &current, layer.motion, how.window)) {
             Some((brings, layer)) if brings >= how.price => layers.push(layer),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
-        refit(level, layers, how.refits);
     }
 }
 
 /// A proposal refined on the region where it beats what is there, twice; and what it brings.
-fn sharpened(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, Layer) {
+fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, Layer) {
     let mut layer = Layer::new(level, proposal);
     let mut improved = improvement(current, &layer.cost, window);
     let mut brings = gain_of(&improved);
