@@ -169,7 +169,8 @@ impl<'a> Comparison<'a> {
             let variance = noise * interpolation_variance(fx, fy, correlation) + looseness * energy;
             self.model.of(residual, variance)
         };
-        let rows = level.first.row(y)[left..].chunks(CHUNK).zip(level.energy.row(y)[left..].chunks(CHUNK));
+        let columns = left..left + costs.len();
+        let rows = level.first.row(y)[columns.clone()].chunks(CHUNK).zip(level.energy.row(y)[columns].chunks(CHUNK));
         for (k, (costs, (first, energy))) in costs.chunks_mut(CHUNK).zip(rows).enumerate() {
             at.follow(&path, k * CHUNK, self.view.width(), self.view.height());
             at.sample(self.view.values(), &mut samples[..costs.len()]);
@@ -285,6 +286,21 @@ mod tests {
         assert_eq!((sample.width(), sample.height()), (24, 17));
         for (a, b) in sample.values().iter().zip(whole.thinned(3).values()) {
             assert!((a - b).abs() < 1e-3, "{a}, {b}");
+        }
+    }
+
+    #[test]
+    fn costs_of_a_part_of_a_row_are_those_of_the_plane() {
+        let frame =
+            |shift: f32| Plane::from_fn(150, 20, |x, y| 100.0 + 50.0 * libm::sinf(0.3 * x as f32 + shift + y as f32));
+        let levels = crate::frame::pyramid::build(frame(0.0), frame(0.2), None, 16);
+        let motion = AffineMotion::new([0.01, 0.0, -6.0, 0.0, -0.02, 1.5]);
+        let comparison = Comparison::new(&levels[0], View::Second, &motion, CostModel::LABELS).unwrap();
+        let plane = comparison.plane(&Area::whole(150, 20));
+        for (left, count) in [(0, 150), (0, 1), (3, 20), (9, 64), (40, 71), (141, 9)] {
+            let mut part = vec![f32::NAN; count];
+            comparison.row(7, left, &mut part);
+            assert_eq!(part, plane.row(7)[left..left + count], "{count} from {left} on");
         }
     }
 
