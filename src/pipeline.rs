@@ -16,10 +16,10 @@ use crate::alignment::cost::noise;
 use crate::alignment::dominant::dominant_motion;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::error::{Error, Result};
-use crate::frame::Frame;
 use crate::frame::Plane;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::pyramid::{Level, PRE_BLUR, build};
+use crate::frame::{Frame, MIN_SIDE};
 use crate::labelling::appearance::Palette;
 use crate::labelling::energy::Picture;
 use crate::motion::AffineMotion;
@@ -162,7 +162,9 @@ impl Work {
         let mut reduction = 1.0;
         let mut planes: Vec<Plane> =
             [Some(first), Some(second), before].into_iter().flatten().map(|f| f.luminance().clone()).collect();
-        while planes[0].width().max(planes[0].height()) > settings.work_side {
+        while planes[0].width().max(planes[0].height()) > settings.work_side
+            && planes[0].width().min(planes[0].height()) >= 2 * MIN_SIDE
+        {
             planes.iter_mut().for_each(|p| *p = halve(p));
             reduction *= 2.0;
         }

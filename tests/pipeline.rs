@@ -168,10 +168,50 @@ fn one_motion_of_the_whole_frame_is_one() {
 
 #[test]
 fn any_allowed_size_works() {
-    for (width, height) in [(16, 16), (17, 61), (16, 300), (333, 16), (449, 40), (1000, 20)] {
+    for (width, height) in [(16, 16), (17, 61), (16, 300), (16, 4096), (333, 16), (449, 40), (1000, 20)] {
         for quality in [Quality::Fast, Quality::Best] {
             let options = SegmentOptions { quality, ..SegmentOptions::default() };
             segment(&textured(width, height, 0.0), &textured(width, height, 0.7), options);
+        }
+    }
+}
+
+#[test]
+fn the_motion_of_narrow_frames_is_found() {
+    let narrow = [
+        (16, 4096, [0, 6]),
+        (4096, 16, [6, 0]),
+        (16, 2048, [0, 6]),
+        (24, 2048, [0, 6]),
+        (3000, 17, [5, 0]),
+        (32, 4096, [0, 6]),
+    ];
+    for (width, height, [u, v]) in narrow {
+        let mut state = 9u32;
+        let mut noise = || {
+            state ^= state << 13;
+            state ^= state >> 17;
+            state ^= state << 5;
+            (state >> 24) as u8
+        };
+        let texture: Vec<u8> = (0..(width + 8) * (height + 8)).map(|_| noise()).collect();
+        let frame = |du: usize, dv: usize| {
+            let mean = |x: usize, y: usize| {
+                let at = |x: usize, y: usize| u32::from(texture[y * (width + 8) + x]);
+                ((at(x, y) + at(x + 1, y) + at(x, y + 1) + at(x + 1, y + 1)) / 4) as u8
+            };
+            let pixels = (0..width * height).flat_map(|p| {
+                let grey = mean(p % width + 6 - du, p / width + 6 - dv);
+                [grey, grey, grey, 255]
+            });
+            Frame::from_rgba(width, height, &pixels.collect::<Vec<u8>>()).unwrap()
+        };
+        for quality in [Quality::Fast, Quality::Best] {
+            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let found = segment(&frame(0, 0), &frame(u, v), options);
+            let flow = found.motions[0].matrix.flow(width as f64 / 2.0, height as f64 / 2.0);
+            let error = (flow[0] - u as f64).abs().max((flow[1] - v as f64).abs());
+            assert!(error < 0.5, "{width} × {height}, {quality:?}: {flow:?}");
         }
     }
 }

@@ -17,6 +17,13 @@ const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
 const NOISE_CORRELATION_HALVED: f32 = 0.4;
 
 /// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame.
+/// A side of more pixels than this is halved even where the other one gets short …
+const LONG: usize = 320;
+/// … but not below this.
+const NARROW: usize = 4;
+/// A sample of a level keeps its shorter side at least this long, pixels.
+const SMALLEST_SAMPLE: usize = 8;
+
 #[derive(Clone, Debug)]
 pub(crate) struct Level {
     /// 0 for the working size.
@@ -74,9 +81,15 @@ impl Level {
         f64::from(1u32 << self.index) * self.stride as f64
     }
 
+    /// `stride`, or less on a level so small that too few pixels would remain.
+    pub(crate) fn thinning(&self, stride: usize) -> usize {
+        stride.min(self.width().min(self.height()) / SMALLEST_SAMPLE).max(1)
+    }
+
     /// The level with every `stride`-th pixel of the first frame in every `stride`-th row, compared with the whole second frame: a
-    /// sample of the pixels, as sharp as they are.
+    /// sample of the pixels, as sharp as they are. Of small levels more is kept ([`thinning`](Self::thinning)).
     pub(crate) fn thinned(&self, stride: usize) -> Level {
+        let stride = self.thinning(stride);
         Level {
             index: self.index,
             first: self.first.thinned(stride),
@@ -128,11 +141,13 @@ impl Level {
     }
 }
 
-/// The levels from the working size down to a shorter side of at least `smallest` pixels; at least one.
+/// The levels from the working size down to a shorter side of at least `smallest` pixels, or less while the longer one is long; at least
+/// one.
 pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest: usize) -> Vec<Level> {
     let mut levels = vec![Level::new(0, first, second, before)];
     while let Some(last) = levels.last() {
-        if last.width().min(last.height()) < 2 * smallest {
+        let (shorter, longer) = (last.width().min(last.height()), last.width().max(last.height()));
+        if shorter < 2 * smallest && !(longer > LONG && shorter >= 2 * NARROW) {
             break;
         }
         let next =

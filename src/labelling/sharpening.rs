@@ -117,7 +117,11 @@ impl Region {
         for tile in &self.tiles {
             comparisons.fill(coarse, fine, tile, corner, &number, &mut costs);
             if let Some(picture) = fine.picture {
-                borders.follow(picture, fine.level.noise, fine.coherence, &tile.area, corner);
+                // With the pixels to the left and above, whose borders lead into the tile.
+                let mut around = tile.area.clone();
+                around.columns.start = around.columns.start.max(corner[0] + 1) - 1;
+                around.rows.start = around.rows.start.max(corner[1] + 1) - 1;
+                borders.follow(picture, fine.level.noise, fine.coherence, &around, corner);
             }
         }
         let numbered: Vec<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();

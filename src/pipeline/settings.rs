@@ -17,7 +17,7 @@ pub enum Part {
     Algebra,
     /// Proposals from single windows.
     Windows,
-    /// Proposals and selection on levels finer than the base level.
+    /// Proposals and selection on levels finer than that of the first selection.
     FinerLevels,
     /// Motions refined on the pixels where they win, after each stage of the selection.
     Refinement,
@@ -39,7 +39,7 @@ pub enum Part {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    /// Longer side of the working size at most, pixels: frames are halved until it holds.
+    /// Longer side of the working size at most, pixels: frames are halved until it holds, or their shorter side would be too short.
     pub(crate) work_side: usize,
     /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
     pub(crate) base_side: usize,
@@ -57,7 +57,7 @@ pub(crate) struct Settings {
     pub(crate) tiles: usize,
     /// Proposals tried in earnest per round of the selection.
     pub(crate) tries: usize,
-    /// Gain that pays for a motion at the base level and at finer ones (costs summed over pixels).
+    /// Gain that pays for a motion in the first selection and at finer levels (costs summed over the pixels looked at).
     pub(crate) price: [f64; 2],
     /// Price of a motion when two hypotheses about the dominant one are compared.
     pub(crate) hypothesis_price: f64,
@@ -65,7 +65,7 @@ pub(crate) struct Settings {
     pub(crate) most: usize,
     /// Number of motions below which none is taken away again.
     pub(crate) least: usize,
-    /// Standard deviation of the window over which the gain of a motion is gathered, pixels of the level.
+    /// Standard deviation of the window over which the gain of a motion is gathered, pixels looked at.
     pub(crate) gain_window: f32,
     /// How often labels are corrected for occlusion.
     pub(crate) visibility_rounds: usize,

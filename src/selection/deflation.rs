@@ -21,7 +21,7 @@ pub(crate) struct Deflation {
     pub(crate) most: usize,
     /// Proposals tried in earnest per round.
     pub(crate) tries: usize,
-    /// Standard deviation of the window over which a gain is gathered, pixels.
+    /// Standard deviation of the window over which a gain is gathered, pixels of the level or, where it is thinned, of the sample.
     pub(crate) window: f32,
 }
 
@@ -92,14 +92,15 @@ pub(crate) fn add_motions(
     proposals: &[AffineMotion],
     how: Deflation,
 ) -> Option<AffineMotion> {
-    let thinned = level.thinned(THINNING);
-    let rough_cost = |&motion: &AffineMotion| blocks(&Layer::new(&thinned, motion).cost, BLOCK / THINNING);
+    let thinning = level.thinning(THINNING);
+    let thinned = level.thinned(thinning);
+    let rough_cost = |&motion: &AffineMotion| blocks(&Layer::new(&thinned, motion).cost, BLOCK / thinning);
     let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
     loop {
         let current = smallest_cost(layers);
         let current_blocks = blocks(&current, BLOCK);
         let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
-        let current_sample = current.thinned(THINNING);
+        let current_sample = current.thinned(thinning);
         let mut best: Option<(f64, Layer)> = None;
         let order = descending(gains.iter().copied());
         let next = order.first().map(|&k| proposals[k]);
@@ -110,7 +111,7 @@ pub(crate) fn add_motions(
             if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
-            let (brings, layer) = refined(&thinned, &current_sample, proposals[k], how.window / THINNING as f32);
+            let (brings, layer) = refined(&thinned, &current_sample, proposals[k], how.window / thinning as f32);
             if best.as_ref().is_none_or(|b| brings > b.0) {
                 best = Some((brings, layer));
             }

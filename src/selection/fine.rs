@@ -1,5 +1,6 @@
 //! Proposals at a finer level: one local step (the constraint with n = 1 in a window) around the motion that wins at each pixel.
-//! It finds what moves by less than a pixel of the base level relative to the motions that are known.
+//! It finds what moves too little for the level on which motions were selected first. Pixels are those of a level of which every
+//! second in every second row is looked at.
 
 use super::Layer;
 use crate::frame::Plane;
