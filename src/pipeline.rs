@@ -2,8 +2,8 @@
 
 mod correction;
 mod evidence;
+mod hypothesis;
 mod masks;
-mod motions;
 mod report;
 mod settings;
 
@@ -85,9 +85,9 @@ fn segment_with(
     let mut work = Work::new(first, second, before, &settings);
     stages.begin("dominant");
     let dominant = work.find_dominant(settings.has(Part::Brightness));
-    let found = motions::select(&work, dominant, &settings, &mut random, &mut stages);
+    let found = hypothesis::best(&work, dominant, &settings, &mut random, &mut stages);
     stages.begin("refinement");
-    let found = motions::refine(&work, found, &settings);
+    let found = hypothesis::refine(&work, found, &settings);
     stages.begin("labels");
     let labelled = masks::label(&work, found, &settings);
     stages.begin("masks");

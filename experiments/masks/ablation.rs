@@ -7,9 +7,10 @@ use crate::measure::{Measured, Variant};
 use crate::summary::Summary;
 
 /// The forms of the pipeline, in the order of the table.
-const VARIANTS: [(Variant, &str); 14] = [
+const VARIANTS: [(Variant, &str); 15] = [
     (Variant::Whole, "**everything**"),
     (Variant::Without(Part::Brightness), "gain and bias"),
+    (Variant::Without(Part::StaticHypothesis), "the hypothesis of a static background"),
     (Variant::Without(Part::Algebra), "the algebraic start"),
     (Variant::Without(Part::Windows), "proposals from windows"),
     (Variant::Without(Part::FinerLevels), "proposals on finer levels"),

@@ -2,7 +2,7 @@
 //! split; sharpened at the working size; cleaned.
 
 use super::Work;
-use super::motions::Found;
+use super::hypothesis::Found;
 use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;

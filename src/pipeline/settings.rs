@@ -11,6 +11,8 @@ use crate::options::{MotionCount, Quality, SegmentOptions};
 pub enum Part {
     /// Gain and bias between the frames.
     Brightness,
+    /// The hypothesis that nothing but objects moves.
+    StaticHypothesis,
     /// Proposals from the multibody constraint.
     Algebra,
     /// Proposals from single windows.
@@ -57,6 +59,8 @@ pub(crate) struct Settings {
     pub(crate) tries: usize,
     /// Gain that pays for a motion in the first selection and at finer levels (costs summed over the pixels looked at).
     pub(crate) price: [f64; 2],
+    /// Price of a motion when two hypotheses about the dominant one are compared.
+    pub(crate) hypothesis_price: f64,
     /// Largest number of motions.
     pub(crate) most: usize,
     /// Number of motions below which none is taken away again.
@@ -85,6 +89,7 @@ impl Settings {
             tiles: 48,
             tries: 6,
             price: [60.0, 30.0],
+            hypothesis_price: 300.0,
             most: 7,
             least: 1,
             gain_window: 2.0,
