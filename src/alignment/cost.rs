@@ -70,19 +70,15 @@ pub(crate) enum View {
 /// Cost of a motion (of the working frame) at every pixel of a level; in the frame before, where there is one, where the pixel
 /// leaves the second.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
-    cost_within(level, &Area::whole(level.width(), level.height()), motion, model)
+    cost_within(level, &level.area(), motion, model)
 }
 
 /// [`cost`] of the pixels of an area alone, as a plane of its size.
 #[inline(never)]
 pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
-    let in_view = |view| match Comparison::new(level, view, motion, model) {
-        Some(comparison) => comparison.plane(area),
-        None => Plane::filled(area.width(), area.height(), f32::INFINITY),
-    };
-    let mut plane = in_view(View::Second);
+    let mut plane = cost_in(level, View::Second, area, motion, model);
     if level.before.is_some() {
-        let before = in_view(View::Before);
+        let before = cost_in(level, View::Before, area, motion, model);
         let unseen = plane.values_mut().iter_mut().zip(before.values()).filter(|(c, _)| !c.is_finite());
         unseen.for_each(|(c, b)| *c = *b);
     }
@@ -90,12 +86,13 @@ pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, mod
     plane
 }
 
-/// Cost of a motion in one view; infinite where the displaced position lies outside, or where there is no such view.
+/// Cost of a motion in one view at the pixels of an area; infinite where the displaced position lies outside, or where there is no
+/// such view.
 #[inline(never)]
-pub(crate) fn cost_in(level: &Level, view: View, motion: &AffineMotion, model: CostModel) -> Plane {
+pub(crate) fn cost_in(level: &Level, view: View, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
     match Comparison::new(level, view, motion, model) {
-        Some(comparison) => comparison.plane(&Area::whole(level.width(), level.height())),
-        None => Plane::filled(level.width(), level.height(), f32::INFINITY),
+        Some(comparison) => comparison.plane(area),
+        None => Plane::filled(area.width(), area.height(), f32::INFINITY),
     }
 }
 
@@ -109,7 +106,7 @@ pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photo
         model,
         outside: model.outside(),
     }
-    .plane(&Area::whole(level.width(), level.height()))
+    .plane(&level.area())
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
@@ -293,10 +290,10 @@ mod tests {
     fn costs_of_a_part_of_a_row_are_those_of_the_plane() {
         let frame =
             |shift: f32| Plane::from_fn(150, 20, |x, y| 100.0 + 50.0 * libm::sinf(0.3 * x as f32 + shift + y as f32));
-        let levels = crate::frame::pyramid::build(frame(0.0), frame(0.2), None, 16);
+        let levels = build(frame(0.0), frame(0.2), None, 16);
         let motion = AffineMotion::new([0.01, 0.0, -6.0, 0.0, -0.02, 1.5]);
         let comparison = Comparison::new(&levels[0], View::Second, &motion, CostModel::LABELS).unwrap();
-        let plane = comparison.plane(&Area::whole(150, 20));
+        let plane = comparison.plane(&levels[0].area());
         for (left, count) in [(0, 150), (0, 1), (3, 20), (9, 64), (40, 71), (141, 9)] {
             let mut part = vec![f32::NAN; count];
             comparison.row(7, left, &mut part);

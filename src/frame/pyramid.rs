@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::Plane;
+use super::area::Area;
 use super::filter::{gradients, halve};
 use super::warp::RowPath;
 use crate::motion::AffineMotion;
@@ -16,7 +17,6 @@ const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
 /// The same on coarser levels, after the 5-tap filter and halving (measured).
 const NOISE_CORRELATION_HALVED: f32 = 0.4;
 
-/// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame.
 /// A side of more pixels than this is halved even where the other one gets short …
 const LONG: usize = 320;
 /// … but not below this.
@@ -24,6 +24,7 @@ const NARROW: usize = 4;
 /// A sample of a level keeps its shorter side at least this long, pixels.
 const SMALLEST_SAMPLE: usize = 8;
 
+/// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame, times the stride where it is thinned.
 #[derive(Clone, Debug)]
 pub(crate) struct Level {
     /// 0 for the working size.
@@ -74,6 +75,11 @@ impl Level {
 
     pub(crate) fn height(&self) -> usize {
         self.first.height()
+    }
+
+    /// All its pixels.
+    pub(crate) fn area(&self) -> Area {
+        Area::whole(self.width(), self.height())
     }
 
     /// Size of a pixel in pixels of the working frame.

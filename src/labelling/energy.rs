@@ -64,26 +64,22 @@ pub(crate) struct Borders {
 
 impl Borders {
     pub(crate) fn new(picture: &Picture, noise: f32, coherence: Coherence) -> Borders {
-        let price = Self::price(picture, noise, coherence);
-        Self::with(picture.luminance.width(), picture.luminance.height(), price)
+        let (width, height) = (picture.luminance.width(), picture.luminance.height());
+        let mut borders = Self::uniform(width, height, coherence);
+        borders.follow(picture, noise, coherence, &Area::whole(width, height), [0, 0]);
+        borders
     }
 
     /// The price of a border between two neighbours, by their indices.
-    pub(crate) fn price(picture: &Picture, noise: f32, coherence: Coherence) -> impl Fn(usize, usize) -> f32 {
+    fn price(picture: &Picture, noise: f32, coherence: Coherence) -> impl Fn(usize, usize) -> f32 {
         let step = SMALLEST_STEP.max(NOISE_STEPS * noise);
         move |p, q| coherence.smoothness * (EDGE_SHARE + (1.0 - EDGE_SHARE) * libm::expf(-picture.step(p, q) / step))
     }
 
     /// Borders that cost the same everywhere.
     pub(crate) fn uniform(width: usize, height: usize, coherence: Coherence) -> Borders {
-        Self::with(width, height, |_, _| coherence.smoothness)
-    }
-
-    fn with(width: usize, height: usize, price: impl Fn(usize, usize) -> f32) -> Borders {
-        Borders {
-            horizontal: Plane::from_fn(width, height, |x, y| price(y * width + x, y * width + (x + 1).min(width - 1))),
-            vertical: Plane::from_fn(width, height, |x, y| price(y * width + x, (y + 1).min(height - 1) * width + x)),
-        }
+        let everywhere = Plane::filled(width, height, coherence.smoothness);
+        Borders { horizontal: everywhere.clone(), vertical: everywhere }
     }
 
     /// Takes the prices of an area of the picture from it. The grid begins at the picture's pixel `corner`.
@@ -186,11 +182,11 @@ fn pay_at_the_border(cost: &mut Plane, coherence: Coherence) {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::frame::pyramid::build;
 
-    const COHERENCE: Coherence = Coherence {
+    pub(crate) const COHERENCE: Coherence = Coherence {
         smoothness: 8.0,
         departure: 0.05,
         draft_solver: Solver::FAST,

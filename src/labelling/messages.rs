@@ -16,6 +16,8 @@ pub(super) const MAX_LABELS: usize = 16;
 const PADDING: f32 = 1e20;
 /// Smallest side of a level of the pyramid.
 const SMALLEST: usize = 8;
+/// So few iterations are all done before the labels are read out.
+const FEW: usize = 2;
 /// Relative gap between energy and bound at which the labels count as optimal.
 const CLOSED: f64 = 1e-6;
 /// Relative rise of the bound in one iteration below which no more is expected.
@@ -72,12 +74,12 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     let mut labels = vec![0u8; grid.costs.len()];
     let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
     let mut bound = f64::NEG_INFINITY;
-    for iteration in 0..=iterations {
-        if iterations <= FEW && iteration < iterations {
-            grid.forward(None);
-            grid.backward();
-            continue;
-        }
+    let unread = if iterations <= FEW { iterations } else { 0 };
+    for _ in 0..unread {
+        grid.forward(None);
+        grid.backward();
+    }
+    for iteration in unread..=iterations {
         // The first pass over messages that are all zero would read out the costs alone: still an answer.
         let energy = grid.forward(Some(&mut labels));
         if energy < lowest {
@@ -97,9 +99,6 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     grid.descend(&mut best, 2);
     Solution { labels: best, bound }
 }
-
-/// So few iterations are all done before the labels are read out.
-const FEW: usize = 2;
 
 /// On the coarse levels the messages only have to point the right way.
 const COARSE_ITERATIONS: usize = 3;

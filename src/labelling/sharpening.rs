@@ -247,16 +247,10 @@ mod tests {
     use crate::frame::filter::gaussian;
     use crate::frame::pyramid::build;
     use crate::labelling::energy::surveyed;
+    use crate::labelling::energy::tests::COHERENCE;
     use crate::labelling::visibility::hidden_under;
     use crate::random::Random;
 
-    const COHERENCE: Coherence = Coherence {
-        smoothness: 8.0,
-        departure: 0.05,
-        draft_solver: Solver::FAST,
-        solver: Solver::BEST,
-        sharpening: Solver::FAST,
-    };
     const SIZE: [usize; 2] = [192, 128];
 
     /// Two squares, which move by (2, 0) and (0, -2), with odd corners, on a background at rest.

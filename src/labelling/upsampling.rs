@@ -5,6 +5,7 @@
 //! there is nothing to decide. Most tiles are such.
 
 use crate::frame::Plane;
+use crate::frame::area::Area;
 use crate::frame::lanes::{each, each_with};
 
 /// Radius of the filter's windows, full-size pixels.
@@ -25,10 +26,11 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
     let mut winner = vec![0u8; full_width * full_height];
     for top in (0..full_height).step_by(TILE) {
         for left in (0..full_width).step_by(TILE) {
-            let tile = Area::new(left, top, full_width, full_height);
-            let present = coarse.present(&tile.grown(2 * RADIUS), of);
+            let (right, bottom) = ((left + TILE).min(full_width), (top + TILE).min(full_height));
+            let tile = Area { columns: left..right, rows: top..bottom };
+            let present = coarse.present(&tile.grown(2 * RADIUS, full_width, full_height), of);
             match present[..] {
-                [only] => tile.rows().for_each(|y| winner[y * full_width..][tile.x.clone()].fill(only)),
+                [only] => tile.rows.for_each(|y| winner[y * full_width..][tile.columns.clone()].fill(only)),
                 _ => decide(&coarse, &present, guide, &tile, &mut winner),
             }
         }
@@ -38,8 +40,9 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
 
 /// Gives every pixel of a tile to the strongest of the labels, the first of equals.
 fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8]) {
-    let guide = Patch::from_fn(tile.grown(2 * RADIUS), |x, y| guide.at(x, y));
-    let filter = GuidedFilter::new(&guide, tile);
+    let full = (guide.width(), guide.height());
+    let guide = Patch::from_fn(tile.grown(2 * RADIUS, full.0, full.1), |x, y| guide.at(x, y));
+    let filter = GuidedFilter::new(&guide, tile, full);
     let mut best = Patch::from_fn(tile.clone(), |_, _| f32::NEG_INFINITY);
     // The filter is linear and the masks sum to one everywhere: so do the strengths, and the last is what the others leave.
     let mut rest = Patch::from_fn(tile.clone(), |_, _| 1.0);
@@ -51,8 +54,8 @@ fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner
         } else {
             Patch { area: tile.clone(), values: std::mem::take(&mut rest.values) }
         };
-        for y in tile.rows() {
-            let winner = &mut winner[y * tile.full.0..][tile.x.clone()];
+        for y in tile.rows.clone() {
+            let winner = &mut winner[y * full.0..][tile.columns.clone()];
             for ((b, w), s) in best.row_mut(y).iter_mut().zip(winner).zip(strength.row(y)) {
                 if *s > *b {
                     (*b, *w) = (*s, label);
@@ -93,8 +96,8 @@ impl Coarse<'_> {
         let cells = |from: usize, to: usize, size: usize| {
             (from / self.scale).min(size - 1)..((to - 1) / self.scale + 2).min(size)
         };
-        for y in cells(area.y.start, area.y.end, self.height) {
-            for &label in &self.labels[y * self.width..][cells(area.x.start, area.x.end, self.width)] {
+        for y in cells(area.rows.start, area.rows.end, self.height) {
+            for &label in &self.labels[y * self.width..][cells(area.columns.start, area.columns.end, self.width)] {
                 if let Some(slot) = found.get_mut(usize::from(label)) {
                     *slot = true;
                 }
@@ -128,32 +131,6 @@ fn between(
     top + fy * (bottom - top)
 }
 
-/// A rectangle of the full-size frame.
-#[derive(Clone)]
-struct Area {
-    x: std::ops::Range<usize>,
-    y: std::ops::Range<usize>,
-    /// Width and height of the frame.
-    full: (usize, usize),
-}
-
-impl Area {
-    /// The tile whose top-left pixel is (left, top).
-    fn new(left: usize, top: usize, width: usize, height: usize) -> Area {
-        Area { x: left..(left + TILE).min(width), y: top..(top + TILE).min(height), full: (width, height) }
-    }
-
-    /// The area with a margin, as far as the frame goes.
-    fn grown(&self, by: usize) -> Area {
-        let grow = |r: &std::ops::Range<usize>, size: usize| r.start.saturating_sub(by)..(r.end + by).min(size);
-        Area { x: grow(&self.x, self.full.0), y: grow(&self.y, self.full.1), full: self.full }
-    }
-
-    fn rows(&self) -> std::ops::Range<usize> {
-        self.y.clone()
-    }
-}
-
 /// Values of the pixels of an area; rows and columns are addressed as in the frame.
 struct Patch {
     area: Area,
@@ -162,20 +139,20 @@ struct Patch {
 
 impl Patch {
     fn from_fn(area: Area, f: impl Fn(usize, usize) -> f32) -> Patch {
-        let mut values = Vec::with_capacity(area.x.len() * area.y.len());
-        for y in area.rows() {
-            values.extend(area.x.clone().map(|x| f(x, y)));
+        let mut values = Vec::with_capacity(area.width() * area.height());
+        for y in area.rows.clone() {
+            values.extend(area.columns.clone().map(|x| f(x, y)));
         }
         Patch { area, values }
     }
 
     fn row(&self, y: usize) -> &[f32] {
-        &self.values[(y - self.area.y.start) * self.area.x.len()..][..self.area.x.len()]
+        &self.values[(y - self.area.rows.start) * self.area.width()..][..self.area.width()]
     }
 
     fn row_mut(&mut self, y: usize) -> &mut [f32] {
-        let width = self.area.x.len();
-        &mut self.values[(y - self.area.y.start) * width..][..width]
+        let width = self.area.width();
+        &mut self.values[(y - self.area.rows.start) * width..][..width]
     }
 
     /// Pixel by pixel product of two patches of one area.
@@ -184,19 +161,18 @@ impl Patch {
         Patch { area: self.area.clone(), values }
     }
 
-    /// Means over (2·RADIUS + 1)² windows round the pixels of an area; the frame goes on beyond its border as its border. The
-    /// patch must reach RADIUS pixels beyond the area wherever the frame does.
-    fn box_mean(&self, area: Area) -> Patch {
+    /// Means over (2·RADIUS + 1)² windows round the pixels of an area of a frame of the given size, which goes on beyond its
+    /// border as its border. The patch must reach RADIUS pixels beyond the area wherever the frame does.
+    fn box_mean(&self, area: Area, (width, height): (usize, usize)) -> Patch {
         const WEIGHT: f32 = 1.0 / (2 * RADIUS + 1) as f32;
-        let (width, height) = area.full;
         // Columns of the patch that the area's windows touch.
-        let touched = area.grown(RADIUS).x;
-        let skipped = touched.start - self.area.x.start;
-        let left = RADIUS - (area.x.start - touched.start);
-        let right = (area.x.end + RADIUS).saturating_sub(width);
+        let touched = area.grown(RADIUS, width, height).columns;
+        let skipped = touched.start - self.area.columns.start;
+        let left = RADIUS - (area.columns.start - touched.start);
+        let right = (area.columns.end + RADIUS).saturating_sub(width);
         let mut padded = vec![0.0f32; left + touched.len() + right];
-        let mut mean = Patch { values: vec![0.0; area.x.len() * area.y.len()], area };
-        for y in mean.area.rows() {
+        let mut mean = Patch { values: vec![0.0; area.width() * area.height()], area };
+        for y in mean.area.rows.clone() {
             let middle = &mut padded[left..left + touched.len()];
             middle.fill(0.0);
             for k in 0..=2 * RADIUS {
@@ -219,36 +195,38 @@ impl Patch {
 
 /// Mean and variance of the guide around the pixels of a tile with a margin.
 struct GuidedFilter {
+    /// Width and height of the frame.
+    full: (usize, usize),
     mean: Patch,
     variance: Patch,
 }
 
 impl GuidedFilter {
-    fn new(guide: &Patch, tile: &Area) -> GuidedFilter {
-        let area = tile.grown(RADIUS);
-        let mean = guide.box_mean(area.clone());
-        let mut variance = guide.times(guide).box_mean(area);
+    fn new(guide: &Patch, tile: &Area, full: (usize, usize)) -> GuidedFilter {
+        let area = tile.grown(RADIUS, full.0, full.1);
+        let mean = guide.box_mean(area.clone(), full);
+        let mut variance = guide.times(guide).box_mean(area, full);
         for (v, m) in variance.values.iter_mut().zip(&mean.values) {
             *v -= m * m;
         }
-        GuidedFilter { mean, variance }
+        GuidedFilter { full, mean, variance }
     }
 
     /// The input as the guide's edges have it, in a tile. Guide and input reach 2·RADIUS beyond the tile.
     fn apply(&self, guide: &Patch, input: &Patch, tile: &Area) -> Patch {
-        let area = tile.grown(RADIUS);
-        let mut offset = input.box_mean(area.clone());
-        let mut slope = guide.times(input).box_mean(area);
+        let area = &self.mean.area;
+        let mut offset = input.box_mean(area.clone(), self.full);
+        let mut slope = guide.times(input).box_mean(area.clone(), self.full);
         let of_guide = self.mean.values.iter().zip(&self.variance.values);
         for ((s, o), (mean, variance)) in slope.values.iter_mut().zip(&mut offset.values).zip(of_guide) {
             let covariance = *s - mean * *o;
             *s = covariance / (variance.max(0.0) + FLAT_VARIANCE);
             *o -= *s * mean;
         }
-        let mut out = slope.box_mean(tile.clone());
-        let offset = offset.box_mean(tile.clone());
-        let skipped = tile.x.start - guide.area.x.start;
-        for y in tile.rows() {
+        let mut out = slope.box_mean(tile.clone(), self.full);
+        let offset = offset.box_mean(tile.clone(), self.full);
+        let skipped = tile.columns.start - guide.area.columns.start;
+        for y in tile.rows.clone() {
             let terms = guide.row(y)[skipped..].iter().zip(offset.row(y));
             out.row_mut(y).iter_mut().zip(terms).for_each(|(o, (guide, offset))| *o = *o * guide + offset);
         }

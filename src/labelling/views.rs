@@ -18,7 +18,9 @@ const TRANSITION: f32 = 0.3;
 /// Cost of every motion at every pixel, infinite where it moves the pixel out of every view; and the share of the later view, where
 /// there are two.
 pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Plane>, Option<Plane>) {
-    let all = |view| motions.iter().map(|m| cost_in(level, view, m, CostModel::LABELS)).collect::<Vec<Plane>>();
+    let all = |view| {
+        motions.iter().map(|m| cost_in(level, view, &level.area(), m, CostModel::LABELS)).collect::<Vec<Plane>>()
+    };
     let mut costs = all(View::Second);
     if level.before.is_none() {
         return (costs, None);
