@@ -227,10 +227,10 @@ impl RowBuffers {
         for start in (0..first.len()).step_by(CHUNK) {
             let chunk = start..(start + CHUNK).min(first.len());
             let n = chunk.len();
-            at.follow(&path, start, width, height);
-            at.sample(level.second.values(), &mut second[..n]);
-            at.sample(level.second_dx.values(), &mut second_dx[..n]);
-            at.sample(level.second_dy.values(), &mut second_dy[..n]);
+            at.follow(&path, start, n, width, height);
+            at.sample(level.second.values(), &mut second);
+            at.sample(level.second_dx.values(), &mut second_dx);
+            at.sample(level.second_dy.values(), &mut second_dy);
             if let Some(weights) = weights {
                 given[..n].copy_from_slice(&weights[chunk.clone()]);
             }

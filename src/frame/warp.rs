@@ -4,6 +4,7 @@
 //! of the four neighbours is then done for several pixels by one instruction.
 
 use super::Plane;
+use super::lanes::LANES;
 use crate::motion::AffineMotion;
 
 /// A row's sampling positions: start and step per pixel, kept as `f64` until the pixel so that no error grows along a row.
@@ -72,9 +73,12 @@ impl Footprint {
 /// Pixels of a row that are looked at together.
 pub(crate) const CHUNK: usize = 64;
 
-/// [`Footprint`]s of neighbouring pixels, placed anew as often as needed.
+/// [`Footprint`]s of neighbouring pixels, placed anew as often as needed: up to [`CHUNK`], in whole blocks.
 pub(crate) struct Footprints {
     index: [u32; CHUNK],
+    /// How the indices of each block that is placed follow each other.
+    steps: [Step; CHUNK / LANES],
+    placed: usize,
     width: usize,
     /// Weights of the right and lower neighbours.
     pub(crate) fx: [f32; CHUNK],
@@ -83,55 +87,134 @@ pub(crate) struct Footprints {
     pub(crate) inside: [bool; CHUNK],
 }
 
+/// Distance from each index of a block to the next: where it is the same all along, the values needed lie in two rows.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Step {
+    One,
+    Two,
+    Uneven,
+}
+
 impl Footprints {
     pub(crate) fn new() -> Footprints {
-        Footprints { index: [0; CHUNK], width: 0, fx: [0.0; CHUNK], fy: [0.0; CHUNK], inside: [false; CHUNK] }
-    }
-
-    /// Puts them at the pixels `from`, `from + 1`, … of a path in a plane of the given size.
-    #[inline(never)]
-    pub(crate) fn follow(&mut self, path: &RowPath, from: usize, width: usize, height: usize) {
-        let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
-        for (k, (x, y)) in x.iter_mut().zip(&mut y).enumerate() {
-            let k = f64::from((from + k) as u32 as i32);
-            (*x, *y) = ((path.start[0] + path.step[0] * k) as f32, (path.start[1] + path.step[1] * k) as f32);
+        Footprints {
+            index: [0; CHUNK],
+            steps: [Step::Uneven; CHUNK / LANES],
+            placed: 0,
+            width: 0,
+            fx: [0.0; CHUNK],
+            fy: [0.0; CHUNK],
+            inside: [false; CHUNK],
         }
-        self.place(&x, &y, width, height);
     }
 
-    /// Puts them at positions in a plane of the given size.
+    /// Puts them at `count` pixels from `from` on of a path in a plane of the given size.
+    #[inline(never)]
+    pub(crate) fn follow(&mut self, path: &RowPath, from: usize, count: usize, width: usize, height: usize) {
+        let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
+        let blocks = x.as_chunks_mut::<LANES>().0.iter_mut().zip(y.as_chunks_mut::<LANES>().0);
+        for (block, (x, y)) in blocks.take(count.div_ceil(LANES)).enumerate() {
+            for l in 0..LANES {
+                let k = f64::from((from + block * LANES + l) as u32 as i32);
+                x[l] = (path.start[0] + path.step[0] * k) as f32;
+                y[l] = (path.start[1] + path.step[1] * k) as f32;
+            }
+        }
+        self.place(&x, &y, count, width, height);
+    }
+
+    /// Puts them at the first `count` of some positions in a plane of the given size.
     #[inline(never)] // Used in many places; a call for 64 pixels costs nothing, a copy in each place a kilobyte.
-    pub(crate) fn place(&mut self, x: &[f32; CHUNK], y: &[f32; CHUNK], width: usize, height: usize) {
+    pub(crate) fn place(&mut self, x: &[f32; CHUNK], y: &[f32; CHUNK], count: usize, width: usize, height: usize) {
         let (right_edge, lower_edge) = ((width - 1) as f32, (height - 1) as f32);
         let (last_x, last_y) = (right_edge - 1.0, lower_edge - 1.0);
         self.width = width;
-        for k in 0..CHUNK {
-            let (cx, cy) = (clamped(x[k], right_edge), clamped(y[k], lower_edge));
-            let ((ix, left), (iy, upper)) = (floor(cx, last_x), floor(cy, last_y));
-            self.index[k] = iy * width as u32 + ix;
-            (self.fx[k], self.fy[k]) = (cx - left, cy - upper);
-            self.inside[k] = (cx == x[k]) & (cy == y[k]);
+        self.placed = count.div_ceil(LANES).min(CHUNK / LANES);
+        for from in (0..self.placed * LANES).step_by(LANES) {
+            let (x, y) = (&x[from..from + LANES], &y[from..from + LANES]);
+            let (fx, fy) = (&mut self.fx[from..from + LANES], &mut self.fy[from..from + LANES]);
+            let (index, inside) = (&mut self.index[from..from + LANES], &mut self.inside[from..from + LANES]);
+            for l in 0..LANES {
+                let (cx, cy) = (clamped(x[l], right_edge), clamped(y[l], lower_edge));
+                let ((ix, left), (iy, upper)) = (floor(cx, last_x), floor(cy, last_y));
+                index[l] = iy * width as u32 + ix;
+                (fx[l], fy[l]) = (cx - left, cy - upper);
+                inside[l] = (cx == x[l]) & (cy == y[l]);
+            }
+        }
+        for (step, index) in self.steps[..self.placed].iter_mut().zip(self.index.as_chunks().0) {
+            *step = Step::of(index);
         }
     }
 
-    /// Whether every position lies within the plane.
-    pub(crate) fn all_inside(&self) -> bool {
-        self.inside.iter().fold(true, |all, inside| all & inside)
+    /// Whether the first `count` positions lie within the plane.
+    pub(crate) fn all_inside(&self, count: usize) -> bool {
+        self.inside[..count].iter().fold(true, |all, inside| all & inside)
     }
 
-    /// Bilinear samples of a plane of the size that the footprints were made for, into as many places as there are, at most
-    /// [`CHUNK`].
+    /// Bilinear samples of a plane of the size that the footprints were placed in.
     #[inline(never)]
-    pub(crate) fn sample(&self, values: &[f32], out: &mut [f32]) {
-        let width = self.width;
-        for (((o, &index), fx), fy) in out.iter_mut().zip(&self.index).zip(&self.fx).zip(&self.fy) {
-            let Some(window) = values.get(index as usize..index as usize + width + 2) else { return };
-            let (a, b, c, d) = (window[0], window[1], window[width], window[width + 1]);
-            let top = a + fx * (b - a);
-            let bottom = c + fx * (d - c);
-            *o = top + fy * (bottom - top);
+    pub(crate) fn sample(&self, values: &[f32], out: &mut [f32; CHUNK]) {
+        let weights = self.fx.as_chunks::<LANES>().0.iter().zip(self.fy.as_chunks::<LANES>().0);
+        let blocks = self.index.as_chunks::<LANES>().0.iter().zip(&self.steps[..self.placed]);
+        for ((out, (index, step)), (fx, fy)) in out.as_chunks_mut::<LANES>().0.iter_mut().zip(blocks).zip(weights) {
+            let corners = match step {
+                Step::One => in_rows::<1, { LANES + 1 }>(index, values, self.width),
+                Step::Two => in_rows::<2, { 2 * LANES }>(index, values, self.width),
+                Step::Uneven => anywhere(index, values, self.width),
+            };
+            let Some([a, b, c, d]) = corners else { return };
+            for l in 0..LANES {
+                let top = a[l] + fx[l] * (b[l] - a[l]);
+                let bottom = c[l] + fx[l] * (d[l] - c[l]);
+                out[l] = top + fy[l] * (bottom - top);
+            }
         }
     }
+}
+
+impl Step {
+    #[inline(always)]
+    fn of(index: &[u32; LANES]) -> Step {
+        let even = |step: u32| {
+            let off: [u32; LANES] = std::array::from_fn(|l| index[l] ^ index[0].wrapping_add(step * l as u32));
+            off.iter().fold(0, |all, off| all | off) == 0
+        };
+        match index[1].wrapping_sub(index[0]) {
+            1 if even(1) => Step::One,
+            2 if even(2) => Step::Two,
+            _ => Step::Uneven,
+        }
+    }
+}
+
+/// The upper left, upper right, lower left and lower right neighbours of a block of positions.
+type Corners = [[f32; LANES]; 4];
+
+/// Neighbours whose indices are `STEP` apart: they lie within `SPAN` values of each of two rows.
+#[inline(always)]
+fn in_rows<const STEP: usize, const SPAN: usize>(
+    index: &[u32; LANES],
+    values: &[f32],
+    width: usize,
+) -> Option<Corners> {
+    let from = index[0] as usize;
+    let rows = values.get(from..from + width + SPAN)?;
+    let (upper, lower) = (rows.first_chunk::<SPAN>()?, rows.last_chunk::<SPAN>()?);
+    let apart = |row: &[f32; SPAN], first: usize| std::array::from_fn(|l| row[first + STEP * l]);
+    Some([apart(upper, 0), apart(upper, 1), apart(lower, 0), apart(lower, 1)])
+}
+
+#[inline(always)]
+fn anywhere(index: &[u32; LANES], values: &[f32], width: usize) -> Option<Corners> {
+    let mut corners = [[0.0; LANES]; 4];
+    for (l, &index) in index.iter().enumerate() {
+        let window = values.get(index as usize..index as usize + width + 2)?;
+        for (corner, value) in corners.iter_mut().zip([window[0], window[1], window[width], window[width + 1]]) {
+            corner[l] = value;
+        }
+    }
+    Some(corners)
 }
 
 /// Between 0 and `edge`; NaN becomes 0.
@@ -156,12 +239,13 @@ fn floor(v: f32, last: f32) -> (u32, f32) {
 pub(crate) fn warp(plane: &Plane, motion: &AffineMotion) -> Plane {
     let (width, height) = (plane.width(), plane.height());
     let mut out = Plane::filled(width, height, 0.0);
-    let mut at = Footprints::new();
+    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..height {
         let path = RowPath::new(motion, 0, y);
         for (k, out) in out.row_mut(y).chunks_mut(CHUNK).enumerate() {
-            at.follow(&path, k * CHUNK, width, height);
-            at.sample(plane.values(), out);
+            at.follow(&path, k * CHUNK, out.len(), width, height);
+            at.sample(plane.values(), &mut samples);
+            out.copy_from_slice(&samples[..out.len()]);
         }
     }
     out
@@ -192,7 +276,7 @@ mod tests {
         }
         let (x, y) = (std::array::from_fn(|k| places[k][0]), std::array::from_fn(|k| places[k][1]));
         let mut many = Footprints::new();
-        many.place(&x, &y, width, height);
+        many.place(&x, &y, CHUNK, width, height);
         let mut samples = [0.0; CHUNK];
         many.sample(plane.values(), &mut samples);
         for (k, &[x, y]) in places.iter().enumerate() {
@@ -202,7 +286,7 @@ mod tests {
         }
         let path = RowPath::new(&AffineMotion::new([0.03, 0.2, -4.0, -0.1, 0.05, 9.0]), 2, 7);
         let mut along = Footprints::new();
-        along.follow(&path, 3, width, height);
+        along.follow(&path, 3, CHUNK, width, height);
         for k in 0..CHUNK {
             let (x, y) = path.at(3 + k);
             let one = Footprint::new(x, y, width, height);

@@ -264,8 +264,8 @@ fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], firs
             let left = boxes[k][0];
             let path = RowPath::new(motion, left, y);
             for (part, values) in first.row(y)[columns.clone()].chunks(CHUNK).enumerate() {
-                at.follow(&path, columns.start - left + part * CHUNK, width, height);
-                at.sample(second.values(), &mut samples[..values.len()]);
+                at.follow(&path, columns.start - left + part * CHUNK, values.len(), width, height);
+                at.sample(second.values(), &mut samples);
                 let seen = values.iter().zip(&samples).zip(&at.inside);
                 for ((value, sample), _) in seen.filter(|(_, inside)| **inside) {
                     let difference = f64::from(sample - value);

@@ -80,8 +80,8 @@ fn unexplained(
         let path = RowPath::new(&scaled, 0, y);
         for start in (0..width).step_by(CHUNK) {
             let chunk = start..(start + CHUNK).min(width);
-            at.follow(&path, start, width, height);
-            at.sample(level.second.values(), &mut seen[..chunk.len()]);
+            at.follow(&path, start, chunk.len(), width, height);
+            at.sample(level.second.values(), &mut seen);
             for (x, (&inside, seen)) in chunk.zip(at.inside.iter().zip(&seen)) {
                 let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));
                 if !inside || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
