@@ -187,11 +187,8 @@ impl<'a> Comparison<'a> {
                 *c = cost(samples[k], *first, *energy, [at.fx[k], at.fy[k]]);
             }
             if !at.all_inside(costs.len()) {
-                costs
-                    .iter_mut()
-                    .zip(&at.inside)
-                    .filter(|(_, inside)| !**inside)
-                    .for_each(|(cost, _)| *cost = self.outside);
+                let outside = costs.iter_mut().enumerate().filter(|(k, _)| !at.is_inside(*k));
+                outside.for_each(|(_, cost)| *cost = self.outside);
             }
         }
     }
@@ -234,7 +231,7 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
         for (k, (first, energy)) in rows.enumerate() {
             at.follow(&path, k * CHUNK, first.len(), level.second.width(), level.second.height());
             at.sample(level.second.values(), &mut samples);
-            for x in (0..first.len()).filter(|&x| at.inside[x] && energy[x] <= flat) {
+            for x in (0..first.len()).filter(|&x| at.is_inside(x) && energy[x] <= flat) {
                 let q = interpolation_variance(at.fx[x], at.fy[x], level.noise_correlation());
                 residuals.push((samples[x] - first[x]) / q.sqrt());
             }
@@ -297,7 +294,8 @@ mod tests {
         for (left, count) in [(0, 150), (0, 1), (3, 20), (9, 64), (40, 71), (141, 9)] {
             let mut part = vec![f32::NAN; count];
             comparison.row(7, left, &mut part);
-            assert_eq!(part, plane.row(7)[left..left + count], "{count} from {left} on");
+            let near = part.iter().zip(&plane.row(7)[left..]).all(|(a, b)| a == b || (a - b).abs() < 1e-4);
+            assert!(near, "{count} from {left} on");
         }
     }
 

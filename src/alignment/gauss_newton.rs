@@ -242,7 +242,7 @@ impl RowBuffers {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
                 let variance = noise + looseness * energy[k];
                 let robust = how.robustness / (how.robustness + residual * residual / variance);
-                let counts = (given[k] > 1e-3) & at.inside[k];
+                let counts = (given[k] > 1e-3) & at.is_inside(k);
                 let counted = |value: f32| if counts { value } else { 0.0 };
                 weight[k] = counted(given[k] / variance * robust * robust);
                 gx[k] = counted(half * (dx[k] + second_dx[k]));

@@ -7,7 +7,7 @@ use super::Plane;
 use super::lanes::LANES;
 use crate::motion::AffineMotion;
 
-/// A row's sampling positions: start and step per pixel, kept as `f64` until the pixel so that no error grows along a row.
+/// A row's sampling positions: start and step per pixel, kept as `f64` up to every chunk of pixels so that no error grows along a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowPath {
     start: [f64; 2],
@@ -83,8 +83,8 @@ pub(crate) struct Footprints {
     /// Weights of the right and lower neighbours.
     pub(crate) fx: [f32; CHUNK],
     pub(crate) fy: [f32; CHUNK],
-    /// Whether each position lies within the plane.
-    pub(crate) inside: [bool; CHUNK],
+    /// All bits where a position lies within the plane, else none: as wide as the weights, so that both are handled together.
+    inside: [u32; CHUNK],
 }
 
 /// Distance from each index of a block to the next: where it is the same all along, the values needed lie in two rows.
@@ -104,52 +104,57 @@ impl Footprints {
             width: 0,
             fx: [0.0; CHUNK],
             fy: [0.0; CHUNK],
-            inside: [false; CHUNK],
+            inside: [0; CHUNK],
         }
     }
 
     /// Puts them at `count` pixels from `from` on of a path in a plane of the given size.
-    #[inline(never)]
+    #[inline(never)] // Used in many places; a call for 64 pixels costs nothing, a copy in each place a kilobyte.
     pub(crate) fn follow(&mut self, path: &RowPath, from: usize, count: usize, width: usize, height: usize) {
-        let (mut x, mut y) = ([0.0; CHUNK], [0.0; CHUNK]);
-        let blocks = x.as_chunks_mut::<LANES>().0.iter_mut().zip(y.as_chunks_mut::<LANES>().0);
-        for (block, (x, y)) in blocks.take(count.div_ceil(LANES)).enumerate() {
-            for l in 0..LANES {
-                let k = f64::from((from + block * LANES + l) as u32 as i32);
-                x[l] = (path.start[0] + path.step[0] * k) as f32;
-                y[l] = (path.start[1] + path.step[1] * k) as f32;
-            }
-        }
-        self.place(&x, &y, count, width, height);
+        let (start_x, start_y) = path.at(from);
+        let step = path.step.map(|s| s as f32);
+        self.put(count, width, height, |block| {
+            let first = (block * LANES) as u32 as i32 as f32;
+            let k: [f32; LANES] = std::array::from_fn(|l| first + l as f32);
+            [k.map(|k| start_x + step[0] * k), k.map(|k| start_y + step[1] * k)]
+        });
     }
 
     /// Puts them at the first `count` of some positions in a plane of the given size.
-    #[inline(never)] // Used in many places; a call for 64 pixels costs nothing, a copy in each place a kilobyte.
+    #[inline(never)]
     pub(crate) fn place(&mut self, x: &[f32; CHUNK], y: &[f32; CHUNK], count: usize, width: usize, height: usize) {
+        let (x, y) = (x.as_chunks().0, y.as_chunks().0);
+        self.put(count, width, height, |block| [x[block], y[block]]);
+    }
+
+    #[inline(always)]
+    fn put(&mut self, count: usize, width: usize, height: usize, positions: impl Fn(usize) -> [[f32; LANES]; 2]) {
         let (right_edge, lower_edge) = ((width - 1) as f32, (height - 1) as f32);
-        let (last_x, last_y) = (right_edge - 1.0, lower_edge - 1.0);
         self.width = width;
         self.placed = count.div_ceil(LANES).min(CHUNK / LANES);
-        for from in (0..self.placed * LANES).step_by(LANES) {
-            let (x, y) = (&x[from..from + LANES], &y[from..from + LANES]);
-            let (fx, fy) = (&mut self.fx[from..from + LANES], &mut self.fy[from..from + LANES]);
-            let (index, inside) = (&mut self.index[from..from + LANES], &mut self.inside[from..from + LANES]);
-            for l in 0..LANES {
-                let (cx, cy) = (clamped(x[l], right_edge), clamped(y[l], lower_edge));
-                let ((ix, left), (iy, upper)) = (floor(cx, last_x), floor(cy, last_y));
-                index[l] = iy * width as u32 + ix;
-                (fx[l], fy[l]) = (cx - left, cy - upper);
-                inside[l] = (cx == x[l]) & (cy == y[l]);
-            }
-        }
-        for (step, index) in self.steps[..self.placed].iter_mut().zip(self.index.as_chunks().0) {
-            *step = Step::of(index);
+        let weights = self.fx.as_chunks_mut::<LANES>().0.iter_mut().zip(self.fy.as_chunks_mut::<LANES>().0);
+        let blocks = self.index.as_chunks_mut::<LANES>().0.iter_mut().zip(self.inside.as_chunks_mut::<LANES>().0);
+        for (block, ((index, inside), (fx, fy))) in blocks.zip(weights).take(self.placed).enumerate() {
+            let [x, y] = positions(block);
+            let (cx, cy) = (x.map(|x| clamped(x, right_edge)), y.map(|y| clamped(y, lower_edge)));
+            let (left, upper) = (cx.map(|x| floor(x, right_edge - 1.0)), cy.map(|y| floor(y, lower_edge - 1.0)));
+            *fx = std::array::from_fn(|l| cx[l] - left[l]);
+            *fy = std::array::from_fn(|l| cy[l] - upper[l]);
+            *index = std::array::from_fn(|l| whole(upper[l]) * width as u32 + whole(left[l]));
+            *inside = std::array::from_fn(|l| if (cx[l] == x[l]) & (cy[l] == y[l]) { u32::MAX } else { 0 });
+            self.steps[block] = Step::of(index);
         }
     }
 
     /// Whether the first `count` positions lie within the plane.
     pub(crate) fn all_inside(&self, count: usize) -> bool {
-        self.inside[..count].iter().fold(true, |all, inside| all & inside)
+        self.inside[..count].iter().fold(u32::MAX, |all, inside| all & inside) != 0
+    }
+
+    /// Whether the k-th position lies within the plane.
+    #[inline(always)]
+    pub(crate) fn is_inside(&self, k: usize) -> bool {
+        self.inside[k] != 0
     }
 
     /// Bilinear samples of a plane of the size that the footprints were placed in.
@@ -176,13 +181,13 @@ impl Footprints {
 impl Step {
     #[inline(always)]
     fn of(index: &[u32; LANES]) -> Step {
-        let even = |step: u32| {
-            let off: [u32; LANES] = std::array::from_fn(|l| index[l] ^ index[0].wrapping_add(step * l as u32));
-            off.iter().fold(0, |all, off| all | off) == 0
-        };
-        match index[1].wrapping_sub(index[0]) {
-            1 if even(1) => Step::One,
-            2 if even(2) => Step::Two,
+        let step = index[1].wrapping_sub(index[0]);
+        let expected: [u32; LANES] = std::array::from_fn(|l| index[0].wrapping_add(step.wrapping_mul(l as u32)));
+        let off: [u32; LANES] = std::array::from_fn(|l| index[l] ^ expected[l]);
+        let off: [u32; LANES / 2] = std::array::from_fn(|l| off[l] | off[l + LANES / 2]);
+        match (off.iter().fold(0, |all, off| all | off), step) {
+            (0, 1) => Step::One,
+            (0, 2) => Step::Two,
             _ => Step::Uneven,
         }
     }
@@ -224,15 +229,22 @@ fn clamped(v: f32, edge: f32) -> f32 {
     if v < edge { v } else { edge }
 }
 
-/// The largest whole number up to `v`, 0 ≤ v < 2²², and up to `last`, as both types. Adding 2²³ leaves no bits for a fraction: the sum is
-/// rounded, its low bits are the number. The language's own conversion has cases to tell apart and is done one by one.
+/// 2²³: the distance of floats from here on is 1.
+const SHIFT: f32 = 8_388_608.0;
+
+/// The largest whole number up to `v`, 0 ≤ v < 2²², and up to `last`. Adding 2²³ leaves no bits for a fraction: the sum is rounded. The
+/// language's own conversion has cases to tell apart and is done one by one.
 #[inline(always)]
-fn floor(v: f32, last: f32) -> (u32, f32) {
-    const SHIFT: f32 = 8_388_608.0;
+fn floor(v: f32, last: f32) -> f32 {
     let rounded = (v + SHIFT) - SHIFT;
     let below = if rounded > v { rounded - 1.0 } else { rounded };
-    let below = if below < last { below } else { last };
-    ((below + SHIFT).to_bits() & 0x007f_ffff, below)
+    if below < last { below } else { last }
+}
+
+/// A whole number as such: the low bits of the sum with 2²³.
+#[inline(always)]
+fn whole(v: f32) -> u32 {
+    (v + SHIFT).to_bits() & 0x007f_ffff
 }
 
 /// The plane seen along the motion: value at (x, y) is the sample at (x, y) + A (x, y), replicated outside.
@@ -281,16 +293,36 @@ mod tests {
         many.sample(plane.values(), &mut samples);
         for (k, &[x, y]) in places.iter().enumerate() {
             let one = Footprint::new(x, y, width, height);
-            assert_eq!((many.fx[k], many.fy[k], many.inside[k]), (one.fx, one.fy, one.inside), "({x}, {y})");
+            assert_eq!((many.fx[k], many.fy[k], many.is_inside(k)), (one.fx, one.fy, one.inside), "({x}, {y})");
             assert_eq!(samples[k].to_bits(), one.sample(plane.values()).to_bits(), "({x}, {y})");
         }
-        let path = RowPath::new(&AffineMotion::new([0.03, 0.2, -4.0, -0.1, 0.05, 9.0]), 2, 7);
-        let mut along = Footprints::new();
-        along.follow(&path, 3, CHUNK, width, height);
-        for k in 0..CHUNK {
-            let (x, y) = path.at(3 + k);
-            let one = Footprint::new(x, y, width, height);
-            assert_eq!((along.fx[k], along.fy[k], along.inside[k]), (one.fx, one.fy, one.inside));
+        assert!(many.steps.iter().all(|step| *step == Step::Uneven));
+    }
+
+    #[test]
+    fn samples_along_a_path_are_those_of_each_position() {
+        let (width, height) = (301, 17);
+        let plane = Plane::from_fn(width, height, |x, y| libm::sinf(0.05 * (x + 3 * y) as f32) * 100.0);
+        let (mut samples, mut along) = ([0.0; CHUNK], Footprints::new());
+        // Beside each other, every second one, with leaps, beyond the border.
+        for (stretch, stride) in [(0.0, 1.0), (0.01, 1.0), (-0.02, 2.0), (0.3, 1.0), (0.1, 5.0)] {
+            let motion = AffineMotion::new([stretch, 0.2, -4.0, 0.01, 0.05, 1.3]);
+            let path = RowPath::new(&motion, 2, 7).times(stride);
+            for (from, count) in [(0, CHUNK), (3, 9), (64, 40), (250, CHUNK)] {
+                along.follow(&path, from, count, width, height);
+                along.sample(plane.values(), &mut samples);
+                for k in 0..count {
+                    let (x, y) = path.at(from + k);
+                    let one = Footprint::new(x, y, width, height);
+                    assert!((samples[k] - one.sample(plane.values())).abs() < 1e-2, "({x}, {y})");
+                    let near_border = x.abs() < 1e-3 || (x - 300.0).abs() < 1e-3;
+                    assert!(along.is_inside(k) == one.inside || near_border, "({x}, {y})");
+                }
+            }
+        }
+        for (stride, step) in [(1.0, Step::One), (2.0, Step::Two), (3.0, Step::Uneven)] {
+            along.follow(&RowPath::new(&AffineMotion::STATIC, 0, 3).times(stride), 0, CHUNK, width, height);
+            assert!(along.steps.iter().all(|s| *s == step));
         }
     }
 
