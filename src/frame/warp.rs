@@ -70,11 +70,12 @@ impl Footprint {
     }
 }
 
-/// Pixels of a row that are looked at together.
-pub(crate) const CHUNK: usize = 64;
+/// Pixels of a row that are looked at together: rows of most levels are a multiple of it.
+pub(crate) const CHUNK: usize = 32;
 
 /// [`Footprint`]s of neighbouring pixels, placed anew as often as needed: up to [`CHUNK`], in whole blocks.
 pub(crate) struct Footprints {
+    /// Of the upper left pixels.
     index: [u32; CHUNK],
     /// How the indices of each block that is placed follow each other.
     steps: [Step; CHUNK / LANES],
@@ -109,40 +110,39 @@ impl Footprints {
     }
 
     /// Puts them at `count` pixels from `from` on of a path in a plane of the given size.
-    #[inline(never)] // Used in many places; a call for 64 pixels costs nothing, a copy in each place a kilobyte.
+    #[inline(never)] // Used in many places; a call for so many pixels costs nothing, a copy in each place a kilobyte.
     pub(crate) fn follow(&mut self, path: &RowPath, from: usize, count: usize, width: usize, height: usize) {
         let (start_x, start_y) = path.at(from);
         let step = path.step.map(|s| s as f32);
-        self.put(count, width, height, |block| {
-            let first = (block * LANES) as u32 as i32 as f32;
-            let k: [f32; LANES] = std::array::from_fn(|l| first + l as f32);
-            [k.map(|k| start_x + step[0] * k), k.map(|k| start_y + step[1] * k)]
+        self.put(count, width, height, |k| {
+            let k = k as u32 as i32 as f32;
+            (start_x + step[0] * k, start_y + step[1] * k)
         });
     }
 
     /// Puts them at the first `count` of some positions in a plane of the given size.
     #[inline(never)]
     pub(crate) fn place(&mut self, x: &[f32; CHUNK], y: &[f32; CHUNK], count: usize, width: usize, height: usize) {
-        let (x, y) = (x.as_chunks().0, y.as_chunks().0);
-        self.put(count, width, height, |block| [x[block], y[block]]);
+        self.put(count, width, height, |k| (x[k], y[k]));
     }
 
     #[inline(always)]
-    fn put(&mut self, count: usize, width: usize, height: usize, positions: impl Fn(usize) -> [[f32; LANES]; 2]) {
+    fn put(&mut self, count: usize, width: usize, height: usize, position: impl Fn(usize) -> (f32, f32)) {
         let (right_edge, lower_edge) = ((width - 1) as f32, (height - 1) as f32);
+        let (last_x, last_y) = (right_edge - 1.0, lower_edge - 1.0);
         self.width = width;
         self.placed = count.div_ceil(LANES).min(CHUNK / LANES);
-        let weights = self.fx.as_chunks_mut::<LANES>().0.iter_mut().zip(self.fy.as_chunks_mut::<LANES>().0);
-        let blocks = self.index.as_chunks_mut::<LANES>().0.iter_mut().zip(self.inside.as_chunks_mut::<LANES>().0);
-        for (block, ((index, inside), (fx, fy))) in blocks.zip(weights).take(self.placed).enumerate() {
-            let [x, y] = positions(block);
-            let (cx, cy) = (x.map(|x| clamped(x, right_edge)), y.map(|y| clamped(y, lower_edge)));
-            let (left, upper) = (cx.map(|x| floor(x, right_edge - 1.0)), cy.map(|y| floor(y, lower_edge - 1.0)));
-            *fx = std::array::from_fn(|l| cx[l] - left[l]);
-            *fy = std::array::from_fn(|l| cy[l] - upper[l]);
-            *index = std::array::from_fn(|l| whole(upper[l]) * width as u32 + whole(left[l]));
-            *inside = std::array::from_fn(|l| if (cx[l] == x[l]) & (cy[l] == y[l]) { u32::MAX } else { 0 });
-            self.steps[block] = Step::of(index);
+        // All of them, whatever the count: a number of turns that the compiler knows is worth more.
+        for k in 0..CHUNK {
+            let (x, y) = position(k);
+            let (cx, cy) = (clamped(x, right_edge), clamped(y, lower_edge));
+            let (left, upper) = (floor(cx, last_x), floor(cy, last_y));
+            self.index[k] = whole(upper) * width as u32 + whole(left);
+            (self.fx[k], self.fy[k]) = (cx - left, cy - upper);
+            self.inside[k] = if (cx == x) & (cy == y) { u32::MAX } else { 0 };
+        }
+        for (step, index) in self.steps[..self.placed].iter_mut().zip(self.index.as_chunks().0) {
+            *step = Step::of(index);
         }
     }
 
@@ -182,12 +182,10 @@ impl Step {
     #[inline(always)]
     fn of(index: &[u32; LANES]) -> Step {
         let step = index[1].wrapping_sub(index[0]);
-        let expected: [u32; LANES] = std::array::from_fn(|l| index[0].wrapping_add(step.wrapping_mul(l as u32)));
-        let off: [u32; LANES] = std::array::from_fn(|l| index[l] ^ expected[l]);
-        let off: [u32; LANES / 2] = std::array::from_fn(|l| off[l] | off[l + LANES / 2]);
-        match (off.iter().fold(0, |all, off| all | off), step) {
-            (0, 1) => Step::One,
-            (0, 2) => Step::Two,
+        let even = (2..LANES).fold(true, |even, l| even & (index[l].wrapping_sub(index[l - 1]) == step));
+        match step {
+            1 if even => Step::One,
+            2 if even => Step::Two,
             _ => Step::Uneven,
         }
     }
