@@ -306,7 +306,7 @@ mod tests {
         for (stretch, stride) in [(0.0, 1.0), (0.01, 1.0), (-0.02, 2.0), (0.3, 1.0), (0.1, 5.0)] {
             let motion = AffineMotion::new([stretch, 0.2, -4.0, 0.01, 0.05, 1.3]);
             let path = RowPath::new(&motion, 2, 7).times(stride);
-            for (from, count) in [(0, CHUNK), (3, 9), (64, 40), (250, CHUNK)] {
+            for (from, count) in [(0, CHUNK), (3, 9), (64, 20), (250, CHUNK)] {
                 along.follow(&path, from, count, width, height);
                 along.sample(plane.values(), &mut samples);
                 for k in 0..count {
