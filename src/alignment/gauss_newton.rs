@@ -254,8 +254,8 @@ impl RowBuffers {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
                 let variance = noise + looseness * energy[k];
                 let robust = how.robustness / (how.robustness + residual * residual / variance);
-                let counts = (given[k] > 1e-3) & at.is_inside(k);
-                let counted = |value: f32| if counts { value } else { 0.0 };
+                let counts = at.inside(k) & if given[k] > 1e-3 { u32::MAX } else { 0 };
+                let counted = |value: f32| f32::from_bits(value.to_bits() & counts);
                 weights_of[k] = counted(given[k] / variance * robust * robust);
                 gx_of[k] = counted(half * (dx[k] + second_dx[k]));
                 gy_of[k] = counted(half * (dy[k] + second_dy[k]));

@@ -151,6 +151,12 @@ impl Footprints {
         self.inside[..count].iter().fold(u32::MAX, |all, inside| all & inside) != 0
     }
 
+    /// All bits where the k-th position lies within the plane, else none.
+    #[inline(always)]
+    pub(crate) fn inside(&self, k: usize) -> u32 {
+        self.inside[k]
+    }
+
     /// Whether the k-th position lies within the plane.
     #[inline(always)]
     pub(crate) fn is_inside(&self, k: usize) -> bool {
