@@ -173,17 +173,41 @@ pub(crate) fn median5(plane: &Plane) -> Plane {
     out
 }
 
+/// Puts pairs of variables in order, one pair after the other. The same comparison decides both places, so that nothing is lost,
+/// whatever the values. Networks are written with it instead of loops over arrays, whose values live in registers only where
+/// the compiler unrolls the loops.
+macro_rules! order {
+    ($($a:ident $b:ident),*) => { $(let ($a, $b) = if $a < $b { ($a, $b) } else { ($b, $a) };)* };
+}
+
+/// Puts the smallest value first, the others in no order.
+macro_rules! smallest_first {
+    ($first:ident $($other:ident)*) => { order!($($first $other),*) };
+}
+
+/// Puts the largest value last, the others in no order; the place for it is named first.
+macro_rules! largest_into {
+    ($last:ident $($other:ident)*) => { order!($($other $last),*) };
+}
+
+/// Puts the smallest value first and the largest last, the others in no order.
+macro_rules! extremes_apart {
+    ($first:ident, $($middle:ident)*, $last:ident) => {
+        smallest_first!($first $($middle)* $last);
+        largest_into!($last $($middle)*);
+    };
+}
+
 /// The five values of each of the columns x…x+N−1 by size: `sorted[0]` gets the smallest, two places further on.
 #[inline(always)]
 fn sort_columns<const N: usize>(rows: [&[f32]; 5], x: usize, sorted: &mut [Vec<f32>; 5]) {
-    let rows = rows.map(|row| &row[x..x + N]);
+    let [a, b, c, d, e] = rows;
+    let (a, b, c, d, e) = (&a[x..x + N], &b[x..x + N], &c[x..x + N], &d[x..x + N], &e[x..x + N]);
     let mut block = [[0.0; N]; 5];
     for l in 0..N {
-        let mut v = rows.map(|row| row[l]);
-        for (i, j) in [(0, 1), (3, 4), (2, 4), (2, 3), (0, 3), (0, 2), (1, 4), (1, 3), (1, 2)] {
-            order(&mut v, i, j);
-        }
-        (0..5).for_each(|k| block[k][l] = v[k]);
+        let (a, b, c, d, e) = (a[l], b[l], c[l], d[l], e[l]);
+        order!(a b, d e, c e, c d, a d, a c, b e, b d, b c);
+        [block[0][l], block[1][l], block[2][l], block[3][l], block[4][l]] = [a, b, c, d, e];
     }
     for (sorted, block) in sorted.iter_mut().zip(&block) {
         sorted[x + 2..x + 2 + N].copy_from_slice(block);
@@ -193,71 +217,46 @@ fn sort_columns<const N: usize>(rows: [&[f32]; 5], x: usize, sorted: &mut [Vec<f
 /// Medians of the windows of five neighbouring columns from x, …, x+N−1 on.
 #[inline(always)]
 fn medians<const N: usize>(columns: &[Vec<f32>; 5], x: usize, out: &mut [f32]) {
-    let window: [[&[f32]; 5]; 5] = columns.each_ref().map(|column| std::array::from_fn(|k| &column[x + k..x + k + N]));
+    let [smallest, second, third, fourth, largest] = columns;
+    let (smallest, second, third) = (&smallest[x..x + N + 4], &second[x..x + N + 4], &third[x..x + N + 4]);
+    let (fourth, largest) = (&fourth[x..x + N + 4], &largest[x..x + N + 4]);
     let mut block = [0.0; N];
     for l in 0..N {
-        let [a, b, c, d, e] = window.map(|row| row.map(|column| column[l]));
-        let ([.., a0, a1], [.., b0, b1, b2]) = (largest_last::<2>(a), largest_last::<3>(b));
-        let [_, c0, c1, c2, _] = extremes_apart(c);
-        let ([d0, d1, d2, ..], [e0, e1, ..]) = (smallest_first::<3>(d), smallest_first::<2>(e));
-        block[l] = median_of_13([a0, a1, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1]);
+        let five = |row: &[f32]| [row[l], row[l + 1], row[l + 2], row[l + 3], row[l + 4]];
+        block[l] = median_of_25([five(smallest), five(second), five(third), five(fourth), five(largest)]);
     }
     out[x..x + N].copy_from_slice(&block);
 }
 
-/// Puts the smaller of two values first. The same comparison decides both, so that nothing is lost, whatever the values.
+/// The median of the smallest values of five columns, their second smallest, and so on to their largest.
 #[inline(always)]
-fn order<const N: usize>(v: &mut [f32; N], i: usize, j: usize) {
-    let (a, b) = (v[i], v[j]);
-    v[i] = if a < b { a } else { b };
-    v[j] = if a < b { b } else { a };
-}
-
-/// The `KEPT` largest at the end, in no order: the smallest of those still there goes to the front again and again.
-#[inline(always)]
-fn largest_last<const KEPT: usize>(mut v: [f32; 5]) -> [f32; 5] {
-    for front in 0..5 - KEPT {
-        for k in front + 1..5 {
-            order(&mut v, front, k);
-        }
-    }
-    v
-}
-
-/// The `KEPT` smallest at the beginning, in no order.
-#[inline(always)]
-fn smallest_first<const KEPT: usize>(mut v: [f32; 5]) -> [f32; 5] {
-    for back in (KEPT..5).rev() {
-        for k in 0..back {
-            order(&mut v, k, back);
-        }
-    }
-    v
-}
-
-/// The smallest first, the largest last, the others in no order.
-#[inline(always)]
-fn extremes_apart<const N: usize>(mut v: [f32; N]) -> [f32; N] {
-    for k in 1..N {
-        order(&mut v, 0, k);
-    }
-    for k in 1..N - 1 {
-        order(&mut v, k, N - 1);
-    }
-    v
-}
-
-/// Of eight values neither the smallest nor the largest is the median of thirteen; what is left and one more is the same
-/// question with two values less.
-#[inline(always)]
-fn median_of_13(v: [f32; 13]) -> f32 {
-    let [_, a, b, c, d, e, f, _] = extremes_apart([v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7]]);
-    let [_, a, b, c, d, e, _] = extremes_apart([a, b, c, d, e, f, v[8]]);
-    let [_, a, b, c, d, _] = extremes_apart([a, b, c, d, e, v[9]]);
-    let [_, a, b, c, _] = extremes_apart([a, b, c, d, v[10]]);
-    let [_, a, b, _] = extremes_apart([a, b, c, v[11]]);
-    let [_, a, _] = extremes_apart([a, b, v[12]]);
-    a
+#[allow(unused_variables, reason = "values that cannot be the median are put aside")]
+fn median_of_25([smallest, second, third, fourth, largest]: [[f32; 5]; 5]) -> f32 {
+    let [a, b, c, d, e] = smallest;
+    smallest_first!(a b c d e);
+    smallest_first!(b c d e);
+    smallest_first!(c d e);
+    let [f, g, h, i, j] = second;
+    smallest_first!(f g h i j);
+    smallest_first!(g h i j);
+    let [k, l, m, n, o] = third;
+    extremes_apart!(k, l m n, o);
+    let [p, q, r, s, t] = fourth;
+    largest_into!(t p q r s);
+    largest_into!(s p q r);
+    let [u, v, w, x, y] = largest;
+    largest_into!(y u v w x);
+    largest_into!(x u v w);
+    largest_into!(w u v);
+    // Thirteen are left. Of eight of them neither the smallest nor the largest is the median; what is left and one more is
+    // the same question with two values less.
+    extremes_apart!(d, e h i j l m, n);
+    extremes_apart!(e, h i j l m, p);
+    extremes_apart!(h, i j l m, q);
+    extremes_apart!(i, j l m, r);
+    extremes_apart!(j, l m, u);
+    extremes_apart!(l, m, v);
+    m
 }
 
 /// The smallest of each 3×3 neighbourhood; outside the plane counts as inside the region.

@@ -14,7 +14,8 @@ fn multiply_add(sum: Pair, a: Pair, b: Pair) -> Pair {
     [sum[0] + a[0] * b[0], sum[1] + a[1] * b[1]]
 }
 
-/// aᵀb over the common length, in eight lanes.
+/// aᵀb over the common length, in eight lanes. As the next one never inlined: it would be in the module at eleven places.
+#[inline(never)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let length = a.len().min(b.len());
     let (a, a_rest) = a[..length].as_chunks::<8>();
@@ -31,6 +32,7 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// y ← y + factor·x over the common length.
+#[inline(never)]
 pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
     each_with(y, [x], |y, [x]| y + factor * x);
 }
