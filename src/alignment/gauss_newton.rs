@@ -6,8 +6,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::cost::{CostModel, Photometric};
+use super::cost::{CostModel, Photometric, lane_sum};
 use crate::frame::Plane;
+use crate::frame::lanes::whole;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
@@ -159,18 +160,21 @@ fn apply(motion: &mut AffineMotion, step: &Right, centre: [f64; 2], scale: f64) 
     }
 }
 
+/// A row's values in whole chunks. Those behind the row have no weight.
+type Row = Vec<[f32; CHUNK]>;
+
 /// One row of everything, reused from row to row.
 struct RowBuffers {
-    x: Vec<f32>,
-    gx: Vec<f32>,
-    gy: Vec<f32>,
-    residual: Vec<f32>,
-    weight: Vec<f32>,
+    x: Row,
+    gx: Row,
+    gy: Row,
+    residual: Row,
+    weight: Row,
 }
 
 impl RowBuffers {
     fn new(length: usize) -> RowBuffers {
-        let row = || vec![0.0; length];
+        let row = || vec![[0.0; CHUNK]; length.div_ceil(CHUNK)];
         RowBuffers { x: row(), gx: row(), gy: row(), residual: row(), weight: row() }
     }
 
@@ -185,7 +189,7 @@ impl RowBuffers {
     ) -> (Normal, Right) {
         let (mut normal, mut right) = (Normal::zeros(), Right::zeros());
         for (k, x) in support.columns.clone().enumerate() {
-            self.x[k] = ((x as f64 - support.centre[0]) / scale) as f32;
+            self.x[k / CHUNK][k % CHUNK] = ((x as f64 - support.centre[0]) / scale) as f32;
         }
         for y in support.rows.clone() {
             self.measure(level, motion, support, photometric, how, y);
@@ -222,33 +226,42 @@ impl RowBuffers {
         let energy = &level.energy.row(y)[columns.clone()];
         let (dx, dy) = (&level.first_dx.row(y)[columns.clone()], &level.first_dy.row(y)[columns.clone()]);
         let weights = support.weights.map(|w| &w.row(y)[columns]);
-        let (mut given, mut second, mut at) = ([1.0; CHUNK], [0.0; CHUNK], Footprints::new());
+        let (mut second, mut at) = ([0.0; CHUNK], Footprints::new());
         let (mut second_dx, mut second_dy) = ([0.0; CHUNK], [0.0; CHUNK]);
-        for start in (0..first.len()).step_by(CHUNK) {
-            let chunk = start..(start + CHUNK).min(first.len());
+        let mut space = [[0.0; CHUNK]; 4];
+        let [space_first, space_energy, space_dx, space_dy] = &mut space;
+        let gradients = self.gx.iter_mut().zip(&mut self.gy);
+        let buffers = self.weight.iter_mut().zip(&mut self.residual).zip(gradients);
+        for (k, ((weight, residuals), (gx, gy))) in buffers.enumerate() {
+            let chunk = k * CHUNK..((k + 1) * CHUNK).min(first.len());
             let n = chunk.len();
-            at.follow(&path, start, width, height);
-            at.sample(level.second.values(), &mut second[..n]);
-            at.sample(level.second_dx.values(), &mut second_dx[..n]);
-            at.sample(level.second_dy.values(), &mut second_dy[..n]);
-            if let Some(weights) = weights {
-                given[..n].copy_from_slice(&weights[chunk.clone()]);
+            at.follow(&path, chunk.start, n, width, height);
+            at.sample(level.second.values(), &mut second);
+            at.sample(level.second_dx.values(), &mut second_dx);
+            at.sample(level.second_dy.values(), &mut second_dy);
+            let mut given = [0.0; CHUNK];
+            match weights {
+                Some(weights) => given[..n].copy_from_slice(&weights[chunk.clone()]),
+                None => given[..n].fill(1.0),
             }
-            let (first, energy) = (&first[chunk.clone()], &energy[chunk.clone()]);
-            let (dx, dy) = (&dx[chunk.clone()], &dy[chunk.clone()]);
-            let (weight, residuals) = (&mut self.weight[chunk.clone()], &mut self.residual[chunk.clone()]);
-            let (gx, gy) = (&mut self.gx[chunk.clone()], &mut self.gy[chunk]);
-            for k in 0..n {
+            let (first, energy) =
+                (whole(&first[chunk.clone()], space_first), whole(&energy[chunk.clone()], space_energy));
+            let (dx, dy) = (whole(&dx[chunk.clone()], space_dx), whole(&dy[chunk], space_dy));
+            // Into arrays of its own: the compiler need not ask whether they overlap with what is read.
+            let mut row = [[0.0; CHUNK]; 4];
+            let [weights_of, residuals_of, gx_of, gy_of] = &mut row;
+            for k in 0..CHUNK {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
                 let variance = noise + looseness * energy[k];
                 let robust = how.robustness / (how.robustness + residual * residual / variance);
-                let counts = (given[k] > 1e-3) & at.inside[k];
-                let counted = |value: f32| if counts { value } else { 0.0 };
-                weight[k] = counted(given[k] / variance * robust * robust);
-                gx[k] = counted(half * (dx[k] + second_dx[k]));
-                gy[k] = counted(half * (dy[k] + second_dy[k]));
-                residuals[k] = counted(residual);
+                let counts = at.inside(k) & if given[k] > 1e-3 { u32::MAX } else { 0 };
+                let counted = |value: f32| f32::from_bits(value.to_bits() & counts);
+                weights_of[k] = counted(given[k] / variance * robust * robust);
+                gx_of[k] = counted(half * (dx[k] + second_dx[k]));
+                gy_of[k] = counted(half * (dy[k] + second_dy[k]));
+                residuals_of[k] = counted(residual);
             }
+            [*weight, *residuals, *gx, *gy] = row;
         }
     }
 
@@ -276,10 +289,11 @@ impl RowBuffers {
     fn accumulate_photometric(&mut self, normal: &mut Normal, right: &mut Right, y: f64, first: &[f32]) {
         let mut sums = [[0.0f64; 2]; 4];
         let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0f64, 0.0, 0.0, 0.0, 0.0);
+        let RowBuffers { x, gx, gy, residual, weight } = self;
+        let [x, gx, gy, residual, weight] = [x, gx, gy, residual, weight].map(|row| row.as_flattened());
         for k in 0..first.len() {
-            let (w, i) = (f64::from(self.weight[k]), f64::from(first[k]) / 128.0);
-            let (gx, gy, r, x) =
-                (f64::from(self.gx[k]), f64::from(self.gy[k]), f64::from(self.residual[k]), f64::from(self.x[k]));
+            let (w, i) = (f64::from(weight[k]), f64::from(first[k]) / 128.0);
+            let (gx, gy, r, x) = (f64::from(gx[k]), f64::from(gy[k]), f64::from(residual[k]), f64::from(x[k]));
             for (sum, p) in sums.iter_mut().zip([w * gx, w * gx * i, w * gy, w * gy * i]) {
                 sum[0] += p;
                 sum[1] += p * x;
@@ -304,32 +318,18 @@ impl RowBuffers {
     }
 }
 
-/// Moments `Σ p, Σ p x, Σ p x²` of the products `p = weight · a · b`, in eight lanes like [`lane_sum`](super::cost::lane_sum).
-fn moments(weight: &[f32], a: &[f32], b: &[f32], x: &[f32]) -> [f64; 3] {
-    const LANES: usize = 8;
-    let mut lanes = [[0.0f32; LANES]; 3];
-    let ((weight, weights), (a, as_)) = (weight.as_chunks::<LANES>(), a.as_chunks::<LANES>());
-    let ((b, bs), (x, xs)) = (b.as_chunks::<LANES>(), x.as_chunks::<LANES>());
-    for (((weight, a), b), x) in weight.iter().zip(a).zip(b).zip(x) {
-        for k in 0..LANES {
-            let mut p = weight[k] * a[k] * b[k];
-            for lane in &mut lanes {
-                lane[k] += p;
-                p *= x[k];
-            }
+/// Moments `Σ p, Σ p x, Σ p x²` of the products `p = weight · a · b`, with a sum for every place of a chunk.
+fn moments(weight: &Row, a: &Row, b: &Row, x: &Row) -> [f64; 3] {
+    let (mut s0, mut s1, mut s2) = ([0.0f32; CHUNK], [0.0f32; CHUNK], [0.0f32; CHUNK]);
+    for ((weight, x), (a, b)) in weight.iter().zip(x).zip(a.iter().zip(b)) {
+        for k in 0..CHUNK {
+            let p = weight[k] * a[k] * b[k];
+            s0[k] += p;
+            s1[k] += p * x[k];
+            s2[k] += p * x[k] * x[k];
         }
     }
-    let mut sums = lanes.map(|lane| lane.iter().sum::<f32>());
-    let mut rest = [0.0f32; 3];
-    for (((weight, a), b), x) in weights.iter().zip(as_).zip(bs).zip(xs) {
-        let mut p = weight * a * b;
-        for sum in &mut rest {
-            *sum += p;
-            p *= x;
-        }
-    }
-    sums.iter_mut().zip(rest).for_each(|(sum, rest)| *sum += rest);
-    sums.map(f64::from)
+    [s0, s1, s2].map(|sums| f64::from(lane_sum(&sums)))
 }
 
 #[cfg(test)]

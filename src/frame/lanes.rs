@@ -43,6 +43,16 @@ pub(crate) fn whole<'a, const N: usize>(part: &'a [f32], space: &'a mut [f32; N]
     space
 }
 
+/// The next values of several rows from a place on, as arrays of one length; zeros behind the end of a row.
+pub(crate) fn parts<const N: usize, const M: usize>(rows: [&[f32]; M], from: usize) -> [[f32; N]; M] {
+    rows.map(|row| {
+        let part = &row[from.min(row.len())..(from + N).min(row.len())];
+        let mut array = [0.0; N];
+        array[..part.len()].copy_from_slice(part);
+        array
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

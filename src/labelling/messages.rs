@@ -8,7 +8,7 @@
 //! On a pyramid (costs and weights summed over 2×2 blocks, messages handed down at half their size) a handful of
 //! iterations carries information across the image that would otherwise need as many iterations as a region is wide.
 
-use super::potts::Potts;
+use super::potts::{Potts, allowed};
 
 /// Labels are handled in vectors of 4, 8 or 16.
 pub(super) const MAX_LABELS: usize = 16;
@@ -60,6 +60,9 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
         }
         let coarser = finest.halved();
         pyramid.push(coarser);
+    }
+    if let Some(coarsest) = pyramid.last_mut() {
+        coarsest.be_silent();
     }
     for level in (1..pyramid.len()).rev() {
         for _ in 0..iterations.min(COARSE_ITERATIONS) {
@@ -140,54 +143,72 @@ impl<const L: usize> Row<L> {
 impl<const L: usize> Grid<L> {
     fn new(problem: &Potts<'_>) -> Self {
         let (width, height) = (problem.width(), problem.height());
-        let mut costs = vec![[PADDING; L]; width * height];
-        for l in 0..problem.costs.len() {
-            for (p, cost) in costs.iter_mut().enumerate() {
-                cost[l] = problem.cost(l, p);
-            }
+        let size = width * height;
+        // Labels that only fill up a vector repeat the first here, so that the loop need not tell them apart.
+        let planes: [&[f32]; L] =
+            std::array::from_fn(|l| &problem.costs[if l < problem.costs.len() { l } else { 0 }].values()[..size]);
+        let cost = |p: usize| std::array::from_fn(|l| allowed(planes[l][p]));
+        let mut costs: Vec<[f32; L]> = (0..size).map(cost).collect();
+        for l in problem.costs.len()..L {
+            costs.iter_mut().for_each(|cost| cost[l] = PADDING);
         }
         let (h, v) = (problem.horizontal.values(), problem.vertical.values());
-        let weights = h.iter().zip(v).map(|(&h, &v)| [h, v]).collect();
-        Self::with(width, height, costs, weights)
-    }
-
-    fn with(width: usize, height: usize, costs: Vec<[f32; L]>, mut weights: Vec<[f32; 2]>) -> Self {
+        let mut weights: Vec<[f32; 2]> = h.iter().zip(v).map(|(&h, &v)| [h, v]).collect();
         for row in weights.chunks_exact_mut(width) {
             row[width - 1][0] = 0.0;
         }
         weights[(height - 1) * width..].iter_mut().for_each(|w| w[1] = 0.0);
-        let none = vec![[0.0; L]; width * height];
-        Grid { width, height, costs, weights, right: none.clone(), down: none }
+        Grid { width, height, costs, weights, right: Vec::new(), down: Vec::new() }
     }
 
     /// Costs and the weights across the border of 2×2 blocks, summed.
     fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let mut costs = vec![[0.0; L]; width * height];
-        let mut weights = vec![[0.0; 2]; width * height];
-        for y in 0..self.height {
-            for x in 0..self.width {
-                let (p, q) = (y * self.width + x, (y / 2) * width + x / 2);
-                for l in 0..L {
-                    costs[q][l] += self.costs[p][l];
+        let mut costs = Vec::with_capacity(width * height);
+        let mut weights = Vec::with_capacity(width * height);
+        let plus = |a: [f32; L], b: &[f32; L]| std::array::from_fn(|l| a[l] + b[l]);
+        for y in (0..self.height).step_by(2) {
+            let of_row = |y: usize| y * self.width..(y + 1) * self.width;
+            let last = (y + 1).min(self.height - 1);
+            for (upper, lower) in self.costs[of_row(y)].chunks(2).zip(self.costs[of_row(last)].chunks(2)) {
+                let sum = upper[1..].iter().fold(upper[0], plus);
+                costs.push(if last > y { lower.iter().fold(sum, plus) } else { sum });
+            }
+            for (upper, lower) in self.weights[of_row(y)].chunks(2).zip(self.weights[of_row(last)].chunks(2)) {
+                let mut across = [0.0, 0.0];
+                if let ([_, upper], [_, lower]) = (upper, lower) {
+                    across[0] = if last > y { upper[0] + lower[0] } else { upper[0] };
                 }
-                weights[q][0] += if x % 2 == 1 { self.weights[p][0] } else { 0.0 };
-                weights[q][1] += if y % 2 == 1 { self.weights[p][1] } else { 0.0 };
+                if last > y {
+                    across[1] = lower.iter().map(|w| w[1]).sum();
+                }
+                weights.push(across);
             }
         }
-        Self::with(width, height, costs, weights)
+        Grid { width, height, costs, weights, right: Vec::new(), down: Vec::new() }
+    }
+
+    /// No messages at all.
+    fn be_silent(&mut self) {
+        self.right = vec![[0.0; L]; self.costs.len()];
+        self.down = self.right.clone();
     }
 
     /// Messages from the level above. They are a start and nothing more: any messages keep the bound valid.
     fn inherit(&mut self, coarser: &Self) {
-        for y in 0..self.height {
-            for x in 0..self.width {
-                let (p, q) = (y * self.width + x, (y / 2) * coarser.width + x / 2);
-                let none = [0.0; L];
-                self.right[p] = if x + 1 < self.width { coarser.right[q].map(|m| 0.5 * m) } else { none };
-                self.down[p] = if y + 1 < self.height { coarser.down[q].map(|m| 0.5 * m) } else { none };
+        let none = [0.0; L];
+        let half = |m: &[f32; L]| m.map(|m| 0.5 * m);
+        for (messages, of_coarser) in [(&mut self.right, &coarser.right), (&mut self.down, &coarser.down)] {
+            messages.reserve_exact(self.width * self.height);
+            for y in 0..self.height {
+                let row = &of_coarser[y / 2 * coarser.width..][..coarser.width];
+                let both = row.iter().flat_map(|m| [half(m); 2]);
+                messages.extend(both.take(self.width));
             }
         }
+        // None leads out of the grid.
+        self.right.chunks_exact_mut(self.width).for_each(|row| row[self.width - 1] = none);
+        self.down[(self.height - 1) * self.width..].fill(none);
     }
 
     /// Share of a pixel's costs that goes along with a message: one over the number of chains through the pixel.

@@ -55,10 +55,8 @@ impl Potts<'_> {
 
     /// The cost of pixel p under a label, cut to ±[`FORBIDDEN`].
     #[inline]
-    #[allow(clippy::manual_clamp)] // `clamp` would let NaN through
     pub(super) fn cost(&self, label: usize, p: usize) -> f32 {
-        // `min` takes the number where the other side is NaN.
-        self.costs[label].values()[p].min(FORBIDDEN).max(-FORBIDDEN)
+        allowed(self.costs[label].values()[p])
     }
 
     /// Energy of a labelling.
@@ -94,6 +92,14 @@ impl Potts<'_> {
             })
             .collect()
     }
+}
+
+/// A cost cut to ±[`FORBIDDEN`]; NaN is forbidden.
+#[inline(always)]
+#[allow(clippy::manual_clamp)] // `clamp` would let NaN through
+pub(super) fn allowed(cost: f32) -> f32 {
+    let cost = if cost < FORBIDDEN { cost } else { FORBIDDEN };
+    if cost > -FORBIDDEN { cost } else { -FORBIDDEN }
 }
 
 /// Minimises the energy: one label per pixel, row by row. `init`, where given, is where [`Solver::Expansion`] starts and

@@ -6,7 +6,7 @@
 
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::lanes::{each, each_with};
+use crate::frame::lanes::each_with;
 
 /// Radius of the filter's windows, full-size pixels.
 const RADIUS: usize = 4;
@@ -165,29 +165,35 @@ impl Patch {
     /// border as its border. The patch must reach RADIUS pixels beyond the area wherever the frame does.
     fn box_mean(&self, area: Area, (width, height): (usize, usize)) -> Patch {
         const WEIGHT: f32 = 1.0 / (2 * RADIUS + 1) as f32;
+        const { assert!(RADIUS == 4, "sums of nine are made below") };
         // Columns of the patch that the area's windows touch.
         let touched = area.grown(RADIUS, width, height).columns;
         let skipped = touched.start - self.area.columns.start;
         let left = RADIUS - (area.columns.start - touched.start);
         let right = (area.columns.end + RADIUS).saturating_sub(width);
+        let mut sums = vec![0.0f32; touched.len()];
         let mut padded = vec![0.0f32; left + touched.len() + right];
+        let (mut two, mut four) = (padded.clone(), padded.clone());
         let mut mean = Patch { values: vec![0.0; area.width() * area.height()], area };
+        let top = mean.area.rows.start;
         for y in mean.area.rows.clone() {
-            let middle = &mut padded[left..left + touched.len()];
-            middle.fill(0.0);
-            for k in 0..=2 * RADIUS {
-                let row = &self.row((y + k).saturating_sub(RADIUS).min(height - 1))[skipped..];
-                each_with(middle, [row], |m, [v]| m + v);
+            let row = |y: usize| &self.row(y.saturating_sub(RADIUS).min(height - 1))[skipped..];
+            if y == top {
+                (0..=2 * RADIUS).for_each(|k| each_with(&mut sums, [row(y + k)], |s, [v]| s + v));
+            } else {
+                // Of the window of the row above one row goes and one comes.
+                each_with(&mut sums, [row(y + 2 * RADIUS), row(y - 1)], |s, [comes, goes]| s + (comes - goes));
             }
-            each(middle, |m| m * WEIGHT);
+            let middle = &mut padded[left..left + touched.len()];
+            each_with(middle, [&sums], |_, [s]| s * WEIGHT);
             let (first, last) = (padded[left], padded[left + touched.len() - 1]);
             padded[..left].fill(first);
             padded[left + touched.len()..].fill(last);
-            let row = mean.row_mut(y);
-            for k in 0..=2 * RADIUS {
-                each_with(row, [&padded[k..]], |m, [v]| m + v);
-            }
-            each(row, |m| m * WEIGHT);
+            // Nine neighbours: four and four, each two and two, and one.
+            each_with(&mut two, [&padded, &padded[1..]], |_, [a, b]| a + b);
+            each_with(&mut four, [&two, &two[2..]], |_, [a, b]| a + b);
+            let nine = |_, [a, b, c]: [f32; 3]| (a + b + c) * WEIGHT;
+            each_with(mean.row_mut(y), [&four, &four[4..], &padded[8..]], nine);
         }
         mean
     }

@@ -41,7 +41,7 @@ pub(crate) fn most_where_hidden(label: usize, departure: f32) -> f32 {
 
 /// For every motion the pixels at which it need not pay, as [`with_visibility`] has it.
 pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Vec<bool>> {
-    let landed: Vec<Plane> = (0..motions.len()).map(|k| moved_mask(level, &motions[k], labels, k)).collect();
+    let landed = landed(level, motions, labels);
     let hidden = |k: usize| {
         let covered = covered(level, &motions[k], &landed, k);
         covered.values().iter().zip(labels).map(|(covered, label)| *covered > 0.5 && (k == 0 || *label != 0)).collect()
@@ -51,15 +51,19 @@ pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8
 
 /// Pixels of the dominant motion that it moves behind an object.
 pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<bool> {
-    let landed: Vec<Plane> = (0..motions.len()).map(|k| moved_mask(level, &motions[k], labels, k)).collect();
-    let covered = covered(level, &motions[0], &landed, 0);
+    let covered = covered(level, &motions[0], &landed(level, motions, labels), 0);
     covered.values().iter().zip(labels).map(|(&covered, &label)| label == 0 && covered > 0.5).collect()
 }
 
+/// The masks of all objects where they are in the second frame, with their labels.
+fn landed(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<(usize, Plane)> {
+    (1..motions.len()).map(|k| (k, moved_mask(level, &motions[k], labels, k))).collect()
+}
+
 /// How much of the place that a motion moves each pixel to is covered by objects other than `own`, 0…1.
-fn covered(level: &Level, motion: &AffineMotion, landed: &[Plane], own: usize) -> Plane {
+fn covered(level: &Level, motion: &AffineMotion, landed: &[(usize, Plane)], own: usize) -> Plane {
     let mut cover = Plane::filled(level.width(), level.height(), 0.0);
-    for (_, mask) in landed.iter().enumerate().skip(1).filter(|&(other, _)| other != own) {
+    for (_, mask) in landed.iter().filter(|(other, _)| *other != own) {
         each_with(cover.values_mut(), [mask.values()], |c, [m]| if m > c { m } else { c });
     }
     warp(&cover, &level.scaled(motion))

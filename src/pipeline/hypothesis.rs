@@ -2,7 +2,7 @@
 
 use super::Work;
 use super::settings::{Part, Settings};
-use crate::alignment::cost::{CostModel, cost, total};
+use crate::alignment::cost::total;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
@@ -12,9 +12,10 @@ use crate::proposal::tiles::from_tiles;
 use crate::random::Random;
 use crate::selection::{Deflation, Layer, add_motions, fine_proposals, prune, refit, smallest_cost};
 
-/// No motion is a hypothesis of its own as long as it costs no more than this many times what the dominant motion costs: where much
-/// of the frame is flat, one motion bent over several objects can explain more than the background that stands still.
-const PLAUSIBLE: f64 = 1.5;
+/// "Nothing but objects moves" is a hypothesis of its own only where standing still, added to the motions found beside the dominant one,
+/// brings the cost below this share: where much of the frame is flat, one motion bent over several objects can explain more than the
+/// background that stands still, and then much of the background is explained by nothing else.
+const MISSING: f64 = 0.95;
 /// It wins only where all motions together then cost less than this share of what they cost beside the dominant motion: a background
 /// that moves by less than a pixel costs about as much at rest, with a motion more.
 const CLEARLY: f64 = 0.9;
@@ -45,16 +46,22 @@ pub(super) fn best(
     stages: &mut Stages<'_>,
 ) -> Found {
     let (mut winner, least) = with_dominant(work, dominant, None, settings, random, stages);
-    let base = &work.levels[work.base];
-    let alone = |motion: &AffineMotion| total(&cost(base, motion, CostModel::ESTIMATION));
     let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
-    if other && alone(&AffineMotion::STATIC) < PLAUSIBLE * alone(&dominant) {
+    if other && rest_is_missing(&work.levels[work.selection], &winner.layers) {
         let (found, cost) = with_dominant(work, AffineMotion::STATIC, Some(dominant), settings, random, stages);
         if cost < CLEARLY * least {
             winner = found;
         }
     }
     winner
+}
+
+/// Whether standing still explains much that no layer does.
+fn rest_is_missing(level: &Level, layers: &[Layer]) -> bool {
+    let found = smallest_cost(layers);
+    let mut with_rest = found.clone();
+    Layer::new(level, AffineMotion::STATIC).lower(&mut with_rest);
+    total(&with_rest) < MISSING * total(&found)
 }
 
 /// Motions under one hypothesis, and what they cost.

@@ -264,10 +264,10 @@ fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], firs
             let left = boxes[k][0];
             let path = RowPath::new(motion, left, y);
             for (part, values) in first.row(y)[columns.clone()].chunks(CHUNK).enumerate() {
-                at.follow(&path, columns.start - left + part * CHUNK, width, height);
-                at.sample(second.values(), &mut samples[..values.len()]);
-                let seen = values.iter().zip(&samples).zip(&at.inside);
-                for ((value, sample), _) in seen.filter(|(_, inside)| **inside) {
+                at.follow(&path, columns.start - left + part * CHUNK, values.len(), width, height);
+                at.sample(second.values(), &mut samples);
+                let seen = values.iter().zip(&samples).enumerate();
+                for (_, (value, sample)) in seen.filter(|(k, _)| at.is_inside(*k)) {
                     let difference = f64::from(sample - value);
                     *sum += difference * difference;
                     *count += 1;

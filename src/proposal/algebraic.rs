@@ -80,11 +80,11 @@ fn unexplained(
         let path = RowPath::new(&scaled, 0, y);
         for start in (0..width).step_by(CHUNK) {
             let chunk = start..(start + CHUNK).min(width);
-            at.follow(&path, start, width, height);
-            at.sample(level.second.values(), &mut seen[..chunk.len()]);
-            for (x, (&inside, seen)) in chunk.zip(at.inside.iter().zip(&seen)) {
+            at.follow(&path, start, chunk.len(), width, height);
+            at.sample(level.second.values(), &mut seen);
+            for (k, (x, seen)) in chunk.zip(&seen).enumerate() {
                 let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));
-                if !inside || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
+                if !at.is_inside(k) || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
                     continue;
                 }
                 let r = seen - level.first.at(x, y);

@@ -57,9 +57,9 @@ pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Pla
                 px[k] = x as f32 + du as f32 + u[k];
                 py[k] = y as f32 + dv as f32 + v[k];
             }
-            at.place(&px, &py, width, height);
+            at.place(&px, &py, n, width, height);
             for (seen, plane) in seen.iter_mut().zip([&level.second_dx, &level.second_dy, &level.second]) {
-                at.sample(plane.values(), &mut seen[..n]);
+                at.sample(plane.values(), seen);
             }
             let mean = |out: &mut Plane, first: &Plane, second: &[f32; CHUNK]| {
                 let out = &mut out.row_mut(y)[chunk.clone()];

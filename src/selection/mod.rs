@@ -31,13 +31,16 @@ impl Layer {
     pub(crate) fn new(level: &Level, motion: AffineMotion) -> Layer {
         Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32) }
     }
+
+    /// Lowers a cost to the layer's wherever that is smaller.
+    pub(crate) fn lower(&self, cost: &mut Plane) {
+        each_with(cost.values_mut(), [self.cost.values()], |s, [c]| if c < s { c } else { s });
+    }
 }
 
 /// The smallest cost of any layer at every pixel.
 pub(crate) fn smallest_cost(layers: &[Layer]) -> Plane {
     let mut smallest = layers[0].cost.clone();
-    for layer in &layers[1..] {
-        each_with(smallest.values_mut(), [layer.cost.values()], |s, [c]| if c < s { c } else { s });
-    }
+    layers[1..].iter().for_each(|layer| layer.lower(&mut smallest));
     smallest
 }
