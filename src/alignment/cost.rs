@@ -43,8 +43,9 @@ impl CostModel {
 
     #[inline(always)]
     fn of(self, residual: f32, variance: f32) -> f32 {
-        let e = residual * residual / variance;
-        e / (1.0 + e / self.truncation)
+        // e / (1 + e/T) with a single division by anything but T.
+        let square = residual * residual;
+        square / (variance + square * (1.0 / self.truncation))
     }
 
     /// Cost of a pixel whose displaced position lies outside: it says nothing.

@@ -252,11 +252,11 @@ impl RowBuffers {
             let [weights_of, residuals_of, gx_of, gy_of] = &mut row;
             for k in 0..CHUNK {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
-                let variance = noise + looseness * energy[k];
-                let robust = how.robustness / (how.robustness + residual * residual / variance);
+                let information = 1.0 / (noise + looseness * energy[k]);
+                let robust = how.robustness / (how.robustness + residual * residual * information);
                 let counts = at.inside(k) & if given[k] > 1e-3 { u32::MAX } else { 0 };
                 let counted = |value: f32| f32::from_bits(value.to_bits() & counts);
-                weights_of[k] = counted(given[k] / variance * robust * robust);
+                weights_of[k] = counted(given[k] * information * robust * robust);
                 gx_of[k] = counted(half * (dx[k] + second_dx[k]));
                 gy_of[k] = counted(half * (dy[k] + second_dy[k]));
                 residuals_of[k] = counted(residual);

@@ -89,7 +89,7 @@ impl Borders {
         corner: [usize; 2],
     ) {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
-        let price = Price { smoothness: coherence.smoothness, step: SMALLEST_STEP.max(NOISE_STEPS * noise) };
+        let price = Price { smoothness: coherence.smoothness, per_step: 1.0 / SMALLEST_STEP.max(NOISE_STEPS * noise) };
         let places = area.columns.start - corner[0]..area.columns.end - corner[0];
         for y in area.rows.clone() {
             let start = y * width;
@@ -116,8 +116,8 @@ impl Borders {
 /// The price of a border by the step between the two pixels beside it.
 struct Price {
     smoothness: f32,
-    /// Grey levels at which all but a 1/e of what an edge takes off is off.
-    step: f32,
+    /// One over the grey levels at which all but a 1/e of what an edge takes off is off.
+    per_step: f32,
 }
 
 impl Price {
@@ -130,7 +130,7 @@ impl Price {
                 let (dr, dg, db) = (red[k] - r[k], green[k] - g[k], blue[k] - l[k]);
                 let (grey, colour) = ((a[k] - b[k]).abs(), COLOUR_SHARE * (dr * dr + dg * dg + db * db).sqrt());
                 let step = if colour > grey { colour } else { grey };
-                chunk[k] = self.smoothness * (EDGE_SHARE + (1.0 - EDGE_SHARE) * fading(step / self.step));
+                chunk[k] = self.smoothness * (EDGE_SHARE + (1.0 - EDGE_SHARE) * fading(step * self.per_step));
             }
             prices.copy_from_slice(&chunk[..prices.len()]);
         }
@@ -141,7 +141,7 @@ impl Price {
 #[inline(always)]
 fn fading(z: f32) -> f32 {
     let t = z / 16.0;
-    let f = 1.0 / (1.0 + t * (1.0 + t * (0.5 + t / 6.0)));
+    let f = 1.0 / (1.0 + t * (1.0 + t * (0.5 + t * (1.0 / 6.0))));
     let f = f * f;
     let f = f * f;
     let f = f * f;

@@ -86,7 +86,7 @@ struct Windows {
 fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
     let mut weight = s.residual.clone();
-    each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| 1.0 / (noise + r * r / 9.0 + 0.02 * energy));
+    each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| 1.0 / (noise + r * r * (1.0 / 9.0) + 0.02 * energy));
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();
         each_with(product.values_mut(), [a.values(), b.values()], |p, [a, b]| p * (a * b));
