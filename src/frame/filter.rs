@@ -20,12 +20,12 @@ pub(crate) fn gaussian(plane: &Plane, sigma: f32) -> Plane {
 
 /// Separable symmetric filter; `weights[k]` belongs to the two neighbours at distance k.
 fn symmetric(plane: &Plane, weights: &[f32]) -> Plane {
-    let mut out = Vec::with_capacity(plane.values().len());
+    let mut out = Plane::filled(plane.width(), plane.height(), 0.0);
     let mut filter = RowFilter::new(plane.width(), weights);
     for y in 0..plane.height() {
-        filter.append_row(plane, y, &mut out);
+        filter.row(plane, y, out.row_mut(y));
     }
-    Plane::from_vec(plane.width(), plane.height(), out)
+    out
 }
 
 /// A separable symmetric filter, a row at a time.
@@ -40,44 +40,41 @@ struct RowFilter<'a> {
 impl<'a> RowFilter<'a> {
     fn new(width: usize, weights: &'a [f32]) -> Self {
         let radius = weights.len() - 1;
-        RowFilter { weights, places: vec![[0; 2]; radius], padded: Vec::with_capacity(width + 2 * radius) }
+        RowFilter { weights, places: vec![[0; 2]; radius], padded: vec![0.0; width + 2 * radius] }
     }
 
-    /// Appends row y of the filtered plane.
-    fn append_row(&mut self, plane: &Plane, y: usize, out: &mut Vec<f32>) {
+    /// Row y of the filtered plane.
+    fn row(&mut self, plane: &Plane, y: usize, out: &mut [f32]) {
         let (width, height, radius) = (plane.width(), plane.height(), self.weights.len() - 1);
         for (k, place) in self.places.iter_mut().enumerate() {
             *place = [y.saturating_sub(k + 1) * width, (y + k + 1).min(height - 1) * width];
         }
-        self.padded.clear();
-        self.padded.resize(radius, 0.0);
-        append_sums(plane.values(), y * width, &self.places, self.weights, width, &mut self.padded);
-        let (first, last) = (self.padded[radius], self.padded[radius + width - 1]);
+        let middle = &mut self.padded[radius..radius + width];
+        write_sums(plane.values(), y * width, &self.places, self.weights, middle);
+        let (first, last) = (middle[0], middle[width - 1]);
         self.padded[..radius].fill(first);
-        self.padded.resize(width + 2 * radius, last);
+        self.padded[radius + width..].fill(last);
         for (k, place) in self.places.iter_mut().enumerate() {
             *place = [radius - k - 1, radius + k + 1];
         }
-        append_sums(&self.padded, radius, &self.places, self.weights, width, out);
+        write_sums(&self.padded, radius, &self.places, self.weights, out);
     }
 }
 
-/// Appends `weights[0] v[centre + x] + Σ_k weights[k] (v[places[k−1][0] + x] + v[places[k−1][1] + x])` for `count` x from 0 on,
-/// summed in that order.
-fn append_sums(
-    values: &[f32],
-    centre: usize,
-    places: &[[usize; 2]],
-    weights: &[f32],
-    count: usize,
-    out: &mut Vec<f32>,
-) {
-    let whole = count - count % BLOCK;
-    for x in (0..whole).step_by(BLOCK) {
-        out.extend_from_slice(&weighted_block::<BLOCK>(values, centre + x, x, places, weights));
+/// `out[x] = weights[0] v[centre + x] + Σ_k weights[k] (v[places[k−1][0] + x] + v[places[k−1][1] + x])`, summed in that order.
+fn write_sums(values: &[f32], centre: usize, places: &[[usize; 2]], weights: &[f32], out: &mut [f32]) {
+    let count = out.len();
+    if count < BLOCK {
+        for (x, out) in out.iter_mut().enumerate() {
+            [*out] = weighted_block(values, centre + x, x, places, weights);
+        }
+        return;
     }
-    for x in whole..count {
-        out.extend_from_slice(&weighted_block::<1>(values, centre + x, x, places, weights));
+    for x in (0..count).step_by(BLOCK) {
+        // The last block overlaps the one before.
+        let x = x.min(count - BLOCK);
+        let block: [f32; BLOCK] = weighted_block(values, centre + x, x, places, weights);
+        out[x..x + BLOCK].copy_from_slice(&block);
     }
 }
 
@@ -110,10 +107,9 @@ pub(crate) fn halve(plane: &Plane) -> Plane {
     let (width, height) = (plane.width().div_ceil(2), plane.height().div_ceil(2));
     let mut filter = RowFilter::new(plane.width(), &[6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);
     let mut half = Vec::with_capacity(width * height);
-    let mut smooth = Vec::with_capacity(plane.width());
+    let mut smooth = vec![0.0; plane.width()];
     for y in 0..height {
-        smooth.clear();
-        filter.append_row(plane, 2 * y, &mut smooth);
+        filter.row(plane, 2 * y, &mut smooth);
         half.extend(smooth.iter().step_by(2));
     }
     Plane::from_vec(width, height, half)

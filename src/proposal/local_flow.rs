@@ -5,7 +5,7 @@
 
 use crate::frame::Plane;
 use crate::frame::filter::{double, gaussian, median5};
-use crate::frame::lanes::{each_with, whole};
+use crate::frame::lanes::{each_with, parts, whole};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
@@ -86,7 +86,9 @@ struct Windows {
 fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
     let mut weight = s.residual.clone();
-    each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| 1.0 / (noise + r * r * (1.0 / 9.0) + 0.02 * energy));
+    each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| {
+        1.0 / (noise + r * r * (1.0 / 9.0) + 0.02 * energy)
+    });
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();
         each_with(product.values_mut(), [a.values(), b.values()], |p, [a, b]| p * (a * b));
@@ -129,17 +131,22 @@ pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize)
 }
 
 fn step(u: &mut Plane, v: &mut Plane, s: &Windows) {
-    let n = u.values().len();
-    let (u, v) = (&mut u.values_mut()[..n], &mut v.values_mut()[..n]);
-    let [xx, xy, yy, xr, yr] = [&s.xx, &s.xy, &s.yy, &s.xr, &s.yr].map(|plane| &plane.values()[..n]);
-    for k in 0..n {
-        let (a, c, d) = (xx[k] + FLAT, xy[k], yy[k] + FLAT);
-        let (p, q) = (xr[k], yr[k]);
-        let determinant = a * d - c * c;
-        let (du, dv) = ((c * q - d * p) / determinant, (c * p - a * q) / determinant);
-        let shorten = ((du * du + dv * dv).sqrt() / LONGEST_STEP).max(1.0);
-        u[k] += du / shorten;
-        v[k] += dv / shorten;
+    let sums = [&s.xx, &s.xy, &s.yy, &s.xr, &s.yr].map(Plane::values);
+    let flows = u.values_mut().chunks_mut(CHUNK).zip(v.values_mut().chunks_mut(CHUNK));
+    for (k, (u, v)) in flows.enumerate() {
+        let [xx, xy, yy, xr, yr] = parts::<CHUNK, 5>(sums, k * CHUNK);
+        let (mut by_u, mut by_v) = ([0.0; CHUNK], [0.0; CHUNK]);
+        for k in 0..CHUNK {
+            let (a, c, d) = (xx[k] + FLAT, xy[k], yy[k] + FLAT);
+            let (p, q) = (xr[k], yr[k]);
+            let per_determinant = 1.0 / (a * d - c * c);
+            let (du, dv) = ((c * q - d * p) * per_determinant, (c * p - a * q) * per_determinant);
+            let length = (du * du + dv * dv).sqrt();
+            let shorten = if length > LONGEST_STEP { LONGEST_STEP / length } else { 1.0 };
+            (by_u[k], by_v[k]) = (du * shorten, dv * shorten);
+        }
+        each_with(u, [&by_u], |u, [by]| u + by);
+        each_with(v, [&by_v], |v, [by]| v + by);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every motion refined on the pixels where it wins.
 
 use super::Layer;
-use crate::alignment::cost::Photometric;
+use crate::alignment::cost::{Photometric, total};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::{eroded, gaussian};
@@ -40,7 +40,9 @@ pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
 }
 
 fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
-    cost.values().iter().zip(weights.values()).map(|(c, w)| f64::from(c * w)).sum()
+    let mut weighted = cost.clone();
+    each_with(weighted.values_mut(), [weights.values()], |c, [w]| c * w);
+    total(&weighted)
 }
 
 /// Weights of the pixels where layer `k` is cheapest, its border taken off and softened.
