@@ -6,7 +6,8 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
 use veronese::{
-    Error, Frame, MAX_MOTIONS, MotionCount, Quality, SegmentOptions, Segmentation, UNLABELLED, segment_pair,
+    AffineMotion, Error, Frame, MAX_MOTIONS, MotionCount, Quality, SegmentOptions, Segmentation, UNLABELLED,
+    segment_pair,
 };
 
 fn segment(first: &Frame, second: &Frame, options: SegmentOptions) -> Segmentation {
@@ -127,6 +128,17 @@ fn the_leader_and_the_follower_are_two() {
         told_apart += usize::from(result.count == 3 && mean(&overlaps(&scene, &result.labels)) > 0.85);
     }
     assert!(told_apart >= 4, "{told_apart} of 5");
+}
+
+/// One motion bent over all cars explains more than the bare ground does at rest, until the cars have motions of their own.
+#[test]
+fn a_bare_ground_is_left_at_rest_by_the_cars_on_it() {
+    for seed in [1, 2] {
+        let scene = scene::bare_ground(seed).unwrap();
+        let result = segment(scene.first(), scene.second(), SegmentOptions::default());
+        assert_eq!(result.motions[0].matrix, AffineMotion::STATIC, "seed {seed}");
+        assert!(mean(&overlaps(&scene, &result.labels)) > 0.9, "seed {seed}: {:?}", overlaps(&scene, &result.labels));
+    }
 }
 
 fn textured(width: usize, height: usize, shift: f64) -> Frame {
