@@ -133,6 +133,29 @@ fn the_robots_are_small_and_move_alike() {
 }
 
 #[test]
+fn a_bare_ground_is_nearly_even_and_its_cars_are_not() {
+    for seed in [4, 5] {
+        let scene = scene::bare_ground(seed).unwrap();
+        let (width, height) = (scene.first().width(), scene.first().height());
+        assert_eq!((width, height, scene.motions.len()), (384, 216, 3 + (seed % 2) as usize));
+        assert_eq!(scene.motions[0], AffineMotion::STATIC);
+        // Share of the pixels of a label with a step of more than twelve grey levels beside them: ten standard deviations of the noise.
+        let luminance = scene.first().luminance();
+        let steep = |label: u8| {
+            let inner = |p: usize| (scene.labels[p], scene.labels[p + 2]) == (label, label);
+            let pixels: Vec<usize> = (0..width * height - 2).filter(|&p| p % width < width - 2 && inner(p)).collect();
+            let step = |p: usize| (luminance.values()[p + 2] - luminance.values()[p]).abs();
+            pixels.iter().filter(|&&p| step(p) > 12.0).count() as f64 / pixels.len() as f64
+        };
+        assert!(steep(0) < 0.02, "{}", steep(0));
+        for label in 1..scene.motions.len() as u8 {
+            assert!(steep(label) > 0.04, "car {label}: {}", steep(label));
+        }
+        assert!(residuals(&scene, &scene.motions).iter().all(|r| r.0 < 4.0));
+    }
+}
+
+#[test]
 fn occluded_pixels_are_those_hidden_or_outside() {
     let mut options =
         SceneOptions { speed: Speed::Large, background: Background::Static, seed: 5, ..Default::default() };

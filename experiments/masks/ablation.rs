@@ -25,10 +25,12 @@ const VARIANTS: [(Variant, &str); 15] = [
     (Variant::ThreeFrames, "*with the frame before*"),
 ];
 
-/// One row: the figures of generated scenes and of real pairs.
+/// One row: the figures of generated scenes, of those with a bare ground, and of real pairs.
 pub(crate) struct Worth {
     pub(crate) title: &'static str,
     pub(crate) scenes: Summary,
+    /// The scenes of a bare ground, which need the hypothesis of a static background.
+    pub(crate) bare: Summary,
     /// None where there are no real pairs.
     pub(crate) pairs: Option<Summary>,
 }
@@ -38,24 +40,24 @@ pub(crate) fn variants() -> Vec<Variant> {
     VARIANTS.map(|(variant, _)| variant).to_vec()
 }
 
-/// Whether a case takes part: generated ones of one to four objects, and the real pairs.
+/// Whether a case takes part: generated ones of one to four objects, those with a bare ground, and the real pairs.
 pub(crate) fn takes_part(case: &Case) -> bool {
-    matches!(case.set, Set::Generated | Set::Colour | Set::Pairs)
+    matches!(case.set, Set::Generated | Set::Colour | Set::Bare | Set::Pairs)
 }
 
 /// The rows of the table; none where nothing took part.
 pub(crate) fn worths(measured: &[Measured]) -> Vec<Worth> {
     let mut rows = Vec::new();
     for (k, (variant, title)) in VARIANTS.into_iter().enumerate() {
-        let of = |pairs: bool| {
-            let own = measured.iter().filter(move |one| (one.case.set == Set::Pairs) == pairs);
-            Summary::of(own.filter_map(move |one| one.variants.get(k).map(|outcome| (&one.case, outcome))))
+        let of = |sets: &[Set]| {
+            let own = measured.iter().filter(|one| sets.contains(&one.case.set));
+            Summary::of(own.filter_map(|one| one.variants.get(k).map(|outcome| (&one.case, outcome))))
         };
         // The real pairs have no frame before.
-        let pairs = Some(of(true)).filter(|pairs| pairs.cases > 0 && variant != Variant::ThreeFrames);
-        let scenes = of(false);
-        if scenes.cases > 0 || pairs.is_some() {
-            rows.push(Worth { title, scenes, pairs });
+        let pairs = Some(of(&[Set::Pairs])).filter(|pairs| pairs.cases > 0 && variant != Variant::ThreeFrames);
+        let (scenes, bare) = (of(&[Set::Generated, Set::Colour]), of(&[Set::Bare]));
+        if scenes.cases > 0 || bare.cases > 0 || pairs.is_some() {
+            rows.push(Worth { title, scenes, bare, pairs });
         }
     }
     rows

@@ -17,6 +17,7 @@ const SLOW_SEED: u64 = 42_000;
 const STILL_SEED: u64 = 43_000;
 const LARGE_SEED: u64 = 44_000;
 const ROBOT_SEED: u64 = 45_000;
+const BARE_SEED: u64 = 46_000;
 /// CDnet's codes for shadow, outside the region of interest and unknown.
 const CDNET_VOID: [u8; 3] = [50, 85, 170];
 
@@ -31,6 +32,8 @@ pub(crate) enum Set {
     Large,
     /// The paper's leader and follower.
     Robots,
+    /// Cars on a bare ground that stands still.
+    Bare,
     /// One object that moves 0.3 pixels.
     Slow,
     /// Nothing moves; there is noise.
@@ -44,11 +47,12 @@ pub(crate) enum Set {
 }
 
 impl Set {
-    pub(crate) const ALL: [Set; 9] = [
+    pub(crate) const ALL: [Set; 10] = [
         Set::Generated,
         Set::Colour,
         Set::Large,
         Set::Robots,
+        Set::Bare,
         Set::Slow,
         Set::Still,
         Set::SharedScenes,
@@ -62,6 +66,7 @@ impl Set {
             Set::Colour => "colour",
             Set::Large => "large",
             Set::Robots => "robots",
+            Set::Bare => "bare",
             Set::Slow => "slow",
             Set::Still => "still",
             Set::SharedScenes => "shared-scenes",
@@ -76,6 +81,7 @@ impl Set {
             Set::Colour => "generated, colour, 200 × 150 and 320 × 240",
             Set::Large => "generated, colour, 1280 × 720",
             Set::Robots => "leader and follower (200 × 150)",
+            Set::Bare => "cars on a bare ground (384 × 216)",
             Set::Slow => "one object that moves 0.3 pixels",
             Set::Still => "nothing moves, noise only",
             Set::SharedScenes => "generated beside the project, photographic textures",
@@ -95,6 +101,7 @@ impl Set {
 enum Source {
     Scene(SceneOptions),
     Robots(u64),
+    Bare(u64),
     Folder(PathBuf),
 }
 
@@ -143,6 +150,8 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
         let seed = ROBOT_SEED + k;
         let source = Source::Robots(seed);
         cases.push(Case { name: format!("robots-{seed}"), set: Set::Robots, sub_pixel: false, source });
+        let seed = BARE_SEED + k;
+        cases.push(Case { name: format!("bare-{seed}"), set: Set::Bare, sub_pixel: false, source: Source::Bare(seed) });
     }
     for k in 0..few {
         let size = if k % 2 == 0 { (200, 150) } else { (320, 240) };
@@ -223,6 +232,7 @@ impl Case {
                 format!("{} × {}, {objects}, {speed}, {background} background", options.width, options.height)
             }
             Source::Robots(_) => "200 × 150, leader and follower".into(),
+            Source::Bare(_) => "384 × 216, cars on a bare ground".into(),
             Source::Folder(_) => String::new(),
         }
     }
@@ -232,6 +242,7 @@ impl Case {
         match &self.source {
             Source::Scene(options) => Ok(of_scene(scene::generate(options)?)),
             Source::Robots(seed) => Ok(of_scene(scene::leader_follower(*seed)?)),
+            Source::Bare(seed) => Ok(of_scene(scene::bare_ground(*seed)?)),
             Source::Folder(folder) => {
                 of_folder(folder, self.set).map_err(|error| format!("{}: {error}", folder.display()).into())
             }

@@ -171,10 +171,10 @@ impl Page<'_> {
         let Some(whole) = self.worths.first() else { return };
         let _ = writeln!(
             text,
-            "## What each part is worth\n\nThe pipeline (best) without one part at a time, on {} generated scenes and the real pairs; in \
-             brackets the change.\n\n| without | mean IoU | n right | sub-pixel | F | J, real | J by hand, real | F, real | ms, scenes |\n\
-             |---|---|---|---|---|---|---|---|---|",
-            whole.scenes.cases
+            "## What each part is worth\n\nThe pipeline (best) without one part at a time, on {} generated scenes, the {} of a bare ground and the real \
+             pairs; in brackets the change.\n\n| without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | J, real | J by hand, real | F, real | ms, scenes |\n\
+             |---|---|---|---|---|---|---|---|---|---|",
+            whole.scenes.cases, whole.bare.cases
         );
         for worth in self.worths {
             let first = std::ptr::eq(worth, whole);
@@ -188,6 +188,7 @@ impl Page<'_> {
                 per_cent(s.count_right),
                 cell(s.sub_pixel, w.sub_pixel),
                 cell(s.boundary, w.boundary),
+                cell(worth.bare.miou, whole.bare.miou),
             ];
             match (&worth.pairs, &whole.pairs) {
                 (Some(s), Some(w)) => cells.extend([

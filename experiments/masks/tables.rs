@@ -108,7 +108,7 @@ pub(crate) fn all(measured: &[Measured], ablation: &[Worth], honesty: &Honesty) 
         .iter()
         .map(|worth| {
             json!({
-                "variant": worth.title, "scenes": of_summary(&worth.scenes),
+                "variant": worth.title, "scenes": of_summary(&worth.scenes), "bare": of_summary(&worth.bare),
                 "pairs": worth.pairs.as_ref().map(of_summary),
             })
         })

@@ -30,12 +30,7 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
     let pixels = labels.len();
     let counts = counts(labels, raw.len());
     let borders = border_lengths(labels, raw.len(), width);
-    let mut sums = vec![vec![0.0f64; raw.len()]; raw.len()];
-    for (p, &label) in labels.iter().enumerate() {
-        for (sum, plane) in sums[usize::from(label)].iter_mut().zip(raw) {
-            *sum += f64::from(plane.values()[p]);
-        }
-    }
+    let sums = sums(raw, labels);
     (0..raw.len())
         .map(|k| {
             if k == 0 {
@@ -48,6 +43,17 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
             0.5 * (other - sums[k][k]) - price_of_motion(pixels) - PER_BORDER_PIXEL * borders[k] as f64
         })
         .collect()
+}
+
+/// What every motion (second index) leaves over on the pixels of every label (first).
+pub(crate) fn sums(raw: &[Plane], labels: &[u8]) -> Vec<Vec<f64>> {
+    let mut sums = vec![vec![0.0f64; raw.len()]; raw.len()];
+    for (p, &label) in labels.iter().enumerate() {
+        for (sum, plane) in sums[usize::from(label)].iter_mut().zip(raw) {
+            *sum += f64::from(plane.values()[p]);
+        }
+    }
+    sums
 }
 
 /// Number of pixels of each label.

@@ -8,6 +8,7 @@ pub(crate) mod energy;
 mod expansion;
 pub(crate) mod groups;
 mod max_flow;
+pub(crate) mod merging;
 mod messages;
 mod misfit;
 pub(crate) mod potts;

@@ -30,7 +30,14 @@ fn smallest_part(pixels: usize) -> usize {
     SMALLEST_PART.max((SMALLEST_SHARE * pixels as f64) as usize)
 }
 
-fn aligned_on(level: &Level, motion: &AffineMotion, mask: &Plane, iterations: usize, ridge: f64) -> AffineMotion {
+/// A motion refined on the pixels of a mask.
+pub(super) fn aligned_on(
+    level: &Level,
+    motion: &AffineMotion,
+    mask: &Plane,
+    iterations: usize,
+    ridge: f64,
+) -> AffineMotion {
     let how = Alignment { freedom: Freedom::Affine, iterations, robustness: 4.0, ridge, photometric: false };
     align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
 }

@@ -1,5 +1,5 @@
-//! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion and
-//! split; sharpened at the working size; cleaned.
+//! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion, merged
+//! and split; sharpened at the working size; cleaned.
 
 use super::Work;
 use super::hypothesis::Found;
@@ -9,8 +9,9 @@ use crate::frame::Plane;
 use crate::frame::pyramid::Level;
 use crate::labelling::appearance::{ColourPrices, add_colours};
 use crate::labelling::components::absorb_small;
-use crate::labelling::description::{SMALLEST_SHARE, counts, worth};
+use crate::labelling::description::{SMALLEST_SHARE, counts, price_of_motion, worth};
 use crate::labelling::energy::{Borders, Survey, surveyed};
+use crate::labelling::merging::best_merger;
 use crate::labelling::potts::Solver;
 use crate::labelling::sharpening::{Coarse, Fine, sharpened};
 use crate::labelling::splitting::{split_bodies, split_components};
@@ -57,9 +58,12 @@ pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled 
     let mut draft = Draft::new(work, found, settings);
     draft.solve();
     draft.thin_out();
+    draft.rest();
     draft.see();
+    draft.merge();
     if draft.split() {
         draft.thin_out();
+        draft.merge();
     }
     if work.draft == 0 {
         draft.look(work);
@@ -89,9 +93,14 @@ pub(super) fn borders(work: &Work, index: usize, settings: &Settings) -> Borders
 pub(super) fn left_over(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
     if level.index > 0 {
-        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= COARSE_PIXEL);
+        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= nats_of_pixel(level));
     }
     raw
+}
+
+/// Nats of a pixel beside those of a working pixel.
+fn nats_of_pixel(level: &Level) -> f32 {
+    if level.index > 0 { COARSE_PIXEL } else { 1.0 }
 }
 
 impl<'a> Draft<'a> {
@@ -227,6 +236,51 @@ impl<'a> Draft<'a> {
         self.costs = with_visibility(self.level, &self.motions, &self.survey.costs, &self.labels, departure);
     }
 
+    /// Leaves the background at rest where that takes less to describe: a motion bent over objects on a bare ground is found out once
+    /// the objects have motions of their own, and no motion has no numbers to describe.
+    fn rest(&mut self) {
+        if self.motions[0] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
+            return;
+        }
+        let own = |plane: &Plane| -> f64 {
+            let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| **label == 0);
+            pixels.map(|(cost, _)| f64::from(*cost)).sum()
+        };
+        let still: f64 = left_over(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
+        if 0.5 * (still - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
+            self.motions[0] = AffineMotion::STATIC;
+            self.measure();
+            self.solve();
+            self.thin_out();
+        }
+    }
+
+    /// Joins regions that one motion explains better than two do.
+    fn merge(&mut self) {
+        while self.motions.len() > self.settings.least && self.settings.has(Part::ModelSelection) {
+            let pixel = nats_of_pixel(self.level);
+            let Some(merger) = best_merger(self.level, &self.motions, &self.raw, &self.labels, pixel) else { break };
+            let [kept, gone] = merger.labels;
+            self.motions[kept] = merger.motion;
+            self.motions.remove(gone);
+            for label in &mut self.labels {
+                *label = match usize::from(*label) {
+                    l if l == gone => kept as u8,
+                    l if l > gone => *label - 1,
+                    _ => *label,
+                };
+            }
+            if gone < self.barred.len() {
+                let other = self.barred.remove(gone);
+                self.barred[kept].iter_mut().zip(other).for_each(|(barred, other)| *barred &= other);
+            }
+            self.measure();
+            self.bar();
+            self.uncover();
+            self.solve();
+        }
+    }
+
     /// Splits regions that are several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
         if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
@@ -256,9 +310,16 @@ impl<'a> Draft<'a> {
             let smallest = SMALLEST_REACH >> self.level.index;
             let reach = smallest.max((REACH_SHARE * (sizes[k] as f64).sqrt()) as usize);
             let near = near_label(&self.labels, k as u8, width, height, reach);
-            let pixels = self.survey.costs[k].values_mut().iter_mut().zip(&near);
-            pixels.filter(|(_, near)| !**near).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
             self.barred.push(near.into_iter().map(|near| !near).collect());
+        }
+        self.bar();
+    }
+
+    /// Makes labels dear where they cannot be.
+    fn bar(&mut self) {
+        for (cost, barred) in self.survey.costs.iter_mut().zip(&self.barred) {
+            let pixels = cost.values_mut().iter_mut().zip(barred);
+            pixels.filter(|(_, barred)| **barred).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
         }
     }
 

@@ -73,7 +73,7 @@ pub struct SegmentedMotion {
 pub struct PairEvidence {
     /// Description lengths in nats of both frames, of one motion up to one more than were found; smaller is better. Every number
     /// was tried: for fewer motions the least worthy are taken away one by one, for one more the best motion that was left out is
-    /// added, and labels are solved for those that there are, on a level whose longer side is at most 224 pixels (fast: 160)
+    /// added, and labels are solved for those that there are, on a level whose longer side is at most 224 pixels
     /// unless the frame is narrow, all by the same costs. The stages decide one after another, with more care and not by this
     /// list alone, so that the number found need not be its least.
     pub candidates: Vec<Candidate>,

@@ -16,16 +16,19 @@ pub(super) struct Layer {
     pub(super) shape: Option<(Shape, [f64; 2])>,
 }
 
-/// What is behind everything, with some margin around the frame.
+/// Contrast of a background that is not to be bare, grey levels.
+pub(super) const RICH: f64 = 15.0;
+
+/// What is behind everything, with some margin around the frame; of at least some contrast, where its style has it.
 pub(super) fn background(
     random: &mut Random,
     options: &SceneOptions,
     motion: AffineMotion,
     margin: usize,
-    style: &Style,
+    (style, contrast): (&Style, f64),
 ) -> Layer {
     let (width, height) = (options.width + 2 * margin, options.height + 2 * margin);
-    let texture = textured(random, style, width, height, options.colour, 15.0);
+    let texture = textured(random, style, width, height, options.colour, contrast);
     Layer { motion, texture, offset: [margin as f64; 2], shape: None }
 }
 

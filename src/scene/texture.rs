@@ -47,6 +47,10 @@ impl Style {
     pub(super) const WALLS: Style =
         Style { patches: 1.2, radii: [6.0, 0.7], roughness: 7.0, flat: 0.5, persistence: 1.6 };
 
+    /// Asphalt from afar: nearly even, with a few small marks.
+    pub(super) const BARE: Style =
+        Style { patches: 0.006, radii: [1.5, 0.02], roughness: 1.0, flat: 0.0, persistence: 1.25 };
+
     pub(super) fn draw(random: &mut Random) -> Style {
         [Style::THINGS, Style::GROUND, Style::WALLS][random.below(3)]
     }
