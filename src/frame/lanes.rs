@@ -34,23 +34,14 @@ pub(crate) fn each_with<T: Copy, const N: usize>(values: &mut [T], others: [&[T]
     }
 }
 
-/// A part of a row at the length of an array: itself, or a copy of it with anything behind.
+/// The first values of a part of a row as an array, whose length the compiler knows: in place, or where there are fewer a copy with
+/// anything behind.
 pub(crate) fn whole<'a, const N: usize>(part: &'a [f32], space: &'a mut [f32; N]) -> &'a [f32; N] {
     if let Some(array) = part.first_chunk() {
         return array;
     }
     space[..part.len()].copy_from_slice(part);
     space
-}
-
-/// The next values of several rows from a place on, as arrays of one length; zeros behind the end of a row.
-pub(crate) fn parts<const N: usize, const M: usize>(rows: [&[f32]; M], from: usize) -> [[f32; N]; M] {
-    rows.map(|row| {
-        let part = &row[from.min(row.len())..(from + N).min(row.len())];
-        let mut array = [0.0; N];
-        array[..part.len()].copy_from_slice(part);
-        array
-    })
 }
 
 #[cfg(test)]
@@ -68,6 +59,9 @@ mod tests {
             each_with(&mut values, [&others, &start], |v, [w, s]| v + 2.0 * w - s);
             assert!(values.iter().zip(&start).zip(&others).all(|((v, s), w)| *v == s * s - 1.0 + 2.0 * w - s));
         }
+        let mut space = [9.0; 3];
+        assert_eq!(whole(&[1.0, 2.0, 3.0, 4.0], &mut space), &[1.0, 2.0, 3.0]);
+        assert_eq!(whole(&[1.0], &mut space), &[1.0, 9.0, 9.0]);
         let mut longer = [1.0; 10];
         each_with(&mut longer, [&[2.0; 9]], |v, [w]| v + w);
         assert_eq!(longer[8..], [3.0, 1.0]);

@@ -1,6 +1,7 @@
 //! Is a motion worth its description? An object stays when what it explains better than any other motion pays for six numbers
 //! and a border (minimum description length).
 
+use super::neighbours;
 use crate::frame::Plane;
 
 /// Nats per pixel of border.
@@ -70,19 +71,12 @@ pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
 /// Number of neighbouring pairs of which exactly one has the label.
 fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
     let mut lengths = vec![0; of];
-    let mut pair = |a: u8, b: u8| {
+    neighbours(labels.len(), width, |p, q| {
+        let (a, b) = (labels[p], labels[q]);
         if a != b {
             lengths[usize::from(a)] += 1;
             lengths[usize::from(b)] += 1;
         }
-    };
-    for (p, &label) in labels.iter().enumerate() {
-        if (p + 1) % width != 0 {
-            pair(label, labels[p + 1]);
-        }
-        if p + width < labels.len() {
-            pair(label, labels[p + width]);
-        }
-    }
+    });
     lengths
 }

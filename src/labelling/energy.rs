@@ -9,7 +9,7 @@ use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::lanes::parts;
+use crate::frame::lanes::whole;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::CHUNK;
 use crate::motion::AffineMotion;
@@ -122,9 +122,15 @@ struct Price {
 
 impl Price {
     /// Prices between the pixels of two runs, as far as both go.
-    fn write(&self, one: [&[f32]; 4], other: [&[f32]; 4], prices: &mut [f32]) {
+    fn write<'a>(&self, one: [&'a [f32]; 4], other: [&'a [f32]; 4], prices: &mut [f32]) {
         for (k, prices) in prices.chunks_mut(CHUNK).enumerate() {
-            let [[a, red, green, blue], [b, r, g, l]] = [one, other].map(|run| parts::<CHUNK, 4>(run, k * CHUNK));
+            let mut space = [[0.0; CHUNK]; 8];
+            let [s0, s1, s2, s3, s4, s5, s6, s7] = &mut space;
+            let part = |run: [&'a [f32]; 4], c: usize| &run[c][(k * CHUNK).min(run[c].len())..];
+            let (a, red) = (whole(part(one, 0), s0), whole(part(one, 1), s1));
+            let (green, blue) = (whole(part(one, 2), s2), whole(part(one, 3), s3));
+            let (b, r) = (whole(part(other, 0), s4), whole(part(other, 1), s5));
+            let (g, l) = (whole(part(other, 2), s6), whole(part(other, 3), s7));
             let mut chunk = [0.0; CHUNK];
             for k in 0..CHUNK {
                 let (dr, dg, db) = (red[k] - r[k], green[k] - g[k], blue[k] - l[k]);

@@ -5,6 +5,7 @@
 //! along the whole of its border. A chain of small jumps alone does not join two regions that differ where they really meet: a
 //! limb that moves a little would otherwise tie the whole animal to the ground.
 
+use super::neighbours;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
 
@@ -76,22 +77,14 @@ fn pair(n: usize, i: usize, j: usize) -> usize {
 fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<Vec<f64>> {
     let n = motions.len();
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); n * n];
-    let mut note = |p: usize, q: usize| {
+    neighbours(labels.len(), width, |p, q| {
         let (i, j) = (usize::from(labels[p]), usize::from(labels[q]));
         if i != j && i < n && j < n {
             let (x, y) = ((p % width) as f64, (p / width) as f64);
             let ([u, v], [r, s]) = (motions[i].flow(x, y), motions[j].flow(x, y));
             found[pair(n, i, j)].push(((u - r) * (u - r) + (v - s) * (v - s)).sqrt());
         }
-    };
-    for p in 0..labels.len() {
-        if (p + 1) % width != 0 {
-            note(p, p + 1);
-        }
-        if p + width < labels.len() {
-            note(p, p + width);
-        }
-    }
+    });
     found
 }
 

@@ -6,6 +6,7 @@
 //! would do is therefore asked of one that is refined on both regions together.
 
 use super::description::sums;
+use super::neighbours;
 use super::splitting::aligned_on;
 use crate::alignment::cost::{CostModel, cost_within};
 use crate::frame::Plane;
@@ -65,19 +66,12 @@ pub(crate) fn best_merger(
 /// Which labels are neighbours somewhere, the smaller number first.
 fn touching(labels: &[u8], of: usize, width: usize) -> Vec<Vec<bool>> {
     let mut touching = vec![vec![false; of]; of];
-    let mut pair = |a: u8, b: u8| {
+    neighbours(labels.len(), width, |p, q| {
+        let (a, b) = (labels[p], labels[q]);
         if a != b {
             touching[usize::from(a.min(b))][usize::from(a.max(b))] = true;
         }
-    };
-    for (p, &label) in labels.iter().enumerate() {
-        if (p + 1) % width != 0 {
-            pair(label, labels[p + 1]);
-        }
-        if p + width < labels.len() {
-            pair(label, labels[p + width]);
-        }
-    }
+    });
     touching
 }
 

@@ -20,6 +20,19 @@ pub(crate) mod visibility;
 
 use crate::frame::Plane;
 
+/// Calls `pair` for every two of `count` pixels that lie beside or above each other on a grid `width` wide.
+#[inline(always)]
+pub(crate) fn neighbours(count: usize, width: usize, mut pair: impl FnMut(usize, usize)) {
+    for p in 0..count {
+        if (p + 1) % width != 0 {
+            pair(p, p + 1);
+        }
+        if p + width < count {
+            pair(p, p + width);
+        }
+    }
+}
+
 /// One label's pixels as a plane of ones on zeros.
 pub(crate) fn mask_of(labels: &[u8], label: u8, width: usize, height: usize) -> Plane {
     Plane::from_vec(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())

@@ -5,7 +5,7 @@
 
 use crate::frame::Plane;
 use crate::frame::filter::{double, gaussian, median5};
-use crate::frame::lanes::{each_with, parts, whole};
+use crate::frame::lanes::{each_with, whole};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
@@ -134,7 +134,11 @@ fn step(u: &mut Plane, v: &mut Plane, s: &Windows) {
     let sums = [&s.xx, &s.xy, &s.yy, &s.xr, &s.yr].map(Plane::values);
     let flows = u.values_mut().chunks_mut(CHUNK).zip(v.values_mut().chunks_mut(CHUNK));
     for (k, (u, v)) in flows.enumerate() {
-        let [xx, xy, yy, xr, yr] = parts::<CHUNK, 5>(sums, k * CHUNK);
+        let mut space = [[0.0; CHUNK]; 5];
+        let [s0, s1, s2, s3, s4] = &mut space;
+        let [xx, xy, yy, xr, yr] = sums.map(|sum| &sum[k * CHUNK..]);
+        let (xx, xy, yy) = (whole(xx, s0), whole(xy, s1), whole(yy, s2));
+        let (xr, yr) = (whole(xr, s3), whole(yr, s4));
         let (mut by_u, mut by_v) = ([0.0; CHUNK], [0.0; CHUNK]);
         for k in 0..CHUNK {
             let (a, c, d) = (xx[k] + FLAT, xy[k], yy[k] + FLAT);
