@@ -14,50 +14,57 @@ fn gaussian_weights(sigma: f32) -> Vec<f32> {
 }
 
 /// Gaussian blur of standard deviation `sigma` pixels; a plain copy for σ ≤ 0.
+#[inline(never)]
 pub(crate) fn gaussian(plane: &Plane, sigma: f32) -> Plane {
-    if sigma <= 0.0 { plane.clone() } else { symmetric(plane, &gaussian_weights(sigma)) }
-}
-
-/// Separable symmetric filter; `weights[k]` belongs to the two neighbours at distance k.
-fn symmetric(plane: &Plane, weights: &[f32]) -> Plane {
+    if sigma <= 0.0 {
+        return plane.clone();
+    }
     let mut out = Plane::filled(plane.width(), plane.height(), 0.0);
-    let mut filter = RowFilter::new(plane.width(), weights);
+    let mut filter = RowFilter::gaussian(plane.width(), sigma);
     for y in 0..plane.height() {
         filter.row(plane, y, out.row_mut(y));
     }
     out
 }
 
-/// A separable symmetric filter, a row at a time.
-struct RowFilter<'a> {
-    weights: &'a [f32],
+/// A separable symmetric filter, a row at a time: what needs its result only row by row needs no plane of it.
+pub(crate) struct RowFilter {
+    /// `weights[k]` belongs to the two neighbours at distance k.
+    weights: Vec<f32>,
     /// Where the values at distance k on both sides begin.
     places: Vec<[usize; 2]>,
     /// A row after the vertical filter, continued on both sides.
     padded: Vec<f32>,
 }
 
-impl<'a> RowFilter<'a> {
-    fn new(width: usize, weights: &'a [f32]) -> Self {
+impl RowFilter {
+    /// For planes of a width.
+    fn new(width: usize, weights: Vec<f32>) -> Self {
         let radius = weights.len() - 1;
         RowFilter { weights, places: vec![[0; 2]; radius], padded: vec![0.0; width + 2 * radius] }
     }
 
+    /// Gaussian blur of standard deviation `sigma` > 0 pixels.
+    pub(crate) fn gaussian(width: usize, sigma: f32) -> Self {
+        Self::new(width, gaussian_weights(sigma))
+    }
+
     /// Row y of the filtered plane.
-    fn row(&mut self, plane: &Plane, y: usize, out: &mut [f32]) {
+    #[inline(never)]
+    pub(crate) fn row(&mut self, plane: &Plane, y: usize, out: &mut [f32]) {
         let (width, height, radius) = (plane.width(), plane.height(), self.weights.len() - 1);
         for (k, place) in self.places.iter_mut().enumerate() {
             *place = [y.saturating_sub(k + 1) * width, (y + k + 1).min(height - 1) * width];
         }
         let middle = &mut self.padded[radius..radius + width];
-        write_sums(plane.values(), y * width, &self.places, self.weights, middle);
+        write_sums(plane.values(), y * width, &self.places, &self.weights, middle);
         let (first, last) = (middle[0], middle[width - 1]);
         self.padded[..radius].fill(first);
         self.padded[radius + width..].fill(last);
         for (k, place) in self.places.iter_mut().enumerate() {
             *place = [radius - k - 1, radius + k + 1];
         }
-        write_sums(&self.padded, radius, &self.places, self.weights, out);
+        write_sums(&self.padded, radius, &self.places, &self.weights, out);
     }
 }
 
@@ -105,7 +112,7 @@ fn weighted_block<const N: usize>(
 /// Every second pixel after the 5-tap filter [1 4 6 4 1]/16: pixel (x, y) of the result lies at (2x, 2y) of the source.
 pub(crate) fn halve(plane: &Plane) -> Plane {
     let (width, height) = (plane.width().div_ceil(2), plane.height().div_ceil(2));
-    let mut filter = RowFilter::new(plane.width(), &[6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);
+    let mut filter = RowFilter::new(plane.width(), vec![6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);
     let mut half = Vec::with_capacity(width * height);
     let mut smooth = vec![0.0; plane.width()];
     for y in 0..height {

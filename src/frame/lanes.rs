@@ -34,6 +34,12 @@ pub(crate) fn each_with<T: Copy, const N: usize>(values: &mut [T], others: [&[T]
     }
 }
 
+/// Lowers values to others wherever those are smaller, as far as both go.
+#[inline(never)]
+pub(crate) fn lower(values: &mut [f32], others: &[f32]) {
+    each_with(values, [others], |v, [o]| if o < v { o } else { v });
+}
+
 /// The first values of a part of a row as an array, whose length the compiler knows: in place, or where there are fewer a copy with
 /// anything behind.
 pub(crate) fn whole<'a, const N: usize>(part: &'a [f32], space: &'a mut [f32; N]) -> &'a [f32; N] {

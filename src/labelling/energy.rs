@@ -3,13 +3,13 @@
 
 use std::ops::Range;
 
-use super::misfit::{allowed_for, misfit};
+use super::misfit::{Misfit, allow_for_misfit};
 use super::potts::{Potts, Solver, minimise};
 use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::lanes::whole;
+use crate::frame::lanes::{each_with, lower, whole};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::CHUNK;
 use crate::motion::AffineMotion;
@@ -171,34 +171,42 @@ pub(crate) struct Survey {
     pub(crate) misfit: Plane,
 }
 
+/// The misfit is smoothed and used row by row: between the costs of the motions and those of the labels there is no plane but that of
+/// the smallest.
 pub(crate) fn surveyed(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Survey {
     let (mut costs, shares) = costs_in_views(level, motions);
-    let misfit = misfit(&costs);
-    for cost in &mut costs {
-        cost.values_mut().iter_mut().zip(misfit.values()).for_each(|(c, m)| *c = allowed_for(*c, *m));
-    }
-    let seen = cheapest(&costs, f32::INFINITY);
-    for (k, cost) in costs.iter_mut().enumerate() {
-        cost.values_mut().iter_mut().zip(seen.values()).for_each(|(c, seen)| *c = as_label(k, *c, *seen, coherence));
-        if k > 0 {
-            pay_at_the_border(cost, coherence);
+    let mut misfits = Misfit::new(cheapest(&costs, f32::INFINITY));
+    let mut misfit = Plane::filled(level.width(), level.height(), 0.0);
+    let mut seen = vec![0.0; level.width()];
+    for y in 0..level.height() {
+        misfits.write(y, misfit.row_mut(y));
+        seen.fill(f32::INFINITY);
+        for cost in &mut costs {
+            allow_for_misfit(cost.row_mut(y), misfit.row(y));
+            lower(&mut seen, cost.row(y));
+        }
+        for (label, cost) in costs.iter_mut().enumerate() {
+            as_label(label, cost.row_mut(y), &seen, coherence);
         }
     }
+    costs.iter_mut().skip(1).for_each(|cost| pay_at_the_border(cost, coherence));
     Survey { costs, shares, misfit }
 }
 
-/// What a motion costs as a label, where it costs `cost` and the cheapest of those that keep the pixel inside `seen`.
-#[inline(always)]
-pub(crate) fn as_label(label: usize, cost: f32, seen: f32, coherence: Coherence) -> f32 {
+/// Makes costs of a motion at some pixels those of its label, where `seen` is the smallest cost of any motion that keeps a pixel
+/// inside, infinite where none does.
+#[inline(never)]
+pub(crate) fn as_label(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
     let neutral = CostModel::LABELS.outside();
-    let departure = if label == 0 { 0.0 } else { coherence.departure };
-    let cost = match (cost.is_finite(), label, seen.is_finite()) {
-        (true, ..) => cost,
-        (_, _, false) => neutral,
-        (_, 0, true) => seen.min(neutral),
-        (_, _, true) => seen.max(neutral),
+    let (least, most, departure) = match label {
+        0 => (f32::NEG_INFINITY, neutral, 0.0),
+        _ => (neutral, f32::INFINITY, coherence.departure),
     };
-    cost + departure
+    each_with(costs, [seen], |cost, [seen]| {
+        let unseen = if seen < most { seen } else { neutral };
+        let unseen = if unseen > least { unseen } else { neutral };
+        departure + if cost.is_finite() { cost } else { unseen }
+    });
 }
 
 /// What an object pays for a pixel on the frame's border, for each border that it lies on.

@@ -5,10 +5,10 @@
 //! chance. How well the best motion fits around a pixel says by how much the variance is too small; costs are taken again with the
 //! variance that fits. Where the model holds, as it does in most frames nearly everywhere, nothing changes.
 
-use super::views::cheapest;
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
-use crate::frame::filter::gaussian;
+use crate::frame::filter::RowFilter;
+use crate::frame::lanes::{each, each_with};
 
 /// Standard deviation of the window in which the fit is judged, pixels.
 const WINDOW: f32 = 4.0;
@@ -17,35 +17,53 @@ const EXPECTED: f32 = 0.8;
 /// Largest ratio of standard deviations.
 const LARGEST: f32 = 3.0;
 
-/// By how much larger the variance of each pixel is than the noise's, from the labels' costs.
+/// By how much larger than the noise's the variance of each pixel is, a row at a time, from the smallest of the labels' costs.
 ///
 /// The mean of the saturated costs grows about as the standard deviation of the residuals.
-pub(crate) fn misfit(costs: &[Plane]) -> Plane {
-    let mut best = cheapest(costs, f32::INFINITY);
-    best.values_mut().iter_mut().filter(|b| !b.is_finite()).for_each(|b| *b = CostModel::LABELS.outside());
-    let mut misfit = gaussian(&best, WINDOW);
-    for m in misfit.values_mut() {
-        let ratio = (*m / EXPECTED).clamp(1.0, LARGEST);
-        *m = ratio * ratio;
-    }
-    misfit
+pub(crate) struct Misfit {
+    smallest: Plane,
+    window: RowFilter,
 }
 
-/// A cost with the variance that the surroundings ask for: e / (1 + e/T) with e / misfit in place of e. What is infinite stays.
-#[inline(always)]
-pub(crate) fn allowed_for(cost: f32, misfit: f32) -> f32 {
-    let share = cost / CostModel::LABELS.truncation;
-    if cost.is_finite() { cost / (misfit * (1.0 - share) + share) } else { cost }
+impl Misfit {
+    /// Where all motions move a pixel out of every view, the smallest cost is infinite.
+    pub(crate) fn new(mut smallest: Plane) -> Misfit {
+        each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::LABELS.outside() });
+        let window = RowFilter::gaussian(smallest.width(), WINDOW);
+        Misfit { smallest, window }
+    }
+
+    /// That of row y.
+    pub(crate) fn write(&mut self, y: usize, row: &mut [f32]) {
+        self.window.row(&self.smallest, y, row);
+        each(row, |m| {
+            let ratio = (m / EXPECTED).clamp(1.0, LARGEST);
+            ratio * ratio
+        });
+    }
+}
+
+/// Costs with the variance that the surroundings ask for: e / (1 + e/T) with e / misfit in place of e. What is infinite stays.
+#[inline(never)]
+pub(crate) fn allow_for_misfit(costs: &mut [f32], misfit: &[f32]) {
+    each_with(costs, [misfit], |cost, [misfit]| {
+        let share = cost / CostModel::LABELS.truncation;
+        let allowed = cost / (misfit * (1.0 - share) + share);
+        if cost.is_finite() { allowed } else { cost }
+    });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::labelling::views::cheapest;
 
-    fn allow_for_misfit(costs: &mut [Plane]) {
-        let misfit = misfit(costs);
-        for cost in costs {
-            cost.values_mut().iter_mut().zip(misfit.values()).for_each(|(c, m)| *c = allowed_for(*c, *m));
+    fn allow(costs: &mut [Plane]) {
+        let mut misfit = Misfit::new(cheapest(costs, f32::INFINITY));
+        let mut row = vec![0.0; costs[0].width()];
+        for y in 0..costs[0].height() {
+            misfit.write(y, &mut row);
+            costs.iter_mut().for_each(|cost| allow_for_misfit(cost.row_mut(y), &row));
         }
     }
 
@@ -54,7 +72,7 @@ mod tests {
         let plane = |good: f32, bad: f32| Plane::from_fn(80, 40, move |x, _| if x < 40 { good } else { bad });
         let mut costs = [plane(0.4, 1.4), plane(1.9, 1.9)];
         let before = costs.clone();
-        allow_for_misfit(&mut costs);
+        allow(&mut costs);
         for k in 0..2 {
             assert_eq!(costs[k].at(10, 20), before[k].at(10, 20));
         }
@@ -66,7 +84,7 @@ mod tests {
     fn what_is_saturated_or_unseen_stays_so() {
         let mut costs = [Plane::filled(20, 20, CostModel::LABELS.truncation), Plane::filled(20, 20, f32::INFINITY)];
         let before = costs.clone();
-        allow_for_misfit(&mut costs);
+        allow(&mut costs);
         assert_eq!(costs, before);
     }
 }

@@ -6,13 +6,14 @@
 
 use super::appearance::{ColourPrices, Palette};
 use super::energy::{Borders, Coherence, Picture, as_label, border_price};
-use super::misfit::allowed_for;
+use super::misfit::allow_for_misfit;
 use super::potts::Solver;
 use super::views::mixed;
 use super::visibility::most_where_hidden;
 use crate::alignment::cost::{Comparison, CostModel, View};
 use crate::frame::Plane;
 use crate::frame::area::Area;
+use crate::frame::lanes::lower;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -191,51 +192,56 @@ impl<'a> Comparisons<'a> {
     ) {
         let (width, height) = (fine.level.width(), fine.level.height());
         let Area { columns, rows: tile_rows } = &tile.area;
-        let (mut earlier, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]]);
+        let (count, left) = (columns.len(), columns.start);
         let mut rows = vec![[0.0; TILE[0]]; tile.labels.len()];
+        let (mut earlier, mut misfit, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]], [0.0; TILE[0]]);
+        let mut places = [0; TILE[0]];
+        let at_border = border_price(fine.coherence);
         for y in tile_rows.clone() {
+            places.iter_mut().zip(columns.clone()).for_each(|(place, x)| *place = coarse.pixel(x, y));
+            let places = &places[..count];
+            misfit.iter_mut().zip(places).for_each(|(misfit, &p)| *misfit = coarse.misfit.values()[p]);
             seen.fill(f32::INFINITY);
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
-                let row = &mut row[..columns.len()];
+                let row = &mut row[..count];
                 match &self.second[label] {
-                    Some(second) => second.row(y, columns.start, row),
+                    Some(second) => second.row(y, left, row),
                     None => row.fill(f32::INFINITY),
                 }
                 if let (Some(before), Some(shares)) = (&self.before[label], coarse.shares) {
-                    before.row(y, columns.start, &mut earlier[..row.len()]);
-                    for ((c, b), x) in row.iter_mut().zip(&earlier).zip(columns.clone()) {
-                        *c = mixed(*c, *b, shares.values()[coarse.pixel(x, y)]);
+                    before.row(y, left, &mut earlier[..count]);
+                    for ((c, b), &p) in row.iter_mut().zip(&earlier).zip(places) {
+                        *c = mixed(*c, *b, shares.values()[p]);
                     }
                 }
-                for ((c, seen), x) in row.iter_mut().zip(&mut seen).zip(columns.clone()) {
-                    *c = allowed_for(*c, coarse.misfit.values()[coarse.pixel(x, y)]);
-                    *seen = seen.min(*c);
-                }
+                allow_for_misfit(row, &misfit);
+                lower(&mut seen, row);
             }
-            let at_border = border_price(fine.coherence);
-            for (row, &label) in rows.iter().zip(&tile.labels) {
+            for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
-                let most = most_where_hidden(label, fine.coherence.departure);
-                let out = &mut costs[usize::from(number[label])].row_mut(y - corner[1])[columns.start - corner[0]..];
-                for (((out, c), seen), x) in out.iter_mut().zip(row).zip(&seen).zip(columns.clone()) {
-                    let p = coarse.pixel(x, y);
-                    let mut cost = as_label(label, *c, *seen, fine.coherence);
-                    let borders = u8::from(x == 0 || x + 1 == width) + u8::from(y == 0 || y + 1 == height);
-                    if label > 0 {
-                        cost += f32::from(borders) * at_border;
+                let row = &mut row[..count];
+                as_label(label, row, &seen, fine.coherence);
+                if label > 0 {
+                    let across = if y == 0 || y + 1 == height { at_border } else { 0.0 };
+                    for (c, x) in row.iter_mut().zip(columns.clone()) {
+                        *c += across + if x == 0 || x + 1 == width { at_border } else { 0.0 };
                     }
-                    if coarse.barred.get(label).is_some_and(|barred| barred[p]) {
-                        cost += CostModel::ESTIMATION.truncation;
-                    }
-                    if coarse.hidden.get(label).is_some_and(|hidden| hidden[p]) {
-                        cost = cost.min(most);
-                    }
-                    if let Some(colours) = coarse.colours {
-                        cost += colours.of(fine.palette, y * width + x, label);
-                    }
-                    *out = cost;
                 }
+                if let Some(barred) = coarse.barred.get(label) {
+                    let barred = row.iter_mut().zip(places).filter(|(_, p)| barred[**p]);
+                    barred.for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+                }
+                if let Some(hidden) = coarse.hidden.get(label) {
+                    let most = most_where_hidden(label, fine.coherence.departure);
+                    row.iter_mut().zip(places).filter(|(_, p)| hidden[**p]).for_each(|(c, _)| *c = c.min(most));
+                }
+                if let Some(colours) = coarse.colours {
+                    let pixels = row.iter_mut().zip(y * width + left..);
+                    pixels.for_each(|(c, p)| *c += colours.of(fine.palette, p, label));
+                }
+                costs[usize::from(number[label])].row_mut(y - corner[1])[left - corner[0]..][..count]
+                    .copy_from_slice(row);
             }
         }
     }

@@ -6,7 +6,7 @@
 use crate::alignment::cost::{CostModel, View, cost_in};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
-use crate::frame::lanes::each_with;
+use crate::frame::lanes::lower;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -57,7 +57,7 @@ pub(crate) fn cheapest(costs: &[Plane], most: f32) -> Plane {
     let Some(first) = costs.first() else { return Plane::filled(0, 0, 0.0) };
     let mut cheapest = Plane::filled(first.width(), first.height(), most);
     for cost in costs {
-        each_with(cheapest.values_mut(), [cost.values()], |l, [c]| if c < l { c } else { l });
+        lower(cheapest.values_mut(), cost.values());
     }
     cheapest
 }

@@ -11,7 +11,7 @@ pub(crate) use refit::refit;
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
-use crate::frame::lanes::each_with;
+use crate::frame::lanes::lower;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -33,8 +33,9 @@ impl Layer {
     }
 
     /// Lowers a cost to the layer's wherever that is smaller.
+    #[inline(never)]
     pub(crate) fn lower(&self, cost: &mut Plane) {
-        each_with(cost.values_mut(), [self.cost.values()], |s, [c]| if c < s { c } else { s });
+        lower(cost.values_mut(), self.cost.values());
     }
 }
 
