@@ -99,7 +99,7 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
         }
         bound = bound.max(reached);
     }
-    grid.descend(&mut best, 2);
+    problem.descend(&mut best, 2);
     Solution { labels: best, bound }
 }
 
@@ -144,13 +144,10 @@ impl<const L: usize> Grid<L> {
     fn new(problem: &Potts<'_>) -> Self {
         let (width, height) = (problem.width(), problem.height());
         let size = width * height;
-        // Labels that only fill up a vector repeat the first here, so that the loop need not tell them apart.
-        let planes: [&[f32]; L] =
-            std::array::from_fn(|l| &problem.costs[if l < problem.costs.len() { l } else { 0 }].values()[..size]);
-        let cost = |p: usize| std::array::from_fn(|l| allowed(planes[l][p]));
-        let mut costs: Vec<[f32; L]> = (0..size).map(cost).collect();
-        for l in problem.costs.len()..L {
-            costs.iter_mut().for_each(|cost| cost[l] = PADDING);
+        // Labels that only fill up a vector keep their price.
+        let mut costs = vec![[PADDING; L]; size];
+        for (l, plane) in problem.costs.iter().enumerate() {
+            costs.iter_mut().zip(plane.values()).for_each(|(cost, &of_label)| cost[l] = allowed(of_label));
         }
         let (h, v) = (problem.horizontal.values(), problem.vertical.values());
         let mut weights: Vec<[f32; 2]> = h.iter().zip(v).map(|(&h, &v)| [h, v]).collect();
@@ -306,45 +303,6 @@ impl<const L: usize> Grid<L> {
             let (sent, removed) = message(&total, share, &up, self.weights[p - self.width][1]);
             self.down[p - self.width] = sent;
             row.sum += f64::from(removed);
-        }
-    }
-
-    /// Iterated conditional modes: every pixel beside one with another label takes the label that is cheapest given its four
-    /// neighbours, until nothing changes or for `sweeps` sweeps. Never raises the energy.
-    fn descend(&self, labels: &mut [u8], sweeps: usize) {
-        let width = self.width;
-        for _ in 0..sweeps {
-            let mut changed = false;
-            for p in 0..labels.len() {
-                let own = labels[p];
-                let left = if p > 0 { labels[p - 1] } else { own };
-                let up = if p >= width { labels[p - width] } else { own };
-                let right = labels.get(p + 1).copied().unwrap_or(own);
-                let below = labels.get(p + width).copied().unwrap_or(own);
-                if left == own && up == own && right == own && below == own {
-                    continue;
-                }
-                let mut price = self.costs[p];
-                let mut pay = |label: u8, weight: f32| add_change(&mut price, label, weight);
-                // Where there is no neighbour, the weight is zero (of p − 1 at the end of the row above, of p at the last).
-                let [to_right, to_below] = self.weights[p];
-                if p > 0 {
-                    pay(left, self.weights[p - 1][0]);
-                }
-                pay(right, to_right);
-                if p >= width {
-                    pay(up, self.weights[p - width][1]);
-                }
-                pay(below, to_below);
-                let best = first_lowest(&price);
-                if price[best] < price[usize::from(own) % L] {
-                    labels[p] = best as u8;
-                    changed = true;
-                }
-            }
-            if !changed {
-                break;
-            }
         }
     }
 }

@@ -78,6 +78,53 @@ impl Potts<'_> {
         energy
     }
 
+    /// Iterated conditional modes: every pixel beside one with another label takes the label that is cheapest given its four
+    /// neighbours, until nothing changes or for `sweeps` sweeps. Never raises the energy.
+    pub(super) fn descend(&self, labels: &mut [u8], sweeps: usize) {
+        let (width, height) = (self.width(), self.height());
+        let (horizontal, vertical) = (self.horizontal.values(), self.vertical.values());
+        for _ in 0..sweeps {
+            let mut changed = false;
+            for y in 0..height {
+                for x in 0..width {
+                    let p = y * width + x;
+                    let own = labels[p];
+                    let other = |there: bool, q: usize| there && labels[q] != own;
+                    if !(other(x > 0, p.wrapping_sub(1))
+                        || other(x + 1 < width, p + 1)
+                        || other(y > 0, p.wrapping_sub(width))
+                        || other(y + 1 < height, p + width))
+                    {
+                        continue;
+                    }
+                    // Where there is no neighbour, one like the pixel itself that counts for nothing.
+                    let beside = [
+                        if x > 0 { (labels[p - 1], horizontal[p - 1]) } else { (own, 0.0) },
+                        if x + 1 < width { (labels[p + 1], horizontal[p]) } else { (own, 0.0) },
+                        if y > 0 { (labels[p - width], vertical[p - width]) } else { (own, 0.0) },
+                        if y + 1 < height { (labels[p + width], vertical[p]) } else { (own, 0.0) },
+                    ];
+                    let price = |label: u8| {
+                        let borders = beside.iter().map(|&(other, weight)| if other == label { 0.0 } else { weight });
+                        borders.fold(self.cost(usize::from(label), p), |sum, weight| sum + weight)
+                    };
+                    let mut best = (own, price(own));
+                    for label in 0..self.costs.len() as u8 {
+                        let price = price(label);
+                        if price < best.1 {
+                            best = (label, price);
+                        }
+                    }
+                    changed |= best.0 != own;
+                    labels[p] = best.0;
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+    }
+
     /// The cheapest label of every pixel by itself; the first of equals.
     pub(crate) fn cheapest(&self) -> Vec<u8> {
         (0..self.width() * self.height())

@@ -128,54 +128,13 @@ fn trees_are_solved_exactly_by_messages() {
     }
 }
 
-/// Iterated conditional modes: every pixel takes the label that is cheapest given its four neighbours, until nothing
-/// changes or for `sweeps` sweeps. Never raises the energy.
-fn descend(problem: &Potts<'_>, labels: &mut [u8], sweeps: usize) {
-    let (width, height) = (problem.width(), problem.height());
-    let (horizontal, vertical) = (problem.horizontal.values(), problem.vertical.values());
-    for _ in 0..sweeps {
-        let mut changed = false;
-        for y in 0..height {
-            for x in 0..width {
-                let p = y * width + x;
-                let left = if x > 0 { Some((labels[p - 1], horizontal[p - 1])) } else { None };
-                let right = if x + 1 < width { Some((labels[p + 1], horizontal[p])) } else { None };
-                let up = if y > 0 { Some((labels[p - width], vertical[p - width])) } else { None };
-                let down = if y + 1 < height { Some((labels[p + width], vertical[p])) } else { None };
-                let neighbours = [left, right, up, down];
-                let price = |l: u8| {
-                    let mut sum = problem.cost(usize::from(l), p);
-                    for &(other, weight) in neighbours.iter().flatten() {
-                        if other != l {
-                            sum += weight;
-                        }
-                    }
-                    sum
-                };
-                let (mut best, mut lowest) = (labels[p], price(labels[p]));
-                for l in 0..problem.costs.len() as u8 {
-                    let value = price(l);
-                    if value < lowest {
-                        (best, lowest) = (l, value);
-                    }
-                }
-                changed |= best != labels[p];
-                labels[p] = best;
-            }
-        }
-        if !changed {
-            break;
-        }
-    }
-}
-
 #[test]
 fn no_solver_is_worse_than_descent_and_the_bound_holds() {
     for (seed, labels) in [(1, 2), (2, 4), (3, 7), (4, 11)] {
         let grid = scene_like(seed, 70, 51, labels);
         let problem = grid.problem();
         let mut descended = problem.cheapest();
-        descend(&problem, &mut descended, 50);
+        problem.descend(&mut descended, 50);
         let reference = problem.energy(&descended);
         let bound = messages::minimise(&problem, 1, 60).bound;
         for solver in SOLVERS {
