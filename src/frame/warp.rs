@@ -151,6 +151,11 @@ impl Footprints {
         self.inside[..count].iter().fold(u32::MAX, |all, inside| all & inside) != 0
     }
 
+    /// How many of the first `count` positions lie within the plane.
+    pub(crate) fn count_inside(&self, count: usize) -> usize {
+        self.inside[..count].iter().filter(|&&inside| inside != 0).count()
+    }
+
     /// All bits where the k-th position lies within the plane, else none.
     #[inline(always)]
     pub(crate) fn inside(&self, k: usize) -> u32 {

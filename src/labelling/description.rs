@@ -59,10 +59,18 @@ pub(crate) fn sums(raw: &[Plane], labels: &[u8]) -> Vec<Vec<f64>> {
 
 /// Number of pixels of each label.
 pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
+    const PART: usize = 32;
     let mut counts = vec![0; of];
-    for &label in labels {
-        if let Some(count) = counts.get_mut(usize::from(label)) {
-            *count += 1;
+    for part in labels.chunks(PART) {
+        // Most parts have one label.
+        if let Some(count) = counts.get_mut(usize::from(part[0])).filter(|_| part.iter().all(|&l| l == part[0])) {
+            *count += part.len();
+            continue;
+        }
+        for &label in part {
+            if let Some(count) = counts.get_mut(usize::from(label)) {
+                *count += 1;
+            }
         }
     }
     counts

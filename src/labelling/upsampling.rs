@@ -67,9 +67,10 @@ fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner
 
 /// A plane of the working size at full size, enlarged bilinearly without looking at the frame.
 pub(crate) fn enlarged(small: &Plane, width: usize, height: usize) -> Plane {
-    let size = (small.width(), small.height());
-    let scale = factor(size.0, width).max(factor(size.1, height)) as f32;
-    Plane::from_fn(width, height, |x, y| between(size, scale, (x, y), |x, y| small.at(x, y)))
+    let size = [small.width(), small.height()];
+    let scale = factor(size[0], width).max(factor(size[1], height));
+    let patch = Patch::enlarged(Area::whole(width, height), size, scale, |x, y| small.at(x, y));
+    Plane::from_vec(width, height, patch.values)
 }
 
 /// The power of two between two sizes of one side.
@@ -109,26 +110,13 @@ impl Coarse<'_> {
     /// One label's mask, enlarged bilinearly: full pixel X lies at X / 2^k.
     fn mask(&self, label: u8, area: Area) -> Patch {
         let at = |x: usize, y: usize| if self.labels[y * self.width + x] == label { 1.0 } else { 0.0 };
-        let size = (self.width, self.height);
-        Patch::from_fn(area, |x, y| between(size, self.scale as f32, (x, y), at))
+        Patch::enlarged(area, [self.width, self.height], self.scale, at)
     }
 }
 
-/// The value between the four of a small grid that are nearest to a full-size pixel: X lies at X / scale.
-fn between(
-    (width, height): (usize, usize),
-    scale: f32,
-    (x, y): (usize, usize),
-    at: impl Fn(usize, usize) -> f32,
-) -> f32 {
-    let (right, lower) = (width - 1, height - 1);
-    let (px, py) = ((x as f32 / scale).min(right as f32), (y as f32 / scale).min(lower as f32));
-    let (ix, iy) = (px as usize, py as usize);
-    let (fx, fy) = (px - ix as f32, py - iy as f32);
-    let (jx, jy) = ((ix + 1).min(right), (iy + 1).min(lower));
-    let top: f32 = at(ix, iy) + fx * (at(jx, iy) - at(ix, iy));
-    let bottom = at(ix, jy) + fx * (at(jx, jy) - at(ix, jy));
-    top + fy * (bottom - top)
+/// Where a full-size coordinate lies in a grid of a `scale`-th of the size: the last place of the grid before it, and how far beyond.
+fn place(x: usize, scale: usize, size: usize) -> (usize, f32) {
+    if x / scale + 1 >= size { (size - 1, 0.0) } else { (x / scale, (x % scale) as f32 / scale as f32) }
 }
 
 /// Values of the pixels of an area; rows and columns are addressed as in the frame.
@@ -142,6 +130,33 @@ impl Patch {
         let mut values = Vec::with_capacity(area.width() * area.height());
         for y in area.rows.clone() {
             values.extend(area.columns.clone().map(|x| f(x, y)));
+        }
+        Patch { area, values }
+    }
+
+    /// An area at full size from values at a `scale`-th of it, between the four that are nearest: full-size pixel X lies at X / scale.
+    fn enlarged(area: Area, [width, height]: [usize; 2], scale: usize, at: impl Fn(usize, usize) -> f32) -> Patch {
+        // A row of the small grid at the columns of the area.
+        let stretched = |y: usize, row: &mut Vec<f32>| {
+            row.clear();
+            row.extend(area.columns.clone().map(|x| {
+                let (left, share) = place(x, scale, width);
+                let (a, b) = (at(left, y), at((left + 1).min(width - 1), y));
+                a + share * (b - a)
+            }));
+        };
+        let (mut top, mut bottom, mut between) = (Vec::new(), Vec::new(), None);
+        let mut values = Vec::with_capacity(area.width() * area.height());
+        for y in area.rows.clone() {
+            let (upper, share) = place(y, scale, height);
+            if between != Some(upper) {
+                stretched(upper, &mut top);
+                stretched((upper + 1).min(height - 1), &mut bottom);
+                between = Some(upper);
+            }
+            let start = values.len();
+            values.extend_from_slice(&top);
+            each_with(&mut values[start..], [&bottom], |top, [bottom]| top + share * (bottom - top));
         }
         Patch { area, values }
     }

@@ -6,8 +6,9 @@ use super::Work;
 use super::evidence::evidence;
 use super::masks::Labelled;
 use super::settings::{Part, Settings};
-use crate::alignment::cost::{CostModel, cost};
+use crate::alignment::cost::{CostModel, cost, lane_sum};
 use crate::frame::filter::gaussian;
+use crate::frame::lanes::each_with;
 use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
@@ -113,9 +114,10 @@ pub(super) fn report(
     };
     let mut confidence = sure.filter(|_| options.confidence).map(|sure| confidence(&sure, &full, first.width()));
     let order = by_size(&full, labelled.motions.len());
-    let mut rank = vec![0u8; labelled.motions.len()];
+    let mut rank = [0u8; 256];
     order.iter().enumerate().for_each(|(k, &old)| rank[old] = k as u8);
-    let mut labels: Vec<u8> = full.iter().map(|&l| rank[usize::from(l)]).collect();
+    let mut labels = full;
+    labels.iter_mut().for_each(|l| *l = rank[usize::from(*l)]);
     if let Some(unknown) = unknown {
         mark(&mut labels, first.width(), &unknown, size, work.reduction);
     }
@@ -230,52 +232,71 @@ pub(super) fn describe(
     first: &Plane,
     second: &Plane,
 ) -> Vec<SegmentedMotion> {
-    let sizes = counts(labels, motions.len());
+    let tallies = tallies(motions, labels, first, second);
+    let sizes: Vec<usize> = tallies.iter().map(|tally| tally.pixels).collect();
     let group_numbers = number_groups(grouping, &sizes);
-    let boxes = bounding_boxes(labels, motions.len(), first.width());
-    let residuals = residuals(motions, &boxes, labels, first, second);
-    motions
-        .iter()
-        .enumerate()
-        .map(|(k, motion)| SegmentedMotion {
+    let described = motions.iter().zip(&tallies).zip(group_numbers).enumerate();
+    described
+        .map(|(k, ((motion, tally), group))| SegmentedMotion {
             label: k as u8,
             matrix: *motion,
-            pixels: sizes[k],
-            share: sizes[k] as f64 / labels.len() as f64,
-            residual: residuals[k],
-            bbox: boxes[k],
-            group: group_numbers[k],
+            pixels: tally.pixels,
+            share: tally.pixels as f64 / labels.len() as f64,
+            residual: (tally.squares / tally.compared.max(1) as f64).sqrt(),
+            bbox: tally.bounds(),
+            group,
         })
         .collect()
 }
 
-/// Root mean square of the intensity difference along each motion over its pixels.
-fn residuals(motions: &[AffineMotion], boxes: &[[usize; 4]], labels: &[u8], first: &Plane, second: &Plane) -> Vec<f64> {
+/// What is gathered of a motion's pixels.
+struct Tally {
+    pixels: usize,
+    /// First column and row, and one past the last.
+    corners: [usize; 4],
+    /// Sum of the squared intensity differences along the motion …
+    squares: f64,
+    /// … over so many pixels: those that land inside the second frame.
+    compared: usize,
+}
+
+impl Tally {
+    /// x, y, width, height; zeros where there are no pixels.
+    fn bounds(&self) -> [usize; 4] {
+        let [left, top, right, bottom] = self.corners;
+        if self.pixels == 0 { [0; 4] } else { [left, top, right - left, bottom - top] }
+    }
+}
+
+fn tallies(motions: &[AffineMotion], labels: &[u8], first: &Plane, second: &Plane) -> Vec<Tally> {
     let (width, height) = (first.width(), first.height());
-    let mut sums = vec![(0.0, 0usize); motions.len()];
+    let none = |_| Tally { pixels: 0, corners: [usize::MAX, usize::MAX, 0, 0], squares: 0.0, compared: 0 };
+    let mut tallies: Vec<Tally> = motions.iter().map(none).collect();
     let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for (y, row) in labels.chunks_exact(width).enumerate() {
         let mut start = 0;
         for run in row.chunk_by(|a, b| a == b) {
-            let k = usize::from(run[0]);
-            let columns = start..start + run.len();
+            let (k, columns) = (usize::from(run[0]), start..start + run.len());
             start = columns.end;
-            let (Some(motion), Some((sum, count))) = (motions.get(k), sums.get_mut(k)) else { continue };
-            let left = boxes[k][0];
-            let path = RowPath::new(motion, left, y);
-            for (part, values) in first.row(y)[columns.clone()].chunks(CHUNK).enumerate() {
-                at.follow(&path, columns.start - left + part * CHUNK, values.len(), width, height);
+            let (Some(motion), Some(tally)) = (motions.get(k), tallies.get_mut(k)) else { continue };
+            tally.pixels += run.len();
+            let [left, top, right, bottom] = tally.corners;
+            tally.corners = [left.min(columns.start), top.min(y), right.max(columns.end), bottom.max(y + 1)];
+            let path = RowPath::new(motion, columns.start, y);
+            for (part, values) in first.row(y)[columns].chunks(CHUNK).enumerate() {
+                at.follow(&path, part * CHUNK, values.len(), width, height);
                 at.sample(second.values(), &mut samples);
-                let seen = values.iter().zip(&samples).enumerate();
-                for (_, (value, sample)) in seen.filter(|(k, _)| at.is_inside(*k)) {
-                    let difference = f64::from(sample - value);
-                    *sum += difference * difference;
-                    *count += 1;
+                each_with(&mut samples, [values], |sample, [value]| (sample - value) * (sample - value));
+                if !at.all_inside(values.len()) {
+                    let outside = samples.iter_mut().enumerate().filter(|(k, _)| !at.is_inside(*k));
+                    outside.for_each(|(_, square)| *square = 0.0);
                 }
+                tally.squares += f64::from(lane_sum(&samples[..values.len()]));
+                tally.compared += at.count_inside(values.len());
             }
         }
     }
-    sums.into_iter().map(|(sum, count)| (sum / count.max(1) as f64).sqrt()).collect()
+    tallies
 }
 
 /// Groups numbered by decreasing number of pixels.
@@ -289,21 +310,4 @@ fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
     }
     let order = descending(totals.iter().map(|t| t.1 as f64));
     grouping.iter().map(|g| order.iter().position(|&k| totals[k].0 == *g).unwrap_or(0) as u8).collect()
-}
-
-/// x, y, width, height of every label's pixels; zeros where it has none.
-fn bounding_boxes(labels: &[u8], of: usize, width: usize) -> Vec<[usize; 4]> {
-    let mut corners = vec![[usize::MAX, usize::MAX, 0, 0]; of];
-    for (y, row) in labels.chunks_exact(width).enumerate() {
-        let mut start = 0;
-        for run in row.chunk_by(|a, b| a == b) {
-            let end = start + run.len();
-            if let Some([left, top, right, bottom]) = corners.get_mut(usize::from(run[0])) {
-                (*left, *top) = ((*left).min(start), (*top).min(y));
-                (*right, *bottom) = ((*right).max(end), (*bottom).max(y + 1));
-            }
-            start = end;
-        }
-    }
-    corners.into_iter().map(|[l, t, r, b]| if r == 0 { [0; 4] } else { [l, t, r - l, b - t] }).collect()
 }
