@@ -122,21 +122,24 @@ fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
 fn half_colours(frame: &Frame) -> [Plane; 3] {
     let (width, height) = (frame.width(), frame.height());
     let row = |y: usize| frame.colours()[y * width..(y + 1) * width].as_flattened();
-    let mut sums = vec![0u16; 3 * (width + 2)];
-    let mut planes = [0; 3].map(|_| Vec::with_capacity(width.div_ceil(2) * height.div_ceil(2)));
-    for y in (0..height).step_by(2) {
-        let (above, here, below) = (row(y.saturating_sub(1)), row(y), row((y + 1).min(height - 1)));
-        for (((s, a), h), b) in sums[3..].iter_mut().zip(above).zip(here).zip(below) {
+    let [half_width, half_height] = [width, height].map(|size| size.div_ceil(2));
+    let mut planes = [0; 3].map(|_| Plane::filled(half_width, half_height, 0.0));
+    // A row summed over three, with a pixel more on both sides.
+    let mut sums = vec![[0u16; 4]; width + 2];
+    for y in 0..half_height {
+        let (above, here, below) = (row((2 * y).saturating_sub(1)), row(2 * y), row((2 * y + 1).min(height - 1)));
+        for (((s, a), h), b) in sums[1..].as_flattened_mut().iter_mut().zip(above).zip(here).zip(below) {
             *s = u16::from(*a) + 2 * u16::from(*h) + u16::from(*b);
         }
-        sums.copy_within(3..6, 0);
-        sums.copy_within(3 * width..3 * (width + 1), 3 * (width + 1));
-        for (c, plane) in planes.iter_mut().enumerate() {
-            let three = sums[c..].chunks(6).zip(sums[3 + c..].chunks(6)).zip(sums[6 + c..].chunks(6));
-            plane.extend(three.map(|((l, m), r)| f32::from(l[0] + 2 * m[0] + r[0]) / 16.0));
+        (sums[0], sums[width + 1]) = (sums[1], sums[width]);
+        let [red, green, blue] = planes.each_mut().map(|plane| plane.row_mut(y));
+        let places = red.iter_mut().zip(green).zip(blue);
+        for (((red, green), blue), near) in places.zip(sums.windows(3).step_by(2)) {
+            let sum: [f32; 4] = std::array::from_fn(|c| f32::from(near[0][c] + 2 * near[1][c] + near[2][c]) / 16.0);
+            [*red, *green, *blue, _] = sum;
         }
     }
-    planes.map(|values| Plane::from_vec(width.div_ceil(2), height.div_ceil(2), values))
+    planes
 }
 
 /// The frames at working size and below.

@@ -345,7 +345,7 @@ fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, Failure> {
     if found != needed {
         return Err(Error::PixelCountMismatch { width, height, needed, found }.into());
     }
-    Ok(Frame::from_rgba(width, height, &data.to_vec())?)
+    Ok(Frame::from_rgba(width, height, data.to_vec())?)
 }
 
 /// Rows of `N` numbers from a flat array.

@@ -11,6 +11,8 @@ pub(crate) mod warp;
 pub use derivatives::{Derivatives, derivatives};
 pub use plane::Plane;
 
+use std::borrow::Cow;
+
 use crate::error::{Error, Result};
 
 /// Smallest side of a frame, pixels.
@@ -22,18 +24,19 @@ pub const MAX_SIDE: usize = 4096;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     luminance: Plane,
-    /// Red, green, blue of every pixel, row by row.
-    colours: Vec<[u8; 3]>,
+    /// Red, green, blue and alpha of every pixel, row by row.
+    rgba: Vec<u8>,
 }
 
 impl Frame {
-    /// A frame from RGBA bytes, row by row, as `ImageData` has them. Alpha is ignored.
+    /// A frame from RGBA bytes, row by row, as `ImageData` has them. Alpha is ignored. Bytes that are given away are not copied.
     ///
     /// Luminance is Rec. 601, `0.299 R + 0.587 G + 0.114 B`, in grey levels.
     ///
     /// # Errors
     /// [`Error::FrameSizeUnsupported`], [`Error::PixelCountMismatch`].
-    pub fn from_rgba(width: usize, height: usize, rgba: &[u8]) -> Result<Frame> {
+    pub fn from_rgba<'a>(width: usize, height: usize, rgba: impl Into<Cow<'a, [u8]>>) -> Result<Frame> {
+        let rgba = rgba.into();
         if !(MIN_SIDE..=MAX_SIDE).contains(&width) || !(MIN_SIDE..=MAX_SIDE).contains(&height) {
             return Err(Error::FrameSizeUnsupported { width, height, min: MIN_SIDE, max: MAX_SIDE });
         }
@@ -41,12 +44,12 @@ impl Frame {
         if rgba.len() != needed {
             return Err(Error::PixelCountMismatch { width, height, needed, found: rgba.len() });
         }
+        let rgba = rgba.into_owned();
         let luminance = rgba
             .chunks_exact(4)
             .map(|p| 0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2]))
             .collect();
-        let colours = rgba.chunks_exact(4).map(|p| [p[0], p[1], p[2]]).collect();
-        Ok(Frame { luminance: Plane::from_vec(width, height, luminance), colours })
+        Ok(Frame { luminance: Plane::from_vec(width, height, luminance), rgba })
     }
 
     /// Width in pixels.
@@ -59,9 +62,9 @@ impl Frame {
         self.luminance.height()
     }
 
-    /// Red, green, blue of every pixel, row by row.
-    pub(crate) fn colours(&self) -> &[[u8; 3]] {
-        &self.colours
+    /// Red, green, blue and alpha of every pixel, row by row.
+    pub(crate) fn colours(&self) -> &[[u8; 4]] {
+        self.rgba.as_chunks().0
     }
 
     /// Luminance in grey levels, 0…255.

@@ -37,7 +37,7 @@ impl Palette {
             let mut sums = vec![[0u32; 4]; width];
             for row in rows.chunks(frame.width()) {
                 for ([red, green, blue, count], colours) in sums.iter_mut().zip(row.chunks(step)) {
-                    for [r, g, b] in colours {
+                    for [r, g, b, _] in colours {
                         *red += u32::from(*r);
                         *green += u32::from(*g);
                         *blue += u32::from(*b);
