@@ -6,14 +6,38 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
 use veronese::{
-    AffineMotion, Error, Frame, MAX_MOTIONS, MotionCount, Quality, SegmentOptions, Segmentation, UNLABELLED,
-    segment_pair,
+    AffineMotion, Error, Frame, MAX_MOTIONS, MotionCount, Plane, Quality, SegmentOptions, Segmentation,
+    SegmentedMotion, UNLABELLED, segment_pair,
 };
 
 fn segment(first: &Frame, second: &Frame, options: SegmentOptions) -> Segmentation {
     let result = segment_pair(first, second, None, &options, &mut |_| {}).unwrap();
     check(&result, &options);
+    for motion in &result.motions {
+        let expected = residual(motion, &result.labels, first.luminance(), second.luminance());
+        assert!((motion.residual - expected).abs() <= 1e-3 + 0.01 * expected, "{} is {expected}", motion.residual);
+    }
     result
+}
+
+/// Root mean square of the intensity difference along a motion over its pixels that land inside the second frame.
+fn residual(motion: &SegmentedMotion, labels: &[u8], first: &Plane, second: &Plane) -> f64 {
+    let (width, height) = (first.width(), first.height());
+    let (mut sum, mut count) = (0.0, 0.0);
+    for p in (0..labels.len()).filter(|&p| labels[p] == motion.label) {
+        let (x, y) = (p % width, p / width);
+        let [u, v] = motion.matrix.flow(x as f64, y as f64);
+        let (px, py) = (x as f64 + u, y as f64 + v);
+        if (0.0..=(width - 1) as f64).contains(&px) && (0.0..=(height - 1) as f64).contains(&py) {
+            let at = |x: f64, y: f64| f64::from(second.at((x as usize).min(width - 1), (y as usize).min(height - 1)));
+            let (fx, fy) = (px.fract(), py.fract());
+            let along = |y: f64| (1.0 - fx) * at(px, y) + fx * at(px + 1.0, y);
+            let difference = (1.0 - fy) * along(py) + fy * along(py + 1.0) - f64::from(first.values()[p]);
+            sum += difference * difference;
+            count += 1.0;
+        }
+    }
+    (sum / f64::max(count, 1.0)).sqrt()
 }
 
 /// What holds for every answer.
@@ -31,8 +55,13 @@ fn check(result: &Segmentation, options: &SegmentOptions) {
         if k > 0 && !options.mark_unknown {
             assert!(motion.pixels <= result.motions[k - 1].pixels, "labels by decreasing size");
         }
-        let [x, y, w, h] = motion.bbox;
-        assert!(x + w <= result.width && y + h <= result.height);
+        let own = || (0..pixels).filter(|&p| usize::from(result.labels[p]) == k);
+        let span = |of: fn(usize, usize) -> usize| {
+            let places = || own().map(|p| of(p, result.width));
+            places().min().map_or([0, 0], |least| [least, places().max().unwrap() + 1 - least])
+        };
+        let ([x, w], [y, h]) = (span(|p, width| p % width), span(|p, width| p / width));
+        assert_eq!(motion.bbox, [x, y, w, h]);
         counted += motion.pixels;
     }
     let groups = usize::from(result.motions.iter().map(|m| m.group).max().unwrap()) + 1;
