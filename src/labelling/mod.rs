@@ -12,6 +12,7 @@ pub(crate) mod merging;
 mod messages;
 mod misfit;
 pub(crate) mod potts;
+pub(crate) mod refitting;
 pub(crate) mod sharpening;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;
