@@ -183,7 +183,7 @@ fn textured(width: usize, height: usize, shift: f64) -> Frame {
 }
 
 fn constant(width: usize, height: usize, value: u8) -> Frame {
-    Frame::from_rgba(width, height, &[value, value, value, 255].repeat(width * height)).unwrap()
+    Frame::from_rgba(width, height, [value, value, value, 255].repeat(width * height)).unwrap()
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn the_motion_of_narrow_frames_is_found() {
                 let grey = mean(p % width + 6 - du, p / width + 6 - dv);
                 [grey, grey, grey, 255]
             });
-            Frame::from_rgba(width, height, &pixels.collect::<Vec<u8>>()).unwrap()
+            Frame::from_rgba(width, height, pixels.collect::<Vec<u8>>()).unwrap()
         };
         for quality in [Quality::Fast, Quality::Best] {
             let options = SegmentOptions { quality, ..SegmentOptions::default() };
