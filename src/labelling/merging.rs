@@ -7,7 +7,7 @@
 
 use super::description::sums;
 use super::neighbours;
-use super::refitting::aligned_on;
+use super::splitting::aligned_on;
 use crate::alignment::cost::{CostModel, cost_within};
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -76,17 +76,17 @@ fn touching(labels: &[u8], of: usize, width: usize) -> Vec<Vec<bool>> {
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
     use crate::alignment::cost::cost;
     use crate::frame::filter::gaussian;
     use crate::frame::pyramid::build;
     use crate::random::Random;
 
-    pub(crate) const SIZE: [usize; 2] = [96, 64];
+    const SIZE: [usize; 2] = [96, 64];
 
     /// A square that moves by `object` on a background at rest, and which pixels are the square's.
-    pub(crate) fn level(object: [f64; 2]) -> (Level, Vec<u8>) {
+    fn level(object: [f64; 2]) -> (Level, Vec<u8>) {
         let mut random = Random::from_seed(11);
         let mut texture = || {
             let noise = Plane::from_fn(SIZE[0] + 8, SIZE[1] + 8, |_, _| random.uniform(0.0, 255.0) as f32);

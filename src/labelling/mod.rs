@@ -12,7 +12,6 @@ pub(crate) mod merging;
 mod messages;
 mod misfit;
 pub(crate) mod potts;
-pub(crate) mod refitting;
 pub(crate) mod sharpening;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;

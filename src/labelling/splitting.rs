@@ -2,8 +2,8 @@
 
 use super::components::{Connectivity, components};
 use super::description::{SMALLEST_SHARE, price_of_motion};
-use super::refitting::aligned_on;
-use crate::alignment::cost::{CostModel, cost_within};
+use crate::alignment::cost::{CostModel, Photometric, cost_within};
+use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::{eroded, gaussian};
@@ -28,6 +28,18 @@ const PER_BORDER_PIXEL: f64 = 0.5;
 
 fn smallest_part(pixels: usize) -> usize {
     SMALLEST_PART.max((SMALLEST_SHARE * pixels as f64) as usize)
+}
+
+/// A motion refined on the pixels of a mask.
+pub(super) fn aligned_on(
+    level: &Level,
+    motion: &AffineMotion,
+    mask: &Plane,
+    iterations: usize,
+    ridge: f64,
+) -> AffineMotion {
+    let how = Alignment { freedom: Freedom::Affine, iterations, robustness: 4.0, ridge, photometric: false };
+    align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
 }
 
 /// Splits objects into their connected components where own motions pay for themselves. Returns whether anything changed.

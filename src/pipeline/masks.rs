@@ -1,5 +1,5 @@
-//! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion, merged,
-//! split, and their motions refined once more; sharpened at the working size; cleaned.
+//! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion, merged
+//! and split; sharpened at the working size; cleaned.
 
 use super::Work;
 use super::hypothesis::Found;
@@ -13,7 +13,6 @@ use crate::labelling::description::{SMALLEST_SHARE, counts, price_of_motion, wor
 use crate::labelling::energy::{Borders, Survey, surveyed};
 use crate::labelling::merging::best_merger;
 use crate::labelling::potts::Solver;
-use crate::labelling::refitting::refitted;
 use crate::labelling::sharpening::{Coarse, Fine, sharpened};
 use crate::labelling::splitting::{split_bodies, split_components};
 use crate::labelling::visibility::{hidden_under, with_visibility};
@@ -23,8 +22,6 @@ use crate::motion::AffineMotion;
 const REACH_SHARE: f64 = 0.25;
 /// … and at least this many pixels of the working size.
 const SMALLEST_REACH: usize = 12;
-/// Costs that a motion refined on its region must save there.
-const SMALLEST_GAIN: f64 = 20.0;
 /// Nats of a pixel of a coarser level beside those of a working pixel: it stands for four, whose noise is not independent.
 const COARSE_PIXEL: f32 = 2.0;
 /// Smoothness on a coarser level as a share of that of the working size: half as many pixels lie along a border.
@@ -68,7 +65,6 @@ pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled 
         draft.thin_out();
         draft.merge();
     }
-    draft.refit();
     if work.draft == 0 {
         draft.look(work);
         draft.finish();
@@ -100,12 +96,6 @@ pub(super) fn left_over(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
         raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= nats_of_pixel(level));
     }
     raw
-}
-
-/// Sum over the pixels of a label.
-fn sum_of(plane: &Plane, labels: &[u8], label: u8) -> f64 {
-    let pixels = plane.values().iter().zip(labels).filter(|(_, other)| **other == label);
-    pixels.map(|(value, _)| f64::from(*value)).sum()
 }
 
 /// Nats of a pixel beside those of a working pixel.
@@ -252,37 +242,16 @@ impl<'a> Draft<'a> {
         if self.motions[0] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
             return;
         }
-        let own = |plane: &Plane| sum_of(plane, &self.labels, 0);
+        let own = |plane: &Plane| -> f64 {
+            let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| **label == 0);
+            pixels.map(|(cost, _)| f64::from(*cost)).sum()
+        };
         let still: f64 = left_over(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
         if 0.5 * (still - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
             self.motions[0] = AffineMotion::STATIC;
             self.measure();
             self.solve();
             self.thin_out();
-        }
-    }
-
-    /// Refines the motions of objects on the regions that they have now, and solves again where that explains more: when they were
-    /// selected they had others. The dominant motion was refined on nearly the whole frame.
-    fn refit(&mut self) {
-        if !self.settings.has(Part::Refinement) {
-            return;
-        }
-        let mut changed = false;
-        for k in 1..self.motions.len() {
-            let refined = refitted(self.level, &self.motions[k], &self.labels, k as u8);
-            let own = |costs: &Plane| sum_of(costs, &self.labels, k as u8);
-            for costs in left_over(self.level, &[refined]) {
-                if own(&costs) + SMALLEST_GAIN < own(&self.raw[k]) {
-                    (self.motions[k], self.raw[k], changed) = (refined, costs, true);
-                }
-            }
-        }
-        if changed {
-            self.survey = surveyed(self.level, &self.motions, self.settings.coherence);
-            self.bar();
-            self.uncover();
-            self.solve();
         }
     }
 

@@ -14,18 +14,13 @@ const RIDGE: (f64, f64) = (1e-4, 1e-2);
 const LARGE: usize = 200;
 /// Softening of a region's border, pixels.
 const SOFTNESS: f32 = 0.7;
-/// A motion whose region costs less by no more than this after it was refined is settled.
-const SMALL_GAIN: f64 = 5.0;
 /// Regions smaller than this do not vote.
 const SMALLEST_REGION: usize = 20;
 
-/// At most `rounds` rounds; a refined motion is kept only where it lowers the cost of its own region, and refined again only where it
-/// did so by enough.
+/// `rounds` rounds; a refined motion is kept only where it lowers the cost of its own region.
 pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
-    let mut settled = vec![false; layers.len()];
     for _ in 0..rounds {
-        let open = |k: usize| if settled[k] { None } else { region_of(layers, k) };
-        let regions: Vec<Option<Plane>> = (0..layers.len()).map(open).collect();
+        let regions: Vec<Option<Plane>> = (0..layers.len()).map(|k| region_of(layers, k)).collect();
         for (k, (layer, region)) in layers.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
             let how = Alignment {
@@ -37,9 +32,7 @@ pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
             };
             let motion = align(level, &layer.motion, &Support::weighted(&region), &mut Photometric::default(), how);
             let refined = Layer::new(level, motion);
-            let gain = weighted_sum(&layer.cost, &region) - weighted_sum(&refined.cost, &region);
-            settled[k] = gain < SMALL_GAIN;
-            if gain > 0.0 {
+            if weighted_sum(&refined.cost, &region) < weighted_sum(&layer.cost, &region) {
                 *layer = refined;
             }
         }
