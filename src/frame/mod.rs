@@ -21,11 +21,19 @@ pub const MIN_SIDE: usize = 16;
 pub const MAX_SIDE: usize = 4096;
 
 /// One video frame: its luminance, 0…255, and its colours.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Frame {
     luminance: Plane,
     /// Red, green, blue and alpha of every pixel, row by row.
     rgba: Vec<u8>,
+}
+
+/// Frames are equal where their pixels are, whatever their alpha.
+impl PartialEq for Frame {
+    fn eq(&self, other: &Frame) -> bool {
+        let mut colours = self.colours().iter().zip(other.colours());
+        self.luminance == other.luminance && colours.all(|(a, b)| a[..3] == b[..3])
+    }
 }
 
 impl Frame {
@@ -70,5 +78,17 @@ impl Frame {
     /// Luminance in grey levels, 0…255.
     pub fn luminance(&self) -> &Plane {
         &self.luminance
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn alpha_makes_no_difference_and_colour_does() {
+        let frame = |pixel: [u8; 4]| Frame::from_rgba(MIN_SIDE, MIN_SIDE, pixel.repeat(MIN_SIDE * MIN_SIDE)).unwrap();
+        assert_eq!(frame([10, 20, 30, 255]), frame([10, 20, 30, 0]));
+        assert_ne!(frame([10, 20, 30, 255]), frame([10, 20, 31, 255]));
     }
 }

@@ -268,6 +268,7 @@ impl Tally {
     }
 }
 
+/// A tally of every motion, in one pass over the runs of its label.
 fn tallies(motions: &[AffineMotion], labels: &[u8], first: &Plane, second: &Plane) -> Vec<Tally> {
     let (width, height) = (first.width(), first.height());
     let none = |_| Tally { pixels: 0, corners: [usize::MAX, usize::MAX, 0, 0], squares: 0.0, compared: 0 };
