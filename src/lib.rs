@@ -64,6 +64,7 @@ pub mod scene;
 mod selection;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
+mod workspace;
 
 pub use error::{Error, Result};
 pub use frame::{Derivatives, Frame, MAX_SIDE, MIN_SIDE, Plane, derivatives};

@@ -2,17 +2,20 @@
 
 use crate::error::{Error, Result};
 use crate::motion::AffineMotion;
+use crate::workspace::{Buffer, kept};
 
 /// Largest absolute value a measurement may have: products of degree 20 (n = 10) must stay finite after normalisation.
 const LARGEST: f64 = 1e12;
+
+kept!([f64; 2], [f64; 3]);
 
 /// N image measurements `(x_j, y_j)`: positions `(x, y)` and derivatives `(I_x, I_y, I_t)`.
 ///
 /// Positions are in pixels (or any unit: the motions come out in the same), derivatives in grey levels per pixel and per frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurements {
-    positions: Vec<[f64; 2]>,
-    derivatives: Vec<[f64; 3]>,
+    positions: Buffer<[f64; 2]>,
+    derivatives: Buffer<[f64; 3]>,
 }
 
 /// The change of coordinates of [`Measurements::normalised`], to carry motions back.
@@ -32,6 +35,11 @@ impl Measurements {
     /// # Errors
     /// [`Error::MeasurementCountMismatch`], [`Error::NotFinite`].
     pub fn new(positions: Vec<[f64; 2]>, derivatives: Vec<[f64; 3]>) -> Result<Self> {
+        Self::checked(positions.into(), derivatives.into())
+    }
+
+    /// [`Measurements::new`] of buffers.
+    pub(crate) fn checked(positions: Buffer<[f64; 2]>, derivatives: Buffer<[f64; 3]>) -> Result<Self> {
         if positions.len() != derivatives.len() {
             return Err(Error::MeasurementCountMismatch { positions: positions.len(), derivatives: derivatives.len() });
         }

@@ -4,15 +4,17 @@
 
 use std::cmp::Ordering;
 
+use crate::workspace::Buffer;
+
 /// Indices by increasing key; equals by index. NaN comes last (−NaN first).
-pub(crate) fn ascending(keys: impl IntoIterator<Item = f64>) -> Vec<usize> {
+pub(crate) fn ascending(keys: impl IntoIterator<Item = f64>) -> Buffer<usize> {
     merged(keys.into_iter().map(order_of).collect())
 }
 
 /// Indices by increasing key: sorted by merging.
 #[inline(never)]
-fn merged(keys: Vec<u64>) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..keys.len()).collect();
+fn merged(keys: Buffer<u64>) -> Buffer<usize> {
+    let mut order: Buffer<usize> = (0..keys.len()).collect();
     let mut merged = order.clone();
     // Runs of 1, 2, 4 … in order are merged by twos; the left one goes first among equals.
     let mut length = 1;
@@ -37,7 +39,7 @@ fn merged(keys: Vec<u64>) -> Vec<usize> {
 }
 
 /// Indices by decreasing key; equals by index.
-pub(crate) fn descending(keys: impl IntoIterator<Item = f64>) -> Vec<usize> {
+pub(crate) fn descending(keys: impl IntoIterator<Item = f64>) -> Buffer<usize> {
     ascending(keys.into_iter().map(|key| -key))
 }
 
@@ -82,7 +84,7 @@ fn value_of(order: u64) -> f64 {
 
 /// The upper median of values given by their order: digit after digit, from the first, those with the middle one's digit are kept.
 #[inline(never)]
-fn middle(mut left: Vec<u64>) -> Option<f64> {
+fn middle(mut left: Buffer<u64>) -> Option<f64> {
     let mut rank = left.len() / 2;
     for digit in (0..8).rev() {
         if left.len() <= 1 {
@@ -107,8 +109,8 @@ mod tests {
 
     #[test]
     fn equals_keep_their_order() {
-        assert_eq!(ascending([2.0, 1.0, 2.0, 0.0]), [3, 1, 0, 2]);
-        assert_eq!(descending([2.0, 1.0, 2.0, 0.0]), [0, 2, 1, 3]);
+        assert_eq!(ascending([2.0, 1.0, 2.0, 0.0])[..], [3, 1, 0, 2]);
+        assert_eq!(descending([2.0, 1.0, 2.0, 0.0])[..], [0, 2, 1, 3]);
     }
 
     #[test]
@@ -122,7 +124,7 @@ mod tests {
             }
             let mut expected: Vec<usize> = (0..count).collect();
             expected.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
-            assert_eq!(ascending(values.iter().copied()), expected);
+            assert_eq!(ascending(values.iter().copied())[..], expected);
             let mut few = values.clone();
             sort_few(&mut few, f64::total_cmp);
             let mut sorted = values.clone();

@@ -26,6 +26,7 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
 use crate::random::Random;
+use crate::workspace::{self, Buffer};
 use settings::Settings;
 
 /// The stages of [`segment_pair`], in order.
@@ -110,7 +111,7 @@ fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
         half_colours(frame)
     } else {
         let plane = |c: usize| frame.colours().iter().map(|colour| f32::from(colour[c])).collect();
-        std::array::from_fn(|c| Plane::from_vec(frame.width(), frame.height(), plane(c)))
+        std::array::from_fn(|c| Plane::from_buffer(frame.width(), frame.height(), plane(c)))
     };
     while planes[0].width() > width {
         planes = planes.each_ref().map(halve);
@@ -123,9 +124,10 @@ fn half_colours(frame: &Frame) -> [Plane; 3] {
     let (width, height) = (frame.width(), frame.height());
     let row = |y: usize| frame.colours()[y * width..(y + 1) * width].as_flattened();
     let [half_width, half_height] = [width, height].map(|size| size.div_ceil(2));
-    let mut planes = [0; 3].map(|_| Plane::filled(half_width, half_height, 0.0));
+    let mut planes = [0; 3].map(|_| Plane::unwritten(half_width, half_height));
     // A row summed over three, with a pixel more on both sides.
-    let mut sums = vec![[0u16; 4]; width + 2];
+    let mut sums = Buffer::unwritten(4 * (width + 2));
+    let sums: &mut [[u16; 4]] = sums.as_chunks_mut().0;
     for y in 0..half_height {
         let (above, here, below) = (row((2 * y).saturating_sub(1)), row(2 * y), row((2 * y + 1).min(height - 1)));
         for (((s, a), h), b) in sums[1..].as_flattened_mut().iter_mut().zip(above).zip(here).zip(below) {
@@ -162,6 +164,7 @@ pub(crate) struct Work {
 
 impl Work {
     fn new(first: &Frame, second: &Frame, before: Option<&Frame>, settings: &Settings) -> Work {
+        workspace::begin([first.width(), first.height()]);
         let mut reduction = 1.0;
         let mut planes: Vec<Plane> =
             [Some(first), Some(second), before].into_iter().flatten().map(|f| f.luminance().clone()).collect();

@@ -13,6 +13,7 @@ use crate::order::descending;
 use crate::paper::paper_fit;
 use crate::progress::Progress;
 use crate::refinement::Report;
+use crate::workspace::Buffer;
 
 /// The label of a measurement or pixel that no motion explains.
 pub const UNLABELLED: u8 = 255;
@@ -151,7 +152,7 @@ pub(crate) fn ordered_motions(
 }
 
 /// Indices of motions by decreasing number of measurements, ties by the lower index.
-fn order_by_count(motions: usize, nearest: &[usize]) -> Vec<usize> {
+fn order_by_count(motions: usize, nearest: &[usize]) -> Buffer<usize> {
     let mut counts = vec![0usize; motions];
     for &i in nearest {
         if let Some(count) = counts.get_mut(i) {

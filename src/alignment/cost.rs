@@ -16,6 +16,7 @@ use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
 use crate::order::median;
+use crate::workspace::Buffer;
 
 /// Change of brightness between the frames: `I2 ≈ I1 (1 + gain/128) + bias`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -146,7 +147,7 @@ impl<'a> Comparison<'a> {
     }
 
     fn plane(&self, area: &Area) -> Plane {
-        let mut plane = Plane::filled(area.width(), area.height(), 0.0);
+        let mut plane = Plane::unwritten(area.width(), area.height());
         for (k, y) in area.rows.clone().enumerate() {
             self.row(y, area.columns.start, plane.row_mut(k));
         }
@@ -224,7 +225,7 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     let level = &level.thinned(stride.max(1));
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
-    let mut residuals = Vec::with_capacity(level.energy.values().len());
+    let mut residuals = Buffer::with_capacity(level.energy.values().len());
     let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..level.height() {
         let path = level.path(&scaled, 0, y);

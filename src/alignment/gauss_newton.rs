@@ -12,6 +12,7 @@ use crate::frame::lanes::whole;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
+use crate::workspace::{Buffer, kept};
 
 /// Which entries of the motion are free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -161,7 +162,9 @@ fn apply(motion: &mut AffineMotion, step: &Right, centre: [f64; 2], scale: f64) 
 }
 
 /// A row's values in whole chunks. Those behind the row have no weight.
-type Row = Vec<[f32; CHUNK]>;
+type Row = Buffer<[f32; CHUNK]>;
+
+kept!([f32; CHUNK]);
 
 /// One row of everything, reused from row to row.
 struct RowBuffers {
@@ -174,7 +177,7 @@ struct RowBuffers {
 
 impl RowBuffers {
     fn new(length: usize) -> RowBuffers {
-        let row = || vec![[0.0; CHUNK]; length.div_ceil(CHUNK)];
+        let row = || Buffer::filled(length.div_ceil(CHUNK), [0.0; CHUNK]);
         RowBuffers { x: row(), gx: row(), gy: row(), residual: row(), weight: row() }
     }
 

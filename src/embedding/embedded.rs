@@ -6,6 +6,7 @@ use super::monomials::{kept_pairs, unknowns};
 use super::veronese::embed_columns;
 use crate::linear::{RowQr, Triangle};
 use crate::measurements::Measurements;
+use crate::workspace::Buffer;
 
 /// P̃_n of (9): row j is `(ν_n(y_j) ⊗ ν_n(x_j))ᵀ` without the entries that vanish by structure, N × (M_n² − Z_n).
 pub fn embedded_matrix(measurements: &Measurements, degree: usize) -> DMatrix<f64> {
@@ -14,7 +15,7 @@ pub fn embedded_matrix(measurements: &Measurements, degree: usize) -> DMatrix<f6
 }
 
 /// Pixels (x, y) as (x, y, 1).
-pub(super) fn homogeneous(positions: &[[f64; 2]]) -> Vec<[f64; 3]> {
+pub(super) fn homogeneous(positions: &[[f64; 2]]) -> Buffer<[f64; 3]> {
     positions.iter().map(|p| [p[0], p[1], 1.0]).collect()
 }
 

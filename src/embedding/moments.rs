@@ -14,6 +14,7 @@ use super::veronese::embed_columns;
 use crate::linear::Triangle;
 use crate::linear::kernels::{add_multiple, dot};
 use crate::measurements::Measurements;
+use crate::workspace::{Buffer, kept};
 
 /// The share of its diagonal that is added to a Gram matrix: directions with smaller squares are lost in its rounding. Among several
 /// null vectors this chooses the one with the largest last entry, as [`NullVector`](crate::linear::NullVector) does.
@@ -22,7 +23,7 @@ const RIDGE: f64 = 1e-13;
 /// `Σ_j w_j y_j^a x_j^i` for all monomials of given degrees.
 struct Moments {
     columns: usize,
-    values: Vec<f64>,
+    values: Buffer<f64>,
 }
 
 impl Moments {
@@ -30,8 +31,8 @@ impl Moments {
     /// structure in 𝒜 (a power of z below that of I_t) is left out.
     fn new([of_y, of_x]: [&Monomials; 2], weights: &[f64]) -> Self {
         let columns = count(of_x.degree);
-        let mut values = vec![0.0; count(of_y.degree) * columns];
-        let mut weighted = vec![0.0; weights.len()];
+        let mut values = Buffer::filled(count(of_y.degree) * columns, 0.0);
+        let mut weighted = Buffer::filled(weights.len(), 0.0);
         let x_exponents = exponents(of_x.degree);
         for ((y, e), values) in of_y.columns().zip(exponents(of_y.degree)).zip(values.chunks_exact_mut(columns)) {
             weighted.iter_mut().zip(y).zip(weights).for_each(|((product, y), w)| *product = y * w);
@@ -54,12 +55,12 @@ fn sum(a: Exponents, b: Exponents) -> Exponents {
 }
 
 /// A symmetric matrix over the kept pairs of monomials, column-major, from the entry of two pairs `(y, x)`.
-fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f64) -> Vec<f64> {
+fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f64) -> Buffer<f64> {
     let all = exponents(degree);
     let pairs: Vec<[Exponents; 2]> =
         kept_pairs(degree).into_iter().map(|(row, column)| [all[row], all[column]]).collect();
     let size = pairs.len();
-    let mut matrix = vec![0.0; size * size];
+    let mut matrix = Buffer::unwritten(size * size);
     for (k, &p) in pairs.iter().enumerate() {
         for (i, &q) in pairs[..=k].iter().enumerate() {
             let value = entry(q, p);
@@ -73,7 +74,7 @@ fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f6
 struct Monomials {
     degree: usize,
     rows: usize,
-    values: Vec<f64>,
+    values: Buffer<f64>,
 }
 
 impl Monomials {
@@ -91,10 +92,10 @@ impl Monomials {
 }
 
 /// Σ_k D_kᵀD_k of the derivatives D_k = ∂P̃_n/∂y_k, k = 1, 2, 3, column-major.
-pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Vec<f64> {
+pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Buffer<f64> {
     let of_y = Monomials::new(2 * (degree - 1), measurements.derivatives());
     let of_x = Monomials::new(2 * degree, &homogeneous(measurements.positions()));
-    let moments = Moments::new([&of_y, &of_x], &vec![1.0; measurements.len()]);
+    let moments = Moments::new([&of_y, &of_x], &Buffer::filled(measurements.len(), 1.0));
     symmetric(degree, &|[a, i], [b, k]| {
         let both = sum(a, b);
         let by = |v: usize| {
@@ -109,15 +110,17 @@ pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Vec<f
 /// Measurements to which polynomials of one degree are fitted again and again, with other weights.
 pub(crate) struct Refitting {
     degree: usize,
-    derivatives: [Vec<f64>; 3],
+    derivatives: [Buffer<f64>; 3],
     /// Of the derivatives: degrees n − 1 and 2n.
     of_y: [Monomials; 2],
     /// Of the pixels: degree 2n. Because their third coordinate is 1, lower degrees are among them.
     of_x: Monomials,
 }
 
-/// What a polynomial is at one measurement: value and gradient ∂p/∂y.
-pub(crate) type Reading = (f64, [f64; 3]);
+/// What a polynomial is at one measurement: its value, and its gradient ∂p/∂y.
+pub(crate) type Reading = [f64; 4];
+
+kept!(Reading);
 
 impl Refitting {
     /// `measurements` should be normalised.
@@ -139,10 +142,10 @@ impl Refitting {
     }
 
     /// The polynomial and its gradient at every measurement.
-    pub(crate) fn read(&self, polynomial: &MultibodyMotion) -> Vec<Reading> {
+    pub(crate) fn read(&self, polynomial: &MultibodyMotion) -> Buffer<Reading> {
         let rows = self.of_x.rows;
-        let mut gradient = [0, 1, 2].map(|_| vec![0.0; rows]);
-        let mut flow = vec![0.0; rows];
+        let mut gradient = [0, 1, 2].map(|_| Buffer::filled(rows, 0.0));
+        let mut flow = Buffer::filled(rows, 0.0);
         let all = exponents(self.degree);
         for (r, &y) in all.iter().enumerate() {
             // Entry r of the multibody flow 𝒜 ν_n(x).
@@ -163,7 +166,7 @@ impl Refitting {
             let g = [0, 1, 2].map(|v| gradient[v][j]);
             // Euler: a form of degree n is yᵀ∂p/∂y / n.
             let value: f64 = (0..3).map(|v| self.derivatives[v][j] * g[v]).sum();
-            (value / self.degree as f64, g)
+            [value / self.degree as f64, g[0], g[1], g[2]]
         };
         (0..rows).map(of).collect()
     }
@@ -217,7 +220,9 @@ mod tests {
             let by_triangle = MultibodyMotion::from_embedded(&EmbeddedData::new(&data, degree));
             let difference = (polynomial.matrix() - by_triangle.matrix()).amax();
             assert!(difference < 1e-9, "degree {degree}: {difference:e}");
-            for ((value, gradient), ([x, y], derivatives)) in fitting.read(&polynomial).iter().zip(data.iter()) {
+            for (&[value, ref gradient @ ..], ([x, y], derivatives)) in
+                fitting.read(&polynomial).iter().zip(data.iter())
+            {
                 let x = [x, y, 1.0];
                 assert!((value - polynomial.evaluate(x, derivatives)).abs() < 1e-12);
                 for (found, expected) in gradient.iter().zip(polynomial.gradient_y(x, derivatives)) {

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::monomials::{count, exponents};
 use crate::options::MAX_MOTIONS;
+use crate::workspace::Buffer;
 
 /// Powers 0…n of one number; those beyond n are not meant.
 fn powers(value: f64, degree: usize) -> [f64; MAX_MOTIONS + 1] {
@@ -35,18 +36,19 @@ pub fn jacobian(degree: usize, v: [f64; 3]) -> DMatrix<f64> {
 
 /// ν_n of many vectors, column-major: `result[monomial * vectors.len() + j]` belongs to vector j. The same bits as [`embed`], for
 /// any degree.
-pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
+pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Buffer<f64> {
     let rows = vectors.len();
     // Powers 0…n of each variable, as columns.
     let powers = [0, 1, 2].map(|k| {
-        let mut columns = vec![1.0; rows];
+        let mut columns = Buffer::with_capacity(rows * (degree + 1));
+        columns.resize(rows, 1.0);
         for power in 0..degree {
             columns.extend_from_within(power * rows..);
             columns[(power + 1) * rows..].iter_mut().zip(vectors).for_each(|(value, v)| *value *= v[k]);
         }
         columns
     });
-    let mut result = Vec::with_capacity(rows * count(degree));
+    let mut result = Buffer::with_capacity(rows * count(degree));
     for e in exponents(degree) {
         let [p, q, r] = [0, 1, 2].map(|k| &powers[k][e[k] * rows..][..rows]);
         result.extend(p.iter().zip(q).zip(r).map(|((p, q), r)| p * q * r));

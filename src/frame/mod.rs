@@ -57,7 +57,7 @@ impl Frame {
             .chunks_exact(4)
             .map(|p| 0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2]))
             .collect();
-        Ok(Frame { luminance: Plane::from_vec(width, height, luminance), rgba })
+        Ok(Frame { luminance: Plane::from_buffer(width, height, luminance), rgba })
     }
 
     /// Width in pixels.

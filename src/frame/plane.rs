@@ -1,11 +1,13 @@
 //! A rectangle of `f32` values, row by row: every image quantity of the pipeline.
 
+use crate::workspace::Buffer;
+
 /// Width × height values, row-major; (0, 0) is the top-left pixel.
 #[derive(Debug, PartialEq)]
 pub struct Plane {
     width: usize,
     height: usize,
-    values: Vec<f32>,
+    values: Buffer<f32>,
 }
 
 // Making a plane takes long enough for a call: inlined, it would be in the module at eighty places.
@@ -20,12 +22,23 @@ impl Plane {
     /// A plane of one value.
     #[inline(never)]
     pub fn filled(width: usize, height: usize, value: f32) -> Plane {
-        Plane { width, height, values: vec![value; width * height] }
+        Plane { width, height, values: Buffer::filled(width * height, value) }
+    }
+
+    /// A plane of whatever values: for those who write all of them.
+    #[inline(never)]
+    pub(crate) fn unwritten(width: usize, height: usize) -> Plane {
+        Plane { width, height, values: Buffer::unwritten(width * height) }
     }
 
     /// A plane from its values, row by row; cut or filled with zeros where their number is not width × height.
+    pub fn from_vec(width: usize, height: usize, values: Vec<f32>) -> Plane {
+        Plane::from_buffer(width, height, values.into())
+    }
+
+    /// [`Plane::from_vec`] of a buffer.
     #[inline(never)]
-    pub fn from_vec(width: usize, height: usize, mut values: Vec<f32>) -> Plane {
+    pub(crate) fn from_buffer(width: usize, height: usize, mut values: Buffer<f32>) -> Plane {
         debug_assert_eq!(values.len(), width * height);
         values.resize(width * height, 0.0);
         Plane { width, height, values }
@@ -33,7 +46,7 @@ impl Plane {
 
     /// A plane computed pixel by pixel from (x, y).
     pub fn from_fn(width: usize, height: usize, mut f: impl FnMut(usize, usize) -> f32) -> Plane {
-        let mut values = Vec::with_capacity(width * height);
+        let mut values = Buffer::with_capacity(width * height);
         for y in 0..height {
             for x in 0..width {
                 values.push(f(x, y));
@@ -69,11 +82,11 @@ impl Plane {
     /// Every `stride`-th pixel of every `stride`-th row.
     pub(crate) fn thinned(&self, stride: usize) -> Plane {
         let (width, height) = (self.width.div_ceil(stride), self.height.div_ceil(stride));
-        let mut values = Vec::with_capacity(width * height);
+        let mut values = Buffer::with_capacity(width * height);
         for row in self.values.chunks_exact(self.width).step_by(stride) {
             values.extend(row.iter().step_by(stride));
         }
-        Plane::from_vec(width, height, values)
+        Plane::from_buffer(width, height, values)
     }
 
     /// Row y.

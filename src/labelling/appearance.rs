@@ -6,6 +6,7 @@
 //! nothing about each other, and the colours have no say.
 
 use crate::frame::{Frame, Plane};
+use crate::workspace::Buffer;
 
 /// Steps per colour channel.
 const STEPS: usize = 8;
@@ -25,16 +26,18 @@ const BLOCK: usize = 12;
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {
     size: [usize; 2],
-    indices: Vec<u16>,
+    indices: Buffer<u16>,
 }
 
 impl Palette {
     /// Mean colours over the pixels that a working pixel stands for, in steps.
     pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
         let step = frame.width().div_ceil(width).next_power_of_two();
-        let mut indices = Vec::with_capacity(width * height);
+        let mut indices = Buffer::with_capacity(width * height);
+        let mut sums = Buffer::unwritten(4 * width);
+        let sums: &mut [[u32; 4]] = sums.as_chunks_mut().0;
         for rows in frame.colours().chunks(frame.width() * step) {
-            let mut sums = vec![[0u32; 4]; width];
+            sums.fill([0; 4]);
             for row in rows.chunks(frame.width()) {
                 for ([red, green, blue, count], colours) in sums.iter_mut().zip(row.chunks(step)) {
                     for [r, g, b, _] in colours {
@@ -55,9 +58,12 @@ impl Palette {
 
     /// Every `step`-th pixel of every `step`-th row.
     pub(crate) fn thinned(&self, step: usize) -> Palette {
-        let rows = self.indices.chunks_exact(self.size[0]).step_by(step);
-        let indices = rows.flat_map(|row| row.iter().copied().step_by(step)).collect();
-        Palette { size: self.size.map(|s| s.div_ceil(step)), indices }
+        let size = self.size.map(|s| s.div_ceil(step));
+        let mut indices = Buffer::with_capacity(size[0] * size[1]);
+        for row in self.indices.chunks_exact(self.size[0]).step_by(step) {
+            indices.extend(row.iter().step_by(step));
+        }
+        Palette { size, indices }
     }
 }
 
@@ -65,7 +71,7 @@ impl Palette {
 #[derive(Clone, Debug)]
 pub(crate) struct ColourPrices {
     /// Of all labels for the first colour, for the second, …
-    table: Vec<f32>,
+    table: Buffer<f32>,
     labels: usize,
 }
 
@@ -114,7 +120,7 @@ fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
 }
 
 /// By how much each pixel's own motion is cheaper than the next.
-fn evidence(costs: &[Plane], labels: &[u8]) -> Vec<f32> {
+fn evidence(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
     let next = |p: usize, own: usize| {
         (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min)
     };
@@ -123,8 +129,14 @@ fn evidence(costs: &[Plane], labels: &[u8]) -> Vec<f32> {
 }
 
 /// Probability of every label for every colour, all labels equally likely beforehand; from the pixels that `counts` admits.
-fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, counts: impl Fn(usize) -> bool) -> Vec<f32> {
-    let mut table = vec![0.0f32; n * COLOURS];
+fn posterior(
+    palette: &Palette,
+    labels: &[u8],
+    weights: &[f32],
+    n: usize,
+    counts: impl Fn(usize) -> bool,
+) -> Buffer<f32> {
+    let mut table = Buffer::filled(n * COLOURS, 0.0f32);
     let mut totals = vec![1e-9f32; n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate().filter(|&(p, _)| counts(p)) {
         table[usize::from(palette.indices[p]) * n + usize::from(label)] += weight;

@@ -1,6 +1,7 @@
 //! Connected components of a labelling: where they are, how large, and what becomes of those that are too small.
 
 use crate::order::ascending;
+use crate::workspace::{Buffer, kept};
 
 /// Which pixels touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +13,7 @@ pub(crate) enum Connectivity {
 }
 
 /// One connected region of one label.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Component {
     /// The label of its pixels.
     pub(crate) label: u8,
@@ -26,50 +27,53 @@ pub(crate) struct Component {
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
     /// Number of the component of every pixel.
-    pub(crate) of: Vec<u32>,
-    pub(crate) list: Vec<Component>,
+    pub(crate) of: Buffer<u32>,
+    pub(crate) list: Buffer<Component>,
 }
 
 /// Neighbouring pixels of a row with one label.
+#[derive(Clone, Copy, Default)]
 struct Run {
-    columns: std::ops::Range<usize>,
+    columns: [usize; 2],
     row: usize,
     label: u8,
     /// An earlier run of the same component, or the run itself.
     earlier: usize,
 }
 
+kept!(Component, Run);
+
 /// The components of `labels`, rows of `width` pixels.
 pub(crate) fn components(labels: &[u8], width: usize, connectivity: Connectivity) -> Components {
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Buffer<Run> = Buffer::list();
     let mut above = 0..0;
     for (row, line) in labels.chunks_exact(width.max(1)).enumerate() {
         let begin = runs.len();
         let mut start = 0;
         for part in line.chunk_by(|a, b| a == b) {
-            let columns = start..start + part.len();
-            start = columns.end;
-            runs.push(Run { columns, row, label: part[0], earlier: runs.len() });
+            let columns = [start, start + part.len()];
+            start = columns[1];
+            let earlier = runs.len();
+            runs.push(Run { columns, row, label: part[0], earlier });
         }
         join(&mut runs, above, begin, connectivity);
         above = begin..runs.len();
     }
-    let mut of = vec![0; labels.len()];
-    let mut list: Vec<Component> = Vec::new();
-    let mut numbers = vec![0; runs.len()];
+    let mut of = Buffer::filled(labels.len(), 0);
+    let mut list: Buffer<Component> = Buffer::list();
+    let mut numbers = Buffer::filled(runs.len(), 0);
     for k in 0..runs.len() {
         let first = first_of(&mut runs, k);
-        let Run { columns, row, label, .. } = &runs[k];
+        let Run { columns: [start, end], row, label, .. } = runs[k];
         if first == k {
             numbers[k] = list.len();
-            let bounds = [columns.start, *row, columns.start, *row];
-            list.push(Component { label: *label, size: 0, bounds });
+            list.push(Component { label, size: 0, bounds: [start, row, start, row] });
         }
         let component = &mut list[numbers[first]];
-        component.size += columns.len();
+        component.size += end - start;
         let [x0, y0, x1, _] = component.bounds;
-        component.bounds = [x0.min(columns.start), y0, x1.max(columns.end - 1), *row];
-        of[row * width..][columns.clone()].fill(numbers[first] as u32);
+        component.bounds = [x0.min(start), y0, x1.max(end - 1), row];
+        of[row * width..][start..end].fill(numbers[first] as u32);
     }
     Components { of, list }
 }
@@ -79,13 +83,13 @@ fn join(runs: &mut [Run], above: std::ops::Range<usize>, begin: usize, connectiv
     let reach = usize::from(connectivity == Connectivity::Eight);
     let mut from = above.start;
     for k in begin..runs.len() {
-        let columns = runs[k].columns.clone();
+        let [start, end] = runs[k].columns;
         // What ends before this run begins touches no later run either.
-        while from < above.end && runs[from].columns.end + reach <= columns.start {
+        while from < above.end && runs[from].columns[1] + reach <= start {
             from += 1;
         }
         for other in from..above.end {
-            if runs[other].columns.start >= columns.end + reach {
+            if runs[other].columns[0] >= end + reach {
                 break;
             }
             if runs[other].label == runs[k].label {
@@ -123,7 +127,7 @@ fn absorb_once(labels: &mut [u8], width: usize, smallest: usize) -> bool {
     let found = components(labels, width, Connectivity::Four);
     let small = ascending(found.list.iter().map(|c| c.size as f64));
     let mut changed = false;
-    for c in small.into_iter().filter(|&c| found.list[c].size < smallest) {
+    for c in small.iter().copied().filter(|&c| found.list[c].size < smallest) {
         let Component { label, bounds: [x0, y0, x1, y1], .. } = found.list[c];
         let inside = |x: usize, y: usize| found.of[y * width + x] == c as u32;
         let mut votes = [0usize; 256];
@@ -219,7 +223,7 @@ mod tests {
             }
             list.push(component);
         }
-        Components { of, list }
+        Components { of: of.into(), list: list.into() }
     }
 
     #[test]

@@ -13,6 +13,7 @@ use crate::frame::lanes::{each_with, lower, whole};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::CHUNK;
 use crate::motion::AffineMotion;
+use crate::workspace::Buffer;
 
 /// How strongly labels hold together.
 #[derive(Clone, Copy, Debug)]
@@ -103,12 +104,12 @@ impl Borders {
     }
 
     /// The labels of least energy, at most that of those given.
-    pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Vec<u8> {
+    pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Buffer<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, Some(labels))
     }
 
     /// The labels of least energy.
-    pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Vec<u8> {
+    pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Buffer<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, None)
     }
 }
@@ -176,8 +177,8 @@ pub(crate) struct Survey {
 pub(crate) fn surveyed(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Survey {
     let (mut costs, shares) = costs_in_views(level, motions);
     let mut misfits = Misfit::new(cheapest(&costs, f32::INFINITY));
-    let mut misfit = Plane::filled(level.width(), level.height(), 0.0);
-    let mut seen = vec![0.0; level.width()];
+    let mut misfit = Plane::unwritten(level.width(), level.height());
+    let mut seen = Buffer::unwritten(level.width());
     for y in 0..level.height() {
         misfits.write(y, misfit.row_mut(y));
         seen.fill(f32::INFINITY);

@@ -3,16 +3,17 @@
 
 use super::max_flow::GridFlow;
 use super::potts::Potts;
+use crate::workspace::Buffer;
 
 /// At most `sweeps` times over all labels, from `init` or from the cheapest label of every pixel. Exact for two labels.
-pub(super) fn minimise(problem: &Potts<'_>, sweeps: usize, init: Option<&[u8]>) -> Vec<u8> {
+pub(super) fn minimise(problem: &Potts<'_>, sweeps: usize, init: Option<&[u8]>) -> Buffer<u8> {
     let (width, height) = (problem.width(), problem.height());
     let mut flow = GridFlow::new(width, height);
     if problem.costs.len() == 2 {
         // From label 0 everywhere, one expansion of label 1 reaches every labelling there is.
-        return expanded(problem, &mut flow, &vec![0; width * height], 1);
+        return expanded(problem, &mut flow, &Buffer::filled(width * height, 0), 1);
     }
-    let mut labels = init.map_or_else(|| problem.cheapest(), <[u8]>::to_vec);
+    let mut labels = init.map_or_else(|| problem.cheapest(), Buffer::of);
     let mut energy = problem.energy(&labels);
     // Labels expanded in a row without a change: after a whole round nothing can change any more.
     let mut idle = 0;
@@ -35,7 +36,7 @@ pub(super) fn minimise(problem: &Potts<'_>, sweeps: usize, init: Option<&[u8]>) 
 ///
 /// Pixel p is on the source's side if it keeps its label. With A, B, C the price of an edge when both keep theirs, the
 /// first keeps, the second keeps: A + (C − A) x_p − C x_q + (B + C − A) (1 − x_p) x_q, the last bracket never negative.
-fn expanded(problem: &Potts<'_>, flow: &mut GridFlow, labels: &[u8], alpha: u8) -> Vec<u8> {
+fn expanded(problem: &Potts<'_>, flow: &mut GridFlow, labels: &[u8], alpha: u8) -> Buffer<u8> {
     let (width, height) = (problem.width(), problem.height());
     flow.reset();
     for y in 0..height {
@@ -58,7 +59,7 @@ fn expanded(problem: &Potts<'_>, flow: &mut GridFlow, labels: &[u8], alpha: u8) 
         }
     }
     flow.run();
-    let mut result = labels.to_vec();
+    let mut result = Buffer::of(labels);
     for y in 0..height {
         for x in 0..width {
             if flow.is_sink_side(x, y) {

@@ -6,8 +6,8 @@
 //! would do is therefore asked of one that is refined on both regions together.
 
 use super::description::sums;
-use super::neighbours;
 use super::splitting::aligned_on;
+use super::{neighbours, pixels};
 use crate::alignment::cost::{CostModel, cost_within};
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -47,7 +47,7 @@ pub(crate) fn best_merger(
         if !touching[a][b] || better == 0 {
             continue;
         }
-        let region: Vec<usize> = (0..labels.len()).filter(|&p| [a, b].contains(&usize::from(labels[p]))).collect();
+        let region = pixels(labels, |label| [a, b].contains(&label));
         let mut mask = Plane::filled(width, level.height(), 0.0);
         region.iter().for_each(|&p| mask.values_mut()[p] = 1.0);
         let ridge = if a == 0 { RIDGE.0 } else { RIDGE.1 };

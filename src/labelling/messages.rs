@@ -9,6 +9,7 @@
 //! iterations carries information across the image that would otherwise need as many iterations as a region is wide.
 
 use super::potts::{Potts, allowed};
+use crate::workspace::{Buffer, Kept};
 
 /// Labels are handled in vectors of 4, 8 or 16.
 pub(super) const MAX_LABELS: usize = 16;
@@ -25,12 +26,13 @@ const STALLED: f64 = 2e-6;
 
 /// Labels, their energy, and a number no labelling's energy is below.
 pub(super) struct Solution {
-    pub(super) labels: Vec<u8>,
+    pub(super) labels: Buffer<u8>,
     #[cfg_attr(not(test), allow(dead_code))]
     pub(super) bound: f64,
 }
 
 /// At most `iterations` iterations on each of at most `levels` levels.
+#[inline(never)]
 pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
     match problem.costs.len() {
         0..=4 => solve::<4>(problem, levels, iterations),
@@ -40,18 +42,24 @@ pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) ->
 }
 
 /// One level: a grid with costs, weights, and the messages on its edges.
-struct Grid<const L: usize> {
+struct Grid<const L: usize>
+where
+    [f32; L]: Kept,
+{
     width: usize,
     height: usize,
-    costs: Vec<[f32; L]>,
+    costs: Buffer<[f32; L]>,
     /// Weight of the edge from p to its right and to its lower neighbour; 0 where there is none.
-    weights: Vec<[f32; 2]>,
+    weights: Buffer<[f32; 2]>,
     /// Message on the edge from p to its right neighbour and to its lower neighbour; all 0 where there is none.
-    right: Vec<[f32; L]>,
-    down: Vec<[f32; L]>,
+    right: Buffer<[f32; L]>,
+    down: Buffer<[f32; L]>,
 }
 
-fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
+fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution
+where
+    [f32; L]: Kept,
+{
     let mut pyramid = vec![Grid::<L>::new(problem)];
     while pyramid.len() < levels {
         let finest = &pyramid[pyramid.len() - 1];
@@ -74,7 +82,7 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     }
 
     let grid = &mut pyramid[0];
-    let mut labels = vec![0u8; grid.costs.len()];
+    let mut labels = Buffer::filled(grid.costs.len(), 0u8);
     let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
     let mut bound = f64::NEG_INFINITY;
     let unread = if iterations <= FEW { iterations } else { 0 };
@@ -122,7 +130,10 @@ struct Row<const L: usize> {
 }
 
 impl<const L: usize> Row<L> {
-    fn new(grid: &Grid<L>, y: usize) -> Self {
+    fn new(grid: &Grid<L>, y: usize) -> Self
+    where
+        [f32; L]: Kept,
+    {
         let last = grid.width - 1;
         let shares = [grid.share(0, y), grid.share(last, y), grid.share(last.min(1), y)];
         Row { start: y * grid.width, message: [0.0; L], label: 0, weight: 0.0, sum: 0.0, shares }
@@ -140,29 +151,32 @@ impl<const L: usize> Row<L> {
     }
 }
 
-impl<const L: usize> Grid<L> {
+impl<const L: usize> Grid<L>
+where
+    [f32; L]: Kept,
+{
     fn new(problem: &Potts<'_>) -> Self {
         let (width, height) = (problem.width(), problem.height());
         let size = width * height;
         // Labels that only fill up a vector keep their price.
-        let mut costs = vec![[PADDING; L]; size];
+        let mut costs = Buffer::filled(size, [PADDING; L]);
         for (l, plane) in problem.costs.iter().enumerate() {
             costs.iter_mut().zip(plane.values()).for_each(|(cost, &of_label)| cost[l] = allowed(of_label));
         }
         let (h, v) = (problem.horizontal.values(), problem.vertical.values());
-        let mut weights: Vec<[f32; 2]> = h.iter().zip(v).map(|(&h, &v)| [h, v]).collect();
+        let mut weights: Buffer<[f32; 2]> = h.iter().zip(v).map(|(&h, &v)| [h, v]).collect();
         for row in weights.chunks_exact_mut(width) {
             row[width - 1][0] = 0.0;
         }
         weights[(height - 1) * width..].iter_mut().for_each(|w| w[1] = 0.0);
-        Grid { width, height, costs, weights, right: Vec::new(), down: Vec::new() }
+        Grid { width, height, costs, weights, right: Buffer::default(), down: Buffer::default() }
     }
 
     /// Costs and the weights across the border of 2×2 blocks, summed.
     fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let mut costs = Vec::with_capacity(width * height);
-        let mut weights = Vec::with_capacity(width * height);
+        let mut costs = Buffer::with_capacity(width * height);
+        let mut weights = Buffer::with_capacity(width * height);
         let plus = |a: [f32; L], b: &[f32; L]| std::array::from_fn(|l| a[l] + b[l]);
         for y in (0..self.height).step_by(2) {
             let of_row = |y: usize| y * self.width..(y + 1) * self.width;
@@ -182,12 +196,12 @@ impl<const L: usize> Grid<L> {
                 weights.push(across);
             }
         }
-        Grid { width, height, costs, weights, right: Vec::new(), down: Vec::new() }
+        Grid { width, height, costs, weights, right: Buffer::default(), down: Buffer::default() }
     }
 
     /// No messages at all.
     fn be_silent(&mut self) {
-        self.right = vec![[0.0; L]; self.costs.len()];
+        self.right = Buffer::filled(self.costs.len(), [0.0; L]);
         self.down = self.right.clone();
     }
 
@@ -196,7 +210,7 @@ impl<const L: usize> Grid<L> {
         let none = [0.0; L];
         let half = |m: &[f32; L]| m.map(|m| 0.5 * m);
         for (messages, of_coarser) in [(&mut self.right, &coarser.right), (&mut self.down, &coarser.down)] {
-            messages.reserve_exact(self.width * self.height);
+            *messages = Buffer::with_capacity(self.width * self.height);
             for y in 0..self.height {
                 let row = &of_coarser[y / 2 * coarser.width..][..coarser.width];
                 let both = row.iter().flat_map(|m| [half(m); 2]);

@@ -19,6 +19,7 @@ mod views;
 pub(crate) mod visibility;
 
 use crate::frame::Plane;
+use crate::workspace::Buffer;
 
 /// Calls `pair` for every two of `count` pixels that lie beside or above each other on a grid `width` wide.
 #[inline(always)]
@@ -33,7 +34,15 @@ pub(crate) fn neighbours(count: usize, width: usize, mut pair: impl FnMut(usize,
     }
 }
 
+/// The pixels that have certain labels, in order.
+pub(crate) fn pixels(labels: &[u8], which: impl Fn(usize) -> bool) -> Buffer<usize> {
+    let has = |label: &u8| which(usize::from(*label));
+    let mut found = Buffer::with_capacity(labels.iter().filter(|label| has(label)).count());
+    found.extend(labels.iter().enumerate().filter(|(_, label)| has(label)).map(|(p, _)| p));
+    found
+}
+
 /// One label's pixels as a plane of ones on zeros.
 pub(crate) fn mask_of(labels: &[u8], label: u8, width: usize, height: usize) -> Plane {
-    Plane::from_vec(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())
+    Plane::from_buffer(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())
 }

@@ -10,6 +10,7 @@
 
 use super::{expansion, messages};
 use crate::frame::Plane;
+use crate::workspace::Buffer;
 
 /// Largest absolute cost of a pixel under a label: what is above (or NaN) means "forbidden" and is cut to this.
 pub(super) const FORBIDDEN: f32 = 1e7;
@@ -126,7 +127,7 @@ impl Potts<'_> {
     }
 
     /// The cheapest label of every pixel by itself; the first of equals.
-    pub(crate) fn cheapest(&self) -> Vec<u8> {
+    pub(crate) fn cheapest(&self) -> Buffer<u8> {
         (0..self.width() * self.height())
             .map(|p| {
                 let mut best = 0;
@@ -151,11 +152,11 @@ pub(super) fn allowed(cost: f32) -> f32 {
 
 /// Minimises the energy: one label per pixel, row by row. `init`, where given, is where [`Solver::Expansion`] starts and
 /// what the answer of either solver is never worse than. Up to 255 labels; more than 16 are always solved by expansion.
-pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver, init: Option<&[u8]>) -> Vec<u8> {
+pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver, init: Option<&[u8]>) -> Buffer<u8> {
     let labels = problem.costs.len();
     let size = problem.width() * problem.height();
     if labels < 2 || size == 0 {
-        return vec![0; size];
+        return Buffer::filled(size, 0);
     }
     let init = init.filter(|l| l.len() == size && l.iter().all(|&l| usize::from(l) < labels));
     let found = match solver {
@@ -166,7 +167,7 @@ pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver, init: Option<&[u8]>)
         Solver::Expansion { sweeps } => expansion::minimise(problem, sweeps, init),
     };
     match init {
-        Some(init) if problem.energy(init) < problem.energy(&found) => init.to_vec(),
+        Some(init) if problem.energy(init) < problem.energy(&found) => Buffer::of(init),
         _ => found,
     }
 }

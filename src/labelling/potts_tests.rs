@@ -174,8 +174,8 @@ fn forbidden_labels_and_odd_sizes_are_handled() {
     let costs = vec![Plane::filled(20, 20, 1.0); 20];
     let weight = Plane::filled(20, 20, 1.0);
     let problem = Potts { costs: &costs, horizontal: &weight, vertical: &weight };
-    assert_eq!(minimise(&problem, Solver::BEST, None), vec![0; 400]);
-    assert_eq!(minimise(&Potts { costs: &costs[..1], ..problem }, Solver::BEST, None), vec![0; 400]);
+    assert_eq!(minimise(&problem, Solver::BEST, None)[..], [0; 400]);
+    assert_eq!(minimise(&Potts { costs: &costs[..1], ..problem }, Solver::BEST, None)[..], [0; 400]);
 }
 
 /// Costs and weights as the pipeline has them, on a generated scene with the true motions: truncated squared residuals over
@@ -230,7 +230,7 @@ fn energies_and_times() {
         println!("{} labels, seed {seed}, bound {bound:.1}", grid.costs.len());
         for solver in all {
             let mut milliseconds = f64::INFINITY;
-            let mut found = Vec::new();
+            let mut found = Buffer::default();
             for _ in 0..5 {
                 let start = std::time::Instant::now();
                 found = minimise(&problem, solver, None);

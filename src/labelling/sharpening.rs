@@ -16,6 +16,7 @@ use crate::frame::area::Area;
 use crate::frame::lanes::lower;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
+use crate::workspace::Buffer;
 
 /// Size of a tile, working pixels.
 const TILE: [usize; 2] = [32, 8];
@@ -35,9 +36,9 @@ pub(crate) struct Coarse<'a> {
     /// Share of the second frame, where there is a frame before.
     pub(crate) shares: Option<&'a Plane>,
     /// For every label the pixels that it may be hidden at.
-    pub(crate) hidden: &'a [Vec<bool>],
+    pub(crate) hidden: &'a [Buffer<bool>],
     /// For every label the pixels that it cannot have, if any.
-    pub(crate) barred: &'a [Vec<bool>],
+    pub(crate) barred: &'a [Buffer<bool>],
     pub(crate) colours: Option<&'a ColourPrices>,
 }
 
@@ -63,9 +64,10 @@ struct Region {
 }
 
 /// The labels of the working size.
-pub(crate) fn sharpened(coarse: &Coarse<'_>, fine: &Fine<'_>, solver: Solver) -> Vec<u8> {
+pub(crate) fn sharpened(coarse: &Coarse<'_>, fine: &Fine<'_>, solver: Solver) -> Buffer<u8> {
     let (width, height) = (fine.level.width(), fine.level.height());
-    let mut labels: Vec<u8> = (0..width * height).map(|p| coarse.labels[coarse.pixel(p % width, p / width)]).collect();
+    let mut labels: Buffer<u8> =
+        (0..width * height).map(|p| coarse.labels[coarse.pixel(p % width, p / width)]).collect();
     let comparisons = Comparisons::new(fine);
     for region in regions(coarse.contested(width, height)) {
         region.solve(coarse, fine, &comparisons, solver, &mut labels);
@@ -79,8 +81,12 @@ fn regions(tiles: Vec<Tile>) -> Vec<Region> {
     for tile in tiles {
         let mut grown = Region { area: tile.area.clone(), tiles: vec![tile] };
         while let Some(k) = regions.iter().position(|region| region.area.touches(&grown.area)) {
-            let other = regions.swap_remove(k);
+            let mut other = regions.swap_remove(k);
             grown.area = grown.area.with(&other.area);
+            // The shorter list moves.
+            if grown.tiles.len() < other.tiles.len() {
+                std::mem::swap(&mut grown.tiles, &mut other.tiles);
+            }
             grown.tiles.extend(other.tiles);
         }
         regions.push(grown);
@@ -101,7 +107,8 @@ impl Region {
         // What surrounds the tiles holds them with the labels that it keeps.
         let area = self.area.grown(1, width, height);
         let rows = || area.rows.clone().map(|y| y * width + area.columns.start..y * width + area.columns.end);
-        let start: Vec<u8> = rows().flat_map(|row| labels[row].iter().copied()).collect();
+        let mut start = Buffer::with_capacity(area.width() * area.height());
+        rows().for_each(|row| start.extend_from_slice(&labels[row]));
         let mut present = [false; 256];
         let competing = self.tiles.iter().flat_map(|tile| &tile.labels);
         start.iter().chain(competing).for_each(|&l| present[usize::from(l)] = true);
@@ -110,7 +117,7 @@ impl Region {
         present.iter().zip(0..).for_each(|(&l, k)| number[usize::from(l)] = k);
         let fixed = |&label: &u8| {
             let cost = start.iter().map(|&l| if l == label { 0.0 } else { FAR });
-            Plane::from_vec(area.width(), area.height(), cost.collect())
+            Plane::from_buffer(area.width(), area.height(), cost.collect())
         };
         let mut costs: Vec<Plane> = present.iter().map(fixed).collect();
         let mut borders = Borders::uniform(area.width(), area.height(), fine.coherence);
@@ -125,7 +132,7 @@ impl Region {
                 borders.follow(picture, fine.level.noise, fine.coherence, &around, corner);
             }
         }
-        let numbered: Vec<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();
+        let numbered: Buffer<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();
         let solved = borders.solve_from(&costs, solver, &numbered);
         for (row, solved) in rows().zip(solved.chunks_exact(area.width())) {
             labels[row].iter_mut().zip(solved).for_each(|(label, &k)| *label = present[usize::from(k)]);

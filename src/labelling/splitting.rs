@@ -2,6 +2,7 @@
 
 use super::components::{Connectivity, components};
 use super::description::{SMALLEST_SHARE, price_of_motion};
+use super::pixels;
 use crate::alignment::cost::{CostModel, Photometric, cost_within};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
@@ -10,6 +11,7 @@ use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 use crate::order::descending;
+use crate::workspace::Buffer;
 
 /// Smallest number of pixels of a part.
 const SMALLEST_PART: usize = 30;
@@ -59,8 +61,8 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
         }
         let mut fits = Vec::new();
         for &part in &parts {
-            let mask: Vec<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
-            let inner = gaussian(&eroded(&Plane::from_vec(width, height, mask)), SOFTNESS);
+            let mask: Buffer<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
+            let inner = gaussian(&eroded(&Plane::from_buffer(width, height, mask)), SOFTNESS);
             let motion = aligned_on(level, &motions[label], &inner, 4, 1e-2);
             let [x0, y0, x1, y1] = found.list[part].bounds;
             let area = Area { columns: x0..x1 + 1, rows: y0..y1 + 1 };
@@ -104,7 +106,7 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
         if motions.len() >= most {
             break;
         }
-        let region: Vec<usize> = (0..labels.len()).filter(|&p| usize::from(labels[p]) == label).collect();
+        let region = pixels(labels, |l| l == label);
         if region.len() < 2 * smallest_part(labels.len()) {
             continue;
         }
@@ -120,7 +122,7 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
 }
 
 /// Two motions that explain a region better than one, by more than their price, and which of its pixels go with the second.
-fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Vec<bool>)> {
+fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Buffer<bool>)> {
     let (width, height) = (level.width(), level.height());
     let around = Area::of(region, width).grown(REACH, width, height);
     let mut second = far_half(region, width);
@@ -156,7 +158,7 @@ fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<
 }
 
 /// Which pixels of a region lie beyond its centre along its long axis.
-fn far_half(region: &[usize], width: usize) -> Vec<bool> {
+fn far_half(region: &[usize], width: usize) -> Buffer<bool> {
     let n = region.len() as f64;
     let place = |p: usize| ((p % width) as f64, (p / width) as f64);
     let (mut cx, mut cy) = (0.0, 0.0);
@@ -178,7 +180,7 @@ fn far_half(region: &[usize], width: usize) -> Vec<bool> {
 
 /// Number of neighbouring pairs of the region that the split separates.
 fn inner_border(region: &[usize], second: &[bool], width: usize, height: usize) -> usize {
-    let mut side = vec![0u8; width * height];
+    let mut side = Buffer::filled(width * height, 0u8);
     for (&p, &s) in region.iter().zip(second) {
         side[p] = 1 + u8::from(s);
     }

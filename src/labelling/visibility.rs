@@ -8,6 +8,7 @@ use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::warp;
 use crate::motion::AffineMotion;
+use crate::workspace::Buffer;
 
 /// Cost of a pixel that is hidden under the motion in question: neither for nor against it.
 const HIDDEN: f32 = 1.5;
@@ -23,10 +24,10 @@ pub(crate) fn with_visibility(
     labels: &[u8],
     departure: f32,
 ) -> Vec<Plane> {
-    let hide = |(k, hidden): (usize, Vec<bool>)| {
+    let hide = |(k, hidden): (usize, Buffer<bool>)| {
         let most = most_where_hidden(k, departure);
         let mut out = costs[k].clone();
-        for (c, _) in out.values_mut().iter_mut().zip(hidden).filter(|(_, hidden)| *hidden) {
+        for (c, _) in out.values_mut().iter_mut().zip(&hidden).filter(|(_, hidden)| **hidden) {
             *c = c.min(most);
         }
         out
@@ -40,7 +41,7 @@ pub(crate) fn most_where_hidden(label: usize, departure: f32) -> f32 {
 }
 
 /// For every motion the pixels at which it need not pay, as [`with_visibility`] has it.
-pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Vec<bool>> {
+pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Buffer<bool>> {
     let landed = landed(level, motions, labels);
     let hidden = |k: usize| {
         let covered = covered(level, &motions[k], &landed, k);
@@ -50,7 +51,7 @@ pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8
 }
 
 /// Pixels of the dominant motion that it moves behind an object.
-pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<bool> {
+pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Buffer<bool> {
     let covered = covered(level, &motions[0], &landed(level, motions, labels), 0);
     covered.values().iter().zip(labels).map(|(&covered, &label)| label == 0 && covered > 0.5).collect()
 }

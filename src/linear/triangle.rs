@@ -4,12 +4,13 @@ use nalgebra::DMatrix;
 
 use super::kernels::{add_multiple, dot};
 use super::singular_values::singular_values;
+use crate::workspace::Buffer;
 
 /// An upper triangular m×m matrix, column-major with its zeros.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
     size: usize,
-    values: Vec<f64>,
+    values: Buffer<f64>,
 }
 
 impl Triangle {
@@ -17,12 +18,12 @@ impl Triangle {
     pub const LARGEST_DECOMPOSED: usize = 500;
 
     pub(super) fn zeros(size: usize) -> Self {
-        Triangle { size, values: vec![0.0; size * size] }
+        Triangle { size, values: Buffer::filled(size * size, 0.0) }
     }
 
     /// R with RᵀR = `gram`, given column-major (only its upper part is read), after `ridge` times its own size was added to each
     /// diagonal entry. No pivot's square falls below that.
-    pub(crate) fn of_gram(size: usize, mut gram: Vec<f64>, ridge: f64) -> Self {
+    pub(crate) fn of_gram(size: usize, mut gram: Buffer<f64>, ridge: f64) -> Self {
         for k in 0..size {
             let (done, rest) = gram.split_at_mut(k * size);
             let (column, below) = rest[..size].split_at_mut(k);

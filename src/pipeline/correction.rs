@@ -20,6 +20,7 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::points::UNLABELLED;
 use crate::progress::{Progress, Stages};
+use crate::workspace::Buffer;
 
 const STAGES: &[&str] = &["frames", "dominant", "labels", "masks"];
 
@@ -150,8 +151,8 @@ impl Correction<'_> {
 /// The correction at working size.
 struct Draft {
     motions: Vec<AffineMotion>,
-    labels: Vec<u8>,
-    allowed: Vec<u16>,
+    labels: Buffer<u8>,
+    allowed: Buffer<u16>,
     /// Full-size pixels per working pixel.
     step: usize,
     size: [usize; 2],
@@ -163,8 +164,8 @@ impl Draft {
         let (width, height) = (level.width(), level.height());
         let step = work.reduction as usize;
         let full_height = correction.labels.len() / full_width;
-        let mut labels = Vec::with_capacity(width * height);
-        let mut allowed = vec![0u16; width * height];
+        let mut labels = Buffer::with_capacity(width * height);
+        let mut allowed = Buffer::filled(width * height, 0u16);
         for y in 0..height {
             for x in 0..width {
                 let (u, v) = ((x * step + step / 2).min(full_width - 1), (y * step + step / 2).min(full_height - 1));
@@ -186,12 +187,12 @@ impl Draft {
     }
 
     /// The labels of working size.
-    fn solve(&self, work: &Work, settings: &Settings) -> Vec<u8> {
+    fn solve(&self, work: &Work, settings: &Settings) -> Buffer<u8> {
         let level = work.finest();
         let coherence = settings.coherence;
         let mut costs = label_costs(level, &self.motions, coherence);
         // Where nothing was said yet, the dominant motion stands in: it is what the masks were corrected for occlusion with.
-        let known: Vec<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
+        let known: Buffer<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
         if self.motions.len() > 1 {
             costs = with_visibility(level, &self.motions, &costs, &known, coherence.departure);
             add_colours(&mut costs, &work.palette, &known);
@@ -208,8 +209,8 @@ impl Draft {
 
     /// Adds to the costs what the strokes say, and how dear a change is where they hardly say anything. Returns how much of its
     /// strength the nearest stroke has at every pixel, 0…1.
-    fn add_evidence(&self, costs: &mut [Plane], edges: &Plane) -> Vec<f32> {
-        let mut say: Vec<f32> = self.allowed.iter().map(|&set| if set == 0 { 0.0 } else { 1.0 }).collect();
+    fn add_evidence(&self, costs: &mut [Plane], edges: &Plane) -> Buffer<f32> {
+        let mut say: Buffer<f32> = self.allowed.iter().map(|&set| if set == 0 { 0.0 } else { 1.0 }).collect();
         let smooth: Vec<Plane> = costs.iter().map(|c| gaussian(c, TELLING_WINDOW)).collect();
         for k in 0..costs.len() {
             let excluded = |p: usize| self.allowed[p] != 0 && self.allowed[p] >> k & 1 == 0;

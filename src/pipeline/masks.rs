@@ -17,6 +17,7 @@ use crate::labelling::sharpening::{Coarse, Fine, sharpened};
 use crate::labelling::splitting::{split_bodies, split_components};
 use crate::labelling::visibility::{hidden_under, with_visibility};
 use crate::motion::AffineMotion;
+use crate::workspace::Buffer;
 
 /// A label that came from a split competes only this far around its region, as a share of the root of its pixels …
 const REACH_SHARE: f64 = 0.25;
@@ -30,7 +31,7 @@ const COARSE_SMOOTHNESS: f32 = 0.7;
 /// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
-    pub(super) labels: Vec<u8>,
+    pub(super) labels: Buffer<u8>,
     /// The best motion that is not among them: it did not pay for itself, here or when motions were selected.
     pub(super) left_out: Option<AffineMotion>,
 }
@@ -47,9 +48,9 @@ struct Draft<'a> {
     survey: Survey,
     /// Estimation costs, for the description length.
     raw: Vec<Plane>,
-    labels: Vec<u8>,
+    labels: Buffer<u8>,
     /// For every label the pixels that it cannot have; none where all labels compete everywhere.
-    barred: Vec<Vec<bool>>,
+    barred: Vec<Buffer<bool>>,
     /// What was taken away last, else what the selection left out.
     left_out: Option<AffineMotion>,
 }
@@ -115,7 +116,7 @@ impl<'a> Draft<'a> {
             costs: Vec::new(),
             survey: surveyed(level, &motions, settings.coherence),
             raw: Vec::new(),
-            labels: vec![0; level.width() * level.height()],
+            labels: Buffer::filled(level.width() * level.height(), 0),
             barred: Vec::new(),
             motions,
             left_out: found.left_out,
@@ -272,7 +273,7 @@ impl<'a> Draft<'a> {
             }
             if gone < self.barred.len() {
                 let other = self.barred.remove(gone);
-                self.barred[kept].iter_mut().zip(other).for_each(|(barred, other)| *barred &= other);
+                self.barred[kept].iter_mut().zip(&other).for_each(|(barred, other)| *barred &= other);
             }
             self.measure();
             self.bar();
@@ -305,12 +306,12 @@ impl<'a> Draft<'a> {
     fn restrict(&mut self) {
         let (width, height) = self.size();
         let sizes = counts(&self.labels, self.motions.len());
-        self.barred = vec![vec![false; self.labels.len()]];
+        self.barred = vec![Buffer::filled(self.labels.len(), false)];
         for k in 1..self.motions.len() {
             let smallest = SMALLEST_REACH >> self.level.index;
             let reach = smallest.max((REACH_SHARE * (sizes[k] as f64).sqrt()) as usize);
             let near = near_label(&self.labels, k as u8, width, height, reach);
-            self.barred.push(near.into_iter().map(|near| !near).collect());
+            self.barred.push(near.iter().map(|near| !near).collect());
         }
         self.bar();
     }
@@ -348,7 +349,7 @@ impl<'a> Draft<'a> {
 }
 
 /// Which pixels lie within `reach` (in the larger of both coordinate differences) of a label.
-fn near_label(labels: &[u8], label: u8, width: usize, height: usize, reach: usize) -> Vec<bool> {
+fn near_label(labels: &[u8], label: u8, width: usize, height: usize, reach: usize) -> Buffer<bool> {
     let spread = |line: &mut dyn FnMut(usize) -> (bool, usize), length: usize, out: &mut [bool]| {
         let mut last: Option<usize> = None;
         for k in 0..length {
@@ -359,12 +360,12 @@ fn near_label(labels: &[u8], label: u8, width: usize, height: usize, reach: usiz
             out[p] |= last.is_some_and(|l| k - l <= reach);
         }
     };
-    let mut rows = vec![false; labels.len()];
+    let mut rows = Buffer::filled(labels.len(), false);
     for y in 0..height {
         spread(&mut |k| (labels[y * width + k] == label, y * width + k), width, &mut rows);
         spread(&mut |k| (labels[y * width + width - 1 - k] == label, y * width + width - 1 - k), width, &mut rows);
     }
-    let mut near = vec![false; labels.len()];
+    let mut near = Buffer::filled(labels.len(), false);
     for x in 0..width {
         spread(&mut |k| (rows[k * width + x], k * width + x), height, &mut near);
         spread(&mut |k| (rows[(height - 1 - k) * width + x], (height - 1 - k) * width + x), height, &mut near);

@@ -20,6 +20,7 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::order::descending;
 use crate::points::{Candidate, UNLABELLED};
+use crate::workspace::Buffer;
 
 /// What [`segment_pair`](crate::segment_pair) found.
 #[derive(Clone, Debug, Serialize)]
@@ -155,7 +156,7 @@ fn confidence(probabilities: &[Plane], labels: &[u8], width: usize) -> Vec<u8> {
 }
 
 /// Labels by decreasing number of pixels; those without pixels are left out, but the first stays.
-fn by_size(labels: &[u8], of: usize) -> Vec<usize> {
+fn by_size(labels: &[u8], of: usize) -> Buffer<usize> {
     let sizes = counts(labels, of);
     let mut order = descending(sizes.iter().map(|&s| s as f64));
     order.retain(|&k| sizes[k] > 0);
@@ -180,7 +181,7 @@ pub(super) fn reduced(motion: &AffineMotion, reduction: f64) -> AffineMotion {
 
 /// Working pixels that leave the frame, are hidden behind an object or are not explained by their own motion, those without
 /// texture around them, and those whose label is more likely wrong than right.
-fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Vec<bool> {
+fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
     let level = work.finest();
     let limit = UNKNOWN_COST * CostModel::LABELS.truncation;
     let texture = gaussian(&level.energy, TEXTURE_WINDOW);

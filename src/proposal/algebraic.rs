@@ -18,6 +18,7 @@ use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
 use crate::random::Random;
+use crate::workspace::{Buffer, kept};
 
 /// Gradients shorter than this (grey levels per pixel) say nothing.
 const SMALLEST_GRADIENT: f32 = 1.0;
@@ -38,7 +39,7 @@ const SMALLEST_GROUP: usize = 6;
 /// The measurements that the dominant motion leaves over, with their weights.
 struct Unexplained {
     measurements: Measurements,
-    weights: Vec<f64>,
+    weights: Buffer<f64>,
 }
 
 /// Motions found by polynomials of degree 1 to `degrees` on at most `most` unexplained pixels.
@@ -74,7 +75,8 @@ fn unexplained(
     let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
-    let mut found = Vec::new();
+    let mut places = Buffer::with_capacity(width * height);
+    let mut weights = Buffer::with_capacity(width * height);
     let (mut seen, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..height {
         let path = RowPath::new(&scaled, 0, y);
@@ -91,15 +93,16 @@ fn unexplained(
                 let e = r * r / (level.noise * level.noise + looseness * level.energy.at(x, y));
                 let weight = e / (e + HALF_WEIGHT);
                 if weight > SMALLEST_WEIGHT {
-                    found.push((x, y, weight));
+                    places.push(y * width + x);
+                    weights.push(weight);
                 }
             }
         }
     }
-    if found.len() < PER_UNKNOWN * monomials::unknowns(1) {
+    if places.len() < PER_UNKNOWN * monomials::unknowns(1) {
         return None;
     }
-    let chosen = random.choose(found.len(), most);
+    let chosen = random.choose(places.len(), most);
     let half = 0.5 * width as f64;
     let position = |x: usize, y: usize| [x as f64 / half - 1.0, (y as f64 - 0.5 * height as f64) / half];
     let derivatives = |x: usize, y: usize| {
@@ -109,26 +112,29 @@ fn unexplained(
         let length = (gx * gx + gy * gy + 4.0).sqrt();
         [gx / length, gy / length, temporal / (length * FLOW_UNIT)]
     };
-    let points = || chosen.iter().map(|&k| found[k]);
-    let measurements = Measurements::new(
-        points().map(|(x, y, _)| position(x, y)).collect(),
-        points().map(|(x, y, _)| derivatives(x, y)).collect(),
+    let points = || chosen.iter().map(|&k| (places[k] % width, places[k] / width));
+    let measurements = Measurements::checked(
+        points().map(|(x, y)| position(x, y)).collect(),
+        points().map(|(x, y)| derivatives(x, y)).collect(),
     );
-    Some(Unexplained { measurements: measurements.ok()?, weights: points().map(|p| f64::from(p.2)).collect() })
+    Some(Unexplained {
+        measurements: measurements.ok()?,
+        weights: chosen.iter().map(|&k| f64::from(weights[k])).collect(),
+    })
 }
 
 /// The flows (pixels of the level) that a polynomial of one degree gives, one per group of pixels.
 fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
     let refitting = Refitting::new(&data.measurements, degree);
     let mut weights = data.weights.clone();
-    let mut readings = Vec::new();
+    let mut readings = Buffer::default();
     let mut close = 0.0;
     for _ in 0..ROUNDS {
         // A weight belongs to a row; only their ratios count.
         let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
         weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
         readings = read_off(&refitting, &refitting.fit(&weights));
-        let distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
+        let distances: Buffer<f64> = readings.iter().map(|r| r.distance).collect();
         close = 1.5 * median_f64(&distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
@@ -140,6 +146,7 @@ fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
 }
 
 /// What differentiation says about a measurement.
+#[derive(Clone, Copy, Default)]
 struct Reading {
     /// Flow of the factor that vanishes there, in units of [`FLOW_UNIT`] pixels.
     flow: [f64; 2],
@@ -149,32 +156,34 @@ struct Reading {
     distance: f64,
 }
 
-fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Vec<Reading> {
-    let all = refitting.read(polynomial).into_iter();
-    all.map(|(value, g)| {
-        let slope = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
-        Reading { flow: [g[0] / g[2], g[1] / g[2]], slope, distance: value.abs() / (slope + 1e-9) }
-    })
-    .collect()
+kept!(Reading);
+
+fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Buffer<Reading> {
+    let all = refitting.read(polynomial);
+    all.iter()
+        .map(|[value, g @ ..]| {
+            let slope = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+            Reading { flow: [g[0] / g[2], g[1] / g[2]], slope, distance: value.abs() / (slope + 1e-9) }
+        })
+        .collect()
 }
 
 /// Median flows of groups of pixels that are alike in flow and place.
 fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize) -> Vec<[f64; 2]> {
-    let points: Vec<Point> = readings
-        .iter()
-        .zip(positions)
-        .filter_map(|(r, p)| {
-            let [u, v] = r.flow.map(|f| f * FLOW_UNIT);
-            let sensible = u * u + v * v < LARGEST_FLOW * LARGEST_FLOW && r.distance < close;
-            sensible.then_some([u, v, p[0], p[1]])
-        })
-        .collect();
+    let sensible = readings.iter().zip(positions).filter_map(|(r, p)| {
+        let [u, v] = r.flow.map(|f| f * FLOW_UNIT);
+        let sensible = u * u + v * v < LARGEST_FLOW * LARGEST_FLOW && r.distance < close;
+        sensible.then_some([u, v, p[0], p[1]])
+    });
+    let mut points: Buffer<Point> = Buffer::with_capacity(readings.len());
+    points.extend(sensible);
     let assignment = k_means(&points, groups);
     (0..groups)
         .filter_map(|g| {
             let member = || points.iter().zip(&assignment).filter(move |&(_, &a)| a == g).map(|(p, _)| p);
             let median = |k: usize| {
-                let values: Vec<f64> = member().map(|p| p[k]).collect();
+                let mut values = Buffer::with_capacity(points.len());
+                values.extend(member().map(|p| p[k]));
                 median_f64(&values).unwrap_or(0.0)
             };
             (member().count() >= SMALLEST_GROUP).then(|| [median(0), median(1)])

@@ -26,7 +26,7 @@ pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion 
 /// Leaves out every proposal that moves the neighbourhood of its place (a tenth of the frame's width and height) like an
 /// earlier one, to within `tolerance` pixels; at most `most` remain.
 pub(crate) fn distinct(
-    proposals: &[Proposal],
+    proposals: &mut dyn Iterator<Item = Proposal>,
     tolerance: f64,
     [width, height]: [f64; 2],
     most: usize,
@@ -36,7 +36,7 @@ pub(crate) fn distinct(
         if kept.len() >= most {
             break;
         }
-        let points = [(*x, *y), (x + 0.1 * width, *y), (*x, y + 0.1 * height)];
+        let points = [(x, y), (x + 0.1 * width, y), (x, y + 0.1 * height)];
         let alike = |other: &AffineMotion| {
             points.iter().all(|&(x, y)| {
                 let ([u, v], [p, q]) = (motion.flow(x, y), other.flow(x, y));
@@ -44,7 +44,7 @@ pub(crate) fn distinct(
             })
         };
         if !kept.iter().any(alike) {
-            kept.push(*motion);
+            kept.push(motion);
         }
     }
     kept

@@ -5,6 +5,7 @@ use super::{Proposal, distinct, translated};
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 use crate::order::descending;
+use crate::workspace::Buffer;
 
 /// Distance of the windows, pixels of the base level.
 const STRIDE: usize = 6;
@@ -17,26 +18,26 @@ const TOLERANCE: f64 = 0.35;
 
 /// At most `most` motions: the dominant one plus a translation.
 pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Vec<AffineMotion> {
-    let mut windows = Vec::new();
+    let [columns, rows] = [level.width(), level.height()].map(|size| size.div_ceil(STRIDE));
+    let mut certainties = Buffer::with_capacity(columns * rows);
+    let mut places = Buffer::with_capacity(columns * rows);
     for y in (STRIDE / 2..level.height()).step_by(STRIDE) {
         for x in (STRIDE / 2..level.width()).step_by(STRIDE) {
             let (u, v) = (flow.u.at(x, y), flow.v.at(x, y));
             let certainty = flow.certainty.at(x, y);
             if certainty > CERTAIN && u * u + v * v > MOVING * MOVING {
-                windows.push((certainty, x, y));
+                certainties.push(certainty);
+                places.push(y * level.width() + x);
             }
         }
     }
-    let order = descending(windows.iter().map(|w| f64::from(w.0)));
+    let order = descending(certainties.iter().map(|&c| f64::from(c)));
     let pixel = level.pixel();
-    let proposals: Vec<Proposal> = order
-        .into_iter()
-        .map(|k| windows[k])
-        .map(|(_, x, y)| Proposal {
+    let mut proposals =
+        order.iter().map(|&k| (places[k] % level.width(), places[k] / level.width())).map(|(x, y)| Proposal {
             motion: translated(dominant, f64::from(flow.u.at(x, y)) * pixel, f64::from(flow.v.at(x, y)) * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
-        })
-        .collect();
+        });
     let size = [level.width() as f64 * pixel, level.height() as f64 * pixel];
-    distinct(&proposals, TOLERANCE * pixel, size, most)
+    distinct(&mut proposals, TOLERANCE * pixel, size, most)
 }

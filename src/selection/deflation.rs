@@ -11,6 +11,7 @@ use crate::frame::pyramid::Level;
 use crate::labelling::components::{Connectivity, components};
 use crate::motion::AffineMotion;
 use crate::order::descending;
+use crate::workspace::Buffer;
 
 /// When to add a motion, and how hard to look.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +100,7 @@ pub(crate) fn add_motions(
     loop {
         let current = smallest_cost(layers);
         let current_blocks = blocks(&current, BLOCK);
-        let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
+        let gains: Buffer<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
         let current_sample = current.thinned(thinning);
         let mut best: Option<(f64, Layer)> = None;
         let order = descending(gains.iter().copied());
@@ -107,7 +108,7 @@ pub(crate) fn add_motions(
         if layers.len() >= how.most {
             return next;
         }
-        for k in order.into_iter().take(how.tries) {
+        for &k in order.iter().take(how.tries) {
             if gains[k] < WORTH_A_TRY * how.price {
                 break;
             }
@@ -152,9 +153,9 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) 
 /// The connected region in which a cost improves most on what is there, as weights 0 and 1.
 fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Plane> {
     let (width, height) = (improved.width(), improved.height());
-    let mask: Vec<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
+    let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
     let found = components(&mask, width, Connectivity::Eight);
-    let mut weights = vec![0.0f64; found.list.len()];
+    let mut weights = Buffer::filled(found.list.len(), 0.0f64);
     for ((&region, a), c) in found.of.iter().zip(current.values()).zip(cost.values()) {
         weights[region as usize] += f64::from(a - c);
     }
@@ -167,7 +168,7 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Pl
     }
     let chosen = heaviest?;
     let values = found.of.iter().map(|&id| if id as usize == chosen { 1.0 } else { 0.0 }).collect();
-    Some(Plane::from_vec(width, height, values))
+    Some(Plane::from_buffer(width, height, values))
 }
 
 /// Takes out every motion but the first whose absence would cost less than its price, the cheapest first.

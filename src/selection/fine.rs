@@ -10,6 +10,7 @@ use crate::frame::warp::Footprint;
 use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::proposal::{Proposal, distinct, translated};
+use crate::workspace::Buffer;
 
 /// Standard deviation of the window, pixels.
 const WINDOW: f32 = 1.33;
@@ -31,37 +32,38 @@ pub(crate) fn fine_proposals(level: &Level, layers: &[Layer]) -> Vec<AffineMotio
     let (width, height) = (level.width(), level.height());
     let winners = winners(layers);
     let [xx, xy, yy, xr, yr] = window_sums(level, layers, &winners);
-    let mut windows = Vec::new();
+    let [columns, rows] = [width, height].map(|size| size.div_ceil(STRIDE));
+    let mut gains = Buffer::with_capacity(columns * rows);
+    let mut places = Buffer::with_capacity(columns * rows);
+    let mut steps = Buffer::with_capacity(columns * rows);
     for y in (STRIDE / 2..height).step_by(STRIDE) {
         for x in (STRIDE / 2..width).step_by(STRIDE) {
             let (a, c, d) = (xx.at(x, y) + FLAT, xy.at(x, y), yy.at(x, y) + FLAT);
             let (p, q) = (xr.at(x, y), yr.at(x, y));
             let determinant = a * d - c * c;
             let (u, v) = ((c * q - d * p) / determinant, (c * p - a * q) / determinant);
-            windows.push((-(p * u + q * v), x, y, f64::from(u), f64::from(v)));
+            gains.push(-(p * u + q * v));
+            places.push(y * width + x);
+            steps.push([u, v]);
         }
     }
-    let order = descending(windows.iter().map(|w| f64::from(w.0)));
+    let order = descending(gains.iter().map(|&gain| f64::from(gain)));
     let pixel = level.pixel();
-    let proposals: Vec<Proposal> = order
-        .into_iter()
-        .take(WINDOWS)
-        .map(|k| windows[k])
-        .filter(|&(_, _, _, u, v)| {
-            let length = (u * u + v * v).sqrt();
-            STEPS.0 < length && length < STEPS.1
-        })
-        .map(|(_, x, y, u, v)| Proposal {
-            motion: translated(&layers[winners[y * width + x]].motion, u * pixel, v * pixel),
+    let mut proposals = order.iter().take(WINDOWS).filter_map(|&k| {
+        let [u, v] = steps[k].map(f64::from);
+        let length = (u * u + v * v).sqrt();
+        let (x, y) = (places[k] % width, places[k] / width);
+        (STEPS.0 < length && length < STEPS.1).then(|| Proposal {
+            motion: translated(&layers[winners[places[k]]].motion, u * pixel, v * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         })
-        .collect();
-    distinct(&proposals, TOLERANCE * pixel, [width as f64 * pixel, height as f64 * pixel], MOST)
+    });
+    distinct(&mut proposals, TOLERANCE * pixel, [width as f64 * pixel, height as f64 * pixel], MOST)
 }
 
 /// The cheapest layer of every pixel.
-fn winners(layers: &[Layer]) -> Vec<usize> {
-    let mut winners = vec![0; layers[0].cost.values().len()];
+fn winners(layers: &[Layer]) -> Buffer<usize> {
+    let mut winners = Buffer::filled(layers[0].cost.values().len(), 0);
     for (p, winner) in winners.iter_mut().enumerate() {
         for k in 1..layers.len() {
             if layers[k].cost.values()[p] < layers[*winner].cost.values()[p] {
@@ -79,7 +81,7 @@ fn window_sums(level: &Level, layers: &[Layer], winners: &[usize]) -> [Plane; 5]
     let noise = level.noise * level.noise;
     let stride = level.stride as f64;
     let half = 0.5 * level.stride as f32;
-    let mut sums: [Plane; 5] = std::array::from_fn(|_| Plane::filled(width, height, 0.0));
+    let mut sums: [Plane; 5] = std::array::from_fn(|_| Plane::unwritten(width, height));
     for y in 0..height {
         for x in 0..width {
             let [u, v] = scaled[winners[y * width + x]].flow(x as f64, y as f64);
