@@ -13,6 +13,7 @@ const PKG = join(root, 'pkg');
 const FILE = 'docs/sizes.md';
 const ROWS = [
   ['the core module, for browser and Node', ['wasm/veronese_bg.wasm']],
+  ['the module of measurements, loaded by `fitMotions`', ['wasm/points/veronese_points_bg.wasm']],
   ['JavaScript of `veronese` in a browser', ['dist/web.js']],
   ['JavaScript of `veronese/worker`', ['dist/worker.js']],
   ['JavaScript of `veronese/slim`', ['dist/slim.js']],

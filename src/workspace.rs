@@ -2,9 +2,9 @@
 //! allocator for nothing but its result and a few short lists.
 //!
 //! Each thread has its own. What a call did not use, the next one gives back to the allocator; where frames are of another size than
-//! before, everything.
+//! before, everything, and at once, so that what was given back is one piece again before anything new is asked for.
 
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::ops::{Deref, DerefMut};
 use std::thread::LocalKey;
 
@@ -19,10 +19,12 @@ pub(crate) struct Shelf<T> {
     kept: Vec<(u32, Vec<T>)>,
     /// The call that last looked for what is no longer used.
     swept: u32,
+    /// Whether [`SHELVES`] knows of it.
+    known: bool,
 }
 
 impl<T> Shelf<T> {
-    pub(crate) const EMPTY: Shelf<T> = Shelf { kept: Vec::new(), swept: 0 };
+    pub(crate) const EMPTY: Shelf<T> = Shelf { kept: Vec::new(), swept: 0, known: false };
 }
 
 impl<T> Default for Shelf<T> {
@@ -34,13 +36,17 @@ impl<T> Default for Shelf<T> {
 thread_local! {
     /// The number of this thread's present call, and the size of its frames.
     static CALL: Cell<(u32, [usize; 2])> = const { Cell::new((0, [0; 2])) };
+    /// What empties each of this thread's shelves.
+    static SHELVES: RefCell<Vec<fn()>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Begins a call on frames of a size.
 pub(crate) fn begin(size: [usize; 2]) {
     let (last, of) = CALL.get();
-    // What the call before last used is no longer kept.
-    CALL.set((last.wrapping_add(if size == of { 1 } else { 2 }), size));
+    CALL.set((last.wrapping_add(1), size));
+    if size != of {
+        SHELVES.take().iter().for_each(|empty| empty());
+    }
 }
 
 /// Makes [`Kept`] of types.
@@ -146,12 +152,21 @@ fn take<T>(shelf: &Cell<Shelf<T>>, capacity: Option<usize>) -> Vec<T> {
 
 /// Keeps a buffer, if it is of a size that is ever looked for.
 #[inline(never)]
-fn put<T>(shelf: &Cell<Shelf<T>>, buffer: Vec<T>) {
+fn put<T>(shelf: &Cell<Shelf<T>>, buffer: Vec<T>, empty: fn()) {
     if buffer.capacity() > 0 && buffer.capacity() == rounded(buffer.capacity()) {
         let mut stock = shelf.take();
+        if !stock.known {
+            stock.known = true;
+            SHELVES.with_borrow_mut(|shelves| shelves.push(empty));
+        }
         stock.kept.push((CALL.get().0, buffer));
         shelf.set(stock);
     }
+}
+
+/// Gives back all buffers of a type that nobody uses.
+fn empty<T: Kept>() {
+    T::shelf().take();
 }
 
 impl<T: Kept> Drop for Buffer<T> {
@@ -159,7 +174,7 @@ impl<T: Kept> Drop for Buffer<T> {
     fn drop(&mut self) {
         let values = std::mem::take(&mut self.0);
         // A thread that ends takes its workspace along.
-        let _ = T::shelf().try_with(|shelf| put(shelf, values));
+        let _ = T::shelf().try_with(|shelf| put(shelf, values, empty::<T>));
     }
 }
 

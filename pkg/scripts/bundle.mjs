@@ -11,7 +11,7 @@ const PROGRAM = ['cli', 'cli-work', 'cli-batch-work'];
 /** What an encoder of masks shares with the calls. */
 const SHARED = ['errors', 'palette'];
 /** What all entries with calls share. */
-const CALLS = ['glue', 'api', 'core', 'loading', 'labels', 'version', 'segmenter', 'pool', 'threads', 'ordered'];
+const CALLS = ['glue', 'glue-points', 'api', 'core', 'loading', 'labels', 'version', 'segmenter', 'pool', 'threads', 'ordered'];
 
 const named = (names) => new RegExp(`[\\\\/]build[\\\\/](?:${names.join('|')})\\.js$`);
 const bundle = await rolldown({

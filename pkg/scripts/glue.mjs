@@ -1,14 +1,16 @@
 // Takes the JavaScript that wasm-bindgen wrote beside each module to the compiled sources, with the calls that are used and a
-// loader of our own, and the core module as text; part of `npm run build`.
+// loader of our own, and the modules as text; part of `npm run build`.
 
 import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
-const CALLS = ['segmentPair', 'relabel', 'fitMotions', 'paintLabels', 'paintLabelsOffscreen'];
+const FRAME_CALLS = ['segmentPair', 'relabel', 'paintLabels', 'paintLabelsOffscreen'];
+const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [
-  { from: '../wasm/veronese.js', to: '../build/glue.js', calls: CALLS },
-  { from: '../wasm/codecs/veronese_codecs.js', to: '../build/glue-codecs.js', calls: [...CALLS, ...FILE_CALLS] },
+  { from: '../wasm/veronese.js', to: '../build/glue.js', calls: FRAME_CALLS },
+  { from: '../wasm/points/veronese_points.js', to: '../build/glue-points.js', calls: POINT_CALLS },
+  { from: '../wasm/codecs/veronese_codecs.js', to: '../build/glue-codecs.js', calls: [...FRAME_CALLS, ...POINT_CALLS, ...FILE_CALLS] },
 ];
 
 mkdirSync(new URL('../build/', import.meta.url), { recursive: true });
@@ -16,10 +18,11 @@ for (const { from, to, calls } of MODULES) {
   writeFileSync(new URL(to, import.meta.url), adapted(readGlue(new URL(from, import.meta.url)), calls));
 }
 
-// The module inside of JavaScript, for veronese/inline.
-const module = readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url));
-const packed = deflateSync(module, { level: 9 }).toString('base64');
-writeFileSync(new URL('../build/inline-module.js', import.meta.url), `export const packed = '${packed}';\n`);
+// The modules inside of JavaScript, for veronese/inline.
+const packed = (file) => deflateSync(readFileSync(new URL(file, import.meta.url)), { level: 9 }).toString('base64');
+const inside = { frames: packed('../wasm/veronese_bg.wasm'), points: packed('../wasm/points/veronese_points_bg.wasm') };
+const lines = Object.entries(inside).map(([name, text]) => `export const ${name} = '${text}';\n`);
+writeFileSync(new URL('../build/inline-module.js', import.meta.url), lines.join(''));
 
 /** One object of the calls, from which whatever bundles the rest sees what nobody uses. */
 function adapted(glue, calls) {
@@ -33,6 +36,8 @@ function adapted(glue, calls) {
   }
   return `${glue.replace(loader, '')}
 async function instantiate(module) {
+    // The package's modules are made of one source: each could be taken for another.
+    if (!WebAssembly.Module.exports(module).some(({ name }) => name === '${calls[0]}')) throw new Error('it has no ${calls[0]}');
     if (wasm === undefined) __wbg_finalize_init(await WebAssembly.instantiate(module, __wbg_get_imports()), module);
     return wasm;
 }

@@ -1,4 +1,4 @@
-// The calls themselves, on one core: arguments checked, options handed over, time measured.
+// The calls themselves, on the module that has them: arguments checked, options handed over, time measured.
 
 import type {
   CallOptions,
@@ -13,28 +13,32 @@ import type {
   SegmentOptions,
   WasmSource,
 } from '../types/index.js';
-import type { Core } from './core.js';
-import type { CoreGlue } from './glue.js';
+import type { Core, Glue } from './core.js';
+import type { FramesGlue, OnStage } from './glue.js';
+import type { PointsGlue } from './glue-points.js';
 import { cancelled, VeroneseError } from './errors.js';
 import { colourBytes, davisPalette } from './palette.js';
 
-type OnStage = Parameters<CoreGlue['fitMotions']>[3];
-
 export class Api {
-  readonly #core: Core<CoreGlue>;
+  readonly #frames: Core<FramesGlue>;
+  readonly #points: Core<PointsGlue>;
 
-  constructor(core: Core<CoreGlue>) {
-    this.#core = core;
+  /** `points` is loaded when measurements come; it may be the same as `frames`. */
+  constructor(frames: Core<FramesGlue>, points: Core<PointsGlue>) {
+    this.#frames = frames;
+    this.#points = points;
   }
 
-  readonly init = (source?: WasmSource | Promise<WasmSource>): Promise<void> => this.#core.init(source);
+  readonly init = (source?: WasmSource | Promise<WasmSource>): Promise<void> => this.#frames.init(source);
+
+  readonly initPoints = (source?: WasmSource | Promise<WasmSource>): Promise<void> => this.#points.init(source);
 
   readonly segmentPair = async (first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> => {
     const { call, rest } = splitOptions(options);
     const { before, ...settings } = rest;
     const frames = [checkedPixels('the first frame', first), checkedPixels('the second frame', second)] as const;
     const third = before === undefined ? undefined : checkedPixels('the frame before', before);
-    return this.#run<Segmentation>(call, (glue, onStage) => glue.segmentPair(...frames, third, settings, onStage));
+    return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) => glue.segmentPair(...frames, third, settings, onStage));
   };
 
   readonly relabel = async (
@@ -50,7 +54,8 @@ export class Api {
     const third = before === undefined ? undefined : checkedPixels('the frame before', before);
     const { labels, matrices, groups, sets } = checkedCorrection(segmentation, evidence);
     const settings = { ...unknown, quality: segmentation.settings.quality };
-    const corrected = await this.#run<Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>>(
+    const corrected = await run<Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>, FramesGlue>(
+      this.#frames,
       call,
       (glue, onStage) => glue.relabel(...frames, third, matrices, groups, labels, sets, settings, onStage),
     );
@@ -62,7 +67,8 @@ export class Api {
   readonly fitMotions = async (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> => {
     const { call, rest } = splitOptions(options);
     const { positions, derivatives } = checkedMeasurements(measurements);
-    return this.#run<MotionFit>(call, (glue, onStage) => glue.fitMotions(positions, derivatives, rest, onStage));
+    const fit = (glue: PointsGlue, onStage: OnStage) => glue.fitMotions(positions, derivatives, rest, onStage);
+    return run<MotionFit, PointsGlue>(this.#points, call, fit);
   };
 
   readonly paintLabels = async (
@@ -71,41 +77,42 @@ export class Api {
     { palette = overlayPalette(), opacity = 0.5 }: PaintOptions = {},
   ): Promise<void> => {
     const rest = [labels, width, height, colourBytes(palette, 4), opacity] as const;
-    await this.#core.call((glue) => {
+    await this.#frames.call((glue) => {
       if (isOffscreen(context)) glue.paintLabelsOffscreen(context, ...rest);
       else glue.paintLabels(context, ...rest);
     });
   };
+}
 
-  /** One call of the core. Stages are timed, and between them the signal is looked at. */
-  async #run<T extends { milliseconds: Milliseconds }>(
-    { signal, onProgress }: CallOptions,
-    work: (glue: CoreGlue, onStage: OnStage) => unknown,
-  ): Promise<T> {
-    if (signal?.aborted) throw cancelled(signal);
-    await this.#core.init();
-    if (signal?.aborted) throw cancelled(signal);
-    const watch = new Stopwatch();
-    let thrownByListener: { thrown: unknown } | undefined;
-    const onStage: OnStage = (stage, index, of) => {
-      watch.begin(stage);
-      try {
-        onProgress?.({ stage, index, of });
-        if (signal?.aborted) throw cancelled(signal);
-      } catch (thrown) {
-        thrownByListener = { thrown };
-        throw thrown;
-      }
-    };
+/** One call of a module. Stages are timed, and between them the signal is looked at. */
+async function run<T extends { milliseconds: Milliseconds }, G extends Glue>(
+  core: Core<G>,
+  { signal, onProgress }: CallOptions,
+  work: (glue: G, onStage: OnStage) => unknown,
+): Promise<T> {
+  if (signal?.aborted) throw cancelled(signal);
+  await core.init();
+  if (signal?.aborted) throw cancelled(signal);
+  const watch = new Stopwatch();
+  let thrownByListener: { thrown: unknown } | undefined;
+  const onStage: OnStage = (stage, index, of) => {
+    watch.begin(stage);
     try {
-      const report = await this.#core.call((glue) => {
-        watch.start();
-        return { ...(work(glue, onStage) as Omit<T, 'milliseconds'>), milliseconds: watch.end() };
-      });
-      return report as T;
+      onProgress?.({ stage, index, of });
+      if (signal?.aborted) throw cancelled(signal);
     } catch (thrown) {
-      throw thrownByListener ? thrownByListener.thrown : thrown;
+      thrownByListener = { thrown };
+      throw thrown;
     }
+  };
+  try {
+    const report = await core.call((glue) => {
+      watch.start();
+      return { ...(work(glue, onStage) as Omit<T, 'milliseconds'>), milliseconds: watch.end() };
+    });
+    return report as T;
+  } catch (thrown) {
+    throw thrownByListener ? thrownByListener.thrown : thrown;
   }
 }
 

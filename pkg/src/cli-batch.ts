@@ -43,7 +43,8 @@ export async function batch(command: SequenceCommand): Promise<void> {
   const frames = paths ? paths.map((name) => ({ name })) : videoFrames((command as { file: string }).file, command.every);
   const pairs = pairsOf(frames, paths ? command.every : 1, command);
   const worker = () => new Worker(new URL('./cli-batch-work.js', import.meta.url), { name: 'veronese' });
-  const pool = new WorkerPool<BatchTask, BatchResult>(spawnWith(worker), () => core.module(), jobs);
+  const module = () => core.module();
+  const pool = new WorkerPool<BatchTask, BatchResult>(spawnWith(worker), () => module, jobs);
   const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard));
   const tally: Tally = { done: 0, skipped: 0, failed: 0 };
   const failures: VeroneseError[] = [];

@@ -1,4 +1,4 @@
-// Image files under Node: the second WebAssembly build, which has everything of the first and reads and writes files.
+// Image files under Node: the WebAssembly build that has everything of the others and reads and writes files.
 
 import { glue } from './glue-codecs.js';
 import type { Picture } from '../types/codecs.js';
@@ -12,7 +12,7 @@ import { read } from './reading.js';
 export const core = new Core(glue, read, new URL('../wasm/codecs/veronese_codecs_bg.wasm', import.meta.url));
 
 /** The calls of the package on this build: what decodes also segments, so the command line loads one module only. */
-export const api = new Api(core);
+export const api = new Api(core, core);
 
 export async function decodeImage(file: Uint8Array): Promise<Picture> {
   const bytes = checkedBytes('the file', file);

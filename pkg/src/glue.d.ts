@@ -3,10 +3,10 @@
 
 import type { Glue } from './core.js';
 
-type OnStage = (stage: string, index: number, of: number) => void;
+export type OnStage = (stage: string, index: number, of: number) => void;
 type PaintArguments = [labels: Uint8Array, width: number, height: number, palette: Uint8Array, opacity: number];
 
-export interface CoreGlue extends Glue {
+export interface FramesGlue extends Glue {
   segmentPair(first: unknown, second: unknown, before: unknown, options: unknown, onStage: OnStage): unknown;
 
   relabel(
@@ -21,10 +21,8 @@ export interface CoreGlue extends Glue {
     onStage: OnStage,
   ): unknown;
 
-  fitMotions(positions: Float64Array, derivatives: Float64Array, options: unknown, onStage: OnStage): unknown;
-
   paintLabels(context: CanvasRenderingContext2D, ...rest: PaintArguments): void;
   paintLabelsOffscreen(context: OffscreenCanvasRenderingContext2D, ...rest: PaintArguments): void;
 }
 
-export const glue: CoreGlue;
+export const glue: FramesGlue;

@@ -1,4 +1,7 @@
 // Written by scripts/glue.mjs.
 
 /** Base64 of the deflated core module. */
-export const packed: string;
+export const frames: string;
+
+/** Base64 of the deflated module of measurements. */
+export const points: string;

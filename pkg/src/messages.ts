@@ -29,7 +29,7 @@ export type Task =
 /** What a task gives. */
 export type Result = Segmentation | MotionFit | undefined;
 
-/** The compiled module comes with the first task of a worker. */
+/** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
 
 export type Reply<R = Result> =

@@ -24,23 +24,28 @@ interface Job<Task, Result> {
   release: () => void;
 }
 
+/** Gives a compiled module, the same for every worker: always the same function where it is the same module. */
+export type Module = () => Promise<WebAssembly.Module>;
+
 /** A place for one worker, which is started when there is work for it and replaced when it was ended. */
 interface Lane<Task, Result> {
   thread: Thread<Task> | undefined;
+  /** What its worker has been given. */
+  modules: Set<Module>;
   job: Job<Task, Result> | undefined;
 }
 
 export class WorkerPool<Task, Result> {
   readonly #spawn: Spawn<Task, Result>;
-  readonly #module: () => Promise<WebAssembly.Module>;
+  readonly #supply: (task: Task) => Module;
   readonly #waiting: Job<Task, Result>[] = [];
   readonly #lanes: Lane<Task, Result>[];
 
-  /** `module`: the compiled module, the same for every worker. */
-  constructor(spawn: Spawn<Task, Result>, module: () => Promise<WebAssembly.Module>, size: number) {
+  /** `supply`: which module a task needs. */
+  constructor(spawn: Spawn<Task, Result>, supply: (task: Task) => Module, size: number) {
     this.#spawn = spawn;
-    this.#module = module;
-    this.#lanes = Array.from({ length: size }, () => ({ thread: undefined, job: undefined }));
+    this.#supply = supply;
+    this.#lanes = Array.from({ length: size }, () => ({ thread: undefined, modules: new Set(), job: undefined }));
   }
 
   get size(): number {
@@ -87,6 +92,7 @@ export class WorkerPool<Task, Result> {
   #end(lane: Lane<Task, Result>): void {
     lane.thread?.terminate();
     lane.thread = undefined;
+    lane.modules.clear();
     lane.job = undefined;
   }
 
@@ -105,9 +111,11 @@ export class WorkerPool<Task, Result> {
   async #start(lane: Lane<Task, Result>, job: Job<Task, Result>): Promise<void> {
     const request: Request<Task> = { task: job.task };
     try {
-      if (!lane.thread) request.module = await this.#module();
+      const module = this.#supply(job.task);
+      if (!lane.modules.has(module)) request.module = await module();
       if (lane.job !== job) return; // cancelled while the module loaded
       lane.thread ??= this.#spawnThread(lane);
+      lane.modules.add(module);
       lane.thread.hold(true);
       lane.thread.post(request);
     } catch (thrown) {

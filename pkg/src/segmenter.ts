@@ -31,6 +31,8 @@ const MOST_JOBS = 256;
 /** What differs between the package's entries. */
 export interface Host {
   newCore: () => Core<Glue>;
+  /** For measurements. */
+  newPoints: () => Core<Glue>;
   /** Makes a worker where the caller does not. */
   worker: () => WorkerLike;
   /** Number of workers where the caller does not say. */
@@ -43,8 +45,11 @@ export function segmenters(host: Host) {
     readonly #pool: WorkerPool<Task, Result>;
 
     constructor(source?: WasmSource | Promise<WasmSource>, options: SegmenterOptions = {}, jobs = 1) {
-      const core = host.newCore();
-      this.#pool = new WorkerPool(spawnWith(options.worker ?? host.worker), () => core.module(source), jobs);
+      const [core, points] = [host.newCore(), host.newPoints()];
+      const frames = () => core.module(source);
+      const measurements = () => points.module(options.points);
+      const supply = ({ call }: Task) => (call === 'fitMotions' ? measurements : frames);
+      this.#pool = new WorkerPool(spawnWith(options.worker ?? host.worker), supply, jobs);
     }
 
     async segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> {
@@ -86,8 +91,8 @@ export function segmenters(host: Host) {
   class SegmenterPool extends Segmenter {
     readonly jobs: number;
 
-    constructor({ jobs = host.jobs(), source, worker }: PoolOptions = {}) {
-      super(source, { worker }, checkedJobs(jobs));
+    constructor({ jobs = host.jobs(), source, points, worker }: PoolOptions = {}) {
+      super(source, { points, worker }, checkedJobs(jobs));
       this.jobs = jobs;
     }
 
@@ -124,9 +129,9 @@ export function segmenters(host: Host) {
 
   async function* segmentPairs<Input extends PairInput>(
     pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
-    { jobs, source, worker, ...options }: PairsOptions & PoolOptions = {},
+    { jobs, source, points, worker, ...options }: PairsOptions & PoolOptions = {},
   ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
-    const pool = new SegmenterPool({ ...(jobs !== undefined && { jobs }), source, worker });
+    const pool = new SegmenterPool({ ...(jobs !== undefined && { jobs }), source, points, worker });
     try {
       yield* pool.segmentPairs(pairs, options);
     } finally {

@@ -1,6 +1,7 @@
 // The worker's side: one task at a time, answered by messages.
 
 import { glue } from './glue.js';
+import { glue as pointsGlue } from './glue-points.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { errorMessage } from './errors.js';
@@ -10,10 +11,11 @@ import { warmUp } from './warming.js';
 
 /** Answers one request at a time: the page sends the next when it has the answer to the last. */
 export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (request: Request) => Promise<void> {
-  const api = new Api(new Core(glue, () => Promise.reject(new Error('a worker gets its module from the page'))));
+  const fromPage = () => Promise.reject(new Error('a worker gets its modules from the page'));
+  const api = new Api(new Core(glue, fromPage), new Core(pointsGlue, fromPage));
   return async ({ task, module }) => {
     try {
-      if (module) await api.init(module);
+      if (module) await (task.call === 'fitMotions' ? api.initPoints(module) : api.init(module));
       const onProgress = (progress: { stage: string; index: number; of: number }) => {
         post({ kind: 'progress', progress }, []);
       };

@@ -3,24 +3,28 @@ import { spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
-import { segmentPair } from 'veronese';
+import { fitMotions, segmentPair } from 'veronese';
 import * as inline from 'veronese/inline';
 import * as slim from 'veronese/slim';
-import { pair } from './support/frames.mjs';
+import { pair, points } from './support/frames.mjs';
 import { failure, timeless } from './support/shapes.mjs';
 
 const bytes = readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url));
+const bytesOfPoints = readFileSync(new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url));
+const measurements = points(60, 1.5, -0.5);
 const worker = () => new Worker(new URL(import.meta.resolve('veronese/worker')));
 
 describe('veronese/inline', () => {
   test('needs no file, and gives the same bits', async () => {
     assert.deepEqual(timeless(await inline.segmentPair(...pair())), timeless(await segmentPair(...pair())));
+    assert.deepEqual(timeless(await inline.fitMotions(measurements)), timeless(await fitMotions(measurements)));
   });
 
   test('runs in workers that the caller makes', async (t) => {
     const segmenter = new inline.Segmenter(undefined, { worker });
     t.after(() => segmenter.close());
     assert.equal((await segmenter.segmentPair(...pair())).width, 64);
+    assert.equal((await segmenter.fitMotions(measurements)).count, 1);
     const error = await failure(new inline.Segmenter().segmentPair(...pair()));
     assert.equal(error.code, 'invalid-option');
     assert.match(error.message, /'worker'/);
@@ -46,6 +50,27 @@ describe('veronese/slim', () => {
       assert.equal(segmentation.width, 64);
     }
   });
+});
+
+test('measurements have a module of their own, which veronese/slim waits for and workers are given when they need it', async (t) => {
+  assert.equal((await failure(slim.fitMotions(measurements))).code, 'wasm-load-failed');
+  const wrong = await failure(slim.initPoints(bytes));
+  assert.equal(wrong.code, 'wasm-load-failed');
+  assert.match(wrong.message, /no fitMotions/);
+  await slim.initPoints(bytesOfPoints);
+  assert.equal((await slim.fitMotions(measurements)).count, 1);
+
+  const segmenter = new slim.Segmenter(bytes, { points: bytesOfPoints, worker });
+  t.after(() => segmenter.close());
+  for (let k = 0; k < 2; k++) {
+    assert.equal((await segmenter.fitMotions(measurements)).count, 1);
+    assert.equal((await segmenter.segmentPair(...pair())).width, 64);
+  }
+  const without = new slim.Segmenter(bytes, { worker });
+  t.after(() => without.close());
+  assert.equal((await without.segmentPair(...pair())).width, 64);
+  assert.equal((await failure(without.fitMotions(measurements))).code, 'wasm-load-failed');
+  assert.equal((await without.segmentPair(...pair())).width, 64);
 });
 
 test('importing any entry, also the one for browsers, changes nothing and starts nothing', () => {

@@ -5,6 +5,7 @@ import { createServer } from 'node:http';
 import { describe, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { glue } from '../build/glue.js';
+import { glue as pointsGlue } from '../build/glue-points.js';
 import { Api } from '../build/api.js';
 import { Core } from '../build/core.js';
 import { read } from '../build/reading.js';
@@ -18,7 +19,7 @@ const bytes = new Uint8Array(readFileSync(path));
 /** An API that has loaded nothing yet. */
 function fresh(place) {
   glue.forgetInstance();
-  return new Api(new Core(glue, read, place));
+  return new Api(new Core(glue, read, place), new Core(pointsGlue, read));
 }
 
 async function serving(t, status, type, body) {
@@ -62,6 +63,7 @@ describe('init refuses', () => {
     'other bytes': [Buffer.from('hello, world'), /no WebAssembly module/],
     'no bytes': [new Uint8Array(0), /no WebAssembly module/],
     'a damaged module': [bytes.subarray(0, 2000), /./],
+    'the module of measurements': [readFileSync(new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url)), /no segmentPair/],
     'a module that is not ours': [Uint8Array.of(0, 0x61, 0x73, 0x6d, 1, 0, 0, 0), /./],
     'a number': [42, /source must be/],
     'a promise that is rejected': [() => Promise.reject(new Error('no network')), /no network/],

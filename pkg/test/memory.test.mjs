@@ -4,15 +4,17 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { glue } from '../build/glue.js';
+import { glue as pointsGlue } from '../build/glue-points.js';
 import { frame, pair, points } from './support/frames.mjs';
 
 const MIB = 2 ** 20;
-const module = new WebAssembly.Module(readFileSync(new URL('../wasm/veronese_bg.wasm', import.meta.url)));
+const moduleOf = (file) => new WebAssembly.Module(readFileSync(new URL(`../wasm/${file}_bg.wasm`, import.meta.url)));
+const [module, pointsModule] = ['veronese', 'points/veronese_points'].map(moduleOf);
 
 /** The size of a fresh instance's memory in MiB, whenever it is asked. */
-async function freshMemory() {
-  glue.forgetInstance();
-  const { memory } = await glue.instantiate(module);
+async function freshMemory(of = glue, from = module) {
+  of.forgetInstance();
+  const { memory } = await of.instantiate(from);
   return () => memory.buffer.byteLength / MIB;
 }
 
@@ -43,7 +45,6 @@ describe('after a few calls, further ones take no more memory', () => {
       segment(small, { quality: 'best', confidence: true, markUnknown: true }, frame(-1));
     },
     'labels again': () => relabel(small, segment(small, { quality: 'fast' }), 'fast'),
-    measurements: () => glue.fitMotions(positions, derivatives, {}, () => {}),
     'calls that are refused': () => {
       assert.throws(() => segment(larger, { quality: 'good' }), { code: 'invalid-option' });
       assert.throws(() => segment([larger[0], small[0]], {}), { code: 'frame-size-mismatch' });
@@ -58,6 +59,15 @@ describe('after a few calls, further ones take no more memory', () => {
       assert.equal(size(), settled);
     });
   }
+
+  test('measurements', async () => {
+    const size = await freshMemory(pointsGlue, pointsModule);
+    const call = () => pointsGlue.fitMotions(positions, derivatives, {}, () => {});
+    for (let k = 0; k < 4; k++) call();
+    const settled = size();
+    for (let k = 0; k < 24; k++) call();
+    assert.equal(size(), settled);
+  });
 });
 
 describe('the most that is in use', () => {

@@ -216,12 +216,15 @@ export class VeroneseError extends Error {
 export const version: string;
 
 /**
- * Loads the WebAssembly module. Optional, since every call does so by itself: call it to load early or from a place of your
- * own. May be called again: the first source that loaded stays.
+ * Loads the WebAssembly module of all calls but {@link fitMotions}. Optional, since every call does so by itself: call it to load
+ * early or from a place of your own. May be called again: the first source that loaded stays.
  *
  * Rejects with code `wasm-load-failed`; a later call tries again.
  */
 export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
+
+/** {@link init} for the module of {@link fitMotions}, `veronese/veronese_points_bg.wasm`, which nobody else needs. */
+export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 
 /** Finds how many things move between two frames, how each moves, and which pixels belong to it. */
 export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
@@ -291,6 +294,8 @@ export interface SegmenterOptions {
    * `veronese/worker`. By default the file beside the package's code.
    */
   worker?: (() => WorkerLike) | undefined;
+  /** As in {@link initPoints}: asked for when there are measurements. */
+  points?: WasmSource | Promise<WasmSource> | undefined;
 }
 
 export interface PoolOptions extends SegmenterOptions {

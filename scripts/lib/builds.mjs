@@ -10,10 +10,14 @@ import { Stop, must, run } from './run.mjs';
 const TARGET = 'wasm32-unknown-unknown';
 const RUST_SOURCES = ['src', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 
-/** The modules that wasm-pack builds: the small one runs everywhere, the one with codecs reads image files in Node. */
+/**
+ * The modules that wasm-pack builds. The core, for frames, runs everywhere, and so does that of measurements, which few who segment
+ * frames need; the one with codecs has everything and reads image files in Node.
+ */
 export const MODULES = [
-  { name: 'veronese', folder: 'pkg/wasm', features: [] },
-  { name: 'veronese_codecs', folder: 'pkg/wasm/codecs', features: ['codecs'] },
+  { name: 'veronese', folder: 'pkg/wasm', title: 'the core module', features: ['frames'] },
+  { name: 'veronese_points', folder: 'pkg/wasm/points', title: 'the module of measurements', features: ['points'] },
+  { name: 'veronese_codecs', folder: 'pkg/wasm/codecs', title: 'the module with codecs', features: ['frames', 'points', 'codecs'] },
 ];
 
 /** Everything, in order. */
@@ -23,7 +27,7 @@ export async function buildAll() {
   await buildPage();
 }
 
-/** Rust to WebAssembly, twice. */
+/** Rust to WebAssembly, a module after the other. */
 export async function buildModules() {
   const versions = await Promise.all(
     [['rustc', '-vV'], ['wasm-pack', '--version'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
@@ -34,9 +38,8 @@ export async function buildModules() {
   if (!which('wasm-opt')?.startsWith(join(root, 'node_modules'))) {
     throw new Stop('wasm-opt of the npm package binaryen is missing: delete node_modules and run the command again.');
   }
-  for (const { name, folder, features } of MODULES) {
+  for (const { name, folder, title, features } of MODULES) {
     const outputs = [`${folder}/${name}.js`, `${folder}/${name}.d.ts`, `${folder}/${name}_bg.wasm`];
-    const title = features.length > 0 ? `the module with ${features.join(', ')}` : 'the core module';
     await step(`${title} (one to three minutes when everything is new)`, folder, outputs, RUST_SOURCES, versions, () =>
       wasmPack(name, folder, features),
     );
@@ -76,7 +79,7 @@ async function wasmPack(name, folder, features) {
   // because wasm-pack optimises every module in the folder.
   const pack = ['build', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
   const cargo = ['--locked', '--config', `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`];
-  if (features.length > 0) cargo.push('--features', features.join(','));
+  cargo.push('--no-default-features', '--features', features.join(','));
   await must(
     'The WebAssembly module could not be built.',
     'wasm-pack',

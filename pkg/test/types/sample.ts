@@ -4,6 +4,7 @@ import {
   davisPalette,
   type ErrorCode,
   fitMotions,
+  initPoints,
   groupLabels,
   init,
   type MotionFit,
@@ -22,6 +23,7 @@ import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
 export async function browser(canvas: HTMLCanvasElement, first: ImageData, second: ImageData): Promise<string> {
   await init(new URL('/veronese_bg.wasm', location.href));
+  await initPoints(new URL('/veronese_points_bg.wasm', location.href));
   const controller = new AbortController();
   const segmentation: Segmentation = await segmentPair(first, second, {
     motions: 3,

@@ -1,0 +1,248 @@
+//! The calls on frames: a segmentation, its correction, labels on a canvas.
+
+use js_sys::{Function, Reflect, Uint8Array, Uint8ClampedArray};
+use wasm_bindgen::prelude::*;
+use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
+
+use super::plain::{Record, candidate, list};
+use super::{
+    Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, seed, unknown,
+    written,
+};
+use crate::{
+    AffineMotion, Correction, Error, Frame, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions, Segmentation,
+    SegmentedMotion,
+};
+
+/// Segments two frames (and, as a third view, the frame before the first). A frame is anything of the shape of `ImageData`:
+/// `{ data, width, height }` with RGBA bytes. `on_stage(name, index, of)` is called when a stage begins.
+///
+/// Returns the JSON of a pair, without `milliseconds` (the caller has the clock), with `labels: Uint8Array` and, where the
+/// options ask for it, `confidence: Uint8Array`.
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape.
+#[wasm_bindgen(js_name = segmentPair)]
+pub fn segment_pair(
+    first: &JsValue,
+    second: &JsValue,
+    before: &JsValue,
+    options: &JsValue,
+    on_stage: Option<Function>,
+) -> Result<JsValue, JsValue> {
+    let options = segment_options(options)?;
+    let first = frame_from_pixels("the first frame", first)?;
+    let second = frame_from_pixels("the second frame", second)?;
+    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    let segmentation = crate::segment_pair(&first, &second, before.as_ref(), &options, &mut listener(on_stage))
+        .map_err(Failure::from)?;
+    let quality = match options.quality {
+        Quality::Fast => "fast",
+        Quality::Best => "best",
+    };
+    let settings = Record::new()
+        .set("motions", &motions_asked(options.motions))
+        .text("quality", quality)
+        .set("markUnknown", &options.mark_unknown.into())
+        .set("before", &before.is_some().into())
+        .number("seed", options.seed as f64)
+        .text("software", SOFTWARE);
+    let report = add_segmentation(Record::new().number("version", REPORT_VERSION), &segmentation)
+        .set("settings", &settings.into_value())
+        .bytes("labels", &segmentation.labels);
+    Ok(match &segmentation.confidence {
+        Some(confidence) => report.bytes("confidence", confidence),
+        None => report,
+    }
+    .into_value())
+}
+
+/// [`segment_pair`] for two `ImageData`, as `getImageData` gives them.
+///
+/// # Errors
+/// As [`segment_pair`].
+#[wasm_bindgen(js_name = segmentImageData)]
+pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsValue) -> Result<JsValue, JsValue> {
+    segment_pair(first, second, &JsValue::UNDEFINED, options, None)
+}
+
+/// Solves the labels of a segmentation again under what is said about single pixels (see [`crate::Correction`]): `matrices` holds
+/// six entries of each motion, `groups` its group, `labels` and `evidence` one entry per pixel; `options` has the `quality`.
+///
+/// Returns `{ motions, unlabelled, labels: Uint8Array }`, shaped as in [`segment_pair`].
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape or matrices of another number.
+#[wasm_bindgen]
+#[allow(clippy::too_many_arguments, reason = "flat arrays are copied once; objects entry by entry")]
+pub fn relabel(
+    first: &JsValue,
+    second: &JsValue,
+    before: &JsValue,
+    matrices: &[f64],
+    groups: &[u8],
+    labels: &[u8],
+    evidence: &[u16],
+    options: &JsValue,
+    on_stage: Option<Function>,
+) -> Result<JsValue, JsValue> {
+    let options = segment_options(options)?;
+    let first = frame_from_pixels("the first frame", first)?;
+    let second = frame_from_pixels("the second frame", second)?;
+    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    let (entries, rest) = matrices.as_chunks::<6>();
+    if !rest.is_empty() {
+        return Err(Failure::input(format!("the matrices must hold 6 numbers each, found {}", matrices.len())).into());
+    }
+    let motions: Vec<AffineMotion> = entries.iter().map(|&entries| AffineMotion::new(entries)).collect();
+    let correction = Correction { motions: &motions, groups, labels, allowed: evidence };
+    let progress = &mut listener(on_stage);
+    let relabelled = crate::relabel(&first, &second, before.as_ref(), &correction, &options, progress);
+    let relabelled = relabelled.map_err(Failure::from)?;
+    let report = Record::new()
+        .set("motions", &segmented_motions(&relabelled.motions))
+        .count("unlabelled", relabelled.unlabelled)
+        .bytes("labels", &relabelled.labels);
+    Ok(report.into_value())
+}
+
+/// Replaces the canvas's top-left width × height pixels by the colours of the labels: `palette` holds RGBA for label 0, 1, …;
+/// labels beyond it are transparent. `opacity`, 0…1, scales every alpha. Lay the canvas over the frame.
+///
+/// # Errors
+/// A `VeroneseError` of code `invalid-option`.
+#[wasm_bindgen(js_name = paintLabels)]
+pub fn paint_labels(
+    context: &CanvasRenderingContext2d,
+    labels: &[u8],
+    width: u32,
+    height: u32,
+    palette: &[u8],
+    opacity: f64,
+) -> Result<(), JsValue> {
+    context.put_image_data(&image_from_labels(labels, width, height, palette, opacity)?, 0.0, 0.0)
+}
+
+/// [`paint_labels`] for an `OffscreenCanvas`.
+///
+/// # Errors
+/// As [`paint_labels`].
+#[wasm_bindgen(js_name = paintLabelsOffscreen)]
+pub fn paint_labels_offscreen(
+    context: &OffscreenCanvasRenderingContext2d,
+    labels: &[u8],
+    width: u32,
+    height: u32,
+    palette: &[u8],
+    opacity: f64,
+) -> Result<(), JsValue> {
+    context.put_image_data(&image_from_labels(labels, width, height, palette, opacity)?, 0.0, 0.0)
+}
+
+fn image_from_labels(
+    labels: &[u8],
+    width: u32,
+    height: u32,
+    palette: &[u8],
+    opacity: f64,
+) -> Result<ImageData, JsValue> {
+    let invalid = |name, reason: String| Failure::from(Error::InvalidOption { name, reason });
+    if labels.len() as u64 != u64::from(width) * u64::from(height) {
+        return Err(invalid("labels", format!("{} do not fill {width}×{height} pixels", labels.len())).into());
+    }
+    if !palette.len().is_multiple_of(4) || palette.len() > 4 * 256 {
+        let reason = format!("must hold 4 bytes for each of at most 256 colours, not {} bytes", palette.len());
+        return Err(invalid("palette", reason).into());
+    }
+    if !(0.0..=1.0).contains(&opacity) {
+        return Err(invalid("opacity", format!("must be a number from 0 to 1, not {}", written(opacity))).into());
+    }
+    let colours: Vec<[u8; 4]> = (0..256)
+        .map(|label| match palette.get(4 * label..4 * label + 4) {
+            Some(&[r, g, b, alpha]) => [r, g, b, (f64::from(alpha) * opacity).round() as u8],
+            _ => [0; 4],
+        })
+        .collect();
+    let rgba: Vec<u8> = labels.iter().flat_map(|&label| colours[usize::from(label)]).collect();
+    ImageData::new_with_js_u8_clamped_array_and_sh(&Uint8ClampedArray::from(&rgba[..]), width, height)
+}
+
+/// A frame from `{ data, width, height }`. Sizes are checked before a byte is copied.
+fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, Failure> {
+    let shape = || Failure::input(format!("{which} must be {{ data, width, height }} with RGBA bytes, like ImageData"));
+    let get = |name: &str| Reflect::get(pixels, &name.into()).map_err(|_| shape());
+    let side = |name: &str| match get(name)?.as_f64() {
+        Some(value) if value >= 0.0 && value <= f64::from(u32::MAX) && value == value.floor() => Ok(value as usize),
+        _ => Err(Failure::input(format!("{which}: '{name}' must be a whole number of pixels"))),
+    };
+    let (width, height) = (side("width")?, side("height")?);
+    let data = get("data")?;
+    let data = match data.dyn_ref::<Uint8ClampedArray>() {
+        Some(clamped) => {
+            Uint8Array::new_with_byte_offset_and_length(&clamped.buffer(), clamped.byte_offset(), clamped.length())
+        }
+        None => data.dyn_into::<Uint8Array>().map_err(|_| shape())?,
+    };
+    let found = data.length() as usize;
+    let supported = MIN_SIDE..=MAX_SIDE;
+    if !supported.contains(&width) || !supported.contains(&height) {
+        return Err(Error::FrameSizeUnsupported { width, height, min: MIN_SIDE, max: MAX_SIDE }.into());
+    }
+    let needed = width * height * 4;
+    if found != needed {
+        return Err(Error::PixelCountMismatch { width, height, needed, found }.into());
+    }
+    Ok(Frame::from_rgba(width, height, data.to_vec())?)
+}
+
+fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
+    let mut options = SegmentOptions::default();
+    for (name, value) in entries(value)? {
+        match name.as_str() {
+            "motions" => options.motions = motions(&value)?,
+            "quality" => {
+                options.quality = choice("quality", &value, &[("fast", Quality::Fast), ("best", Quality::Best)])?;
+            }
+            "markUnknown" => options.mark_unknown = flag("markUnknown", &value)?,
+            "confidence" => options.confidence = flag("confidence", &value)?,
+            "seed" => options.seed = seed(&value)?,
+            _ => return Err(unknown(&name, "motions, quality, markUnknown, confidence, seed")),
+        }
+    }
+    Ok(options)
+}
+
+fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
+    value.as_bool().ok_or_else(|| invalid(name, "true or false", value))
+}
+
+/// The entries of a segmentation but its arrays of bytes.
+fn add_segmentation(record: Record, segmentation: &Segmentation) -> Record {
+    let Segmentation { width, height, count, motions, labels: _, evidence, unlabelled, confidence: _ } = segmentation;
+    let PairEvidence { candidates } = evidence;
+    record
+        .count("width", *width)
+        .count("height", *height)
+        .count("count", *count)
+        .list("motions", motions, segmented_motion)
+        .set("evidence", &Record::new().list("candidates", candidates, candidate).into_value())
+        .count("unlabelled", *unlabelled)
+}
+
+/// Motions of a pair.
+fn segmented_motions(motions: &[SegmentedMotion]) -> JsValue {
+    list(motions, segmented_motion)
+}
+
+fn segmented_motion(motion: &SegmentedMotion) -> JsValue {
+    let SegmentedMotion { label, matrix, pixels, share, residual, bbox, group } = motion;
+    Record::new()
+        .count("label", usize::from(*label))
+        .numbers("matrix", &matrix.matrix)
+        .count("pixels", *pixels)
+        .number("share", *share)
+        .number("residual", *residual)
+        .numbers("bbox", &bbox.map(|side| side as f64))
+        .count("group", usize::from(*group))
+        .into_value()
+}

@@ -1,0 +1,130 @@
+//! The call on measurements: the paper's Problem 1.
+
+use js_sys::Function;
+use wasm_bindgen::prelude::*;
+
+use super::plain::{Record, candidate, numbers};
+use super::{Failure, REPORT_VERSION, SOFTWARE, choice, entries, listener, motions, motions_asked, seed, unknown};
+use crate::embedding::rank::RankCandidate;
+use crate::refinement::{Report, Termination};
+use crate::{AffineMotion, FitEvidence, FitOptions, FittedMotion, Measurements, Method, MotionFit, PaperStages};
+
+/// Solves the paper's Problem 1 on measurements: `positions` holds x, y of each, `derivatives` I_x, I_y, I_t.
+///
+/// Returns the JSON of points, without `milliseconds`, with `labels: Uint8Array`.
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for arrays that do not hold whole measurements.
+#[wasm_bindgen(js_name = fitMotions)]
+pub fn fit_motions(
+    positions: &[f64],
+    derivatives: &[f64],
+    options: &JsValue,
+    on_stage: Option<Function>,
+) -> Result<JsValue, JsValue> {
+    let options = fit_options(options)?;
+    let measurements = Measurements::new(rows("positions", positions)?, rows("derivatives", derivatives)?);
+    let fit = measurements
+        .and_then(|measurements| crate::fit_motions(&measurements, &options, &mut listener(on_stage)))
+        .map_err(Failure::from)?;
+    let method = match options.method {
+        Method::Paper => "paper",
+        Method::Best => "best",
+    };
+    let settings = Record::new()
+        .set("motions", &motions_asked(options.motions))
+        .text("method", method)
+        .number("seed", options.seed as f64)
+        .text("software", SOFTWARE);
+    let report = add_fit(Record::new().number("version", REPORT_VERSION), &fit)
+        .set("settings", &settings.into_value())
+        .bytes("labels", &fit.labels);
+    Ok(report.into_value())
+}
+
+/// Rows of `N` numbers from a flat array.
+fn rows<const N: usize>(name: &str, values: &[f64]) -> Result<Vec<[f64; N]>, Failure> {
+    let (rows, rest) = values.as_chunks::<N>();
+    if !rest.is_empty() {
+        return Err(Failure::input(format!(
+            "'{name}' must hold {N} numbers for each measurement, found {}",
+            values.len()
+        )));
+    }
+    Ok(rows.to_vec())
+}
+
+fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
+    let mut options = FitOptions::default();
+    for (name, value) in entries(value)? {
+        match name.as_str() {
+            "motions" => options.motions = motions(&value)?,
+            "method" => options.method = choice("method", &value, &[("paper", Method::Paper), ("best", Method::Best)])?,
+            "seed" => options.seed = seed(&value)?,
+            _ => return Err(unknown(&name, "motions, method, seed")),
+        }
+    }
+    Ok(options)
+}
+
+/// The entries of a fit but its labels.
+fn add_fit(record: Record, fit: &MotionFit) -> Record {
+    let MotionFit { count, motions, labels: _, evidence, stages } = fit;
+    let FitEvidence { singular_values, candidates } = evidence;
+    let evidence = Record::new().numbers("singularValues", singular_values).list("candidates", candidates, candidate);
+    let record =
+        record.count("count", *count).list("motions", motions, fitted_motion).set("evidence", &evidence.into_value());
+    match stages {
+        Some(stages) => record.set("stages", &paper_stages(stages)),
+        None => record,
+    }
+}
+
+fn fitted_motion(motion: &FittedMotion) -> JsValue {
+    let FittedMotion { label, matrix, measurements, determined, covariance } = motion;
+    let record = Record::new()
+        .count("label", usize::from(*label))
+        .numbers("matrix", &matrix.matrix)
+        .count("measurements", *measurements)
+        .count("determined", *determined);
+    match covariance {
+        Some(rows) => record.list("covariance", rows, |row| numbers(row)).into_value(),
+        None => record.into_value(),
+    }
+}
+
+fn paper_stages(stages: &PaperStages) -> JsValue {
+    let PaperStages { ranks, rank_rule_fired, factorisation, refined, refinement } = stages;
+    let Report { termination, iterations, initial_cost, final_cost } = refinement;
+    let termination = match termination {
+        Termination::Converged => "converged",
+        Termination::Stalled => "stalled",
+        Termination::MaxIterations => "maxIterations",
+    };
+    let refinement = Record::new()
+        .text("termination", termination)
+        .count("iterations", *iterations)
+        .number("initialCost", *initial_cost)
+        .number("finalCost", *final_cost);
+    Record::new()
+        .list("ranks", ranks, rank_candidate)
+        .set("rankRuleFired", &rank_rule_fired.map_or(JsValue::NULL, JsValue::from))
+        .list("factorisation", factorisation, matrix)
+        .list("refined", refined, matrix)
+        .set("refinement", &refinement.into_value())
+        .into_value()
+}
+
+fn rank_candidate(tried: &RankCandidate) -> JsValue {
+    let RankCandidate { motions, rank, columns, ratio } = tried;
+    Record::new()
+        .count("motions", *motions)
+        .count("rank", *rank)
+        .count("columns", *columns)
+        .number("ratio", *ratio)
+        .into_value()
+}
+
+fn matrix(motion: &AffineMotion) -> JsValue {
+    numbers(&motion.matrix)
+}
