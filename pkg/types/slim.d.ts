@@ -1,6 +1,7 @@
 // veronese/slim and veronese/inline: everything of veronese, but nothing is looked for beside the code.
 //
-// In `veronese/slim` the module comes from `init(source)`, `new Segmenter(source, …)` or `source` of a pool; `veronese/inline` holds it.
+// In `veronese/slim` the module comes from `init(source)`, `new Segmenter(source, …)` or `source` of a pool, that of `fitMotions` from
+// `initPoints(source)` or the option `points`; `veronese/inline` holds both.
 // Workers are the caller's to make in both.
 
 import {

@@ -5,22 +5,26 @@ import { copyFileSync, mkdirSync, readdirSync, readFileSync, writeFileSync } fro
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { segmentPair } from 'veronese';
+import { fitMotions, segmentPair } from 'veronese';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
 import { examples } from '../support/readme.mjs';
 import { hashOf, launch, outcomeOf, serve } from './browser.mjs';
 import { install, run } from './packed.mjs';
+import { measurements } from './app/measurements.js';
 import { report } from './app/report.js';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 const bin = (name) => join(here, 'node_modules', '.bin', name);
 
-let [app, tarball, remove, browser, expected] = [];
+let [app, tarball, remove, browser, expected, expectedFit] = [];
 before(async () => {
   ({ app, tarball, remove } = install());
   browser = await launch();
   expected = report(await segmentPair(...pair()));
+  const fit = await fitMotions(measurements);
+  assert.equal(fit.count, 2);
+  expectedFit = report(fit);
 });
 after(async () => {
   await browser?.close();
@@ -32,9 +36,10 @@ function checkOutcome({ outcome, complaints }, kinds = ['direct', 'inWorker']) {
   assert.deepEqual(complaints, []);
   for (const kind of kinds) assert.equal(outcome[kind], expected, kind);
   for (const one of outcome.pooled ?? []) assert.equal(one, expected);
+  for (const one of outcome.fits ?? []) assert.equal(one, expectedFit);
 }
 
-const WHOLE_PAGE = ['direct', 'inWorker', 'pooled'];
+const WHOLE_PAGE = ['direct', 'inWorker', 'pooled', 'fits'];
 const isWhole = ({ outcome }) => assert.deepEqual(Object.keys(outcome), WHOLE_PAGE);
 
 describe('plain Node', () => {
@@ -49,8 +54,9 @@ describe('plain Node', () => {
   test('reaches the module file and the manifest by their names', () => {
     const script = `
       const { readFileSync } = await import('node:fs');
-      const bytes = readFileSync(new URL(import.meta.resolve('veronese/veronese_bg.wasm')));
-      console.log((await WebAssembly.compile(bytes)) instanceof WebAssembly.Module, import.meta.resolve('veronese/package.json').length > 0);`;
+      const compiled = (name) => WebAssembly.compile(readFileSync(new URL(import.meta.resolve(name))));
+      for (const name of ['veronese/veronese_bg.wasm', 'veronese/veronese_points_bg.wasm']) await compiled(name);
+      console.log(true, import.meta.resolve('veronese/package.json').length > 0);`;
     assert.equal(run(process.execPath, ['--input-type=module', '--eval', script], { cwd: app }), 'true true\n');
   });
 
@@ -81,7 +87,8 @@ describe('Vite 8', () => {
     const { build } = await import('vite');
     await build({ ...quiet, root: app, build: { outDir: 'built-by-vite', emptyOutDir: true } });
     const files = readdirSync(join(app, 'built-by-vite/assets'));
-    assert.equal(files.filter((name) => name.endsWith('.wasm')).length, 1, 'one module, whoever loads it');
+    const modules = files.filter((name) => name.endsWith('.wasm')).map((name) => name.replace(/_bg.*/, ''));
+    assert.deepEqual(modules.sort(), ['veronese', 'veronese_points'], 'each module once, whoever loads it');
     const { address, missing } = await serve(t, join(app, 'built-by-vite'));
     const found = await outcomeOf(t, browser, address);
     checkOutcome(found);
@@ -240,7 +247,7 @@ describe('the package looked at by others', () => {
 
   test('Are The Types Wrong? finds nothing: it ends with an error if it does', () => {
     // The module's file is for bundlers to copy; there is nothing in it that types could describe.
-    const text = run(bin('attw'), [tarball, '--exclude-entrypoints', './veronese_bg.wasm', '--profile', 'esm-only', '--format', 'ascii', '--no-emoji', '--no-color']);
+    const text = run(bin('attw'), [tarball, '--exclude-entrypoints', './veronese_bg.wasm', './veronese_points_bg.wasm', '--profile', 'esm-only', '--format', 'ascii', '--no-emoji', '--no-color']);
     for (const entry of ['veronese', 'veronese/slim', 'veronese/worker', 'veronese/codecs']) assert.ok(text.includes(`"${entry}"`), entry);
   });
 
