@@ -20,6 +20,17 @@ function policy(): Plugin {
   };
 }
 
+/** The package's module for measurements: the page segments frames, and keeps nothing that it never loads. */
+function withoutMeasurements(): Plugin {
+  return {
+    name: 'without-measurements',
+    apply: 'build',
+    generateBundle(_options, bundle) {
+      for (const name of Object.keys(bundle)) if (/veronese_points_bg.*\.wasm$/.test(name)) delete bundle[name];
+    },
+  };
+}
+
 /** Has the browser fetch the WebAssembly module while it reads the page, not when the first frames are decoded. */
 function preload(): Plugin {
   return {
@@ -63,7 +74,7 @@ function serviceWorker(): Plugin {
 export default defineConfig({
   // Relative addresses: the built page works in any folder of any host.
   base: './',
-  plugins: [policy(), preload(), serviceWorker()],
+  plugins: [policy(), withoutMeasurements(), preload(), serviceWorker()],
   worker: { format: 'es' },
   build: {
     target: 'es2023',

@@ -101,6 +101,16 @@ test('keys are listed on ?, and single keys can be switched off', async ({ page 
   await expect(dialog).toBeHidden();
 });
 
+test('the page loads one module, that of frames', async ({ page }) => {
+  const modules: string[] = [];
+  page.on('request', (request) => {
+    const name = /([a-z_]+_bg)[^/]*\.wasm$/.exec(request.url())?.[1];
+    if (name !== undefined) modules.push(name);
+  });
+  await open(page);
+  expect([...new Set(modules)]).toEqual(['veronese_bg']);
+});
+
 test('the page answers while it works', async ({ page }) => {
   await page.addInitScript(() => {
     const longest = { milliseconds: 0 };
