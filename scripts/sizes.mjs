@@ -17,7 +17,7 @@ const ROWS = [
   ['JavaScript of `veronese` in a browser', ['dist/web.js']],
   ['JavaScript of `veronese/worker`', ['dist/worker.js']],
   ['JavaScript of `veronese/slim`', ['dist/slim.js']],
-  ['`veronese/inline`, the module inside', ['dist/inline.js']],
+  ['`veronese/inline`, both modules inside', ['dist/inline.js']],
   ['`veronese/formats`', ['dist/formats/index.js']],
   ['`veronese/element`', ['dist/element.js']],
   ['the module with image codecs, for Node alone', ['wasm/codecs/veronese_codecs_bg.wasm']],

@@ -79,6 +79,7 @@ fn segment_with(
 ) -> Result<Segmentation> {
     options.motions.validate()?;
     check_sizes(first, second, before)?;
+    let _call = workspace::begin([first.width(), first.height()]);
     let mut stages = Stages::new(STAGES, progress);
     let mut random = Random::from_seed(options.seed);
 
@@ -164,7 +165,6 @@ pub(crate) struct Work {
 
 impl Work {
     fn new(first: &Frame, second: &Frame, before: Option<&Frame>, settings: &Settings) -> Work {
-        workspace::begin([first.width(), first.height()]);
         let mut reduction = 1.0;
         let mut planes: Vec<Plane> =
             [Some(first), Some(second), before].into_iter().flatten().map(|f| f.luminance().clone()).collect();

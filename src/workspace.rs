@@ -1,8 +1,9 @@
 //! The workspace: buffers that were let go are kept for the next of their size, so that a call like the one before it asks the
 //! allocator for nothing but its result and a few short lists.
 //!
-//! Each thread has its own. What a call did not use, the next one gives back to the allocator; where frames are of another size than
-//! before, everything, and at once, so that what was given back is one piece again before anything new is asked for.
+//! Each thread has its own, and only while a call is under way is anything taken from it or put into it: what a caller makes and lets go
+//! of, frames and measurements, is the allocator's. A call begins by giving back what the one before it did not use; where frames are
+//! of another size than before, everything, so that this is one piece again before anything new is asked for.
 
 use std::cell::{Cell, RefCell};
 use std::ops::{Deref, DerefMut};
@@ -17,14 +18,12 @@ pub(crate) trait Kept: Copy + Default + 'static {
 /// Buffers that nobody uses, each with the number of the call that used it last.
 pub(crate) struct Shelf<T> {
     kept: Vec<(u32, Vec<T>)>,
-    /// The call that last looked for what is no longer used.
-    swept: u32,
     /// Whether [`SHELVES`] knows of it.
     known: bool,
 }
 
 impl<T> Shelf<T> {
-    pub(crate) const EMPTY: Shelf<T> = Shelf { kept: Vec::new(), swept: 0, known: false };
+    pub(crate) const EMPTY: Shelf<T> = Shelf { kept: Vec::new(), known: false };
 }
 
 impl<T> Default for Shelf<T> {
@@ -33,19 +32,38 @@ impl<T> Default for Shelf<T> {
     }
 }
 
-thread_local! {
-    /// The number of this thread's present call, and the size of its frames.
-    static CALL: Cell<(u32, [usize; 2])> = const { Cell::new((0, [0; 2])) };
-    /// What empties each of this thread's shelves.
-    static SHELVES: RefCell<Vec<fn()>> = const { RefCell::new(Vec::new()) };
+/// A thread's calls.
+#[derive(Clone, Copy)]
+struct Calls {
+    /// Whether one is under way.
+    busy: bool,
+    /// The number of the last, and the size of its frames.
+    number: u32,
+    size: [usize; 2],
 }
 
+thread_local! {
+    static CALLS: Cell<Calls> = const { Cell::new(Calls { busy: false, number: 0, size: [0; 2] }) };
+    /// What gives back the buffers of each shelf that no call has used since the one of a number.
+    static SHELVES: RefCell<Vec<fn(u32)>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A call under way: it ends when this is let go.
+pub(crate) struct Call(());
+
 /// Begins a call on frames of a size.
-pub(crate) fn begin(size: [usize; 2]) {
-    let (last, of) = CALL.get();
-    CALL.set((last.wrapping_add(1), size));
-    if size != of {
-        SHELVES.take().iter().for_each(|empty| empty());
+pub(crate) fn begin(size: [usize; 2]) -> Call {
+    let last = CALLS.get();
+    let number = last.number.wrapping_add(1);
+    CALLS.set(Calls { busy: true, number, size });
+    let since = if size == last.size { last.number } else { number };
+    SHELVES.with_borrow(|shelves| shelves.iter().for_each(|sweep| sweep(since)));
+    Call(())
+}
+
+impl Drop for Call {
+    fn drop(&mut self) {
+        CALLS.set(Calls { busy: false, ..CALLS.get() });
     }
 }
 
@@ -97,14 +115,6 @@ impl<T: Kept> Buffer<T> {
         buffer
     }
 
-    /// A copy of some values.
-    #[inline(never)]
-    pub(crate) fn of(values: &[T]) -> Self {
-        let mut buffer = Self::with_capacity(values.len());
-        buffer.0.extend_from_slice(values);
-        buffer
-    }
-
     /// Without values, with as much room as there is: for lists of which nobody knows how long they will be.
     #[inline(never)]
     pub(crate) fn list() -> Self {
@@ -113,10 +123,18 @@ impl<T: Kept> Buffer<T> {
         buffer
     }
 
+    /// A copy of some values.
+    #[inline(never)]
+    pub(crate) fn of(values: &[T]) -> Self {
+        let mut buffer = Self::with_capacity(values.len());
+        buffer.0.extend_from_slice(values);
+        buffer
+    }
+
     /// Room for some values, with whatever values are in it.
     #[inline(never)]
     fn used(length: usize) -> Self {
-        let capacity = rounded(length);
+        let capacity = if CALLS.get().busy { rounded(length) } else { length };
         let kept = T::shelf().with(|shelf| take(shelf, Some(capacity)));
         Buffer(if kept.capacity() > 0 { kept } else { Vec::with_capacity(capacity) })
     }
@@ -132,14 +150,10 @@ fn rounded(length: usize) -> usize {
 /// they are nearly the same code for all types.
 #[inline(never)]
 fn take<T>(shelf: &Cell<Shelf<T>>, capacity: Option<usize>) -> Vec<T> {
-    let mut stock = shelf.take();
-    let (now, _) = CALL.get();
-    if stock.swept != now {
-        stock.swept = now;
-        while let Some(k) = stock.kept.iter().position(|(used, _)| now.wrapping_sub(*used) > 1) {
-            stock.kept.swap_remove(k);
-        }
+    if !CALLS.get().busy {
+        return Vec::new();
     }
+    let mut stock = shelf.take();
     let found = match capacity {
         // What was used last is most likely still in the cache.
         Some(capacity) => stock.kept.iter().rposition(|(_, buffer)| buffer.capacity() == capacity),
@@ -150,23 +164,30 @@ fn take<T>(shelf: &Cell<Shelf<T>>, capacity: Option<usize>) -> Vec<T> {
     buffer
 }
 
-/// Keeps a buffer, if it is of a size that is ever looked for.
+/// Keeps a buffer, if a call is under way and it is of a size that is ever looked for.
 #[inline(never)]
-fn put<T>(shelf: &Cell<Shelf<T>>, buffer: Vec<T>, empty: fn()) {
-    if buffer.capacity() > 0 && buffer.capacity() == rounded(buffer.capacity()) {
+fn put<T>(shelf: &Cell<Shelf<T>>, buffer: Vec<T>, sweep: fn(u32)) {
+    let Calls { busy, number, .. } = CALLS.get();
+    if busy && buffer.capacity() > 0 && buffer.capacity() == rounded(buffer.capacity()) {
         let mut stock = shelf.take();
         if !stock.known {
             stock.known = true;
-            SHELVES.with_borrow_mut(|shelves| shelves.push(empty));
+            SHELVES.with_borrow_mut(|shelves| shelves.push(sweep));
         }
-        stock.kept.push((CALL.get().0, buffer));
+        stock.kept.push((number, buffer));
         shelf.set(stock);
     }
 }
 
-/// Gives back all buffers of a type that nobody uses.
-fn empty<T: Kept>() {
-    T::shelf().take();
+/// Gives back what no call has used since the one of a number.
+fn sweep<T: Kept>(since: u32) {
+    T::shelf().with(|shelf| {
+        let mut stock = shelf.take();
+        while let Some(k) = stock.kept.iter().position(|(used, _)| *used != since) {
+            stock.kept.swap_remove(k);
+        }
+        shelf.set(stock);
+    });
 }
 
 impl<T: Kept> Drop for Buffer<T> {
@@ -174,7 +195,7 @@ impl<T: Kept> Drop for Buffer<T> {
     fn drop(&mut self) {
         let values = std::mem::take(&mut self.0);
         // A thread that ends takes its workspace along.
-        let _ = T::shelf().try_with(|shelf| put(shelf, values, empty::<T>));
+        let _ = T::shelf().try_with(|shelf| put(shelf, values, sweep::<T>));
     }
 }
 
@@ -259,9 +280,19 @@ mod tests {
         assert_eq!(rounded(1 << 24), 1 << 24);
     }
 
+    /// Sizes of the buffers that are kept.
+    fn kept<T: Kept>() -> Vec<usize> {
+        T::shelf().with(|shelf| {
+            let stock = shelf.take();
+            let capacities = stock.kept.iter().map(|(_, buffer)| buffer.capacity()).collect();
+            shelf.set(stock);
+            capacities
+        })
+    }
+
     #[test]
     fn what_is_let_go_is_used_again() {
-        begin([640, 480]);
+        let _call = begin([640, 480]);
         let first = Buffer::filled(1000, 1.0);
         let at = place(&first);
         drop(first);
@@ -279,22 +310,31 @@ mod tests {
 
     #[test]
     fn what_a_call_did_not_use_is_given_back() {
-        let kept = |begun: &[[usize; 2]]| {
-            begun.iter().for_each(|&size| begin(size));
-            drop(Buffer::filled(100, 0u64));
-            u64::shelf().with(|shelf| {
-                let stock = shelf.take();
-                let capacities: Vec<usize> = stock.kept.iter().map(|(_, buffer)| buffer.capacity()).collect();
-                shelf.set(stock);
-                capacities
-            })
+        let used = |size, lengths: &[usize]| {
+            let _call = begin(size);
+            lengths.iter().for_each(|&length| drop(Buffer::filled(length, 0u64)));
+            let mut sizes = kept::<u64>();
+            sizes.sort_unstable();
+            sizes
         };
-        begin([320, 240]);
-        drop(Buffer::filled(1000, 0u64));
-        assert_eq!(kept(&[]).len(), 2);
-        assert_eq!(kept(&[[320, 240]]).len(), 2, "what the call before used");
-        assert_eq!(kept(&[[320, 240]]), [rounded(100)]);
-        drop(Buffer::filled(1000, 0u64));
-        assert_eq!(kept(&[[640, 480]]), [rounded(100)], "another size of frames");
+        let [small, large] = [100, 1000].map(rounded);
+        assert_eq!(used([320, 240], &[100, 1000]), [small, large]);
+        assert_eq!(used([320, 240], &[100]), [small, large], "what the call before used");
+        assert_eq!(used([320, 240], &[]), [small]);
+        assert_eq!(used([320, 240], &[1000]), [large]);
+        assert_eq!(used([640, 480], &[100]), [small], "another size of frames");
+    }
+
+    #[test]
+    fn between_calls_nothing_is_kept() {
+        drop(Buffer::filled(64, 0u16));
+        assert!(kept::<u16>().is_empty());
+        let call = begin([320, 240]);
+        let first = Buffer::filled(64, 0u16);
+        drop(Buffer::filled(64, 0u16));
+        drop(call);
+        drop(first);
+        assert_eq!(kept::<u16>(), [64]);
+        assert_eq!(Buffer::<u16>::unwritten(65).capacity(), 65, "and nothing is rounded");
     }
 }

@@ -41,8 +41,8 @@ function checkMagic(bytes: Uint8Array, place: string | undefined): void {
   const where = place ? `${place} ` : 'the source ';
   if (bytes[0] === 0x3c && bytes[1] === 0x21) {
     throw loadFailed(
-      `${where}is an HTML page; the server sends its page where veronese_bg.wasm should be. Under Vite 7 put ` +
-        "optimizeDeps: { exclude: ['veronese'] } into the configuration, or pass the file's URL to init()",
+      `${where}is an HTML page; the server sends its page where a module of the package should be. Under Vite 7 put ` +
+        "optimizeDeps: { exclude: ['veronese'] } into the configuration, or pass the file's URL to init() or initPoints()",
     );
   }
   throw loadFailed(`${where}is no WebAssembly module`);

@@ -33,6 +33,8 @@ interface Lane<Task, Result> {
   /** What its worker has been given. */
   modules: Set<Module>;
   job: Job<Task, Result> | undefined;
+  /** Whether its worker knows of the job. */
+  told: boolean;
 }
 
 export class WorkerPool<Task, Result> {
@@ -45,7 +47,7 @@ export class WorkerPool<Task, Result> {
   constructor(spawn: Spawn<Task, Result>, supply: (task: Task) => Module, size: number) {
     this.#spawn = spawn;
     this.#supply = supply;
-    this.#lanes = Array.from({ length: size }, () => ({ thread: undefined, modules: new Set(), job: undefined }));
+    this.#lanes = Array.from({ length: size }, () => ({ thread: undefined, modules: new Set(), job: undefined, told: false }));
   }
 
   get size(): number {
@@ -77,7 +79,8 @@ export class WorkerPool<Task, Result> {
 
   #cancel(job: Job<Task, Result>, reason: unknown = cancelled(job.signal)): void {
     const lane = this.#lanes.find((lane) => lane.job === job);
-    if (lane) this.#end(lane);
+    if (lane?.told) this.#end(lane);
+    else if (lane) lane.job = undefined;
     else this.#waiting.splice(this.#waiting.indexOf(job), 1);
     this.#settle(job, () => job.reject(reason));
     this.#next();
@@ -94,6 +97,7 @@ export class WorkerPool<Task, Result> {
     lane.thread = undefined;
     lane.modules.clear();
     lane.job = undefined;
+    lane.told = false;
   }
 
   #next(): void {
@@ -104,6 +108,7 @@ export class WorkerPool<Task, Result> {
       const job = this.#waiting.shift();
       if (!job) return;
       lane.job = job;
+      lane.told = false;
       void this.#start(lane, job);
     }
   }
@@ -116,6 +121,7 @@ export class WorkerPool<Task, Result> {
       if (lane.job !== job) return; // cancelled while the module loaded
       lane.thread ??= this.#spawnThread(lane);
       lane.modules.add(module);
+      lane.told = true;
       lane.thread.hold(true);
       lane.thread.post(request);
     } catch (thrown) {
@@ -151,6 +157,8 @@ export class WorkerPool<Task, Result> {
       return;
     }
     lane.job = undefined;
+    // It keeps no module that it could not start.
+    if (reply.kind === 'failed' && reply.error.code === 'wasm-load-failed') lane.modules.clear();
     lane.thread?.hold(false);
     this.#settle(job, () => {
       if (reply.kind === 'done') job.resolve(reply.result);

@@ -66,11 +66,23 @@ test('measurements have a module of their own, which veronese/slim waits for and
     assert.equal((await segmenter.fitMotions(measurements)).count, 1);
     assert.equal((await segmenter.segmentPair(...pair())).width, 64);
   }
-  const without = new slim.Segmenter(bytes, { worker });
+  let made = 0;
+  const counted = () => {
+    made += 1;
+    return worker();
+  };
+  const without = new slim.Segmenter(bytes, { worker: counted });
   t.after(() => without.close());
   assert.equal((await without.segmentPair(...pair())).width, 64);
-  assert.equal((await failure(without.fitMotions(measurements))).code, 'wasm-load-failed');
+  for (let k = 0; k < 2; k++) assert.equal((await failure(without.fitMotions(measurements))).code, 'wasm-load-failed');
   assert.equal((await without.segmentPair(...pair())).width, 64);
+  assert.equal(made, 1, 'the worker lives on');
+
+  // What a worker was given and could not start is given again, and refused again in the same words.
+  const mistaken = new slim.Segmenter(bytes, { points: bytes, worker });
+  t.after(() => mistaken.close());
+  for (let k = 0; k < 2; k++) assert.match((await failure(mistaken.fitMotions(measurements))).message, /no fitMotions/);
+  assert.equal((await mistaken.segmentPair(...pair())).width, 64);
 });
 
 test('importing any entry, also the one for browsers, changes nothing and starts nothing', () => {

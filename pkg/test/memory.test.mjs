@@ -33,7 +33,8 @@ function relabel([first, second], { motions, labels }, quality) {
 describe('after a few calls, further ones take no more memory', () => {
   const small = pair();
   const larger = pair({ width: 160, height: 120 });
-  const { positions, derivatives } = points(300, 1, 0.5);
+  // As many as a size of the workspace has room for.
+  const { positions, derivatives } = points(320, 1, 0.5);
   const cases = {
     fast: () => segment(larger, { quality: 'fast' }),
     best: () => segment(larger, { quality: 'best' }),

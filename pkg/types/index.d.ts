@@ -332,7 +332,7 @@ export class Segmenter {
 }
 
 /**
- * Several workers, each with an instance of its own of the module that is compiled once. Calls begin in their order and are
+ * Several workers, each with instances of its own of modules that are compiled once. Calls begin in their order and are
  * cancelled one by one; workers are started when there is work for them.
  */
 export class SegmenterPool extends Segmenter {

@@ -48,7 +48,8 @@ export async function buildModules() {
 
 /** The npm package: the JavaScript beside the modules, TypeScript to JavaScript, and all of it joined into few files. */
 export async function buildPackage() {
-  const glue = MODULES.flatMap(({ name, folder }) => [`${folder}/${name}.js`, `${folder}/${name}.d.ts`]);
+  // The modules too: one entry of the package holds them.
+  const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
   const inputs = [...sources, ...glue, 'package-lock.json'];
   await step('the npm package', 'pkg/dist', ['pkg/build/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>

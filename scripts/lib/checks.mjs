@@ -8,6 +8,7 @@ const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
 // The benchmark of masks alone has the other feature.
 const ALL = ['--features', 'codecs,ablation'];
+const only = (feature) => ['--no-default-features', '--features', feature];
 const DENY = ['--', '-D', 'warnings'];
 const DOC = ['doc', '--locked', '--no-deps'];
 const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
@@ -18,6 +19,8 @@ const CHECKS = [
   ['clippy with codecs and ablation', 'cargo', ['clippy', '--locked', '--all-targets', ...ALL, ...DENY]],
   // Benchmarks and examples are native programs.
   ['clippy for wasm', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...DENY]],
+  ['clippy for the core module', 'cargo', ['clippy', '--locked', '--lib', ...only('frames'), ...WASM, ...DENY]],
+  ['clippy for the module of measurements', 'cargo', ['clippy', '--locked', '--lib', ...only('points'), ...WASM, ...DENY]],
   ['clippy for wasm with codecs', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...CODECS, ...DENY]],
   ['documentation', 'cargo', [...DOC, ...CODECS], DENY_IN_DOCS],
   ['documentation for wasm', 'cargo', [...DOC, ...CODECS, ...WASM], DENY_IN_DOCS],

@@ -20,7 +20,7 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::points::UNLABELLED;
 use crate::progress::{Progress, Stages};
-use crate::workspace::Buffer;
+use crate::workspace::{self, Buffer};
 
 const STAGES: &[&str] = &["frames", "dominant", "labels", "masks"];
 
@@ -97,6 +97,7 @@ pub fn relabel(
 ) -> Result<Relabelling> {
     super::check_sizes(first, second, before)?;
     correction.check(first.width() * first.height())?;
+    let _call = workspace::begin([first.width(), first.height()]);
     let settings = Settings::of(options);
     let mut stages = Stages::new(STAGES, progress);
     let labels = if correction.allowed.iter().all(|&set| set == 0) {

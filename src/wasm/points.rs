@@ -14,7 +14,7 @@ use crate::{AffineMotion, FitEvidence, FitOptions, FittedMotion, Measurements, M
 /// Returns the JSON of points, without `milliseconds`, with `labels: Uint8Array`.
 ///
 /// # Errors
-/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for arrays that do not hold whole measurements.
+/// A `VeroneseError`: the codes of [`crate::Error`], and `invalid-input` for arrays that do not hold whole measurements.
 #[wasm_bindgen(js_name = fitMotions)]
 pub fn fit_motions(
     positions: &[f64],
