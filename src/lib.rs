@@ -83,3 +83,4 @@ pub use pipeline::{
 pub use points::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED, fit_motions};
 pub use progress::{Progress, Stage};
 pub use random::Random;
+pub use workspace::release_workspace;
