@@ -237,6 +237,7 @@ impl<T: Kept> FromIterator<T> for Buffer<T> {
     #[inline]
     fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
         let values = values.into_iter();
+        // Room for as many as there may be: what is not used is there for the next.
         let (least, most) = values.size_hint();
         let mut buffer = Self::with_capacity(most.unwrap_or(least));
         buffer.0.extend(values);

@@ -36,10 +36,7 @@ pub(crate) fn neighbours(count: usize, width: usize, mut pair: impl FnMut(usize,
 
 /// The pixels that have certain labels, in order.
 pub(crate) fn pixels(labels: &[u8], which: impl Fn(usize) -> bool) -> Buffer<usize> {
-    let has = |label: &u8| which(usize::from(*label));
-    let mut found = Buffer::with_capacity(labels.iter().filter(|label| has(label)).count());
-    found.extend(labels.iter().enumerate().filter(|(_, label)| has(label)).map(|(p, _)| p));
-    found
+    (0..labels.len()).filter(|&p| which(usize::from(labels[p]))).collect()
 }
 
 /// One label's pixels as a plane of ones on zeros.

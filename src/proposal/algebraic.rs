@@ -170,20 +170,18 @@ fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Buffer<Readi
 
 /// Median flows of groups of pixels that are alike in flow and place.
 fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize) -> Vec<[f64; 2]> {
-    let sensible = readings.iter().zip(positions).filter_map(|(r, p)| {
+    let sensible = |(r, p): (&Reading, &[f64; 2])| {
         let [u, v] = r.flow.map(|f| f * FLOW_UNIT);
         let sensible = u * u + v * v < LARGEST_FLOW * LARGEST_FLOW && r.distance < close;
         sensible.then_some([u, v, p[0], p[1]])
-    });
-    let mut points: Buffer<Point> = Buffer::with_capacity(readings.len());
-    points.extend(sensible);
+    };
+    let points: Buffer<Point> = readings.iter().zip(positions).filter_map(sensible).collect();
     let assignment = k_means(&points, groups);
     (0..groups)
         .filter_map(|g| {
             let member = || points.iter().zip(&assignment).filter(move |&(_, &a)| a == g).map(|(p, _)| p);
             let median = |k: usize| {
-                let mut values = Buffer::with_capacity(points.len());
-                values.extend(member().map(|p| p[k]));
+                let values: Buffer<f64> = member().map(|p| p[k]).collect();
                 median_f64(&values).unwrap_or(0.0)
             };
             (member().count() >= SMALLEST_GROUP).then(|| [median(0), median(1)])

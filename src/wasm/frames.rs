@@ -31,9 +31,7 @@ pub fn segment_pair(
     on_stage: Option<Function>,
 ) -> Result<JsValue, JsValue> {
     let options = segment_options(options)?;
-    let first = frame_from_pixels("the first frame", first)?;
-    let second = frame_from_pixels("the second frame", second)?;
-    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    let (first, second, before) = frames(first, second, before)?;
     let segmentation = crate::segment_pair(&first, &second, before.as_ref(), &options, &mut listener(on_stage))
         .map_err(Failure::from)?;
     let quality = match options.quality {
@@ -87,9 +85,7 @@ pub fn relabel(
     on_stage: Option<Function>,
 ) -> Result<JsValue, JsValue> {
     let options = segment_options(options)?;
-    let first = frame_from_pixels("the first frame", first)?;
-    let second = frame_from_pixels("the second frame", second)?;
-    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    let (first, second, before) = frames(first, second, before)?;
     let (entries, rest) = matrices.as_chunks::<6>();
     if !rest.is_empty() {
         return Err(Failure::input(format!("the matrices must hold 6 numbers each, found {}", matrices.len())).into());
@@ -165,6 +161,14 @@ fn image_from_labels(
         .collect();
     let rgba: Vec<u8> = labels.iter().flat_map(|&label| colours[usize::from(label)]).collect();
     ImageData::new_with_js_u8_clamped_array_and_sh(&Uint8ClampedArray::from(&rgba[..]), width, height)
+}
+
+/// Both frames, and the frame before where there is one.
+fn frames(first: &JsValue, second: &JsValue, before: &JsValue) -> Result<(Frame, Frame, Option<Frame>), Failure> {
+    let first = frame_from_pixels("the first frame", first)?;
+    let second = frame_from_pixels("the second frame", second)?;
+    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
+    Ok((first, second, before))
 }
 
 /// A frame from `{ data, width, height }`. Sizes are checked before a byte is copied.
