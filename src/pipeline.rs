@@ -12,7 +12,8 @@ pub use report::{PairEvidence, Segmentation, SegmentedMotion};
 #[doc(hidden)]
 pub use settings::Part;
 
-use crate::alignment::cost::noise;
+use crate::alignment::brightness::Photometric;
+use crate::alignment::cost::{View, noise};
 use crate::alignment::dominant::dominant_motion;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::error::{Error, Result};
@@ -192,11 +193,11 @@ impl Work {
         Work { levels, base, selection, draft, pictures, palette, reduction }
     }
 
-    /// Finds the dominant motion, takes the change of brightness (if there may be one) out of the second frame, measures the noise.
+    /// Finds the dominant motion, takes each view's change of brightness (if there may be one) out of it, measures the noise.
     fn find_dominant(&mut self, brightness: bool) -> AffineMotion {
         let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
         for level in &mut self.levels {
-            level.compensate(photometric.bias, photometric.gain);
+            photometric.remove_from(level, View::Second);
         }
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];
@@ -207,6 +208,10 @@ impl Work {
         }
         for level in &mut self.levels {
             level.noise = noise(level, &motion);
+        }
+        let base = &self.levels[self.base];
+        if brightness && let Some(photometric) = Photometric::of_frame_before(base, &motion) {
+            self.levels.iter_mut().for_each(|level| photometric.remove_from(level, View::Before));
         }
         motion
     }

@@ -431,6 +431,44 @@ fn a_frame_before_tells_what_the_second_hides() {
     assert!(mean(&with) > 0.96 && mean(&with) > mean(&without) + 0.01, "with {with:.3?}, without {without:.3?}");
 }
 
+/// Clouds and automatic exposure change the frame before as much as the second one.
+#[test]
+fn a_frame_before_helps_as_much_when_the_brightness_changes() {
+    let mut with = Vec::new();
+    let mut constant = Vec::new();
+    for seed in 400..406 {
+        let options = SceneOptions {
+            width: 200,
+            height: 150,
+            objects: 2,
+            speed: Speed::Large,
+            background: Background::Moving,
+            seed,
+            ..SceneOptions::default()
+        };
+        let overlap = |options: &SceneOptions| {
+            let scene = scene::generate(options).unwrap();
+            let before = Some(scene.before());
+            let result = segment_pair(scene.first(), scene.second(), before, &SegmentOptions::default(), &mut |_| {});
+            mean(&overlaps(&scene, &result.unwrap().labels))
+        };
+        with.push(overlap(&SceneOptions { gain: 1.15, bias: 6.0, ..options }));
+        constant.push(overlap(&options));
+    }
+    assert!(mean(&with) > mean(&constant) - 0.02, "with a change {with:.3?}, without {constant:.3?}");
+}
+
+/// The frame before has no say in what the background does: bare ground looks alike in any two frames.
+#[test]
+fn a_frame_before_leaves_a_bare_ground_at_rest() {
+    for seed in [1, 2] {
+        let scene = scene::bare_ground(seed).unwrap();
+        let options = SegmentOptions::default();
+        let result = segment_pair(scene.first(), scene.second(), Some(scene.before()), &options, &mut |_| {}).unwrap();
+        assert!(mean(&overlaps(&scene, &result.labels)) > 0.9, "seed {seed}: {:?}", overlaps(&scene, &result.labels));
+    }
+}
+
 #[test]
 fn sizes_and_numbers_out_of_range_are_errors() {
     let options = SegmentOptions::default();

@@ -9,6 +9,7 @@
 //! `k(f) = 1 − 2 (1 − c) f (1 − f)`, f the fractional shift and c the correlation of neighbouring noise. Without it a
 //! half-pixel shift beats the truth in flat areas.
 
+use super::brightness::Photometric;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::lanes::{LANES, each};
@@ -17,15 +18,6 @@ use crate::frame::warp::{CHUNK, Footprints};
 use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::workspace::Buffer;
-
-/// Change of brightness between the frames: `I2 ≈ I1 (1 + gain/128) + bias`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Photometric {
-    /// Grey levels.
-    pub(crate) bias: f64,
-    /// Grey levels at a grey level of 128.
-    pub(crate) gain: f64,
-}
 
 /// The two constants of the cost.
 #[derive(Clone, Copy, Debug)]
@@ -69,8 +61,9 @@ pub(crate) enum View {
     Before,
 }
 
-/// Cost of a motion (of the working frame) at every pixel of a level; in the frame before, where there is one, where the pixel
-/// leaves the second.
+/// Cost of a motion (of the working frame) at every pixel of a level, between the first frame and the second. A pixel that leaves the
+/// second frame says nothing, even where there is a frame before: a flat place looks alike in any two frames, so that a wrong motion
+/// would pay nothing for most of what it moves out of sight, and a motion bent over several objects passes for the background.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
     cost_within(level, &level.area(), motion, model)
 }
@@ -79,11 +72,6 @@ pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Pl
 #[inline(never)]
 pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
     let mut plane = cost_in(level, View::Second, area, motion, model);
-    if level.before.is_some() {
-        let before = cost_in(level, View::Before, area, motion, model);
-        let unseen = plane.values_mut().iter_mut().zip(before.values()).filter(|(c, _)| !c.is_finite());
-        unseen.for_each(|(c, b)| *c = *b);
-    }
     each(plane.values_mut(), |c| if c.is_finite() { c } else { model.outside() });
     plane
 }

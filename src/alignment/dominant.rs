@@ -1,8 +1,8 @@
 //! The dominant motion: the one affine motion that explains most of the frame, with the change of brightness between the frames.
 
-use super::cost::{CostModel, Photometric, cost_with, total};
+use super::brightness::Photometric;
+use super::cost::{CostModel, cost_with, total};
 use super::gauss_newton::{Alignment, Freedom, Support, align};
-use crate::frame::Plane;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -11,14 +11,15 @@ const REACH: i32 = 3;
 /// How much cheaper (in costs summed over pixels) another motion must be than no motion at all: cameras that stand still are common,
 /// and a small wrong motion of the background costs more later than a small true one that is missed here.
 const STATIC_BONUS: f64 = 20.0;
-/// Gain between the frames is looked for between these factors.
-const GAINS: (f64, f64) = (0.7, 1.4);
 
 /// The dominant motion of the working frame and the change of brightness (none unless `brightness` allows it), from the levels
 /// `base` and coarser.
 pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -> (AffineMotion, Photometric) {
-    let start = if brightness { brightness_start(levels) } else { Photometric::default() };
     let coarsest = &levels[levels.len() - 1];
+    let start = match brightness {
+        true => Photometric::from_moments(&coarsest.first, &coarsest.second),
+        false => Photometric::default(),
+    };
     let mut candidates = vec![AffineMotion::STATIC];
     let shift = best_shift(coarsest, start);
     if shift != AffineMotion::STATIC {
@@ -34,22 +35,6 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -
         }
     }
     (best.1, best.2)
-}
-
-/// Mean and standard deviation of both frames give a first gain and bias.
-fn brightness_start(levels: &[Level]) -> Photometric {
-    let level = &levels[levels.len() - 1];
-    let (first_mean, first_deviation) = mean_and_deviation(&level.first);
-    let (second_mean, second_deviation) = mean_and_deviation(&level.second);
-    let gain = (second_deviation / first_deviation.max(1e-3)).clamp(GAINS.0, GAINS.1);
-    Photometric { bias: second_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
-}
-
-fn mean_and_deviation(plane: &Plane) -> (f64, f64) {
-    let n = plane.values().len() as f64;
-    let mean = total(plane) / n;
-    let variance = plane.values().iter().map(|&v| (f64::from(v) - mean) * (f64::from(v) - mean)).sum::<f64>() / n;
-    (mean, variance.sqrt())
 }
 
 /// The whole-pixel shift at the coarsest level with the smallest cost.
@@ -98,36 +83,9 @@ fn descend(
 
 /// No motion: only the brightness is fitted.
 fn static_candidate(level: &Level, mut photometric: Photometric, brightness: bool) -> (f64, AffineMotion, Photometric) {
-    for _ in 0..if brightness { 3 } else { 0 } {
-        photometric = refit_brightness(level, photometric);
+    if brightness {
+        photometric = photometric.refined_at_rest(level);
     }
     let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::ESTIMATION));
     (cost - STATIC_BONUS / (level.stride * level.stride) as f64, AffineMotion::STATIC, photometric)
-}
-
-/// One reweighted least squares step of bias and gain between frames that are already aligned.
-fn refit_brightness(level: &Level, photometric: Photometric) -> Photometric {
-    let variance = f64::from(level.noise * level.noise);
-    let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for p in 0..level.first.values().len() {
-        let (x, y) = (p % level.width(), p / level.width());
-        let (first, second) = (level.first.values()[p], level.second.at(x * level.stride, y * level.stride));
-        let i = f64::from(first) / 128.0;
-        let r = f64::from(second) - f64::from(first) - photometric.bias - photometric.gain * i;
-        let robust = 4.0 / (4.0 + r * r / variance);
-        let w = robust * robust;
-        q += w;
-        qi += w * i;
-        qii += w * i * i;
-        qr += w * r;
-        qir += w * i * r;
-    }
-    let determinant = q * qii - qi * qi;
-    if determinant <= 1e-9 * q * qii {
-        return Photometric { bias: photometric.bias + qr / q.max(1e-9), gain: photometric.gain };
-    }
-    Photometric {
-        bias: photometric.bias + (qii * qr - qi * qir) / determinant,
-        gain: photometric.gain + (q * qir - qi * qr) / determinant,
-    }
 }

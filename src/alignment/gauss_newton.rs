@@ -6,7 +6,8 @@
 
 use nalgebra::{SMatrix, SVector};
 
-use super::cost::{CostModel, Photometric, lane_sum};
+use super::brightness::Photometric;
+use super::cost::{CostModel, lane_sum};
 use crate::frame::Plane;
 use crate::frame::lanes::whole;
 use crate::frame::pyramid::Level;

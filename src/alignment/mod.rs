@@ -1,5 +1,6 @@
 //! Motions measured on the images themselves: residuals and their robust cost, Gauss-Newton alignment, the dominant motion.
 
+pub(crate) mod brightness;
 pub(crate) mod cost;
 pub(crate) mod dominant;
 pub(crate) mod gauss_newton;

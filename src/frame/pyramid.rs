@@ -136,15 +136,6 @@ impl Level {
     pub(crate) fn noise_correlation(&self) -> f32 {
         if self.index == 0 { NOISE_CORRELATION_FULL } else { NOISE_CORRELATION_HALVED }
     }
-
-    /// Takes gain and bias out of the second frame: `(I − bias) / (1 + gain/128)`.
-    pub(crate) fn compensate(&mut self, bias: f64, gain: f64) {
-        let (scale, bias) = ((1.0 / (1.0 + gain / 128.0)) as f32, bias as f32);
-        Rc::make_mut(&mut self.second).values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
-        for plane in [&mut self.second_dx, &mut self.second_dy] {
-            Rc::make_mut(plane).values_mut().iter_mut().for_each(|v| *v *= scale);
-        }
-    }
 }
 
 /// The levels from the working size down to a shorter side of at least `smallest` pixels, or less while the longer one is long; at least

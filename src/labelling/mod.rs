@@ -15,7 +15,7 @@ pub(crate) mod potts;
 pub(crate) mod sharpening;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;
-mod views;
+pub(crate) mod views;
 pub(crate) mod visibility;
 
 use crate::frame::Plane;

@@ -3,7 +3,8 @@
 use super::components::{Connectivity, components};
 use super::description::{SMALLEST_SHARE, price_of_motion};
 use super::pixels;
-use crate::alignment::cost::{CostModel, Photometric, cost_within};
+use crate::alignment::brightness::Photometric;
+use crate::alignment::cost::{CostModel, cost_within};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::area::Area;

@@ -6,7 +6,7 @@
 use crate::alignment::cost::{CostModel, View, cost_in};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
-use crate::frame::lanes::lower;
+use crate::frame::lanes::{each, lower};
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
@@ -35,6 +35,14 @@ pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Pl
         both.zip(shares.values()).for_each(|((c, b), share)| *c = mixed(*c, *b, *share));
     }
     (costs, Some(shares))
+}
+
+/// [`costs_in_views`] in which a motion neither gains nor loses by a pixel that it moves out of every view.
+pub(crate) fn costs_where_seen(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+    let (mut costs, _) = costs_in_views(level, motions);
+    let neutral = CostModel::LABELS.outside();
+    costs.iter_mut().for_each(|cost| each(cost.values_mut(), |c| if c.is_finite() { c } else { neutral }));
+    costs
 }
 
 /// The cost of a pixel from its costs in both views, where the later one has a share.

@@ -15,6 +15,7 @@ use crate::labelling::confidence::probabilities;
 use crate::labelling::description::counts;
 use crate::labelling::groups::groups;
 use crate::labelling::upsampling::{enlarged, upsample};
+use crate::labelling::views::costs_where_seen;
 use crate::labelling::visibility::hidden;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
@@ -102,8 +103,7 @@ pub(super) fn report(
     let size = [level.width(), level.height()];
     let candidates = evidence(work, &labelled, settings);
     let sure = (options.mark_unknown || options.confidence).then(|| {
-        let cost = |motion| cost(level, motion, CostModel::LABELS);
-        probabilities(&labelled.motions.iter().map(cost).collect::<Vec<_>>(), &labelled.labels)
+        probabilities(&costs_where_seen(level, &labelled.motions), &labelled.labels)
     });
     let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(work, &labelled, sure));
     let grouping = groups(&labelled.motions, &labelled.labels, size[0], work.reduction);

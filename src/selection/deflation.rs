@@ -2,7 +2,8 @@
 //! would not pay for another.
 
 use super::{Layer, smallest_cost};
-use crate::alignment::cost::{Photometric, total};
+use crate::alignment::brightness::Photometric;
+use crate::alignment::cost::total;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;

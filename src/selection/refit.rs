@@ -1,7 +1,8 @@
 //! Every motion refined on the pixels where it wins.
 
 use super::Layer;
-use crate::alignment::cost::{Photometric, total};
+use crate::alignment::brightness::Photometric;
+use crate::alignment::cost::total;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::{eroded, gaussian};
