@@ -1,12 +1,12 @@
 //! Our own solution of Problem 1 on points: the most likely mixture of motions.
 
+use crate::answer::{Candidate, FitEvidence, FittedMotion, MotionFit, UNLABELLED};
 use crate::error::{Error, Result};
 use crate::factorisation::algebraic_start;
 use crate::measurements::{Measurements, Normalisation};
 use crate::motion::AffineMotion;
 use crate::options::{FitOptions, MAX_MOTIONS, MotionCount};
 use crate::order::sort_few;
-use crate::points::{Candidate, FitEvidence, FittedMotion, MotionFit, UNLABELLED};
 use crate::progress::{Progress, Stages};
 use crate::random::Random;
 use crate::refinement::{Matrix6, Mixture, Samples, Search, covariance, determined, score, select};

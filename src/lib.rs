@@ -39,14 +39,17 @@
 extern crate self as veronese;
 
 mod alignment;
+mod answer;
 mod best;
 #[cfg(feature = "codecs")]
 pub mod codecs;
+mod components;
 pub mod embedding;
 mod error;
 pub mod factorisation;
 mod frame;
 mod labelling;
+mod lanes;
 pub mod linear;
 mod literal;
 mod measurements;
@@ -66,6 +69,7 @@ mod selection;
 pub mod wasm;
 mod workspace;
 
+pub use answer::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED};
 pub use error::{Error, Result};
 pub use frame::{Derivatives, Frame, MAX_SIDE, MIN_SIDE, Plane, derivatives};
 pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair};
@@ -80,7 +84,7 @@ pub use pipeline::segment_pair_without;
 pub use pipeline::{
     Correction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel, segment_pair,
 };
-pub use points::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED, fit_motions};
+pub use points::fit_motions;
 pub use progress::{Progress, Stage};
 pub use random::Random;
 pub use workspace::release_workspace;

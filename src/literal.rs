@@ -6,11 +6,12 @@
 
 use serde::Serialize;
 
+use crate::answer::{MotionFit, UNLABELLED};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, derivatives};
 use crate::measurements::Measurements;
 use crate::options::{FitOptions, Method, MotionCount};
-use crate::points::{MotionFit, UNLABELLED, fit_motions};
+use crate::points::fit_motions;
 
 /// The threshold on |I_t| of the paper's experiment, for images scaled to [0, 1].
 pub const PAPER_THRESHOLD: f64 = 0.115;

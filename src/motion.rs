@@ -1,4 +1,4 @@
-//! One affine motion A (METHOD: eq. 1-5): the flow it gives a pixel, its residual on a measurement, changes of coordinates.
+//! One affine motion A (eq. 1-5): the flow it gives a pixel, its residual on a measurement, changes of coordinates.
 
 use serde::Serialize;
 

@@ -31,7 +31,7 @@ pub struct PaperFit {
     pub refined: Vec<AffineMotion>,
     /// How that minimisation ended.
     pub refinement: Report,
-    /// For each measurement the index in `refined` of the motion with the smallest |yᵀA x| (section 5 of METHOD).
+    /// For each measurement the index in `refined` of the motion with the smallest |yᵀA x|: the segmentation that Problem 1 asks for.
     pub labels: Vec<usize>,
 }
 

@@ -1,6 +1,7 @@
 // What must hold beside the tests: formatting, lints, documentation, types, versions. A warning is a failure.
 
 import { buildModules, buildPackage } from './builds.mjs';
+import { importsAgree } from './imports.mjs';
 import { projectText } from './project.mjs';
 import { run } from './run.mjs';
 
@@ -30,7 +31,10 @@ const CHECKS = [
 
 /** Runs every check, also after one failed, and returns `{ passed, failed, skipped }`. */
 export async function runChecks() {
-  const results = [['one version everywhere', versionsAgree()]];
+  const results = [
+    ['one version everywhere', versionsAgree()],
+    ['modules import what the architecture allows', importsAgree()],
+  ];
   // The types of the package come from the built modules, those of the page from the built package.
   await buildModules();
   await buildPackage();

@@ -120,9 +120,7 @@ mod tests {
         let texture = gaussian(&Plane::from_fn(100, 60, |_, _| random.uniform(-200.0, 450.0) as f32), 1.0);
         let first = Plane::from_fn(80, 60, |x, y| texture.at(x + 10, y));
         // The scene moves by 4 pixels to the right, so it was 4 pixels further left; a fifth of it does something else.
-        let before = Plane::from_fn(80, 60, |x, y| {
-            if x < 16 { 90.0 } else { texture.at(x + 14, y) * 0.8 + 12.0 }
-        });
+        let before = Plane::from_fn(80, 60, |x, y| if x < 16 { 90.0 } else { texture.at(x + 14, y) * 0.8 + 12.0 });
         let level = &build(first.clone(), first, Some(before), 64)[0];
         let found = Photometric::of_frame_before(level, &AffineMotion::translation(4.0, 0.0)).unwrap();
         assert!((found.bias - 12.0).abs() < 0.5, "{found:?}");

@@ -12,9 +12,9 @@
 use super::brightness::Photometric;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::lanes::{LANES, each};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
+use crate::lanes::{LANES, each};
 use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::workspace::Buffer;

@@ -9,9 +9,9 @@ use nalgebra::{SMatrix, SVector};
 use super::brightness::Photometric;
 use super::cost::{CostModel, lane_sum};
 use crate::frame::Plane;
-use crate::frame::lanes::whole;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
+use crate::lanes::whole;
 use crate::motion::AffineMotion;
 use crate::workspace::{Buffer, kept};
 

@@ -1,7 +1,7 @@
 //! Separable filters with replicated borders: blur, halving, gradients, median.
 
 use super::Plane;
-use super::lanes::{LANES, each_with};
+use crate::lanes::{LANES, each_with};
 use crate::workspace::Buffer;
 
 /// Weights of a normalised Gaussian, from the centre outwards, cut at 3σ.

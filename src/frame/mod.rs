@@ -3,7 +3,6 @@
 pub(crate) mod area;
 mod derivatives;
 pub(crate) mod filter;
-pub(crate) mod lanes;
 mod plane;
 pub(crate) mod pyramid;
 pub(crate) mod warp;

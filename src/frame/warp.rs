@@ -4,7 +4,7 @@
 //! of the four neighbours is then done for several pixels by one instruction.
 
 use super::Plane;
-use super::lanes::LANES;
+use crate::lanes::LANES;
 use crate::motion::AffineMotion;
 
 /// A row's sampling positions: start and step per pixel, kept as `f64` up to every chunk of pixels so that no error grows along a row.

@@ -9,9 +9,9 @@ use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::lanes::{each_with, lower, whole};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::CHUNK;
+use crate::lanes::{each_with, lower, whole};
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 

@@ -8,7 +8,7 @@
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
 use crate::frame::filter::RowFilter;
-use crate::frame::lanes::{each, each_with};
+use crate::lanes::{each, each_with};
 
 /// Standard deviation of the window in which the fit is judged, pixels.
 const WINDOW: f32 = 4.0;

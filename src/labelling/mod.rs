@@ -1,7 +1,6 @@
 //! From motions to masks: costs and coherence, visibility, splitting and describing regions, groups, full size.
 
 pub(crate) mod appearance;
-pub(crate) mod components;
 pub(crate) mod confidence;
 pub(crate) mod description;
 pub(crate) mod energy;

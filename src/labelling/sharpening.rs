@@ -13,8 +13,8 @@ use super::visibility::most_where_hidden;
 use crate::alignment::cost::{Comparison, CostModel, View};
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::lanes::lower;
 use crate::frame::pyramid::Level;
+use crate::lanes::lower;
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 

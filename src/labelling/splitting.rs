@@ -1,11 +1,11 @@
 //! Components that do not belong together: an affine motion bends to fit two bodies at once, so every region is tried in parts.
 
-use super::components::{Connectivity, components};
 use super::description::{SMALLEST_SHARE, price_of_motion};
 use super::pixels;
 use crate::alignment::brightness::Photometric;
 use crate::alignment::cost::{CostModel, cost_within};
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::components::{Connectivity, components};
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::{eroded, gaussian};

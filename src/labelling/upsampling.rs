@@ -6,7 +6,7 @@
 
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::lanes::each_with;
+use crate::lanes::each_with;
 use crate::workspace::Buffer;
 
 /// Radius of the filter's windows, full-size pixels.

@@ -6,8 +6,8 @@
 use crate::alignment::cost::{CostModel, View, cost_in};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
-use crate::frame::lanes::{each, lower};
 use crate::frame::pyramid::Level;
+use crate::lanes::{each, lower};
 use crate::motion::AffineMotion;
 
 /// Standard deviation of the window over which it is judged how well a view explains a pixel, pixels.

@@ -4,9 +4,9 @@ use super::mask_of;
 use crate::alignment::cost::inverse;
 use crate::frame::Plane;
 use crate::frame::filter::eroded;
-use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
 use crate::frame::warp::warp;
+use crate::lanes::each_with;
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 

@@ -4,7 +4,7 @@
 //! two lanes (the width of SSE2 and of WebAssembly's SIMD) and several columns are worked on together, so that a value once
 //! loaded serves many products. The order of the additions is fixed, and with it the bits of the result.
 
-use crate::frame::lanes::each_with;
+use crate::lanes::each_with;
 
 /// Two lanes: one 128-bit register.
 type Pair = [f64; 2];

@@ -9,6 +9,7 @@
 use super::Work;
 use super::report::{SegmentedMotion, describe, reduced};
 use super::settings::{Part, Settings};
+use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
@@ -18,7 +19,6 @@ use crate::labelling::upsampling::upsample;
 use crate::labelling::visibility::with_visibility;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
-use crate::points::UNLABELLED;
 use crate::progress::{Progress, Stages};
 use crate::workspace::{self, Buffer};
 

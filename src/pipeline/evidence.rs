@@ -3,13 +3,13 @@
 use super::Work;
 use super::masks::{Labelled, borders, left_over};
 use super::settings::Settings;
+use crate::answer::Candidate;
 use crate::frame::Plane;
 use crate::labelling::description::{length, price_of_motion, worth};
 use crate::labelling::energy::label_costs;
 use crate::labelling::potts::Solver;
 use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
-use crate::points::Candidate;
 
 /// Description lengths: of what was found, of what remains as the least worthy motions are taken away, and of one more. Labels are
 /// solved for each at the base level, by costs without occlusion and colour.

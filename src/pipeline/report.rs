@@ -7,8 +7,8 @@ use super::evidence::evidence;
 use super::masks::Labelled;
 use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost, lane_sum};
+use crate::answer::{Candidate, UNLABELLED};
 use crate::frame::filter::gaussian;
-use crate::frame::lanes::each_with;
 use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
@@ -17,10 +17,10 @@ use crate::labelling::groups::groups;
 use crate::labelling::upsampling::{enlarged, upsample};
 use crate::labelling::views::costs_where_seen;
 use crate::labelling::visibility::hidden;
+use crate::lanes::each_with;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::order::descending;
-use crate::points::{Candidate, UNLABELLED};
 use crate::workspace::Buffer;
 
 /// What [`segment_pair`](crate::segment_pair) found.
@@ -102,9 +102,8 @@ pub(super) fn report(
     let level = work.finest();
     let size = [level.width(), level.height()];
     let candidates = evidence(work, &labelled, settings);
-    let sure = (options.mark_unknown || options.confidence).then(|| {
-        probabilities(&costs_where_seen(level, &labelled.motions), &labelled.labels)
-    });
+    let sure = (options.mark_unknown || options.confidence)
+        .then(|| probabilities(&costs_where_seen(level, &labelled.motions), &labelled.labels));
     let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(work, &labelled, sure));
     let grouping = groups(&labelled.motions, &labelled.labels, size[0], work.reduction);
 

@@ -5,9 +5,9 @@
 
 use crate::frame::Plane;
 use crate::frame::filter::{double, gaussian, median5};
-use crate::frame::lanes::{each_with, whole};
 use crate::frame::pyramid::Level;
 use crate::frame::warp::{CHUNK, Footprints};
+use crate::lanes::{each_with, whole};
 use crate::motion::AffineMotion;
 
 /// Standard deviation of the window at the base level and at coarser ones, pixels.

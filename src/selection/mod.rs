@@ -11,8 +11,8 @@ pub(crate) use refit::refit;
 use crate::alignment::cost::{CostModel, cost};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
-use crate::frame::lanes::lower;
 use crate::frame::pyramid::Level;
+use crate::lanes::lower;
 use crate::motion::AffineMotion;
 
 /// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the second frame.

@@ -6,8 +6,8 @@ use crate::alignment::cost::total;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::{eroded, gaussian};
-use crate::frame::lanes::each_with;
 use crate::frame::pyramid::Level;
+use crate::lanes::each_with;
 
 /// Priors against linear terms: of the dominant motion (it has most of the frame) and of the others.
 const RIDGE: (f64, f64) = (1e-4, 1e-2);
