@@ -10,14 +10,13 @@ const DOCUMENT = 'ARCHITECTURE.md';
 /** Whether the modules in `src` import what the table says, no more and no less. Prints what differs. */
 export function importsAgree() {
   const table = tableOf(projectText(DOCUMENT));
-  const { imports, problems } = importsOf('src');
-  problems.push(...differences(table, imports));
+  const problems = differences(table, importsOf('src'));
   for (const problem of problems) console.error(problem);
   return problems.length === 0;
 }
 
 /** What differs between the table and the sources, a sentence each. */
-export function differences(table, imports) {
+function differences(table, imports) {
   const problems = [];
   for (const [module, found] of imports) {
     const allowed = table.get(module);
@@ -33,7 +32,7 @@ export function differences(table, imports) {
 }
 
 /** The lines `module → imports` of the block that is marked `imports`. */
-export function tableOf(document) {
+function tableOf(document) {
   const block = /```imports\n([\s\S]*?)```/.exec(document)?.[1] ?? '';
   const table = new Map();
   for (const line of block.split('\n').filter(Boolean)) {
@@ -48,22 +47,21 @@ function importsOf(folder) {
   const names = readdirSync(join(root, folder)).map((name) => name.replace(/\.rs$/, ''));
   const modules = new Set(names.filter((name) => name !== 'lib'));
   const imports = new Map([...modules].map((name) => [name, new Set()]));
-  const problems = [];
   for (const file of readdirSync(join(root, folder), { recursive: true })) {
     const path = String(file).replaceAll('\\', '/');
     if (!path.endsWith('.rs') || path === 'lib.rs' || path.endsWith('_tests.rs')) continue;
     const own = path.split('/')[0].replace(/\.rs$/, '');
     const source = withoutTests(projectText(`${folder}/${path}`));
-    if (/\bcrate::\{/.test(source)) problems.push(`${folder}/${path} imports from \`crate::{…}\`: one module a line, please.`);
-    for (const [, name] of source.matchAll(/\bcrate::(\w+)/g)) {
-      if (modules.has(name) && name !== own) imports.get(own).add(name);
+    // Both `crate::name` and the names in `crate::{name, name::item}`.
+    for (const [, path] of source.matchAll(/\bcrate::(\w+|\{[^;]*)/g)) {
+      for (const [name] of path.matchAll(/(?<!::)\b\w+/g)) if (modules.has(name) && name !== own) imports.get(own).add(name);
     }
   }
-  return { imports, problems };
+  return imports;
 }
 
 /** A source without its comments and its test module. */
-export function withoutTests(source) {
+function withoutTests(source) {
   const code = source.replace(/^\s*\/\/.*$/gm, '');
   const tests = /^#\[cfg\(test\)\]\n(pub\(crate\) )?mod \w+ \{$/m.exec(code);
   return tests ? code.slice(0, tests.index) : code;
