@@ -63,13 +63,13 @@ export class Correcting {
   /** The mask that a stroke begun now is about; null, with a word to the user, where it could say nothing. */
   maskFor(tool: Stroke['tool']): Part | null {
     const { result, found, look, live } = this.#store.get();
-    if (result === null || found === null || live !== null) return null;
-    const mask = look.selected === null ? null : { of: labellingOf(found), labels: labelSet(result.segmentation, look.kind, look.selected) };
-    if (mask !== null && possible({ tool, mask }, found) !== 0) return mask;
-    const { chooseMask, nothingElse, notPainted } = strings.notices;
-    const sentence = mask === null ? chooseMask : tool === 'eraser' ? nothingElse : notPainted;
-    this.#store.set({ notice: { sentence, code: null } });
-    return null;
+    if (live !== null) return null;
+    const { noMasks, chooseMask, nothingElse, notPainted } = strings.notices;
+    const refuse = (sentence: string): null => (this.#store.set({ notice: { sentence, code: null } }), null);
+    if (result === null || found === null) return refuse(noMasks);
+    if (look.selected === null) return refuse(chooseMask);
+    const mask = { of: labellingOf(found), labels: labelSet(result.segmentation, look.kind, look.selected) };
+    return possible({ tool, mask }, found) === 0 ? refuse(tool === 'eraser' ? nothingElse : notPainted) : mask;
   }
 
   stroke(stroke: Stroke): void {
@@ -143,23 +143,25 @@ export class Correcting {
     const key = keyOfPair(pair);
     if (key === null || pair.first === null) return;
     const insisted = insisting === null ? null : settings.motions;
-    const others = new Map(kept);
-    others.delete(key);
-    if (isTouched(edits) || insisted !== null) {
-      const packed = found === null ? null : { packed: packedResult(found, labellingOf(found)), waited: result?.waited ?? 0 };
-      const { width, height } = pair.first;
-      others.set(key, { edits, insisted, width, height, found: packed });
-    }
-    this.#store.set({ kept: others, ...(insisting === null ? {} : { settings: { ...settings, motions: insisting }, insisting: null }) });
+    if (!isTouched(edits) && insisted === null) return;
+    const packed = found === null ? null : { packed: packedResult(found, labellingOf(found)), waited: result?.waited ?? 0 };
+    const { width, height } = pair.first;
+    this.#store.set({
+      kept: new Map(kept).set(key, { edits, insisted, width, height, found: packed }),
+      ...(insisting === null ? {} : { settings: { ...settings, motions: insisting }, insisting: null }),
+    });
   }
 
   /** What of the state is another with this pair: empty, or what was done to it before. */
-  arrival(pair: FramePair): Pick<State, 'found' | 'result' | 'edits' | 'settings' | 'insisting'> {
+  arrival(pair: FramePair): Pick<State, 'found' | 'result' | 'edits' | 'kept' | 'settings' | 'insisting'> {
     const { kept, settings, insisting } = this.#store.get();
-    const known = kept.get(keyOfPair(pair) ?? '');
-    if (known === undefined) return { found: null, result: null, edits: UNTOUCHED, settings, insisting };
+    const key = keyOfPair(pair) ?? '';
+    const known = kept.get(key);
+    if (known === undefined) return { found: null, result: null, edits: UNTOUCHED, kept, settings, insisting };
+    const others = new Map(kept);
+    others.delete(key);
     const number = known.insisted === null ? { settings, insisting } : { settings: { ...settings, motions: known.insisted }, insisting: settings.motions };
-    return { ...this.#restored(known, pair as Result['pair']), ...number };
+    return { ...this.#restored(known, pair as Result['pair']), ...number, kept: others };
   }
 
   #restored({ edits, found: known, width, height }: Kept, pair: Result['pair']): Pick<State, 'found' | 'result' | 'edits'> {
@@ -195,7 +197,9 @@ export class Correcting {
     const known = last === result.under ? result.segmentation : last === null ? found : this.#solutions.get(last, found);
     if (known !== undefined) this.#show(known, last, after);
     else {
-      if (after !== 'solved') this.#show(result.segmentation, result.under, null); // its groups
+      const { motions } = grouped(result.segmentation, edits, found);
+      const regrouped = motions.some(({ group }, k) => group !== result.segmentation.motions[k]!.group);
+      if (regrouped) this.#show(result.segmentation, result.under, null);
       // Another segmentation is coming and will be solved under all strokes.
       if (run.phase !== 'opening' && !isSegmenting(run)) void this.#solve();
     }

@@ -22,7 +22,6 @@ export function keyOfPair({ first, second }: FramePair): string | null {
 }
 
 /** Whether something would be lost with the page. */
-export function hasUnsaved({ pair, edits, kept }: Pick<State, 'pair' | 'edits' | 'kept'>): boolean {
-  const open = keyOfPair(pair); // what is kept of it is older
-  return isUnsaved(edits) || [...kept].some(([key, other]) => key !== open && isUnsaved(other.edits));
+export function hasUnsaved({ edits, kept }: Pick<State, 'edits' | 'kept'>): boolean {
+  return isUnsaved(edits) || [...kept.values()].some((pair) => isUnsaved(pair.edits));
 }

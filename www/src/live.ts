@@ -14,14 +14,17 @@ const NEWEST = 0.15;
 
 export class LiveView {
   readonly #store: Store;
+  /** The pair that was open gives way to the camera. */
+  readonly #leave: () => void;
   readonly #fail: (error: unknown) => void;
   readonly #segmenting = new Segmenting();
   /** Changes with every start and stop: a loop goes on as long as it is its own. */
   #turn = 0;
   #stream: MediaStream | null = null;
 
-  constructor(store: Store, fail: (error: unknown) => void) {
+  constructor(store: Store, leave: () => void, fail: (error: unknown) => void) {
     this.#store = store;
+    this.#leave = leave;
     this.#fail = fail;
   }
 
@@ -37,6 +40,7 @@ export class LiveView {
       video.playsInline = true;
       video.srcObject = stream;
       await video.play();
+      this.#leave();
       const { look } = this.#store.get();
       this.#store.set({
         live: { rate: 0 },

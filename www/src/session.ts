@@ -28,7 +28,11 @@ export class Session {
   constructor(store: Store) {
     this.#store = store;
     this.correcting = new Correcting(store, this.#segmenting, (error) => this.#fail(error));
-    this.#live = new LiveView(store, (error) => this.#fail(error));
+    this.#live = new LiveView(
+      store,
+      () => this.correcting.leave(),
+      (error) => this.#fail(error),
+    );
   }
 
   openSample(sample: Sample = SAMPLES[0]): Promise<void> {
@@ -111,7 +115,6 @@ export class Session {
     if (this.#store.get().live !== null) return this.#live.stop();
     this.#opened += 1;
     this.#stop();
-    this.correcting.leave();
     this.#close(this.#store.get().film?.clip);
     this.#store.set({ run: { phase: 'opening' }, notice: null });
     await this.#live.start();
@@ -199,7 +202,6 @@ export class Session {
 
   #openFilm(load: () => Promise<Clip>, file: File | null = null): Promise<void> {
     return this.#open(async (current) => {
-      const source = file === null ? null : await sourceOfFilm(file);
       const clip = await load();
       if (!current()) {
         clip.close();
@@ -208,7 +210,7 @@ export class Session {
       try {
         const second = Math.min(FRAMES_APART, clip.count - 1);
         const { longestSide } = this.#store.get().settings;
-        const film = { clip, source, first: 0, second };
+        const film = { clip, source: file === null ? null : await sourceOfFilm(file), first: 0, second };
         const frames = { first: await frameOf(film, 0, longestSide), second: await frameOf(film, second, longestSide) };
         if (!current()) throw new Error('overtaken');
         this.#close(this.#store.get().film?.clip);

@@ -123,7 +123,8 @@ export const strings = {
     held: (held: number, all: number): string => {
       if (held === all) return all === 1 ? 'Your stroke holds.' : `Your ${all} strokes hold.`;
       if (all === 1) return 'Your stroke has no say: its mask is not among these.';
-      return `${held === 0 ? 'None' : held} of your ${all} strokes ${held > 1 ? 'hold' : 'holds'}: the masks of the others are not among these.`;
+      const others = all - held === 1 ? 'mask of the other is' : 'masks of the others are';
+      return held === 0 ? `Your ${all} strokes have no say: their masks are not among these.` : `${held} of your ${all} strokes ${held > 1 ? 'hold' : 'holds'}: the ${others} not among these.`;
     },
     solved: (strokes: number, waited: number): string => `Solved again under your ${strokes === 1 ? 'stroke' : 'strokes'} in ${whole.format(waited)} ms.`,
     undone: 'Undone.',
@@ -133,15 +134,16 @@ export const strings = {
     restored: 'Your corrections of these frames are back.',
     live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} per second, ${motions(count).toLowerCase()}.`,
     cancelled: 'Cancelled.',
-    cancelledBefore: 'Cancelled. The masks are those of before.',
+    cancelledBefore: 'Cancelled. The masks are the last that were found.',
     cancelledStrokes: 'Cancelled. Your strokes are kept, but not all are solved.',
     failed: 'Nothing was segmented.',
-    failedBefore: 'That failed. The masks are those of before.',
+    failedBefore: 'That failed. The masks are the last that were found.',
     failedStrokes: 'That failed. Your strokes are kept, but not all are solved.',
   },
 
   notices: {
     noFiles: 'There was no image or video in what you gave.',
+    noMasks: 'There are no masks to paint yet.',
     chooseMask: 'Choose a mask in the list first: the brush paints it.',
     nothingElse: 'There is no other mask that it could belong to.',
     notPainted: 'The brush paints motions: choose one of them in the list, or erase this.',

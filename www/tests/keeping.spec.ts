@@ -276,6 +276,24 @@ test('frames that are opened again bring their corrections, whatever came betwee
   expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
 });
 
+test('the camera does not take corrections away', async ({ page, context }) => {
+  await context.grantPermissions(['camera']);
+  await open(page);
+  await brush(page, 1);
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live/, { timeout: 20_000 });
+  await expect(strokes(page)).toHaveCount(0);
+  expect(await warns(page)).toBe(true);
+  await page.getByRole('button', { name: 'Stop camera' }).click();
+  await done(page);
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('first.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(1);
+  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+});
+
 test('corrections fit frames that come back at another working size', async ({ page }) => {
   await openFilm(page, await frames(3, 800, 480));
   await brush(page, 1);
