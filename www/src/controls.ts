@@ -36,7 +36,7 @@ const MOTIONS: ChoiceControl<'motions'> = {
   kind: 'select',
   name: 'motions',
   label: 'Number of motions',
-  help: 'Found from the frames, or as many as you say.',
+  help: 'Found from the frames, or as many as you say, in every pair.',
   initial: 'auto',
   choices: [
     { value: 'auto', label: 'Automatic' },

@@ -4,11 +4,14 @@
 
 import type { Pixels } from 'veronese';
 import { PageError } from './errors.js';
+import { sourceOfImage } from './sources.js';
 import { strings } from './strings.js';
 
 /** A decoded frame. `data` is RGBA, row by row; nobody changes it. */
 export interface LoadedFrame extends Pixels {
   readonly name: string;
+  /** What it is known by: the same when the same frame is opened again. */
+  readonly source: string;
   readonly data: Uint8ClampedArray<ArrayBuffer>;
   readonly width: number;
   readonly height: number;
@@ -32,8 +35,11 @@ export async function frameFromBlob(blob: Blob, name: string, longestSide: numbe
   } catch {
     throw new PageError('unreadable-image', strings.errors.unreadable(name));
   }
-  return frameFromBitmap(bitmap, name, longestSide, began);
+  return { ...(await frameFromBitmap(bitmap, name, longestSide, began)), source: await sourceOfImage(blob) };
 }
+
+/** Frames that come from nowhere a second time are known by a number. */
+let unknown = 0;
 
 /** Takes the bitmap over. `began` is when work on it began. */
 export async function frameFromBitmap(given: ImageBitmap, name: string, longestSide: number, began: number): Promise<LoadedFrame> {
@@ -52,7 +58,7 @@ export async function frameFromBitmap(given: ImageBitmap, name: string, longestS
   if (context === null) throw new PageError('unsupported-browser', strings.errors.noCanvas);
   context.drawImage(bitmap, 0, 0);
   const { data } = context.getImageData(0, 0, width, height);
-  return { name, data, width, height, full, bitmap, decoded: performance.now() - began };
+  return { name, source: `${++unknown}`, data, width, height, full, bitmap, decoded: performance.now() - began };
 }
 
 /** The size that keeps the longer side within `longest`. */

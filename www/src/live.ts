@@ -1,9 +1,10 @@
 //! The camera: one frame after another segmented against the one before, fast, with the rate shown.
 
+import { UNTOUCHED } from './edits.js';
 import { PageError } from './errors.js';
 import { type LoadedFrame, frameFromBitmap } from './frames.js';
 import { Segmenting } from './segmenting.js';
-import { FRESH, type Store, UNTOUCHED } from './state.js';
+import { FRESH, type Store } from './state.js';
 import { strings } from './strings.js';
 
 /** Longer side of what is worked on: more is not seen at this speed. */
@@ -13,14 +14,17 @@ const NEWEST = 0.15;
 
 export class LiveView {
   readonly #store: Store;
+  /** The pair that was open gives way to the camera. */
+  readonly #leave: () => void;
   readonly #fail: (error: unknown) => void;
   readonly #segmenting = new Segmenting();
   /** Changes with every start and stop: a loop goes on as long as it is its own. */
   #turn = 0;
   #stream: MediaStream | null = null;
 
-  constructor(store: Store, fail: (error: unknown) => void) {
+  constructor(store: Store, leave: () => void, fail: (error: unknown) => void) {
     this.#store = store;
+    this.#leave = leave;
     this.#fail = fail;
   }
 
@@ -36,13 +40,15 @@ export class LiveView {
       video.playsInline = true;
       video.srcObject = stream;
       await video.play();
+      this.#leave();
       const { look } = this.#store.get();
       this.#store.set({
         live: { rate: 0 },
         run: { phase: 'live' },
         result: null,
-        history: UNTOUCHED,
-        look: { ...look, ...FRESH, view: 'second', names: look.names, colours: look.colours },
+        found: null,
+        edits: UNTOUCHED,
+        look: { ...look, ...FRESH, view: 'second' },
       });
       await this.#loop(video, current);
     } catch (error) {
@@ -60,8 +66,8 @@ export class LiveView {
     this.#stream = null;
     const { live, result } = this.#store.get();
     if (live === null) return;
-    const phase = result === null ? 'idle' : 'done';
-    this.#store.set({ live: null, run: { phase }, history: { ...UNTOUCHED, found: result?.segmentation ?? null } });
+    const run = result === null ? ({ phase: 'idle' } as const) : ({ phase: 'done', after: 'found' } as const);
+    this.#store.set({ live: null, run, found: result?.segmentation ?? null });
   }
 
   async #loop(video: HTMLVideoElement, current: () => boolean): Promise<void> {
@@ -90,7 +96,7 @@ export class LiveView {
     const before = this.#store.get().pair;
     this.#store.set({
       pair: { first, second },
-      result: { segmentation, pair: { first, second }, waited },
+      result: { segmentation, pair: { first, second }, waited, under: null },
       live: { rate },
       run: { phase: 'live' },
     });

@@ -14,6 +14,7 @@ import { mountDrop } from './views/drop.js';
 import { mountEvidence } from './views/evidence.js';
 import { mountGestures } from './views/gestures.js';
 import { mountKeys } from './views/keys.js';
+import { mountLeaving } from './views/leaving.js';
 import { mountLook } from './views/look.js';
 import { find } from './views/markup.js';
 import { mountMotions } from './views/motions.js';
@@ -53,6 +54,7 @@ mountOptions(find(document, '#settings', HTMLFormElement), store, session);
 mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
+mountLeaving(window, store);
 mountDownloads(find(document, '#taking', HTMLElement), store, session);
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 

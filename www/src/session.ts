@@ -1,17 +1,17 @@
 //! What the page does when it is asked to: open frames, choose them from a clip, segment, correct, cancel. Views call these and read
 //! the state; every failure ends as a notice in the state, and the page goes on working.
 
-import type { Segmentation } from 'veronese';
 import { WHOLE } from './camera.js';
 import { type Clip, looksLikeFilm, openClip } from './clips/clip.js';
-import { Correcting } from './correcting.js';
+import { Correcting, isPending } from './correcting.js';
 import { codeOf, sentenceOf } from './errors.js';
-import { filesByName, frameFromBlob, frameFromUrl } from './frames.js';
+import { type LoadedFrame, filesByName, frameFromBlob, frameFromUrl } from './frames.js';
 import { openFolder } from './clips/folder.js';
 import { LiveView } from './live.js';
 import { type Sample, SAMPLES } from './samples.js';
 import { Segmenting } from './segmenting.js';
-import { FRESH, type FramePair, type Result, type Settings, type Slot, type Store, UNTOUCHED } from './state.js';
+import { sourceOfFilm } from './sources.js';
+import { type Film, FRESH, type FramePair, type Settings, type Slot, type Store } from './state.js';
 import { strings } from './strings.js';
 
 /** A film is opened at its start, with so many frames between the two. */
@@ -28,7 +28,11 @@ export class Session {
   constructor(store: Store) {
     this.#store = store;
     this.correcting = new Correcting(store, this.#segmenting, (error) => this.#fail(error));
-    this.#live = new LiveView(store, (error) => this.#fail(error));
+    this.#live = new LiveView(
+      store,
+      () => this.correcting.leave(),
+      (error) => this.#fail(error),
+    );
   }
 
   openSample(sample: Sample = SAMPLES[0]): Promise<void> {
@@ -51,7 +55,7 @@ export class Session {
   openFiles(files: Iterable<File>, slot: Slot | null = null): Promise<void> {
     const given = [...files];
     const film = given.find(looksLikeFilm);
-    if (film !== undefined) return this.#openFilm(() => openClip(film));
+    if (film !== undefined) return this.#openFilm(() => openClip(film), film);
     const sorted = filesByName(given.filter((file) => file.type.startsWith('image/') || given.length <= 2));
     const [one, two] = sorted;
     if (one === undefined) {
@@ -85,7 +89,7 @@ export class Session {
     if (film[slot] === chosen) return Promise.resolve();
     this.#store.set({ film: { ...film, [slot]: chosen } });
     return this.#open(async () => {
-      const frame = await film.clip.frame(chosen, settings.longestSide);
+      const frame = await frameOf(film, chosen, settings.longestSide);
       return { ...this.#store.get().pair, [slot]: frame };
     });
   }
@@ -99,10 +103,10 @@ export class Session {
     const shift = Math.min(Math.max(by, -Math.min(film.first, film.second)), most - Math.max(film.first, film.second));
     if (shift === 0) return Promise.resolve();
     const [first, second] = [film.first + shift, film.second + shift];
-    this.#store.set({ film: { clip, first, second } });
+    this.#store.set({ film: { ...film, first, second } });
     return this.#open(async () => ({
-      first: await clip.frame(first, settings.longestSide),
-      second: await clip.frame(second, settings.longestSide),
+      first: await frameOf(film, first, settings.longestSide),
+      second: await frameOf(film, second, settings.longestSide),
     }));
   }
 
@@ -110,7 +114,7 @@ export class Session {
   async toggleLive(): Promise<void> {
     if (this.#store.get().live !== null) return this.#live.stop();
     this.#opened += 1;
-    this.#segmenting.cancel();
+    this.#stop();
     this.#close(this.#store.get().film?.clip);
     this.#store.set({ run: { phase: 'opening' }, notice: null });
     await this.#live.start();
@@ -126,48 +130,50 @@ export class Session {
 
   /** Takes other settings and, where there is a pair, segments it again. */
   change(settings: Partial<Settings>): void {
-    this.#store.set({ settings: { ...this.#store.get().settings, ...settings } });
+    const { settings: before, insisting } = this.#store.get();
+    this.#store.set({ settings: { ...before, ...settings }, insisting: settings.motions === undefined ? insisting : null });
     if (this.#store.get().live === null) void this.segment();
+  }
+
+  /** So many motions in this pair; in others as many as before. */
+  insist(motions: number): void {
+    const { settings, insisting } = this.#store.get();
+    this.change({ motions });
+    this.#store.set({ insisting: insisting ?? settings.motions });
+  }
+
+  /** Takes up again what was cancelled. */
+  again(): void {
+    if (this.correcting.isCurrent()) this.correcting.settle(isPending(this.#store.get()) ? 'solved' : 'found');
+    else void this.segment();
   }
 
   /** Segments the pair with the settings, or says what is missing. */
   async segment(): Promise<void> {
     const { pair, settings } = this.#store.get();
     const { first, second } = pair;
+    this.correcting.interrupt();
     if (first === null || second === null) {
       this.#segmenting.cancel();
       this.#store.set({ run: { phase: 'idle' } });
       return;
     }
-    this.#store.set({ run: { phase: 'working', stage: '', index: 0, of: 0 } });
+    this.#store.set({ run: { phase: 'working', work: 'segmenting', stage: '', index: 0, of: 0 } });
     const began = performance.now();
     try {
       // Of a new pair something is seen soon: what fast work finds, until better work is done.
       if (settings.quality === 'best' && this.#store.get().result === null) {
         const preview = await this.#segmenting.run({ first, second }, { ...settings, quality: 'fast' });
         if (preview === null) return;
-        this.#show(preview, { first, second }, began);
+        await this.correcting.take(preview, { first, second }, began, false);
       }
       const segmentation = await this.#segmenting.run({ first, second }, settings, ({ stage, index, of }) =>
-        this.#store.set({ run: { phase: 'working', stage, index, of } }),
+        this.#store.set({ run: { phase: 'working', work: 'segmenting', stage, index, of } }),
       );
-      if (segmentation === null) return;
-      this.#store.set({ run: { phase: 'done' } });
-      this.#show(segmentation, { first, second }, began);
+      if (segmentation !== null) await this.correcting.take(segmentation, { first, second }, began, true);
     } catch (error) {
       this.#fail(error);
     }
-  }
-
-  #show(segmentation: Segmentation, pair: Result['pair'], began: number): void {
-    const { result, look } = this.#store.get();
-    // A different number of motions has different labels: what was chosen by label no longer means anything.
-    const sameLabels = result?.segmentation.count === segmentation.count && result.pair.first === pair.first;
-    this.#store.set({
-      result: { segmentation, pair, waited: performance.now() - began },
-      history: { ...UNTOUCHED, found: segmentation },
-      look: sameLabels ? look : { ...look, ...FRESH },
-    });
   }
 
   /** Chooses the mask that is worked on. */
@@ -180,8 +186,13 @@ export class Session {
     const { run } = this.#store.get();
     if (run.phase !== 'working' && run.phase !== 'opening') return;
     this.#opened += 1;
-    this.#segmenting.cancel();
+    this.#stop();
     this.#store.set({ run: { phase: 'cancelled' } });
+  }
+
+  #stop(): void {
+    this.#segmenting.cancel();
+    this.correcting.interrupt();
   }
 
   /** Says something to the user; with a code it is an error. */
@@ -189,7 +200,7 @@ export class Session {
     this.#store.set({ notice: { sentence, code } });
   }
 
-  #openFilm(load: () => Promise<Clip>): Promise<void> {
+  #openFilm(load: () => Promise<Clip>, file: File | null = null): Promise<void> {
     return this.#open(async (current) => {
       const clip = await load();
       if (!current()) {
@@ -199,10 +210,11 @@ export class Session {
       try {
         const second = Math.min(FRAMES_APART, clip.count - 1);
         const { longestSide } = this.#store.get().settings;
-        const frames = { first: await clip.frame(0, longestSide), second: await clip.frame(second, longestSide) };
+        const film = { clip, source: file === null ? null : await sourceOfFilm(file), first: 0, second };
+        const frames = { first: await frameOf(film, 0, longestSide), second: await frameOf(film, second, longestSide) };
         if (!current()) throw new Error('overtaken');
         this.#close(this.#store.get().film?.clip);
-        this.#store.set({ film: { clip, first: 0, second } });
+        this.#store.set({ film });
         return frames;
       } catch (error) {
         clip.close();
@@ -220,7 +232,7 @@ export class Session {
   async #open(load: (current: () => boolean) => Promise<FramePair>): Promise<void> {
     const turn = ++this.#opened;
     const before = this.#store.get().run;
-    this.#segmenting.cancel();
+    this.#stop();
     this.#live.stop();
     this.#store.set({ run: { phase: 'opening' }, notice: null });
     try {
@@ -229,33 +241,39 @@ export class Session {
     } catch (error) {
       if (turn !== this.#opened) return;
       this.#fail(error);
-      // What was open stays open; where its segmentation was interrupted, it is taken up again.
-      const { pair, result } = this.#store.get();
-      if (before.phase === 'working') void this.segment();
-      else if (result !== null && result.pair.first === pair.first && result.pair.second === pair.second) {
-        this.#store.set({ run: { phase: 'done' } });
-      }
+      // What was open stays open; where work on it was interrupted, it is taken up again.
+      if (before.phase === 'working' && before.work === 'segmenting') void this.segment();
+      else this.correcting.settle(before.phase === 'done' ? before.after : 'found');
     }
   }
 
   #take(pair: FramePair): void {
+    this.correcting.leave();
+    this.#stop();
     const { look, pair: before, camera } = this.#store.get();
     const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
     const view = pair.first !== null && pair.second !== null && look.view === 'split' ? 'split' : only;
     const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
     this.#store.set({
       pair,
-      result: null,
-      history: UNTOUCHED,
+      run: { phase: 'idle' },
+      ...this.correcting.arrival(pair),
       look: { ...look, ...FRESH, view },
       camera: sameSize ? camera : WHOLE,
     });
     // Nobody draws the old frames any more: give their memory back now, not at the next collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
-    void this.segment();
+    if (this.correcting.isCurrent()) this.correcting.settle('restored');
+    else void this.segment();
   }
 
   #fail(error: unknown): void {
     this.#store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
   }
+}
+
+/** A frame of the film, known by the film and its number there. */
+async function frameOf({ clip, source }: Film, index: number, longestSide: number): Promise<LoadedFrame> {
+  const frame = await clip.frame(index, longestSide);
+  return source === null ? frame : { ...frame, source: `${source} ${index}` };
 }

@@ -4,7 +4,9 @@ import type { Segmentation, SegmentOptions } from 'veronese';
 import { type Camera, WHOLE } from './camera.js';
 import type { Clip } from './clips/clip.js';
 import { DEFAULT_SETTINGS } from './controls.js';
+import { type Edits, UNTOUCHED } from './edits.js';
 import type { LoadedFrame } from './frames.js';
+import type { Kept } from './kept.js';
 import type { Kind } from './masks.js';
 import type { Colour } from './palette.js';
 import type { Stroke } from './strokes.js';
@@ -23,10 +25,14 @@ export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quali
   readonly longestSide: number;
 };
 
+/** What the masks that are shown come from. */
+export type After = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'apart' | 'restored';
+
 /** What the work is doing. `index` counts stages from 0; `of` is 0 while the number of stages is not known. */
 export type Run =
-  | { readonly phase: 'idle' | 'opening' | 'done' | 'cancelled' | 'failed' | 'live' }
-  | { readonly phase: 'working'; readonly stage: string; readonly index: number; readonly of: number };
+  | { readonly phase: 'idle' | 'opening' | 'cancelled' | 'failed' | 'live' }
+  | { readonly phase: 'done'; readonly after: After }
+  | { readonly phase: 'working'; readonly work: 'segmenting' | 'solving'; readonly stage: string; readonly index: number; readonly of: number };
 
 /** A segmentation together with the frames it was made from, so that late views never mix two requests. */
 export interface Result {
@@ -34,20 +40,8 @@ export interface Result {
   readonly pair: { readonly first: LoadedFrame; readonly second: LoadedFrame };
   /** Milliseconds from request to answer, as the page saw it: transfer to the worker and back included. */
   readonly waited: number;
-}
-
-/** What a person did to the result: strokes, and motions merged or taken apart (`segmentation.motions[k].group`). */
-export interface Edit {
-  readonly segmentation: Segmentation;
-  readonly strokes: readonly Stroke[];
-}
-
-export interface History {
-  /** As it was found, before anybody touched it. */
-  readonly found: Segmentation | null;
-  readonly strokes: readonly Stroke[];
-  readonly past: readonly Edit[];
-  readonly future: readonly Edit[];
+  /** The last stroke that the labels were solved under. */
+  readonly under: Stroke | null;
 }
 
 /** How the result is looked at. Numbers of masks refer to the current result and kind. */
@@ -69,7 +63,7 @@ export interface Look {
   readonly selected: number | null;
   /** The second frame is drawn warped by this mask's motion, so that its pixels stand still. */
   readonly still: number | null;
-  /** Names and colours that were given, by {@link keyOf}. */
+  /** Names and colours that were given and belong to a mask that is there, by {@link keyOf}. They follow from the edits. */
   readonly names: Readonly<Record<string, string>>;
   readonly colours: Readonly<Record<string, Colour>>;
 }
@@ -90,6 +84,8 @@ export interface Tool {
 /** A clip that is open, and the frames chosen from it. */
 export interface Film {
   readonly clip: Clip;
+  /** What the file is known by; null for a folder, whose frames are known one by one. */
+  readonly source: string | null;
   readonly first: number;
   readonly second: number;
 }
@@ -111,9 +107,16 @@ export interface State {
   readonly film: Film | null;
   readonly live: Live | null;
   readonly settings: Settings;
+  /** The number of motions that was set before somebody insisted on another for this pair alone; null where nobody did. */
+  readonly insisting: Settings['motions'] | null;
   readonly run: Run;
   readonly result: Result | null;
-  readonly history: History;
+  /** As it was found, before anybody touched it. */
+  readonly found: Segmentation | null;
+  /** What was done to this pair. */
+  readonly edits: Edits;
+  /** What was done to others, by `keyOfPair`. */
+  readonly kept: ReadonlyMap<string, Kept>;
   readonly look: Look;
   readonly camera: Camera;
   readonly tool: Tool;
@@ -123,16 +126,17 @@ export interface State {
 /** What of a look belongs to one result. */
 export const FRESH = { hidden: new Set<number>(), solo: null, still: null, selected: null, blinking: false, names: {}, colours: {} } as const;
 
-export const UNTOUCHED: History = { found: null, strokes: [], past: [], future: [] };
-
 export const INITIAL: State = {
   pair: { first: null, second: null },
   film: null,
   live: null,
   settings: DEFAULT_SETTINGS,
+  insisting: null,
   run: { phase: 'idle' },
   result: null,
-  history: UNTOUCHED,
+  found: null,
+  edits: UNTOUCHED,
+  kept: new Map(),
   look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.5, outlines: true, arrows: false, residual: false, ...FRESH },
   camera: WHOLE,
   tool: { name: 'look', radius: 8 },

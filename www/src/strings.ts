@@ -76,6 +76,7 @@ export const strings = {
   motion,
   maskName: (kind: Kind, id: number): string => `${kind === 'groups' ? 'Group' : 'Motion'} ${id}`,
   noMasksYet: 'They are listed here as soon as they are found.',
+  noMasks: { failed: 'There are none: nothing was segmented.', cancelled: 'There are none: the work was cancelled.' },
   liveMasks: (count: number): string => `${motions(count)} at the moment. They are listed when the camera stops.`,
   residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
   severalMotions: (count: number): string => `${count} motions that continue each other`,
@@ -112,16 +113,40 @@ export const strings = {
     opening: 'Opening…',
     waiting: (slot: Slot): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
     working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
-    done: (count: number, waited: number): string => `${motions(count)} found in ${whole.format(waited)} ms.`,
-    corrected: (waited: number): string => `Solved again under your strokes in ${whole.format(waited)} ms.`,
+    /** `asked`: the number that was set, null where it was to be found. */
+    found: (count: number, groups: number, asked: number | null, waited: number): string => {
+      const among = groups === count ? '' : groups === 1 ? ' in one group' : ` in ${groups} groups`;
+      const set = asked === null ? '' : count < asked ? `, fewer than the ${asked} asked for: no more could be told apart` : ', as many as asked for';
+      return `${motions(count)}${among} found in ${whole.format(waited)} ms${set}.`;
+    },
+    /** So many of all strokes speak of masks that are there. */
+    held: (held: number, all: number): string => {
+      if (held === all) return all === 1 ? 'Your stroke holds.' : `Your ${all} strokes hold.`;
+      if (all === 1) return 'Your stroke has no say: its mask is not among these.';
+      const others = all - held === 1 ? 'mask of the other is' : 'masks of the others are';
+      return held === 0 ? `Your ${all} strokes have no say: their masks are not among these.` : `${held} of your ${all} strokes ${held > 1 ? 'hold' : 'holds'}: the ${others} not among these.`;
+    },
+    solved: (strokes: number, waited: number): string => `Solved again under your ${strokes === 1 ? 'stroke' : 'strokes'} in ${whole.format(waited)} ms.`,
+    undone: 'Undone.',
+    redone: 'Done again.',
+    merged: 'Merged.',
+    apart: 'Taken apart.',
+    restored: 'Your corrections of these frames are back.',
     live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} per second, ${motions(count).toLowerCase()}.`,
     cancelled: 'Cancelled.',
+    cancelledBefore: 'Cancelled. The masks are the last that were found.',
+    cancelledStrokes: 'Cancelled. Your strokes are kept, but not all are solved.',
     failed: 'Nothing was segmented.',
+    failedBefore: 'That failed. The masks are the last that were found.',
+    failedStrokes: 'That failed. Your strokes are kept, but not all are solved.',
   },
 
   notices: {
     noFiles: 'There was no image or video in what you gave.',
+    noMasks: 'There are no masks to paint yet.',
     chooseMask: 'Choose a mask in the list first: the brush paints it.',
+    nothingElse: 'There is no other mask that it could belong to.',
+    notPainted: 'The brush paints motions: choose one of them in the list, or erase this.',
   },
 
   errors: {

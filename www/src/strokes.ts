@@ -1,17 +1,43 @@
 //! Brush strokes: paths that say which labels are possible where they go.
 
+import type { Segmentation } from 'veronese';
+import { type Part, labellingOf, labelsIn } from './parts.js';
+
 /** A path over the first frame. */
-export interface Stroke {
+export interface Path {
   /** x, y of one point after another, pixels of the frame. */
   readonly points: readonly number[];
   /** Pixels. */
   readonly radius: number;
+}
+
+/** What a person drew: "this mask" (`brush`) or "not this mask" (`eraser`). It is never changed, so that it can be told from others. */
+export interface Stroke extends Path {
+  readonly tool: 'brush' | 'eraser';
+  readonly mask: Part;
+}
+
+/** What a stroke says about the labels of one result. */
+export interface Saying extends Path {
   /** The labels that are possible here, one bit each. */
   readonly labels: number;
 }
 
+/** The labels that a stroke leaves possible in this result; 0 where it has no say: its mask is gone, or there is nothing else. */
+export function possible({ tool, mask }: Pick<Stroke, 'tool' | 'mask'>, found: Segmentation): number {
+  const own = labelsIn(mask, labellingOf(found));
+  if (tool === 'brush') return own;
+  // Without a label of its own is what cannot be told: not that is any motion.
+  return own === 0 && mask.labels !== 0 ? 0 : ((1 << found.motions.length) - 1) & ~own;
+}
+
+/** What the strokes say about this result; those without a say are left out. */
+export function sayings(strokes: readonly Stroke[], found: Segmentation): Saying[] {
+  return strokes.map((stroke) => ({ points: stroke.points, radius: stroke.radius, labels: possible(stroke, found) })).filter(({ labels }) => labels !== 0);
+}
+
 /** What all strokes say, as `relabel` takes it: a set of labels for each pixel, 0 where nothing is said. */
-export function evidenceOf(strokes: readonly Stroke[], width: number, height: number): Uint16Array<ArrayBuffer> {
+export function evidenceOf(strokes: readonly Saying[], width: number, height: number): Uint16Array<ArrayBuffer> {
   const evidence = new Uint16Array(width * height);
   for (const stroke of strokes) {
     eachPixel(stroke, width, height, (p) => {
@@ -23,7 +49,7 @@ export function evidenceOf(strokes: readonly Stroke[], width: number, height: nu
 }
 
 /** Calls `visit` for every pixel whose centre lies under a stroke; for some more than once. */
-function eachPixel({ points, radius }: Stroke, width: number, height: number, visit: (pixel: number) => void): void {
+function eachPixel({ points, radius }: Path, width: number, height: number, visit: (pixel: number) => void): void {
   for (let i = 0; i < points.length; i += 2) {
     const [x0, y0] = [points[Math.max(0, i - 2)]!, points[Math.max(1, i - 1)]!];
     const [x1, y1] = [points[i]!, points[i + 1]!];

@@ -185,3 +185,30 @@ test('frames larger than the working size are worked on smaller', async ({ page 
   await done(page);
   expect((await pixelsOf(page, '#frame')).width).toBe(640);
 });
+
+test('corrections of a film are there when it is opened again', async ({ page }) => {
+  await open(page);
+  const file = await film(page, 6, 'webm', 'vp8');
+  const opened = async (name: string): Promise<void> => {
+    await upload(page, [{ ...file, name }]);
+    await expect(page.locator('#film-name')).toContainText(name);
+    await done(page);
+  };
+  await opened('film.webm');
+  await page.getByRole('button', { name: 'Both one on' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
+  await done(page);
+  const name = page.locator('#motions > li').first().locator('.motion-name');
+  await name.fill('Wall');
+  await name.press('Enter');
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await expect(page.locator('#timeline')).toBeHidden();
+  await done(page);
+  await expect(name).toHaveValue('Motion 0');
+  await opened('again.webm');
+  await expect(name).toHaveValue('Motion 0'); // the first pair
+  await page.getByRole('button', { name: 'Both one on' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
+  await done(page);
+  await expect(name).toHaveValue('Wall');
+});

@@ -6,14 +6,18 @@ import type { Segmentation } from 'veronese';
 import { arrowsOf } from '../src/arrows.js';
 import { DEFAULT_SETTINGS } from '../src/controls.js';
 import type { Matrix } from '../src/describe.js';
+import { UNTOUCHED, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/edits.js';
 import { settingsFromHash } from '../src/link.js';
 import { labelSet, masksOf, merged, takenApart } from '../src/masks.js';
 import { NOTATIONS } from '../src/matrices.js';
+import { labellingOf, labelsIn } from '../src/parts.js';
 import { residualOf } from '../src/residual.js';
+import { type Runs, packed, unpacked } from '../src/runs.js';
 import { INITIAL, type Result } from '../src/state.js';
-import { evidenceOf } from '../src/strokes.js';
+import { type Stroke, evidenceOf, possible, sayings } from '../src/strokes.js';
 import { atSize } from '../src/taking/full-size.js';
 import { commandFor, linkFor, scriptFor } from '../src/taking/reproduce.js';
+import { differences } from './support.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
 
@@ -133,4 +137,78 @@ test('a command and a script say what is not the default', () => {
     `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,5)' -frames:v 1 frame-5.png`,
     'veronese pair frame-3.png frame-5.png --grouped --out masks --overlay',
   ]);
+});
+
+test('labels are packed run by run and come back', () => {
+  const [width, height] = [37, 23];
+  const labels = Uint8Array.from({ length: width * height }, (_, p) => (p % 11 === 0 ? 255 : Math.floor((p % width) / 9) % 4));
+  const runs = packed(labels, width, height);
+  expect(differences(unpacked(runs), labels)).toBe(0);
+  expect(unpacked(packed(new Uint8Array(6).fill(3), 3, 2))).toEqual(new Uint8Array(6).fill(3));
+});
+
+/** Labels of a picture drawn as rows of digits; a dot has none. */
+function drawing(...rows: string[]): Runs {
+  const labels = Uint8Array.from([...rows.join('')], (digit) => (digit === '.' ? 255 : Number(digit)));
+  return packed(labels, rows[0]!.length, rows.length);
+}
+
+test('a label is found again in another labelling by its pixels', () => {
+  const before = drawing('0000000000', '0011002220', '0011002220', '0000002220');
+  // Numbered otherwise, and in part without a label.
+  const renumbered = drawing('0.00000000', '0022001110', '0022001110', '00.000111.');
+  expect(labelsIn({ of: before, labels: 0b010 }, renumbered)).toBe(0b100);
+  expect(labelsIn({ of: before, labels: 0b101 }, renumbered)).toBe(0b011);
+  // One fell apart, one went under in the ground, something small is new and belongs to nothing.
+  const other = drawing('0000000004', '0000001133', '0000001133', '0000001130');
+  expect(labelsIn({ of: before, labels: 0b100 }, other)).toBe(0b1010);
+  expect(labelsIn({ of: before, labels: 0b010 }, other)).toBe(0);
+  expect(labelsIn({ of: before, labels: 0b001 }, other)).toBe(0b0001);
+  // Larger frames.
+  const large = drawing(...['0000000000', '0022001110', '0022001110', '0000001110'].flatMap((row) => Array<string>(2).fill([...row].map((c) => c + c).join(''))));
+  expect(labelsIn({ of: before, labels: 0b010 }, large)).toBe(0b100);
+});
+
+test('a stroke that speaks of nothing there is left out, and is not lost', () => {
+  const found = scene();
+  const here = labellingOf(found);
+  const path = { points: [1, 1, 6, 1], radius: 1 };
+  const brush = { ...path, tool: 'brush', mask: { of: here, labels: 0b0110 } } as const;
+  const eraser = { ...path, tool: 'eraser', mask: { of: here, labels: 0b0110 } } as const;
+  expect(sayings([brush, eraser], found).map(({ labels }) => labels)).toEqual([0b0110, 0b1001]);
+  const gone = { of: drawing('5554....', '555.....', '555.....', '555.....'), labels: 0b1_0000 };
+  expect(sayings([{ ...brush, mask: gone }, { ...eraser, mask: gone }], found)).toEqual([]);
+  // What cannot be told is no motion: not that is any of them, and to paint it says nothing.
+  const unknown = { of: here, labels: 0 };
+  expect(possible({ tool: 'eraser', mask: unknown }, found)).toBe(0b1111);
+  expect(possible({ tool: 'brush', mask: unknown }, found)).toBe(0);
+});
+
+test('edits know what counts, what was saved, and fit frames of another size', () => {
+  const found = scene();
+  const of = labellingOf(found);
+  const stroke = (x: number): { stroke: Stroke } => ({ stroke: { points: [x, 1, 4, 3], radius: 2, tool: 'brush', mask: { of, labels: 1 } } });
+  const [one, two, three] = [stroke(1), stroke(2), stroke(3)];
+  const drawn = withAction(withAction(UNTOUCHED, one), two);
+  expect(strokesOf(drawn)).toEqual([one.stroke, two.stroke]);
+  expect([UNTOUCHED, drawn].map(isUnsaved)).toEqual([false, true]);
+  const saved = asSaved(drawn);
+  expect(isUnsaved(saved)).toBe(false);
+  const undone = { ...saved, done: 1 };
+  expect(isUnsaved(undone)).toBe(true);
+  expect(isUnsaved({ ...undone, done: 2 })).toBe(false);
+  // Another stroke takes the place of what was undone: as many steps, and not what was saved.
+  const other = withAction(undone, three);
+  expect(strokesOf(other)).toEqual([one.stroke, three.stroke]);
+  expect(isUnsaved(other)).toBe(true);
+
+  const large = scaled(saved, 2, 2);
+  expect(isUnsaved(large)).toBe(false);
+  expect(strokesOf(large)[0]).toMatchObject({ points: [2.5, 2.5, 8.5, 6.5], radius: 4 });
+
+  const grouping = { grouping: { of, groups: [0, 1, 0, 2] } };
+  expect(grouped(found, withAction(drawn, grouping), found).motions.map(({ group }) => group)).toEqual([0, 1, 0, 2]);
+  // Motions 1 and 3 have changed numbers.
+  const swapped = { ...found, labels: found.labels.map((label) => [0, 3, 2, 1][label]!) };
+  expect(grouped(swapped, withAction(drawn, grouping), swapped).motions.map(({ group }) => group)).toEqual([0, 2, 0, 1]);
 });

@@ -1,18 +1,21 @@
 //! The brush: the circle under the pointer, the stroke being drawn, and the strokes that were drawn.
 
-import { maskOf } from '../masks.js';
+import { maskWith, strokesOf } from '../edits.js';
 import { colourOfMask } from '../paint.js';
-import { cssColour } from '../palette.js';
+import { type Colour, cssColour } from '../palette.js';
+import { labellingOf, labelsIn } from '../parts.js';
 import type { Session } from '../session.js';
 import type { State, Store } from '../state.js';
-import { strings } from '../strings.js';
-import type { Stroke } from '../strokes.js';
+import { type Stroke, possible } from '../strokes.js';
 import { drawn, find } from './markup.js';
 
 type Point = readonly [number, number];
 
 /** Where the arrow keys lead. */
 const STEPS: Readonly<Record<string, Point>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+/** The eraser's, and of strokes whose mask is not there. */
+const COLOURLESS: Colour = [20, 20, 20];
 
 /** Points nearer than this share of the radius to the last say nothing new. */
 const NEXT_POINT = 0.3;
@@ -24,7 +27,8 @@ export class Brush {
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
   readonly #strokes = drawn('g', {});
-  #points: number[] | null = null;
+  /** The stroke that is being drawn: what it is about is what was chosen when it began. */
+  #now: { readonly points: number[]; readonly tool: Stroke['tool']; readonly mask: Stroke['mask'] } | null = null;
   /** Where the brush was last. */
   #at: Point | null = null;
 
@@ -33,13 +37,15 @@ export class Brush {
     this.#session = session;
     this.#picture = find(stage, '#strokes', SVGSVGElement);
     this.#picture.append(this.#strokes, this.#path, this.#circle);
+    session.correcting.finishStroke = () => this.end();
     store.subscribe((now, before) => {
       if (now.pair !== before.pair) {
         this.abandon();
         this.#at = null;
       }
+      if (now.tool.name !== before.tool.name) this.end();
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
-      const same = now.history.strokes === before.history.strokes && now.tool.name === before.tool.name && now.result === before.result;
+      const same = now.edits === before.edits && now.tool.name === before.tool.name && now.result === before.result && now.look === before.look;
       if (!same) this.#draw(now);
     });
   }
@@ -56,7 +62,7 @@ export class Brush {
     const step = shiftKey ? 1 : Math.max(2, tool.radius);
     const [right, down] = STEPS[key] ?? [0, 0];
     if (key === ' ') {
-      if (this.painting) void this.end();
+      if (this.painting) this.end();
       else this.begin([x, y]);
     } else if (key === 'Escape' && this.painting) this.abandon();
     else if (right !== 0 || down !== 0) {
@@ -67,7 +73,7 @@ export class Brush {
   }
 
   get painting(): boolean {
-    return this.#points !== null;
+    return this.#now !== null;
   }
 
   hover([x, y]: Point): void {
@@ -83,42 +89,39 @@ export class Brush {
   }
 
   begin(point: Point): void {
-    const { result, look } = this.#store.get();
-    if (result === null) return;
-    if (look.selected === null) this.#session.say(strings.notices.chooseMask);
-    else this.#points = [...point];
+    const { tool } = this.#store.get();
+    if (tool.name === 'look') return;
+    const mask = this.#session.correcting.maskFor(tool.name);
+    if (mask !== null) this.#now = { points: [...point], tool: tool.name, mask };
     this.hover(point);
     this.#trace();
   }
 
   move([x, y]: Point): void {
     this.hover([x, y]);
-    const points = this.#points;
-    if (points === null) return;
+    if (this.#now === null) return;
+    const { points } = this.#now;
     const [lastX, lastY] = [points.at(-2) ?? 0, points.at(-1) ?? 0];
     if (Math.hypot(x - lastX, y - lastY) < NEXT_POINT * this.#store.get().tool.radius) return;
     points.push(x, y);
     this.#trace();
   }
 
-  async end(): Promise<void> {
-    const points = this.#points;
-    const { tool, look } = this.#store.get();
-    this.#points = null;
-    if (points !== null && tool.name !== 'look' && look.selected !== null) {
-      await this.#session.correcting.stroke(points, tool.name, look.selected);
-    }
+  end(): void {
+    const now = this.#now;
+    this.#now = null;
     this.#trace();
+    if (now !== null) this.#session.correcting.stroke({ ...now, radius: this.#store.get().tool.radius });
   }
 
   abandon(): void {
-    this.#points = null;
+    this.#now = null;
     this.#trace();
     this.leave();
   }
 
   #trace(): void {
-    this.#path.setAttribute('d', this.#points === null ? '' : pathOf(this.#points));
+    this.#path.setAttribute('d', this.#now === null ? '' : pathOf(this.#now.points));
     this.#path.setAttribute('stroke-width', String(2 * this.#store.get().tool.radius));
   }
 
@@ -130,25 +133,19 @@ export class Brush {
     else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(tool.radius));
   }
 
-  #draw({ history, tool, result, look }: State): void {
-    if (result !== null) this.#picture.setAttribute('viewBox', `-0.5 -0.5 ${result.segmentation.width} ${result.segmentation.height}`);
-    const seen = result === null || tool.name === 'look' ? [] : history.strokes;
+  #draw({ edits, tool, result, found, look }: State): void {
+    if (result === null || found === null || tool.name === 'look') return this.#strokes.replaceChildren();
+    const { segmentation } = result;
+    this.#picture.setAttribute('viewBox', `-0.5 -0.5 ${segmentation.width} ${segmentation.height}`);
     this.#strokes.replaceChildren(
-      ...seen.map((stroke) => {
-        const own = result === null ? undefined : result.segmentation.motions.find(({ label }) => (stroke.labels >> label) & 1);
-        const single = isBrush(stroke, result?.segmentation.count ?? 0);
-        const colour = own !== undefined && single ? colourOfMask(maskOf(own.label, result!.segmentation, look.kind), look) : ([20, 20, 20] as const);
-        return drawn('path', { class: 'stroke', d: pathOf(stroke.points), 'stroke-width': 2 * stroke.radius, stroke: cssColour(colour) });
+      ...strokesOf(edits).map((stroke) => {
+        const mask = stroke.tool === 'brush' ? maskWith(labelsIn(stroke.mask, labellingOf(found)), segmentation, look.kind) : null;
+        const colour = mask === null ? COLOURLESS : colourOfMask(mask, look);
+        const heard = possible(stroke, found) === 0 ? 'stroke unheard' : 'stroke';
+        return drawn('path', { class: heard, d: pathOf(stroke.points), 'stroke-width': 2 * stroke.radius, stroke: cssColour(colour) });
       }),
     );
   }
-}
-
-/** Whether a stroke says what is, rather than what is not. */
-function isBrush({ labels }: Stroke, count: number): boolean {
-  let bits = 0;
-  for (let label = 0; label < count; label++) bits += (labels >> label) & 1;
-  return 2 * bits <= count;
 }
 
 function pathOf(points: readonly number[]): string {

@@ -1,5 +1,6 @@
 //! Taking the result away: as files, to the clipboard, as something that makes it again.
 
+import { isPending } from '../correcting.js';
 import type { Session } from '../session.js';
 import type { Result, State, Store } from '../state.js';
 import { strings } from '../strings.js';
@@ -31,13 +32,19 @@ export function mountDownloads(root: HTMLElement, store: Store, session: Session
     return made;
   };
 
-  const take = (format: Format, result: Result): void => {
-    format.make(takingOf(result, store.get().look)).then(
-      (content) => save(content instanceof Blob ? content : new Blob([content], { type: format.type }), format.file),
-      () => session.say(strings.errors.notWritten(format.title), 'not-written'),
-    );
+  const take = async (format: Format): Promise<void> => {
+    try {
+      const state = await session.correcting.settled();
+      if (state.result === null) return;
+      const content = await format.make(takingOf(state.result, state.look));
+      save(content instanceof Blob ? content : new Blob([content], { type: format.type }), format.file);
+      // The report alone holds no masks.
+      if (format !== RESULT && !isPending(state)) session.correcting.saved(state);
+    } catch {
+      session.say(strings.errors.notWritten(format.title), 'not-written');
+    }
   };
-  find(root, '.take', HTMLElement).append(...BUTTONS.map((format) => button(format.title, (result) => take(format, result), 'button small')));
+  find(root, '.take', HTMLElement).append(...BUTTONS.map((format) => button(format.title, () => void take(format), 'button small')));
 
   const select = find(root, 'select', HTMLSelectElement);
   const hint = find(root, '#format-hint', HTMLElement);
@@ -46,7 +53,7 @@ export function mountDownloads(root: HTMLElement, store: Store, session: Session
   const chosen = (): Format => FORMATS[select.selectedIndex] ?? LABELS;
   select.addEventListener('change', () => (hint.textContent = chosen().hint));
   hint.textContent = chosen().hint;
-  find(root, '.format-row', HTMLElement).append(button('Save', (result) => take(chosen(), result), 'button small primary'));
+  find(root, '.format-row', HTMLElement).append(button('Save', () => void take(chosen()), 'button small primary'));
 
   const copies = find(root, '.copies', HTMLElement);
   copies.append(button('Copy picture', (result) => copyPicture(OVERLAY.make(takingOf(result, store.get().look)) as Promise<Blob>, session)));

@@ -34,7 +34,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
         button.classList.toggle('found', motions === found.count);
         button.setAttribute('aria-label', strings.insistOn(motions, score - least));
         button.title = strings.scoreAbove(score - least);
-        button.addEventListener('click', () => session.change({ motions }));
+        button.addEventListener('click', () => session.insist(motions));
         return button;
       }),
     );

@@ -8,7 +8,7 @@ import { nameOf } from '../naming.js';
 import { colourOfMask, isShown } from '../paint.js';
 import { colourFromHex, cssColour, hexColour } from '../palette.js';
 import type { Session } from '../session.js';
-import { type Look, type Result, type State, type Store, keyOf } from '../state.js';
+import { type Look, type Result, type State, type Store } from '../state.js';
 import { strings } from '../strings.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
@@ -25,18 +25,41 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
   let rows: Refresh[] = [];
 
   store.subscribe((now, before) => {
-    const { result, look, live } = now;
+    const { result, look, live, run } = now;
     const renamed = look.names !== before.look.names;
     const other = result !== before.result || look.kind !== before.look.kind || live !== before.live;
-    if (other) {
+    if (other || run.phase !== before.run.phase) {
       empty.hidden = result !== null && live === null;
-      empty.textContent = live === null ? strings.noMasksYet : strings.liveMasks(result?.segmentation.count ?? 0);
+      empty.textContent = live === null ? whyNone(run) : strings.liveMasks(result?.segmentation.count ?? 0);
+    }
+    if (other) {
+      const typed = typedName(list, before.look.kind);
       list.replaceChildren();
       rows = result === null || live !== null ? [] : fillList(list, template, now, result.segmentation, store, session);
+      if (result?.pair.first === before.result?.pair.first) typed?.(list, now);
     }
     if (other || look !== before.look) for (const refresh of rows) refresh(look);
     if (renamed && !other) for (const option of list.querySelectorAll('option[data-mask]')) nameOption(option, look);
   });
+}
+
+function whyNone({ phase }: State['run']): string {
+  return phase === 'failed' || phase === 'cancelled' ? strings.noMasks[phase] : strings.noMasksYet;
+}
+
+/** A name that is being typed goes on being typed in the new list; null where none is. */
+function typedName(list: HTMLElement, kind: Look['kind']): ((list: HTMLElement, now: State) => void) | null {
+  const field = document.activeElement;
+  if (!(field instanceof HTMLInputElement) || !field.matches('.motion-name') || !list.contains(field)) return null;
+  const mask = field.closest<HTMLElement>('[data-mask]')?.dataset.mask;
+  const { value, selectionStart, selectionEnd } = field;
+  return (filled, { look }) => {
+    const same = filled.querySelector<HTMLInputElement>(`[data-mask="${mask}"] .motion-name`);
+    if (same === null || look.kind !== kind) return;
+    same.focus({ preventScroll: true });
+    same.value = value;
+    same.setSelectionRange(selectionStart, selectionEnd);
+  };
 }
 
 function fillList(list: HTMLElement, template: HTMLTemplateElement, { look }: State, segmentation: Segmentation, store: Store, session: Session): Refresh[] {
@@ -86,14 +109,10 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
     store.look({ hidden, solo: null });
   });
   colour.addEventListener('input', () => {
-    const { look } = store.get();
-    store.look({ colours: { ...look.colours, [keyOf(look.kind, id)]: colourFromHex(colour.value) } });
+    session.correcting.give(id, { colour: colourFromHex(colour.value) });
   });
   name.addEventListener('change', () => {
-    const { look } = store.get();
-    const { [keyOf(look.kind, id)]: _, ...others } = look.names;
-    const given = name.value.trim();
-    store.look({ names: given === '' ? others : { ...others, [keyOf(look.kind, id)]: given } });
+    session.correcting.give(id, { name: name.value.trim() });
   });
   name.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') name.blur();

@@ -1,8 +1,11 @@
 //! The line under the picture: what is being done, how far it is, and the way to stop it.
 
+import { isPending } from '../correcting.js';
+import { strokesOf } from '../edits.js';
 import type { Session } from '../session.js';
-import type { State, Store } from '../state.js';
+import type { After, Result, State, Store } from '../state.js';
 import { strings } from '../strings.js';
+import { sayings } from '../strokes.js';
 import { find } from './markup.js';
 
 /** Work shorter than this shows no bar: a flash tells nobody anything. Milliseconds. */
@@ -16,17 +19,19 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   let patience = 0;
 
   cancel.addEventListener('click', () => session.cancel());
-  again.addEventListener('click', () => void session.segment());
+  again.addEventListener('click', () => session.again());
 
   store.subscribe((now, before) => {
-    if (now.run === before.run && now.pair === before.pair && now.result === before.result && now.live === before.live) return;
+    const same = (['run', 'pair', 'result', 'edits', 'live'] as const).every((part) => now[part] === before[part]);
+    if (same && now.look.kind === before.look.kind) return;
     const { run } = now;
     const busy = run.phase === 'working' || run.phase === 'opening';
     root.dataset.phase = run.phase;
     // The rate changes many times a second, which nobody wants to hear.
     status.setAttribute('aria-live', run.phase === 'live' ? 'off' : 'polite');
     status.textContent = sentenceFor(now);
-    again.hidden = !(run.phase === 'cancelled' && now.pair.first !== null && now.pair.second !== null);
+    const stopped = run.phase === 'cancelled' || (run.phase === 'failed' && isPending(now));
+    again.hidden = !(stopped && now.pair.first !== null && now.pair.second !== null);
     cancel.hidden = !busy;
     if (!busy) {
       clearTimeout(patience);
@@ -40,21 +45,38 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   });
 }
 
-function sentenceFor({ run, pair, result, live, history }: State): string {
+function sentenceFor(state: State): string {
+  const { run, pair, result, live } = state;
+  const { status } = strings;
   switch (run.phase) {
     case 'working':
-      return strings.status.working(run.stage, run.index, run.of);
+      return status.working(run.stage, run.index, run.of);
     case 'done':
-      if (result === null) return '';
-      return history.strokes.length > 0 ? strings.status.corrected(result.waited) : strings.status.done(result.segmentation.count, result.waited);
+      return result === null ? '' : sentenceAfter(run.after, state, result);
     case 'live':
-      return strings.status.live(live?.rate ?? 0, result?.segmentation.count ?? 0);
+      return status.live(live?.rate ?? 0, result?.segmentation.count ?? 0);
     case 'idle':
-      if ((pair.first === null) === (pair.second === null)) return strings.status.idle;
-      return strings.status.waiting(pair.first === null ? 'first' : 'second');
-    case 'opening':
+      if ((pair.first === null) === (pair.second === null)) return status.idle;
+      return status.waiting(pair.first === null ? 'first' : 'second');
     case 'cancelled':
+      if (isPending(state)) return status.cancelledStrokes;
+      return result === null ? status.cancelled : status.cancelledBefore;
     case 'failed':
-      return strings.status[run.phase];
+      if (isPending(state)) return status.failedStrokes;
+      return result === null ? status.failed : status.failedBefore;
+    case 'opening':
+      return status.opening;
   }
+}
+
+/** What the masks that are shown come from. */
+function sentenceAfter(after: After, { look, found, edits }: State, { segmentation, waited }: Result): string {
+  const { status } = strings;
+  const strokes = strokesOf(edits);
+  if (after === 'solved') return status.solved(strokes.length, waited);
+  if (after !== 'found') return status[after];
+  const { count, motions, settings } = segmentation;
+  const groups = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size : count;
+  const answer = status.found(count, groups, settings.motions === 'auto' ? null : settings.motions, waited);
+  return found === null || strokes.length === 0 ? answer : `${answer} ${status.held(sayings(strokes, found).length, strokes.length)}`;
 }

@@ -22,8 +22,8 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   redo.addEventListener('click', () => session.correcting.redo());
 
   const render = (): void => {
-    const { tool, result, history, live, run } = store.get();
-    const usable = result !== null && live === null && (run.phase !== 'working' || history.past.length > 0);
+    const { tool, result, edits, live } = store.get();
+    const usable = result !== null && live === null;
     for (const radio of radios) {
       radio.checked = radio.value === tool.name;
       radio.disabled = !usable && radio.value !== 'look';
@@ -31,11 +31,11 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
     size.value = String(tool.radius);
     sizeRow.hidden = tool.name === 'look';
     help.textContent = strings.toolHelp[tool.name];
-    undo.disabled = history.past.length === 0;
-    redo.disabled = history.future.length === 0;
+    undo.disabled = edits.done === 0;
+    redo.disabled = edits.done === edits.actions.length;
   };
   store.subscribe((now, before) => {
-    const same = now.tool === before.tool && now.result === before.result && now.history === before.history && now.live === before.live && now.run.phase === before.run.phase;
+    const same = now.tool === before.tool && now.result === before.result && now.edits === before.edits && now.live === before.live;
     if (!same) render();
   });
   render();
