@@ -5,7 +5,7 @@ import { VeroneseError } from './errors.js';
 /** Longest side of a frame or a label image, pixels: what the core segments. */
 export const LONGEST_SIDE = 4096;
 
-/** The label of pixels that have none; no group has this number either. */
+/** The label of pixels that have none. No group has this number either. */
 export const UNLABELLED = 255;
 
 export function invalidInput(sentence: string): VeroneseError {
@@ -60,11 +60,15 @@ export function optionsObject(options: unknown): Record<string, unknown> {
 /** The options that were given, all of them known: a misspelt one is not silently left out. What is `undefined` was not given. */
 export function entriesOf(options: unknown, known: readonly string[]): Record<string, unknown> {
   const given = optionsObject(options);
-  const unknown = Object.keys(given).find((name) => !known.includes(name) && given[name] !== undefined);
-  if (unknown !== undefined) {
-    throw new VeroneseError('invalid-option', `there is no option '${unknown}'; there are ${known.join(', ')}`);
-  }
+  const unknown = unknownOf(given, known);
+  if (unknown !== undefined) throw new VeroneseError('invalid-option', `there is no option ${unknown}`);
   return Object.fromEntries(known.map((name) => [name, given[name]]).filter(([, value]) => value !== undefined));
+}
+
+/** The first name that is not known, and those that are. */
+export function unknownOf(given: Record<string, unknown>, known: readonly string[]): string | undefined {
+  const unknown = Object.keys(given).find((name) => !known.includes(name) && given[name] !== undefined);
+  return unknown === undefined ? undefined : `'${unknown}'; there are ${known.join(', ')}`;
 }
 
 /** The one property of a typed array that nobody can put another in place of, and that is the same in every realm. */
