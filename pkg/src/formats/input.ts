@@ -58,6 +58,10 @@ export function imageOf({ image }: Pick<FormatMeta, 'image'>): string {
 
 /** Throws `invalid-input` unless there are frames, all of one size. */
 export function checkFrames(frames: readonly LabelFrame[]): { width: number; height: number } {
+  return reading(() => sizeOf(frames));
+}
+
+function sizeOf(frames: readonly LabelFrame[]): { width: number; height: number } {
   if (!isListOf(frames, isObject)) throw invalidInput('the frames must be a list of { labels, width, height }');
   const [first] = frames as readonly LabelFrame[];
   if (!first) throw invalidInput('there must be one frame at least');
