@@ -82,8 +82,8 @@ export function fitCall(measurements: PointMeasurements, options?: FitOptions): 
   const asked = parted(options, ['motions', 'method', 'seed']);
   const { positions, derivatives } = Object(measurements) as Partial<PointMeasurements>;
   const whole = [
-      checkedArray('the positions', positions, 'Float64Array', 'of x and y of each measurement'),
-      checkedArray('the derivatives', derivatives, 'Float64Array', 'of I_x, I_y and I_t of each measurement'),
+    checkedArray('the positions', positions, 'Float64Array', 'of x and y of each measurement'),
+    checkedArray('the derivatives', derivatives, 'Float64Array', 'of I_x, I_y and I_t of each measurement'),
   ];
   const [xy, ixyt] = takenFor(asked, whole) as [Float64Array, Float64Array];
   const task: CallTask = { call: 'fitMotions', measurements: { positions: xy, derivatives: ixyt }, settings: asked.settings };
