@@ -9,9 +9,9 @@ const folder = (name) => fileURLToPath(new URL(`../${name}/`, import.meta.url));
 const ENTRIES = ['web', 'node', 'slim', 'inline', 'worker', 'worker-node', 'element', 'element-class', 'codecs', 'formats/index'];
 const PROGRAM = ['cli', 'cli-work', 'cli-batch-work'];
 /** What an encoder of masks shares with the calls. */
-const SHARED = ['errors', 'palette'];
+const SHARED = ['checks', 'errors', 'palette'];
 /** What all entries with calls share. */
-const CALLS = ['glue', 'glue-points', 'api', 'core', 'loading', 'labels', 'version', 'segmenter', 'pool', 'threads', 'ordered'];
+const CALLS = ['glue', 'glue-points', 'api', 'tasks', 'taking', 'messages', 'core', 'loading', 'labels', 'version', 'segmenter', 'pool', 'threads', 'ordered'];
 
 const named = (names) => new RegExp(`[\\\\/]build[\\\\/](?:${names.join('|')})\\.js$`);
 const bundle = await rolldown({

@@ -2,6 +2,7 @@
 
 import { join } from 'node:path';
 import type { SegmentedMotion } from '../types/index.js';
+import { isWhole, UNLABELLED } from './checks.js';
 import type { ConvertCommand } from './cli-arguments.js';
 import { checkFolder, type Output, type OutputFile, readInput } from './cli-files.js';
 import { FORMATS, type Masks } from './cli-formats.js';
@@ -56,8 +57,10 @@ function parsed(bytes: Uint8Array, path: string): Result {
     throw new VeroneseError('invalid-json', `'${path}' is not JSON`);
   }
   const whole = (value: unknown): boolean => Number.isSafeInteger(value) && (value as number) >= 0;
+  const label = (value: unknown): boolean => isWhole(value, 0, UNLABELLED - 1);
+  const numbers = (value: unknown, count: number): boolean => Array.isArray(value) && value.length === count && value.every(Number.isFinite);
   const motion = (m: Partial<SegmentedMotion> | null): boolean =>
-    whole(m?.label) && whole(m?.pixels) && whole(m?.group) && Array.isArray(m?.matrix) && m.matrix.length === 6 && m.matrix.every(Number.isFinite);
+    label(m?.label) && label(m?.group) && whole(m?.pixels) && numbers([m?.share, m?.residual], 2) && numbers(m?.bbox, 4) && numbers(m?.matrix, 6);
   if (whole(result?.width) && whole(result?.height) && Array.isArray(result?.motions) && result.motions.every(motion)) return result as Result;
   throw new VeroneseError('invalid-input', `'${path}' is not a result of 'veronese pair'`);
 }

@@ -19,13 +19,13 @@ export function findFrames(names: readonly string[], list?: string): string[] {
 }
 
 function framesOf(name: string): string[] {
-  const status = statSync(name, { throwIfNoEntry: false });
-  if (status?.isDirectory()) {
+  const kind = kindOf(name);
+  if (kind === 'folder') {
     const frames = entries(name).filter((entry) => IMAGE.test(entry) && !entry.startsWith('.'));
     if (frames.length === 0) throw new VeroneseError('file-not-found', `there is no image in the folder '${name}'`);
     return frames.sort(byNumbers).map((entry) => join(name, entry));
   }
-  if (status || !MAGIC.test(name)) return [name];
+  if (kind || !MAGIC.test(name)) return [name];
   const found = matching(name);
   if (found.length === 0) throw new VeroneseError('file-not-found', `no file matches '${name}'`);
   return found.sort(byNumbers);
@@ -66,13 +66,25 @@ function below(folder: string, depth: number): string[] {
   const folders = entries(folder || '.')
     .filter((name) => !name.startsWith('.'))
     .map((name) => join(folder, name))
-    .filter((path) => lstatSync(path, { throwIfNoEntry: false })?.isDirectory());
+    .filter((path) => kindOf(path, lstatSync) === 'folder');
   return folders.flatMap((path) => [path, ...below(path, depth - 1)]);
 }
 
 function exists(path: string, asFile: boolean): boolean {
-  const status = statSync(path, { throwIfNoEntry: false });
-  return (asFile ? status?.isFile() : status?.isDirectory()) === true;
+  return kindOf(path) === (asFile ? 'file' : 'folder');
+}
+
+/**
+ * What is there, if anything. What cannot be looked at (a link that leads to itself, something in a locked folder) counts as a file:
+ * whoever reads it is told why it cannot be read, and the other pairs go on.
+ */
+function kindOf(path: string, look = statSync): 'file' | 'folder' | 'other' | undefined {
+  try {
+    const status = look(path, { throwIfNoEntry: false });
+    return status && (status.isFile() ? 'file' : status.isDirectory() ? 'folder' : 'other');
+  } catch {
+    return 'file';
+  }
 }
 
 function entries(folder: string): string[] {

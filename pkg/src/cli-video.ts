@@ -1,7 +1,7 @@
 // Frames of a video, one after another, as the program ffmpeg decodes them.
 
 import { spawn, spawnSync } from 'node:child_process';
-import { statSync } from 'node:fs';
+import { type Stats, statSync } from 'node:fs';
 import { basename } from 'node:path';
 import type { Frame } from './cli-batch.js';
 import { VeroneseError } from './errors.js';
@@ -16,7 +16,7 @@ const KEPT = 4_000;
  * taken. Throws `ffmpeg-missing`, `file-not-found` or `unreadable-video`.
  */
 export async function* videoFrames(file: string, every: number): AsyncGenerator<Frame, void, undefined> {
-  const status = statSync(file, { throwIfNoEntry: false });
+  const status = statusOf(file);
   if (!status) throw new VeroneseError('file-not-found', `there is no file '${file}'`);
   if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
   const input = ['-nostdin', '-v', 'error', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
@@ -47,6 +47,14 @@ export async function* videoFrames(file: string, every: number): AsyncGenerator<
   } finally {
     process.off('exit', end);
     end();
+  }
+}
+
+function statusOf(file: string): Stats | undefined {
+  try {
+    return statSync(file, { throwIfNoEntry: false });
+  } catch (thrown) {
+    throw new VeroneseError('unreadable-file', `'${file}' cannot be read: ${(thrown as Error).message}`);
   }
 }
 

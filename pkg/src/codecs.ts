@@ -3,10 +3,14 @@
 import { glue } from './glue-codecs.js';
 import type { Picture } from '../types/codecs.js';
 import { Api } from './api.js';
+import { checkedBytes, invalidInput, isWhole, reading } from './checks.js';
 import { Core } from './core.js';
-import { VeroneseError } from './errors.js';
 import { colourBytes } from './palette.js';
 import { read } from './reading.js';
+import { taken } from './taking.js';
+
+/** The format's own. */
+const LONGEST_PNG_SIDE = 2 ** 31 - 1;
 
 /** The build's own core, for threads that share its compiled module. */
 export const core = new Core(glue, read, new URL('../wasm/codecs/veronese_codecs_bg.wasm', import.meta.url));
@@ -15,7 +19,7 @@ export const core = new Core(glue, read, new URL('../wasm/codecs/veronese_codecs
 export const api = new Api(core, core);
 
 export async function decodeImage(file: Uint8Array): Promise<Picture> {
-  const bytes = checkedBytes('the file', file);
+  const bytes = takenBytes('the file', file);
   return (await core.call((glue) => glue.decodeImage(bytes))) as Picture;
 }
 
@@ -25,29 +29,31 @@ export async function encodeIndexedPng(
   indices: Uint8Array,
   palette: readonly (readonly [number, number, number])[],
 ): Promise<Uint8Array> {
-  checkedSize(width, height);
-  const bytes = checkedBytes('the indices', indices);
-  return core.call((glue) => glue.encodeIndexedPng(width, height, bytes, colourBytes(palette, 3)));
+  checkSize(width, height);
+  const bytes = takenBytes('the indices', indices);
+  const colours = reading(() => colourBytes(palette, 3));
+  return core.call((glue) => glue.encodeIndexedPng(width, height, bytes, colours));
 }
 
 export async function encodeGreyPng(width: number, height: number, grey: Uint8Array): Promise<Uint8Array> {
-  checkedSize(width, height);
-  const bytes = checkedBytes('the pixels', grey);
+  checkSize(width, height);
+  const bytes = takenBytes('the pixels', grey);
   return core.call((glue) => glue.encodeGreyPng(width, height, bytes));
 }
 
 export async function encodeColourPng(width: number, height: number, pixels: Uint8Array): Promise<Uint8Array> {
-  checkedSize(width, height);
-  const bytes = checkedBytes('the pixels', pixels);
+  checkSize(width, height);
+  const bytes = takenBytes('the pixels', pixels);
   return core.call((glue) => glue.encodeColourPng(width, height, bytes));
 }
 
-function checkedBytes(which: string, bytes: Uint8Array): Uint8Array {
-  if (ArrayBuffer.isView(bytes)) return new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength);
-  throw new VeroneseError('invalid-input', `${which} must be a Uint8Array`);
+/** The module may be loaded only later: the bytes are taken now. */
+function takenBytes(which: string, bytes: unknown): Uint8Array {
+  return taken([checkedBytes(which, bytes)], false)[0] as Uint8Array;
 }
 
-function checkedSize(width: number, height: number): void {
-  if (Number.isInteger(width) && Number.isInteger(height) && width > 0 && height > 0) return;
-  throw new VeroneseError('invalid-input', 'width and height must be whole numbers of pixels');
+/** Sides of more bits would lose them on the way into the module. */
+function checkSize(width: unknown, height: unknown): void {
+  if (isWhole(width, 1, LONGEST_PNG_SIDE) && isWhole(height, 1, LONGEST_PNG_SIDE)) return;
+  throw invalidInput(`width and height must be whole numbers of pixels from 1 to ${LONGEST_PNG_SIDE}`);
 }

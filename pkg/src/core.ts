@@ -12,14 +12,15 @@ export interface Glue {
   forgetInstance(): void;
 }
 
+/** What has an instance to call. Entries that are loaded together share their glue. */
+const live = new WeakSet<Glue>();
+
 export class Core<G extends Glue> {
   readonly #glue: G;
   readonly #read: Read;
   readonly #place: URL | undefined;
   #module: Promise<WebAssembly.Module> | undefined;
   #instance: Promise<unknown> | undefined;
-  /** Whether the glue has an instance to call. */
-  #live = false;
 
   /** `place`: where the module lies if nobody says otherwise. */
   constructor(glue: G, read: Read, place?: URL) {
@@ -56,7 +57,7 @@ export class Core<G extends Glue> {
     const module = await this.module(source);
     try {
       await this.#glue.instantiate(module);
-      this.#live = true;
+      live.add(this.#glue);
     } catch (thrown) {
       // A module, but not ours: do not keep it.
       this.#glue.forgetInstance();
@@ -70,16 +71,21 @@ export class Core<G extends Glue> {
    * an exception that crossed Rust frames) may not have, so the next call gets a fresh one.
    */
   async call<T>(work: (glue: G) => T): Promise<T> {
-    do await this.init();
-    while (!this.#live); // another call may have let go of the instance just before our turn
+    let awaited: Promise<unknown> | undefined;
+    do {
+      // Another call, perhaps of another entry with the same glue, let go of the instance just before our turn.
+      if (awaited && this.#instance === awaited) this.#instance = undefined;
+      await this.init();
+      awaited = this.#instance;
+    } while (!live.has(this.#glue));
     try {
       return work(this.#glue);
     } catch (thrown) {
       const ordinary = isFailure(thrown) && !(thrown instanceof VeroneseError) && thrown.code !== 'internal';
       if (!ordinary) {
         this.#glue.forgetInstance();
+        live.delete(this.#glue);
         this.#instance = undefined;
-        this.#live = false;
       }
       throw veroneseError(thrown);
     }

@@ -1,12 +1,19 @@
 // <veronese-segmenter>: two frames in, their masks over the first one, as a custom element. Importing this file registers nothing.
 
-import type { Pixels, Progress, Segmentation, SegmentOptions } from '../types/index.js';
+import type { Pixels, Progress, Segmentation } from '../types/index.js';
+import { reading } from './checks.js';
+import { optionsOf } from './element-options.js';
 import { VeroneseError, veroneseError } from './errors.js';
 import { groupLabels } from './labels.js';
+import { taken } from './taking.js';
+import { checkedPixels } from './tasks.js';
 import { Segmenter } from './web.js';
 
 /** What a frame can be given as. */
 type Source = string | URL | Blob | ImageBitmap | Pixels;
+
+/** What is kept of it, which nobody else can change; or why it cannot be used. */
+type Kept = string | Blob | Pixels | VeroneseError;
 
 /** Where there are no elements (Node, a worker), the class can still be imported. */
 const Base = (globalThis.HTMLElement ?? class {}) as typeof HTMLElement;
@@ -32,7 +39,7 @@ export class VeroneseSegmenterElement extends Base {
   readonly #masks: HTMLCanvasElement;
   readonly #picture: HTMLElement;
   readonly #status: HTMLElement;
-  readonly #given: { first?: Source; second?: Source } = {};
+  readonly #given: { first?: Kept; second?: Kept } = {};
   #segmenter: InstanceType<typeof Segmenter> | undefined;
   #request: AbortController | undefined;
   #result: Segmentation | undefined;
@@ -61,10 +68,10 @@ export class VeroneseSegmenterElement extends Base {
     return this.#result;
   }
 
-  /** Sets both frames at once, also from pixels, which attributes cannot name. */
+  /** Sets both frames at once, also from pixels, which attributes cannot name: these and bitmaps are copied at once. */
   setFrames(first: Source, second: Source): Promise<Segmentation> {
-    this.#given.first = first;
-    this.#given.second = second;
+    this.#given.first = kept('first', first);
+    this.#given.second = kept('second', second);
     return this.segment();
   }
 
@@ -84,7 +91,7 @@ export class VeroneseSegmenterElement extends Base {
       this.#draw(first);
       this.#segmenter ??= new Segmenter();
       const result = await this.#segmenter.segmentPair(first, second, {
-        ...this.#options(),
+        ...optionsOf((name) => this.getAttribute(name)),
         signal,
         onProgress: (progress: Progress) => this.#tell('progress', progress),
       });
@@ -157,26 +164,16 @@ export class VeroneseSegmenterElement extends Base {
     return this.#given[slot] !== undefined || (this.getAttribute(slot) ?? '') !== '';
   }
 
-  /** What is written in an attribute goes to the core as it is, which says what is wrong with it. */
-  #options(): SegmentOptions {
-    const options: Record<string, unknown> = {};
-    for (const name of ['motions', 'quality', 'seed']) {
-      const value = this.getAttribute(name);
-      if (value !== null && value !== '') options[name] = name === 'quality' || value === 'auto' ? value : Number(value);
-    }
-    return options;
-  }
-
   async #pixels(slot: 'first' | 'second', signal: AbortSignal): Promise<Pixels> {
     const source = this.#given[slot] ?? this.getAttribute(slot) ?? '';
-    if (isPixels(source)) return source;
+    if (source instanceof VeroneseError) throw source;
+    if (typeof source === 'object' && 'data' in source) return source;
     const bitmap = await bitmapOf(source, slot, this.ownerDocument.baseURI, signal);
-    const { width, height } = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
-    if (context === null) throw new VeroneseError('internal', 'this browser gives no canvas to read pixels from');
-    context.drawImage(bitmap, 0, 0);
-    if (bitmap !== source) bitmap.close();
-    return context.getImageData(0, 0, width, height);
+    try {
+      return pixelsOf(bitmap);
+    } finally {
+      bitmap.close();
+    }
   }
 
   #draw({ data, width, height }: Pixels): void {
@@ -222,17 +219,36 @@ function part<T extends 'div' | 'canvas' | 'p'>(tag: T, name: string): HTMLEleme
   return made;
 }
 
-function isPixels(source: Source): source is Pixels {
-  return typeof source === 'object' && 'data' in source;
+function kept(which: 'first' | 'second', source: Source): Kept {
+  if (typeof source === 'string' || source instanceof Blob) return source;
+  try {
+    if (source instanceof URL) return source.href;
+    if (source instanceof ImageBitmap) return pixelsOf(source);
+    const { data, ...size } = reading(() => checkedPixels(`the ${which} frame`, source));
+    return { ...size, data: taken([data], false)[0] as Uint8Array };
+  } catch (thrown) {
+    return thrown instanceof VeroneseError ? thrown : unreadable(which, thrown);
+  }
 }
 
-async function bitmapOf(source: Exclude<Source, Pixels>, which: string, base: string, signal: AbortSignal): Promise<ImageBitmap> {
-  if (source instanceof ImageBitmap) return source;
+function pixelsOf(bitmap: ImageBitmap): Pixels {
+  const { width, height } = bitmap;
+  const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+  if (context === null) throw new VeroneseError('internal', 'this browser gives no canvas to read pixels from');
+  context.drawImage(bitmap, 0, 0);
+  return context.getImageData(0, 0, width, height);
+}
+
+function unreadable(which: string, cause: unknown): VeroneseError {
+  return new VeroneseError('unreadable-image', `the ${which} frame is not an image that this browser can read`, { cause });
+}
+
+async function bitmapOf(source: string | Blob, which: string, base: string, signal: AbortSignal): Promise<ImageBitmap> {
   try {
     const blob = source instanceof Blob ? source : await fetched(new URL(source, base), signal);
     return await createImageBitmap(blob, { imageOrientation: 'from-image', colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
   } catch (cause) {
-    throw new VeroneseError('unreadable-image', `the ${which} frame is not an image that this browser can read`, { cause });
+    throw unreadable(which, cause);
   }
 }
 

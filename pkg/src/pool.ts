@@ -125,7 +125,7 @@ export class WorkerPool<Task, Result> {
       lane.thread.hold(true);
       lane.thread.post(request);
     } catch (thrown) {
-      if (lane.job === job) this.#cancel(job, thrown);
+      if (lane.job === job) this.#cancel(job, notStarted(thrown));
     }
   }
 
@@ -166,4 +166,11 @@ export class WorkerPool<Task, Result> {
     });
     this.#next();
   }
+}
+
+/** Where the caller makes the workers, anything may be thrown. */
+function notStarted(thrown: unknown): VeroneseError {
+  if (thrown instanceof VeroneseError) return thrown;
+  const reason = thrown instanceof Error ? thrown.message : 'something was thrown';
+  return new VeroneseError('worker-failed', `the worker cannot be started: ${reason}`, { cause: thrown });
 }

@@ -1,6 +1,7 @@
 // The same calls in workers: one, or a pool of them.
 
 import type {
+  CallOptions,
   FitOptions,
   MotionFit,
   PairInput,
@@ -17,12 +18,13 @@ import type {
   WasmSource,
   WorkerLike,
 } from '../types/index.js';
-import { checkedCorrection, checkedMeasurements, checkedPixels, splitOptions } from './api.js';
+import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from './checks.js';
 import type { Core, Glue } from './core.js';
-import { cancelled, VeroneseError, veroneseError } from './errors.js';
-import type { Result, Task } from './messages.js';
+import { cancelled, VeroneseError } from './errors.js';
+import { buffersOfTask, type CallTask, type Result, type Task } from './messages.js';
 import { inOrder } from './ordered.js';
 import { WorkerPool } from './pool.js';
+import { fitCall, parted, relabelCall, segmentCall, start } from './tasks.js';
 import { spawnWith } from './threads.js';
 
 /** Most workers of one pool: more is a mistake, not a wish. */
@@ -43,40 +45,33 @@ export interface Host {
 export function segmenters(host: Host) {
   class Segmenter {
     readonly #pool: WorkerPool<Task, Result>;
+    readonly #perform = (task: CallTask, options: CallOptions) => this.#pool.run(task, options);
 
-    constructor(source?: WasmSource | Promise<WasmSource>, options: SegmenterOptions = {}, jobs = 1) {
+    constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions, jobs = 1) {
+      const { worker = host.worker, points: place } = workerOptions(options);
       const [core, points] = [host.newCore(), host.newPoints()];
       const frames = () => core.module(source);
-      const measurements = () => points.module(options.points);
+      const measurements = () => points.module(place);
       const supply = ({ call }: Task) => (call === 'fitMotions' ? measurements : frames);
-      this.#pool = new WorkerPool(spawnWith(options.worker ?? host.worker), supply, jobs);
+      this.#pool = new WorkerPool(spawnWith(worker, buffersOfTask), supply, jobs);
     }
 
-    async segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> {
-      const { call, rest } = splitOptions(options);
-      const settings = rest.before === undefined ? rest : { ...rest, before: checkedPixels('the frame before', rest.before) };
-      const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
-      return (await this.#pool.run({ call: 'segmentPair', ...frames, options: settings }, call)) as Segmentation;
+    segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> {
+      return start(() => segmentCall(first, second, options), this.#perform);
     }
 
-    async relabel(
+    relabel(
       first: Pixels,
       second: Pixels,
       segmentation: Segmentation,
       evidence: Uint16Array,
       options?: RelabelOptions,
     ): Promise<Segmentation> {
-      const { call, rest } = splitOptions(options);
-      const settings = rest.before === undefined ? rest : { before: checkedPixels('the frame before', rest.before) };
-      const frames = { first: checkedPixels('the first frame', first), second: checkedPixels('the second frame', second) };
-      checkedCorrection(segmentation, evidence);
-      return (await this.#pool.run({ call: 'relabel', ...frames, segmentation, evidence, options: settings }, call)) as Segmentation;
+      return start(() => relabelCall(first, second, segmentation, evidence, options), this.#perform);
     }
 
-    async fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {
-      const { call, rest } = splitOptions(options);
-      const checked = checkedMeasurements(measurements);
-      return (await this.#pool.run({ call: 'fitMotions', measurements: checked, options: rest }, call)) as MotionFit;
+    fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {
+      return start(() => fitCall(measurements, options), this.#perform);
     }
 
     async warmUp(): Promise<void> {
@@ -91,16 +86,17 @@ export function segmenters(host: Host) {
   class SegmenterPool extends Segmenter {
     readonly jobs: number;
 
-    constructor({ jobs = host.jobs(), source, points, worker }: PoolOptions = {}) {
-      super(source, { points, worker }, checkedJobs(jobs));
-      this.jobs = jobs;
+    constructor(options?: PoolOptions) {
+      const { jobs = host.jobs(), source, ...rest } = reading(() => entriesOf(options, ['jobs', 'source', ...WORKER]));
+      super(source as PoolOptions['source'], rest, checkedJobs(jobs));
+      this.jobs = jobs as number;
     }
 
     async *segmentPairs<Input extends PairInput>(
       pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
       options?: PairsOptions,
     ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
-      const { signal, onProgress, ...rest } = checkedPairsOptions(pairs, options);
+      const { signal, onProgress, ...rest } = reading(() => checkedPairsOptions(pairs, options));
       if (signal?.aborted) throw cancelled(signal);
       // Ends what is under way when the reader stops early or the caller's signal says so.
       const ending = new AbortController();
@@ -108,13 +104,15 @@ export function segmenters(host: Host) {
       signal?.addEventListener('abort', end);
       const work = async (input: Input, index: number): Promise<PairOutcome<Input>> => {
         try {
-          const { first, second, before } = Object(input) as Input;
+          const { first, second, before } = reading(() => framesOf(input));
           const listener = onProgress && ((progress: Progress) => onProgress({ ...progress, pair: index }));
           const call = { signal: ending.signal, onProgress: listener };
           const segmentation = await this.segmentPair(first, second, { ...rest, before, ...call });
           return { index, input, segmentation };
         } catch (thrown) {
-          return { index, input, error: veroneseError(thrown) };
+          // What is not of the package was thrown by the listener.
+          const error = thrown instanceof VeroneseError ? thrown : new VeroneseError('cancelled', 'the listener threw', { cause: thrown });
+          return { index, input, error };
         }
       };
       try {
@@ -129,11 +127,12 @@ export function segmenters(host: Host) {
 
   async function* segmentPairs<Input extends PairInput>(
     pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
-    { jobs, source, points, worker, ...options }: PairsOptions & PoolOptions = {},
+    options?: PairsOptions & PoolOptions,
   ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
-    const pool = new SegmenterPool({ ...(jobs !== undefined && { jobs }), source, points, worker });
+    const { jobs, source, points, worker, ...rest } = reading(() => ({ ...optionsObject(options) })) as PairsOptions & PoolOptions;
+    const pool = new SegmenterPool({ jobs, source, points, worker });
     try {
-      yield* pool.segmentPairs(pairs, options);
+      yield* pool.segmentPairs(pairs, rest);
     } finally {
       pool.close();
     }
@@ -142,16 +141,33 @@ export function segmenters(host: Host) {
   return { Segmenter, SegmenterPool, segmentPairs };
 }
 
-function checkedJobs(jobs: number): number {
-  if (Number.isInteger(jobs) && jobs >= 1 && jobs <= MOST_JOBS) return jobs;
-  throw new VeroneseError('invalid-option', `option 'jobs': must be a whole number from 1 to ${MOST_JOBS}, not ${String(jobs)}`);
+/** Names of {@link SegmenterOptions}. */
+const WORKER = ['worker', 'points'];
+
+function workerOptions(options: unknown): SegmenterOptions {
+  const { worker, ...rest } = reading(() => entriesOf(options, WORKER));
+  if (worker === undefined || typeof worker === 'function') return { worker: worker as SegmenterOptions['worker'], ...rest };
+  throw invalidOption('worker', 'a function that makes a worker', worker);
 }
 
-function checkedPairsOptions(pairs: unknown, options: PairsOptions | undefined): PairsOptions {
+function checkedJobs(jobs: unknown): number {
+  if (isWhole(jobs, 1, MOST_JOBS)) return jobs;
+  throw invalidOption('jobs', `a whole number from 1 to ${MOST_JOBS}`, jobs);
+}
+
+function checkedPairsOptions(pairs: unknown, options: unknown): PairsOptions {
   const iterable = Object(pairs) as Partial<Iterable<unknown> & AsyncIterable<unknown>>;
   if (typeof iterable[Symbol.asyncIterator] !== 'function' && typeof iterable[Symbol.iterator] !== 'function') {
-    throw new VeroneseError('invalid-input', 'the pairs must be an iterable or async iterable of { first, second }');
+    throw invalidInput('the pairs must be an iterable or async iterable of { first, second }');
   }
-  splitOptions(options as SegmentOptions | undefined);
-  return options ?? {};
+  const { before, ...rest } = optionsObject(options);
+  if (before !== undefined) throw new VeroneseError('invalid-option', "there is no option 'before' for all pairs; each pair may have one");
+  // The rest is that of each pair.
+  parted({ signal: rest.signal, onProgress: rest.onProgress }, []);
+  return rest;
+}
+
+function framesOf(input: unknown): PairInput {
+  const { first, second, before } = Object(input) as PairInput;
+  return { first, second, before };
 }

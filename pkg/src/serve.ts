@@ -5,8 +5,9 @@ import { glue as pointsGlue } from './glue-points.js';
 import { Api } from './api.js';
 import { Core } from './core.js';
 import { errorMessage } from './errors.js';
-import type { CallOptions, Segmentation } from '../types/index.js';
-import type { Reply, Request, Result, Task } from './messages.js';
+import type { Segmentation } from '../types/index.js';
+import type { Reply, Request, Result } from './messages.js';
+import { buffersOf } from './taking.js';
 import { warmUp } from './warming.js';
 
 /** Answers one request at a time: the page sends the next when it has the answer to the last. */
@@ -19,8 +20,8 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
       const onProgress = (progress: { stage: string; index: number; of: number }) => {
         post({ kind: 'progress', progress }, []);
       };
-      const result = await perform(api, task, { onProgress });
-      post({ kind: 'done', result }, buffersOf(result));
+      const result = task.call === 'warmUp' ? await warmUp(api) : await api.perform(task, { onProgress });
+      post({ kind: 'done', result }, buffersOfResult(result));
     } catch (thrown) {
       // An exception in an asynchronous handler would not reach the page by itself.
       post({ kind: 'failed', error: errorMessage(thrown) }, []);
@@ -28,21 +29,8 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
   };
 }
 
-function perform(api: Api, task: Task, call: CallOptions): Promise<Result> {
-  switch (task.call) {
-    case 'segmentPair':
-      return api.segmentPair(task.first, task.second, { ...task.options, ...call });
-    case 'relabel':
-      return api.relabel(task.first, task.second, task.segmentation, task.evidence, { ...task.options, ...call });
-    case 'fitMotions':
-      return api.fitMotions(task.measurements, { ...task.options, ...call });
-    case 'warmUp':
-      return warmUp(api).then(() => undefined);
-  }
-}
-
 /** What is handed over instead of copied. */
-function buffersOf(result: Result): ArrayBuffer[] {
+function buffersOfResult(result: Result): ArrayBuffer[] {
   const { labels, confidence }: Partial<Pick<Segmentation, 'labels' | 'confidence'>> = result ?? {};
-  return [labels, confidence].filter((array) => array !== undefined).map(({ buffer }) => buffer as ArrayBuffer);
+  return buffersOf([labels, confidence]);
 }

@@ -13,7 +13,7 @@ const MOTIONS = [[0.3, 0.2], [2, 1], [-1, 2], [1, -2]] as const;
 const MILLISECONDS = 500;
 
 /** Segments a pair of its own again and again for a moment. */
-export async function warmUp(api: Api): Promise<void> {
+export async function warmUp(api: Api): Promise<undefined> {
   const [first, second] = [frame(0), frame(1)];
   const until = performance.now() + MILLISECONDS;
   do await api.segmentPair(first, second, { quality: 'fast' });

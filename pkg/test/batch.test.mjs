@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
@@ -154,6 +154,28 @@ describe('veronese batch', () => {
     writeFileSync(one(1), png(frame(0, { width: 70 })));
     const run = await batch([one(0), one(1), path('none.png'), one(2), one(2)], { code: 1 });
     assert.deepEqual(run.lines.map(({ error }) => error?.code), ['frame-size-mismatch', 'file-not-found', 'file-not-found', undefined]);
+  });
+
+  test('a link that leads to itself is a bad frame like others', { skip: process.platform === 'win32' }, async (t) => {
+    const { path, frames, one } = clip(t, 2);
+    for (const name of ['round.png', 'round']) symlinkSync(name, path(name));
+    symlinkSync('f9.png', path('frames', 'f9.png'));
+    const refused = [
+      [['batch', path('round')], 'too-few-frames'],
+      [['batch', path('round', '*.png')], 'too-few-frames'],
+      [['batch', '--list', path('round')], 'unreadable-file'],
+      [['video', path('round.png')], 'unreadable-file'],
+    ];
+    for (const [args, reason] of refused) {
+      const { code, stdout, stderr } = await veronese(args);
+      assert.match(stderr, new RegExp(`^veronese: error: ${reason}: .*\n$`), args.join(' '));
+      assert.deepEqual([code, stdout], [1, '']);
+    }
+    for (const args of [[one(0), one(1), path('round.png')], [frames], [path('frames', '*.png')]]) {
+      const { lines: [good, bad] } = await batch(args, { code: 1 });
+      assert.deepEqual([good.status, bad.status, bad.error.code], ['done', 'failed', 'unreadable-file'], args.join(' '));
+      assert.match(bad.error.message, /ELOOP/);
+    }
   });
 
   test('refuses what cannot be a batch, with one line', async (t) => {

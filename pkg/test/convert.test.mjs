@@ -89,7 +89,7 @@ describe('veronese convert', () => {
     await refused([folder.path(), '--to', 'coco'], 'file-not-found', /labels\.png/);
     await refused([out, '--to', 'coco', '--out', join(out, 'result.json')], 'write-failed', /it is a file/);
     const bad = (name, content) => {
-      const path = folder.path(name);
+      const path = folder.path(name.replace(/\W/g, '-'));
       mkdirSync(path);
       writeFileSync(join(path, 'labels.png'), readFileSync(join(out, 'labels.png')));
       writeFileSync(join(path, 'result.json'), content);
@@ -99,6 +99,11 @@ describe('veronese convert', () => {
     await refused([bad('null', 'null'), '--to', 'coco'], 'invalid-input', /not a result/);
     await refused([bad('other', '{"width": 3}'), '--to', 'coco'], 'invalid-input', /not a result/);
     await refused([bad('size', JSON.stringify({ ...result, width: 65 })), '--to', 'coco'], 'frame-size-mismatch', /64×48 and 65×48/);
+    for (const changed of [{ bbox: undefined }, { bbox: [0, 0, 1] }, { group: 300 }, { label: 256 }, { share: null }, { residual: 'x' }]) {
+      const [first, ...rest] = result.motions;
+      const damaged = bad(JSON.stringify(changed), JSON.stringify({ ...result, motions: [{ ...first, ...changed }, ...rest.map((motion) => ({ ...motion, group: 0 }))] }));
+      await refused([damaged, '--to', 'coco', '--grouped'], 'invalid-input', /not a result/);
+    }
     const motions = result.motions.map((motion) => ({ ...motion, pixels: motion.pixels + 1 }));
     await refused([bad('foreign', JSON.stringify({ ...result, motions })), '--to', 'coco'], 'invalid-input', /not of the same result/);
     const photo = bad('photo', JSON.stringify(result));

@@ -98,3 +98,14 @@ test('importing any entry, also the one for browsers, changes nothing and starts
   assert.equal(status, 0, stderr);
   assert.equal(stdout, '\n');
 });
+
+test('an entry that lets go of its instance takes it from no other entry', async () => {
+  const expected = timeless(await segmentPair(...pair()));
+  const mine = new Error('mine');
+  for (const [one, other] of [[segmentPair, inline.segmentPair], [inline.segmentPair, segmentPair]]) {
+    const calls = await Promise.allSettled([one(...pair(), { onProgress: () => { throw mine; } }), other(...pair()), one(...pair())]);
+    assert.equal(calls[0].reason, mine);
+    for (const { value } of calls.slice(1)) assert.deepEqual(timeless(value), expected);
+    assert.deepEqual(timeless(await other(...pair())), expected);
+  }
+});

@@ -1,4 +1,5 @@
-// Image files under Node: the second WebAssembly build, which is loaded only when this module is used.
+// Image files under Node: the second WebAssembly build, which is loaded only when this module is used. Bytes that are given to a call
+// are copied when it is made. What is not of the right type, or no size, is refused with code `invalid-input`.
 
 /** A decoded image: RGBA bytes, row by row. */
 export interface Picture {

@@ -26,7 +26,7 @@ export class VeroneseSegmenterElement extends HTMLElement {
   static readonly observedAttributes: string[];
   /** The last result. */
   readonly result: Segmentation | undefined;
-  /** Sets both frames at once, also from pixels, and segments them. */
+  /** Sets both frames at once, also from pixels, and segments them. Pixels and bitmaps are copied before the call returns. */
   setFrames(first: FrameSource, second: FrameSource): Promise<Segmentation>;
   /** Segments the frames with the attributes as they are; a new call ends the one before, which rejects with code `cancelled`. */
   segment(): Promise<Segmentation>;

@@ -172,7 +172,10 @@ export interface VeroneseDocument {
   runs: number[];
 }
 
-/** COCO's compressed run lengths of one mask: everything but 0 is set. Throws `invalid-input`, as every call here. */
+/**
+ * COCO's compressed run lengths of one mask: everything but 0 is set. Throws `invalid-input`, as every call here; `invalid-option` for
+ * options. Documents are copies: they share nothing with what they were made of.
+ */
 export function encodeCocoRle(mask: Uint8Array, width: number, height: number): CocoRle;
 
 /** The same as plain counts. */

@@ -1,6 +1,11 @@
 // The public types, written by hand: what stands here is what a caller may rely on.
 
-/** RGBA bytes, row by row. An `ImageData` fits. Sides from 16 to 4096 pixels. */
+/**
+ * RGBA bytes, row by row. An `ImageData` fits. Sides from 16 to 4096 pixels.
+ *
+ * The bytes stay the caller's: a call copies them before it returns, so that they may be written to as soon as it has. They may be a
+ * view of a larger buffer, of which nothing else is copied, and shared or resizable memory, as it is at that moment.
+ */
 export interface Pixels {
   data: Uint8ClampedArray | Uint8Array;
   width: number;
@@ -26,6 +31,13 @@ export interface CallOptions {
   signal?: AbortSignal | undefined;
   /** Called when a stage begins. What it throws ends the call and is thrown on. */
   onProgress?: ((progress: Progress) => void) | undefined;
+  /**
+   * Gives the arrays away instead of having them copied; default `false`. When the call returns, the whole `ArrayBuffer`s of its
+   * frames, of the measurements and of the evidence are detached, their arrays empty, whatever becomes of the call; only one that is
+   * refused for its arguments or cancelled by then leaves them alone. A segmentation is never given away. What cannot be given away is
+   * copied: shared memory, that of a WebAssembly module, the pools of Node's `Buffer`.
+   */
+  transfer?: boolean | undefined;
 }
 
 export interface SegmentOptions extends CallOptions {
@@ -156,7 +168,7 @@ export interface MotionFit {
   labels: Uint8Array;
 }
 
-/** Image measurements: x, y of each in `positions`, I_x, I_y, I_t of each in `derivatives`. */
+/** Image measurements: x, y of each in `positions`, I_x, I_y, I_t of each in `derivatives`. Copied when the call is made, as {@link Pixels}. */
 export interface PointMeasurements {
   positions: Float64Array;
   derivatives: Float64Array;
@@ -206,7 +218,10 @@ export type ErrorCode =
   | 'ffmpeg-missing'
   | 'unreadable-video';
 
-/** Every error that this package throws or rejects with. */
+/**
+ * Every error that this package throws or rejects with. What the caller's own listeners and sources of pairs throw is passed on as it
+ * is.
+ */
 export class VeroneseError extends Error {
   constructor(code: ErrorCode, message: string, options?: ErrorOptions);
   readonly code: ErrorCode;
@@ -236,6 +251,8 @@ export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOpti
  * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. What is said
  * holds on its pixels and spreads from there as far as the picture looks alike; far from it every label stays. Numbering and groups
  * stay too, so a label may be left without pixels; `confidence` is left out. The same arguments give the same answer: to undo, ask without.
+ *
+ * Everything is copied when the call is made, and the result shares nothing with the segmentation given.
  */
 export function relabel(
   first: Pixels,
@@ -258,13 +275,16 @@ export function paintLabels(
   options?: PaintOptions,
 ): Promise<void>;
 
-/** One group number per pixel instead of its motion; 255 stays. */
+/** One group number per pixel instead of its motion; 255 stays. Throws code `invalid-input`. */
 export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions'>): Uint8Array;
 
 /** The 256 colours of the DAVIS benchmark's masks; label 0 is black. */
 export function davisPalette(): [number, number, number][];
 
-/** Two frames and, if there is one, the frame before the first; whatever else the object has comes back with its outcome. */
+/**
+ * Two frames and, if there is one, the frame before the first; whatever else the object has comes back with its outcome. The frames are
+ * copied (or taken, with `transfer`) before the next input is asked for: a source may use one set of buffers for all of its pairs.
+ */
 export interface PairInput {
   first: Pixels;
   second: Pixels;
@@ -273,7 +293,7 @@ export interface PairInput {
 
 /** Options for all pairs of a {@link segmentPairs}. */
 export interface PairsOptions extends Omit<SegmentOptions, 'before' | 'onProgress'> {
-  /** Called when a stage of a pair begins; `pair` counts from 0. What it throws ends that pair. */
+  /** Called when a stage of a pair begins; `pair` counts from 0. What it throws ends that pair and is the `cause` of its error. */
   onProgress?: ((progress: Progress & { pair: number }) => void) | undefined;
 }
 
@@ -310,7 +330,7 @@ export interface PoolOptions extends SegmenterOptions {
  * once. Calls are done one after another.
  */
 export class Segmenter {
-  /** `source` as in {@link init}; by default the file beside the package's code. */
+  /** `source` as in {@link init}; by default the file beside the package's code. Throws code `invalid-option`. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
   segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
   relabel(
@@ -343,7 +363,7 @@ export class SegmenterPool extends Segmenter {
    * Segments many pairs, as an async iterator in the order of the pairs. A pair is taken from `pairs` only when there is room for it:
    * at most 2·`jobs` are under way or wait to be fetched, so an async generator that reads frames reads no faster than the workers
    * work. A pair that fails is an outcome with `error`, not the end; `signal` ends everything with code `cancelled`, and
-   * so does leaving the loop.
+   * so does leaving the loop. What `pairs` throws is thrown after the outcomes of the pairs that it gave.
    */
   segmentPairs<Input extends PairInput>(
     pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,

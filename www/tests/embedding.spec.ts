@@ -76,6 +76,55 @@ test('attributes, events, methods and colours', async ({ page }) => {
   expect(told).toEqual({ events: ['progress', 'result', 'error invalid-option'], count: 1, reason: 'cancelled' });
 });
 
+test('frames that are given are the element\'s own, and what is none is refused', async ({ page }) => {
+  await openHost(page);
+  const told = await page.evaluate(async () => {
+    type Frames = HTMLElement & { setFrames(first: unknown, second: unknown): Promise<{ labels: Uint8Array }>; segment(): Promise<{ labels: Uint8Array }> };
+    const element = document.createElement('veronese-segmenter') as Frames;
+    element.setAttribute('quality', 'fast');
+    document.body.append(element);
+    const picture = (shift: number): ImageData => {
+      const image = new ImageData(96, 64);
+      for (let p = 0; p < 96 * 64; p++) {
+        const [x, y] = [(p % 96) - (p % 96 > 48 ? shift : 0), Math.floor(p / 96)];
+        const grey = 128 + 60 * Math.sin(0.5 * x + 0.2 * y) + 50 * Math.cos(0.4 * y - 0.15 * x);
+        image.data.set([grey, grey, grey, 255], 4 * p);
+      }
+      return image;
+    };
+    const expected = (await element.setFrames(picture(0), picture(2))).labels;
+    const bitmaps = [await createImageBitmap(picture(0)), await createImageBitmap(picture(2))] as const;
+    const images = [picture(0), picture(2)] as const;
+    const answers: Uint8Array[] = [];
+    for (const [first, second] of [images, bitmaps]) {
+      const answer = element.setFrames(first, second);
+      for (const frame of [first, second]) frame instanceof ImageData ? frame.data.fill(7) : frame.close();
+      answers.push((await answer).labels);
+      // The element segments them again when an attribute changes.
+      answers.push((await element.segment()).labels);
+    }
+    const same = answers.map((labels) => String(labels) === String(expected));
+    const gone = picture(0);
+    structuredClone(gone.data.buffer, { transfer: [gone.data.buffer] });
+    const codes: string[] = [];
+    for (const wrong of [null, undefined, 5, {}, [], { data: [1], width: 16, height: 16 }, gone, bitmaps[0], new Blob(['text'])]) {
+      codes.push(await element.setFrames(picture(0), wrong).then(() => 'answered', ({ code }: { code: string }) => code));
+    }
+    for (const [name, value] of [['motions', 'two'], ['quality', 'good'], ['seed', '-1']] as const) {
+      element.setAttribute(name, value);
+      codes.push(await element.setFrames(picture(0), picture(2)).then(() => 'answered', ({ code }: { code: string }) => code));
+      element.removeAttribute(name);
+    }
+    const after = await element.setFrames(picture(0), picture(2)).then(({ labels }) => labels.length);
+    element.remove();
+    return { same, codes, after };
+  });
+  expect(told.same).toEqual([true, true, true, true]);
+  const input = Array<string>(7).fill('invalid-input');
+  expect(told.codes).toEqual([...input, 'unreadable-image', 'unreadable-image', 'invalid-option', 'invalid-option', 'invalid-option']);
+  expect(told.after).toBe(96 * 64);
+});
+
 test('a frame that is missing is an event of the element', async ({ page }) => {
   await openHost(page);
   await page.locator('veronese-segmenter').evaluate((element) => element.setAttribute('first', 'embed.html'));

@@ -1,7 +1,7 @@
 // COCO's run lengths of one mask: column by column over the whole image.
 
 import type { CocoRle, CocoRleCounts } from '../../types/formats.js';
-import { type Mask, masksOf } from './input.js';
+import { checkLabels, type Mask, masksOf } from './input.js';
 import { columnRuns } from './runs.js';
 
 export function encodeCocoRle(mask: Uint8Array, width: number, height: number): CocoRle {
@@ -10,6 +10,7 @@ export function encodeCocoRle(mask: Uint8Array, width: number, height: number): 
 }
 
 export function encodeCocoRleCounts(mask: Uint8Array, width: number, height: number): CocoRleCounts {
+  checkLabels(mask, width, height);
   const [set] = masksOf(mask.map((value) => (value === 0 ? 0 : 1)), width, height, { labels: [1] });
   return { size: [height, width], counts: set ? columnRuns(set, width, height) : [width * height] };
 }

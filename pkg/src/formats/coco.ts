@@ -2,7 +2,7 @@
 
 import type { CocoDocument, FormatMeta, FormatOptions } from '../../types/formats.js';
 import { cocoRle } from './coco-rle.js';
-import { imageOf, type Mask, masksOf } from './input.js';
+import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
 import { bridgedRings } from './outline.js';
 
 export function encodeCoco(
@@ -10,8 +10,9 @@ export function encodeCoco(
   width: number,
   height: number,
   meta: FormatMeta = {},
-  { shape = 'rle', tolerance = 0 }: FormatOptions<'rle' | 'polygon'> = {},
+  options?: FormatOptions<'rle' | 'polygon'>,
 ): CocoDocument {
+  const { shape, tolerance } = checkedOptions(options, ['rle', 'polygon']);
   const masks = masksOf(labels, width, height, meta);
   return {
     info: { description: 'Masks of what moves together' },

@@ -1,7 +1,7 @@
 // "CVAT for images 1.1": one image with a <mask> or <polygon> per part.
 
 import type { FormatMeta, FormatOptions } from '../../types/formats.js';
-import { imageOf, type Mask, masksOf } from './input.js';
+import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
 import { bridgedRings } from './outline.js';
 import { rowRuns } from './runs.js';
 import { escaped } from './xml.js';
@@ -11,8 +11,9 @@ export function encodeCvatXml(
   width: number,
   height: number,
   meta: FormatMeta = {},
-  { shape = 'mask', tolerance = 0 }: FormatOptions<'mask' | 'polygon'> = {},
+  options?: FormatOptions<'mask' | 'polygon'>,
 ): string {
+  const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
   const masks = masksOf(labels, width, height, meta);
   const shapes = masks.flatMap((mask) => (shape === 'mask' ? [maskElement(mask)] : polygonElements(mask, tolerance)));
   return [

@@ -1,12 +1,20 @@
 // What every encoder reads: a label image and what is known about its masks. Checked once, here.
 
 import type { FormatMeta, FormatMotion, LabelFrame } from '../../types/formats.js';
+import {
+  entriesOf,
+  invalidInput,
+  invalidOption,
+  isArrayOf,
+  isListOf,
+  isObject,
+  isWhole,
+  LONGEST_SIDE,
+  reading,
+  UNLABELLED,
+  unknownOf,
+} from '../checks.js';
 import { VeroneseError } from '../errors.js';
-
-export const UNLABELLED = 255;
-
-/** Largest side, pixels: what the core segments. Also keeps every run length below 2^31. */
-const LARGEST = 4096;
 
 /** One label's pixels inside their bounding box. */
 export interface Mask {
@@ -27,13 +35,14 @@ export interface Mask {
 /** The masks of the labels that are there, by label; 255 is never one. Throws `invalid-input`. */
 export function masksOf(labels: Uint8Array, width: number, height: number, meta: FormatMeta): Mask[] {
   checkLabels(labels, width, height);
-  const wanted = meta.labels && new Set(meta.labels);
+  const known = checkedMeta(meta);
+  const wanted = known.labels && new Set(known.labels);
   const boxes = boxesOf(labels, width);
   const masks: Mask[] = [];
   for (const [label, box] of boxes.entries()) {
     if (box === undefined || label === UNLABELLED || wanted?.has(label) === false) continue;
-    const motion = meta.motions?.find((motion) => motion.label === label);
-    masks.push({ ...crop(labels, width, label, box), name: nameOf(label, meta), ...(motion && { motion }) });
+    const motion = known.motions?.find((motion) => motion.label === label);
+    masks.push({ ...crop(labels, width, label, box), name: nameOf(label, known), ...(motion && { motion }) });
   }
   return masks;
 }
@@ -49,10 +58,16 @@ export function imageOf({ image }: Pick<FormatMeta, 'image'>): string {
 
 /** Throws `invalid-input` unless there are frames, all of one size. */
 export function checkFrames(frames: readonly LabelFrame[]): { width: number; height: number } {
-  const [first] = frames;
-  if (!first) throw new VeroneseError('invalid-input', 'there must be one frame at least');
-  for (const { labels, width, height } of frames) {
+  return reading(() => sizeOf(frames));
+}
+
+function sizeOf(frames: readonly LabelFrame[]): { width: number; height: number } {
+  if (!isListOf(frames, isObject)) throw invalidInput('the frames must be a list of { labels, width, height }');
+  const [first] = frames as readonly LabelFrame[];
+  if (!first) throw invalidInput('there must be one frame at least');
+  for (const { labels, width, height, image } of frames as readonly LabelFrame[]) {
     checkLabels(labels, width, height);
+    if (!isText(image)) throw invalidInput("a frame's image must be text, the name of its file");
     if (width === first.width && height === first.height) continue;
     throw new VeroneseError('frame-size-mismatch', 'the frames must have one size');
   }
@@ -60,13 +75,85 @@ export function checkFrames(frames: readonly LabelFrame[]): { width: number; hei
 }
 
 export function checkLabels(labels: Uint8Array, width: number, height: number): void {
-  const side = (value: number) => Number.isInteger(value) && value >= 1 && value <= LARGEST;
-  if (!side(width) || !side(height)) {
-    throw new VeroneseError('invalid-input', `width and height must be whole numbers from 1 to ${LARGEST}`);
+  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) {
+    throw invalidInput(`width and height must be whole numbers from 1 to ${LONGEST_SIDE}`);
   }
-  if (!(labels instanceof Uint8Array) || labels.length !== width * height) {
-    throw new VeroneseError('invalid-input', `the labels must be a Uint8Array of ${width} × ${height} entries`);
+  if (!isArrayOf(labels, 'Uint8Array') || labels.length !== width * height) {
+    throw invalidInput(`the labels must be a Uint8Array of ${width} × ${height} entries`);
   }
+}
+
+/** What is known beside the labels, as a copy: documents share nothing with what they are made of. */
+export function checkedMeta(meta: unknown): FormatMeta {
+  return reading(() => {
+    if (meta === undefined) return {};
+    if (!isObject(meta)) throw invalidInput('what is known beside the labels must be an object');
+    const unknown = unknownOf(meta, ['image', 'names', 'motions', 'labels']);
+    if (unknown !== undefined) throw invalidInput(`nothing is known as ${unknown}`);
+    const { image, names, motions, labels } = meta;
+    if (!isText(image)) throw invalidInput('image must be text, the name of a file');
+    if (names !== undefined && !(typeof names === 'object' && names && Object.values(names).every(isText))) {
+      throw invalidInput('names must hold a text for each label');
+    }
+    if (motions !== undefined && !isListOf(motions, isMotion)) {
+      throw invalidInput('motions must each have a label and a matrix of six numbers');
+    }
+    if (labels !== undefined && !isListOf(labels, isLabel)) throw invalidInput('labels must be a list of labels');
+    return {
+      ...(image !== undefined && { image }),
+      ...(names !== undefined && { names: { ...(names as Record<number, string>) } }),
+      ...(motions !== undefined && { motions: motions.map(copied) }),
+      ...(labels !== undefined && { labels }),
+    };
+  });
+}
+
+/** Throws `invalid-option`. The first of the shapes is the default; `texts` are options with the values that they have otherwise. */
+export function checkedOptions<Shape extends string, Texts extends Record<string, string>>(
+  options: unknown,
+  shapes: readonly Shape[],
+  texts?: Texts,
+): { shape: Shape; tolerance: number } & Texts {
+  return reading(() => {
+    const known = [...(shapes.length > 0 ? ['shape'] : []), 'tolerance', ...Object.keys(texts ?? {})];
+    const whole = { shape: shapes[0], tolerance: 0, ...texts, ...entriesOf(options, known) };
+    const { shape, tolerance } = whole as { shape: unknown; tolerance: unknown };
+    if (!(shapes as readonly unknown[]).includes(shape) && shape !== undefined) {
+      throw invalidOption('shape', shapes.map((name) => `'${name}'`).join(' or '), shape);
+    }
+    if (!Number.isFinite(tolerance) || (tolerance as number) < 0) throw invalidOption('tolerance', 'a number of pixels from 0', tolerance);
+    for (const name of Object.keys(texts ?? {})) {
+      const value = (whole as Record<string, unknown>)[name];
+      if (typeof value !== 'string') throw invalidOption(name, 'text', value);
+    }
+    return whole as { shape: Shape; tolerance: number } & Texts;
+  });
+}
+
+/** Where there is one. */
+function isText(value: unknown): value is string | undefined {
+  return value === undefined || typeof value === 'string';
+}
+
+function isLabel(value: unknown): value is number {
+  return isWhole(value, 0, UNLABELLED);
+}
+
+export function isMotion(value: unknown): value is FormatMotion {
+  if (!isObject(value)) return false;
+  const { label, matrix, bbox, pixels = 0, share = 0, residual = 0, group = 0 } = value;
+  const box = bbox === undefined || (isListOf(bbox, isFinite) && bbox.length === 4);
+  return isLabel(label) && isListOf(matrix, isFinite) && matrix.length === 6 && box && [pixels, share, residual, group].every(isFinite);
+}
+
+/** A motion whose lists are its own. */
+export function copied(motion: FormatMotion): FormatMotion {
+  const { matrix, bbox } = motion;
+  return { ...motion, matrix: [...matrix], ...(bbox && { bbox: [...bbox] }) };
+}
+
+function isFinite(value: unknown): value is number {
+  return Number.isFinite(value);
 }
 
 type Box = [left: number, top: number, right: number, bottom: number];

@@ -2,20 +2,20 @@
 // @thi.ng/rle-pack does. That library comes with three others and walks over each of the four bytes: ours goes from run to run.
 
 import type { FormatMeta, FormatOptions, LabelStudioResult, LabelStudioTask } from '../../types/formats.js';
-import { imageOf, type Mask, masksOf } from './input.js';
+import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
 import { bridgedRings } from './outline.js';
+
+/** What the labelling configuration calls its parts, and who made the prediction. */
+const NAMES = { fromName: 'tag', toName: 'image', modelVersion: 'veronese' };
 
 export function encodeLabelStudio(
   labels: Uint8Array,
   width: number,
   height: number,
   meta: FormatMeta = {},
-  { shape = 'brush', tolerance = 0, fromName = 'tag', toName = 'image', modelVersion = 'veronese' }: FormatOptions<'brush' | 'polygon'> & {
-    fromName?: string;
-    toName?: string;
-    modelVersion?: string;
-  } = {},
+  options?: FormatOptions<'brush' | 'polygon'> & Partial<typeof NAMES>,
 ): LabelStudioTask {
+  const { shape, tolerance, fromName, toName, modelVersion } = checkedOptions(options, ['brush', 'polygon'], NAMES);
   const shared = { from_name: fromName, to_name: toName, original_width: width, original_height: height, image_rotation: 0 as const };
   const result = masksOf(labels, width, height, meta).flatMap((mask): LabelStudioResult[] => {
     const id = `motion-${mask.label}`;

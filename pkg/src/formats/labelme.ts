@@ -2,7 +2,7 @@
 
 import type { FormatMeta, FormatOptions, LabelMeDocument, LabelMeShape } from '../../types/formats.js';
 import { base64 } from './base64.js';
-import { imageOf, type Mask, masksOf } from './input.js';
+import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
 import { bridgedRings } from './outline.js';
 import { png } from './png.js';
 
@@ -14,8 +14,9 @@ export function encodeLabelMe(
   width: number,
   height: number,
   meta: FormatMeta = {},
-  { shape = 'mask', tolerance = 0 }: FormatOptions<'mask' | 'polygon'> = {},
+  options?: FormatOptions<'mask' | 'polygon'>,
 ): LabelMeDocument {
+  const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
   const masks = masksOf(labels, width, height, meta);
   return {
     version: VERSION,

@@ -1,7 +1,7 @@
 // W3C Web Annotation: one annotation per label, its target an SVG path in pixels of the image, filled by the even-odd rule.
 
 import type { FormatMeta, WebAnnotation } from '../../types/formats.js';
-import { imageOf, masksOf } from './input.js';
+import { checkedOptions, imageOf, masksOf } from './input.js';
 import { type Ring, rings } from './outline.js';
 
 export function encodeWebAnnotation(
@@ -9,8 +9,9 @@ export function encodeWebAnnotation(
   width: number,
   height: number,
   meta: FormatMeta = {},
-  { tolerance = 0 } = {},
+  options?: { tolerance?: number },
 ): WebAnnotation[] {
+  const { tolerance } = checkedOptions(options, []);
   return masksOf(labels, width, height, meta).map((mask) => ({
     '@context': 'http://www.w3.org/ns/anno.jsonld',
     id: `#motion-${mask.label}`,

@@ -29,6 +29,7 @@ export async function browser(canvas: HTMLCanvasElement, first: ImageData, secon
     motions: 3,
     quality: 'fast',
     signal: controller.signal,
+    transfer: true,
     onProgress: ({ stage, index, of }) => console.log(stage, index / of),
   });
   const context = canvas.getContext('2d');

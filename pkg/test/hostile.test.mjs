@@ -1,0 +1,443 @@
+// Every public entry with values that are not what it takes. A call either works or rejects with a VeroneseError of a published code,
+// never `internal`; workers say the same as direct calls, word for word, and go on working.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { describe, test } from 'node:test';
+import { inspect, isDeepStrictEqual } from 'node:util';
+import { Worker } from 'node:worker_threads';
+import * as index from 'veronese';
+import * as codecs from 'veronese/codecs';
+import { VeroneseSegmenterElement } from 'veronese/element-class';
+import * as formats from 'veronese/formats';
+import * as inline from 'veronese/inline';
+import * as slim from 'veronese/slim';
+import { glue } from '../build/glue.js';
+import { optionsOf } from '../build/element-options.js';
+import { pair, points, png } from './support/frames.mjs';
+import { failure, timeless } from './support/shapes.mjs';
+
+const read = (path) => readFileSync(new URL(path, import.meta.url));
+const CODES = read('../types/index.d.ts').toString().match(/ErrorCode =[^;]+;/)[0].match(/'[a-z-]+'/g).map((code) => code.slice(1, -1));
+
+const detached = (array) => {
+  structuredClone(array.buffer, { transfer: [array.buffer] });
+  return array;
+};
+const shrunk = (Kind) => {
+  const buffer = new ArrayBuffer(4096, { maxByteLength: 8192 });
+  const array = new Kind(buffer, 1024, 16);
+  buffer.resize(512);
+  return array;
+};
+const revoked = () => {
+  const { proxy, revoke } = Proxy.revocable({}, {});
+  revoke();
+  return proxy;
+};
+const throwing = new Proxy({}, {
+  get: () => { throw new RangeError('mine'); },
+  ownKeys: () => { throw new RangeError('mine'); },
+});
+
+/** What is handed in where something else belongs. */
+const VALUES = {
+  undefined: undefined,
+  null: null,
+  true: true,
+  false: false,
+  zero: 0,
+  'minus one': -1,
+  one: 1,
+  half: 0.5,
+  NaN: NaN,
+  Infinity: Infinity,
+  '300': 300,
+  'more than 32 bits': 2 ** 32 + 16,
+  'more than 53 bits': 2 ** 60,
+  bigint: 1n,
+  'empty text': '',
+  text: 'text',
+  symbol: Symbol('text'),
+  function: () => 5,
+  'empty list': [],
+  'list of null': [null],
+  'sparse list': Array(3),
+  'empty object': {},
+  'object without prototype': Object.create(null),
+  'object with a function': { made: () => 5 },
+  cyclic: (() => { const value = {}; value.value = value; return value; })(),
+  throwing,
+  'revoked proxy': revoked(),
+  date: new Date(0),
+  map: new Map([[1, 2]]),
+  promise: Promise.resolve(1),
+  'like a signal': { aborted: false },
+  'like a worker': { postMessage() {} },
+  'no bytes': new Uint8Array(0),
+  'three bytes': Uint8Array.of(1, 2, 3),
+  'detached bytes': detached(new Uint8Array(16 * 16 * 4)),
+  'detached words': detached(new Uint16Array(16 * 16)),
+  'detached doubles': detached(new Float64Array(30)),
+  'shrunk bytes': shrunk(Uint8Array),
+  'shrunk words': shrunk(Uint16Array),
+  'shrunk doubles': shrunk(Float64Array),
+  'shared bytes': new Uint8Array(new SharedArrayBuffer(3)),
+  floats: new Float32Array(16 * 16 * 4),
+  'a buffer': new ArrayBuffer(16 * 16 * 4),
+  'a data view': new DataView(new ArrayBuffer(16 * 16 * 4)),
+  'bytes that are called something else': Object.defineProperty(new Uint8Array(16), Symbol.toStringTag, { value: 'Float64Array' }),
+};
+const named = (fits) => Object.keys(VALUES).filter((name) => !/throwing|proxy/.test(name) && fits(VALUES[name]));
+/** Objects that say nothing. */
+const EMPTY = named((value) => typeof value === 'object' && value !== null && !Array.isArray(value) && Object.keys(value).length === 0);
+const OPTIONS = ['undefined', ...EMPTY];
+const FINITE = named(Number.isFinite);
+
+const size = { width: 16, height: 16 };
+const [first, second] = pair(size);
+const before = pair(size)[1];
+const found = await index.segmentPair(first, second, { confidence: true });
+const [motion] = found.motions;
+const evidence = new Uint16Array(256);
+const measurements = points(40, 1, 2);
+const withMotion = (change) => ({ ...found, motions: [{ ...motion, ...change }, ...found.motions.slice(1)] });
+
+/**
+ * The calls that a Segmenter has too: arguments with the value in one place, and the names of the values that may stand there. A
+ * name that is not listed must be refused.
+ */
+const CALLS = {
+  'segmentPair: first': ['segmentPair', (v) => [v, second], []],
+  'segmentPair: second': ['segmentPair', (v) => [first, v], []],
+  'segmentPair: data': ['segmentPair', (v) => [{ ...first, data: v }, second], []],
+  'segmentPair: width': ['segmentPair', (v) => [{ ...first, width: v }, second], []],
+  'segmentPair: height': ['segmentPair', (v) => [first, { ...second, height: v }], []],
+  'segmentPair: options': ['segmentPair', (v) => [first, second, v], OPTIONS],
+  'segmentPair: before': ['segmentPair', (v) => [first, second, { before: v }], ['undefined']],
+  'segmentPair: data of before': ['segmentPair', (v) => [first, second, { before: { ...before, data: v } }], []],
+  'segmentPair: motions': ['segmentPair', (v) => [first, second, { motions: v }], ['undefined', 'one']],
+  'segmentPair: quality': ['segmentPair', (v) => [first, second, { quality: v }], ['undefined']],
+  'segmentPair: markUnknown': ['segmentPair', (v) => [first, second, { markUnknown: v }], ['undefined', 'true', 'false']],
+  'segmentPair: confidence': ['segmentPair', (v) => [first, second, { confidence: v }], ['undefined', 'true', 'false']],
+  'segmentPair: seed': ['segmentPair', (v) => [first, second, { seed: v }], ['undefined', 'zero', 'one', '300', 'more than 32 bits']],
+  'segmentPair: signal': ['segmentPair', (v) => [first, second, { signal: v }], ['undefined']],
+  'segmentPair: onProgress': ['segmentPair', (v) => [first, second, { onProgress: v }], ['undefined', 'function']],
+  'segmentPair: transfer': ['segmentPair', (v) => [structuredClone(first), structuredClone(second), { transfer: v }], ['undefined', 'true', 'false']],
+  'segmentPair: an option that does not exist': ['segmentPair', (v) => [first, second, { nonsense: v }], ['undefined']],
+  'segmentPair: an option of fitMotions': ['segmentPair', (v) => [first, second, { method: v }], ['undefined']],
+  'relabel: first': ['relabel', (v) => [v, second, found, evidence], []],
+  'relabel: second': ['relabel', (v) => [first, v, found, evidence], []],
+  'relabel: segmentation': ['relabel', (v) => [first, second, v, evidence], []],
+  'relabel: evidence': ['relabel', (v) => [first, second, found, v], []],
+  'relabel: options': ['relabel', (v) => [first, second, found, evidence, v], OPTIONS],
+  'relabel: before': ['relabel', (v) => [first, second, found, evidence, { before: v }], ['undefined']],
+  'relabel: an option that does not exist': ['relabel', (v) => [first, second, found, evidence, { before, nonsense: v }], ['undefined']],
+  'relabel: an option of segmentPair': ['relabel', (v) => [first, second, found, evidence, { motions: v }], ['undefined']],
+  'relabel: motions': ['relabel', (v) => [first, second, { ...found, motions: v }, evidence], []],
+  'relabel: a motion': ['relabel', (v) => [first, second, { ...found, motions: [v] }, evidence], []],
+  'relabel: matrix': ['relabel', (v) => [first, second, withMotion({ matrix: v }), evidence], []],
+  'relabel: an entry of a matrix': ['relabel', (v) => [first, second, withMotion({ matrix: [0, 0, 1, 0, v, 0] }), evidence], FINITE],
+  'relabel: group': ['relabel', (v) => [first, second, withMotion({ group: v }), evidence], ['zero', 'one']],
+  'relabel: labels': ['relabel', (v) => [first, second, { ...found, labels: v }, evidence], []],
+  'relabel: settings': ['relabel', (v) => [first, second, { ...found, settings: v }, evidence], []],
+  'relabel: quality': ['relabel', (v) => [first, second, { ...found, settings: { ...found.settings, quality: v } }, evidence], []],
+  'relabel: confidence': ['relabel', (v) => [first, second, { ...found, confidence: v }, evidence], Object.keys(VALUES)],
+  'relabel: what the segmentation has besides': ['relabel', (v) => [first, second, { ...found, name: v }, evidence], Object.keys(VALUES)],
+  'fitMotions: measurements': ['fitMotions', (v) => [v], []],
+  'fitMotions: positions': ['fitMotions', (v) => [{ ...measurements, positions: v }], []],
+  'fitMotions: derivatives': ['fitMotions', (v) => [{ ...measurements, derivatives: v }], []],
+  'fitMotions: options': ['fitMotions', (v) => [measurements, v], OPTIONS],
+  'fitMotions: motions': ['fitMotions', (v) => [measurements, { motions: v }], ['undefined', 'one']],
+  'fitMotions: method': ['fitMotions', (v) => [measurements, { method: v }], ['undefined']],
+  'fitMotions: seed': ['fitMotions', (v) => [measurements, { seed: v }], ['undefined', 'zero', 'one', '300', 'more than 32 bits']],
+  'fitMotions: an option that does not exist': ['fitMotions', (v) => [measurements, { nonsense: v }], ['undefined']],
+};
+
+/** What becomes of a call: its result, or the error's code and sentence. */
+async function outcome(call) {
+  let result;
+  try {
+    result = await call();
+  } catch (error) {
+    assert.ok(error?.name === 'VeroneseError' && error instanceof index.VeroneseError, error?.stack ?? String(error));
+    return checked(error);
+  }
+  return { result: result?.milliseconds ? timeless(result) : result };
+}
+
+function checked({ code, message }) {
+  assert.ok(CODES.includes(code) && code !== 'internal', `${code}: ${message}`);
+  assert.match(message, /^[^\n]{10,}$/);
+  return { code, message };
+}
+
+/** All values in one place. */
+async function everywhere(call, harmless, also = async () => {}) {
+  for (const [name, value] of Object.entries(VALUES)) {
+    try {
+      const became = await outcome(() => call(value));
+      assert.equal('result' in became, harmless.includes(name), became.message ?? 'it was not refused');
+      await also(value, became);
+    } catch (error) {
+      throw new Error(`${name}: ${error.message}`, { cause: error });
+    }
+  }
+}
+
+describe('direct calls and workers', () => {
+  for (const [place, [name, args, harmless]] of Object.entries(CALLS)) {
+    test(place, async (t) => {
+      let started = 0;
+      const worker = () => {
+        started += 1;
+        return new Worker(new URL('../dist/worker-node.js', import.meta.url));
+      };
+      const segmenter = new index.Segmenter(undefined, { worker });
+      t.after(() => segmenter.close());
+      await everywhere((value) => index[name](...args(value)), harmless, async (value, direct) => {
+        const there = await outcome(() => segmenter[name](...args(value)));
+        if (!isDeepStrictEqual(there, direct)) assert.fail(`in a worker: ${inspect(there)}, directly: ${inspect(direct)}`);
+      });
+      assert.equal((await segmenter.segmentPair(first, second)).width, 16);
+      assert.equal(started, 1, 'no call has ended the worker');
+    });
+  }
+
+  test('the other entries say the same', async () => {
+    await slim.init(read('../wasm/veronese_bg.wasm'));
+    await slim.initPoints(read('../wasm/points/veronese_points_bg.wasm'));
+    for (const [place, [name, args]] of Object.entries(CALLS)) {
+      for (const value of Object.values(VALUES)) {
+        const [expected, ...others] = await Promise.all([index, slim, inline, codecs.api].map(
+          (entry) => entry[name](...args(value)).then(() => 'done', ({ name, code, message }) => `${name} ${code}: ${message}`),
+        ));
+        for (const other of others) assert.equal(other, expected, place);
+      }
+    }
+  });
+
+  test('frames are refused in the words of the core', async () => {
+    const cases = [
+      [{ data: new Uint8Array(4), width: 1, height: 1 }, second],
+      [{ data: new Uint8Array(4 * 16 * 4097), width: 4097, height: 16 }, second],
+      [{ ...first, data: new Uint8Array(5) }, second],
+      [first, { ...second, data: new Uint8Array(16 * 16 * 3) }],
+    ];
+    await index.init();
+    await glue.instantiate(new WebAssembly.Module(read('../wasm/veronese_bg.wasm')));
+    for (const frames of cases) {
+      const { code, message } = await failure(index.segmentPair(...frames));
+      assert.throws(() => glue.segmentPair(...frames, undefined, {}, () => {}), { code, message });
+    }
+  });
+});
+
+describe('segmentPairs and pools', () => {
+  const all = async (outcomes) => {
+    const list = [];
+    for await (const { input, ...rest } of outcomes) list.push(rest);
+    return list;
+  };
+
+  test('pairs that are none', () => {
+    const iterable = (value) => [VALUES['empty list'], VALUES['list of null'], VALUES['sparse list']].includes(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView)) || value === VALUES.map || typeof value === 'string';
+    return everywhere((value) => all(index.segmentPairs(iterable(value) ? 5 : value, { jobs: 1 })), []);
+  });
+  test('options', () => everywhere((value) => all(index.segmentPairs([], value)), named((value) => typeof value === 'object' && value !== null && !Array.isArray(value)).concat('undefined')));
+  test('signal', () => everywhere((value) => all(index.segmentPairs([], { signal: value })), ['undefined']));
+  test('before for all', () => everywhere((value) => all(index.segmentPairs([], { before: value })), ['undefined']));
+
+  test('a pair, and an option of all pairs', async (t) => {
+    const pool = new index.SegmenterPool({ jobs: 1 });
+    t.after(() => pool.close());
+    for (const [name, value] of Object.entries(VALUES)) {
+      const good = { first, second };
+      // What cannot even be awaited is an error of the source.
+      const inputs = [/throwing|proxy/.test(name) ? undefined : value, { first: value, second }, { first, second: value }, good];
+      const outcomes = await all(pool.segmentPairs(inputs));
+      assert.deepEqual(outcomes.map(({ error }) => error !== undefined), [true, true, true, false]);
+      for (const { error } of outcomes.slice(0, 3)) checked(error);
+    }
+    for (const options of [{ nonsense: 1 }, { motions: () => 5 }, { quality: null }, { onProgress: () => { throw new Error('mine'); } }]) {
+      const [{ error }] = await all(pool.segmentPairs([{ first, second }], options));
+      checked(error);
+    }
+  });
+
+  test('new SegmenterPool', async () => {
+    await everywhere((value) => new index.SegmenterPool(value), OPTIONS);
+    await everywhere((value) => new index.SegmenterPool({ jobs: value }), ['undefined', 'one']);
+    await everywhere((value) => new index.SegmenterPool({ worker: value }), ['undefined', 'function']);
+    await everywhere((value) => new index.SegmenterPool({ nonsense: value }), ['undefined']);
+  });
+
+  test('new Segmenter', async () => {
+    await everywhere((value) => new index.Segmenter(undefined, value), OPTIONS);
+    await everywhere((value) => new index.Segmenter(undefined, { worker: value }), ['undefined', 'function']);
+    await everywhere((value) => new index.Segmenter(undefined, { nonsense: value }), ['undefined']);
+  });
+
+  test('a source, a source of points, and what a function makes instead of a worker', async () => {
+    const using = async (segmenter, call) => {
+      try {
+        return await call(segmenter);
+      } finally {
+        segmenter.close();
+      }
+    };
+    const segment = (segmenter) => segmenter.segmentPair(first, second);
+    await everywhere((value) => using(new index.Segmenter(value), segment), ['undefined', 'null']);
+    await everywhere((value) => using(new index.Segmenter(undefined, { points: value }), (segmenter) => segmenter.fitMotions(measurements)), ['undefined', 'null']);
+    await everywhere((value) => using(new index.Segmenter(undefined, { worker: () => value }), segment), []);
+    const cause = new Error('mine');
+    const error = await failure(using(new index.Segmenter(undefined, { worker: () => { throw cause; } }), segment));
+    assert.deepEqual([checked(error).code, error.cause], ['worker-failed', cause]);
+  });
+});
+
+describe('pictures and labels', () => {
+  const context = { putImageData() {} };
+  test('groupLabels', async () => {
+    await everywhere((value) => index.groupLabels(value), []);
+    await everywhere((value) => index.groupLabels({ labels: value, motions: [] }), ['no bytes', 'three bytes', 'shared bytes', 'bytes that are called something else']);
+    await everywhere((value) => index.groupLabels({ labels: found.labels, motions: value }), ['empty list']);
+    await everywhere((value) => index.groupLabels({ labels: found.labels, motions: [value] }), []);
+    await everywhere((value) => index.groupLabels({ labels: found.labels, motions: [{ label: 0, group: value }] }), ['zero', 'one']);
+    await everywhere((value) => index.groupLabels({ labels: found.labels, motions: [{ label: value, group: 0 }] }), ['zero', 'one']);
+  });
+
+  test('paintLabels', async (t) => {
+    globalThis.ImageData = class {}; // Node has none.
+    t.after(() => delete globalThis.ImageData);
+    await everywhere((value) => index.paintLabels(value, found), []);
+    await everywhere((value) => index.paintLabels(context, value), []);
+    await everywhere((value) => index.paintLabels(context, { ...found, labels: value }), []);
+    await everywhere((value) => index.paintLabels(context, { ...found, width: value }), []);
+    await everywhere((value) => index.paintLabels(context, { ...found, height: value }), []);
+    await everywhere((value) => index.paintLabels(context, found, value), OPTIONS);
+    await everywhere((value) => index.paintLabels(context, found, { opacity: value }), ['undefined', 'zero', 'half', 'one']);
+    await everywhere((value) => index.paintLabels(context, found, { palette: value }), ['undefined', 'empty list']);
+    await everywhere((value) => index.paintLabels(context, found, { palette: [value] }), []);
+    await everywhere((value) => index.paintLabels(context, found, { palette: [[0, value, 0]] }), ['zero', 'half', 'one']);
+    await everywhere((value) => index.paintLabels(context, found, { nonsense: value }), ['undefined']);
+  });
+
+  test('codecs', async () => {
+    await everywhere((value) => codecs.decodeImage(value), []);
+    const encoders = [[codecs.encodeGreyPng, 1], [codecs.encodeColourPng, 3], [codecs.encodeIndexedPng, 1]];
+    for (const [encoder, channels] of encoders) {
+      const bytes = new Uint8Array(4 * 4 * channels);
+      const palette = index.davisPalette();
+      await everywhere((value) => encoder(value, 4, bytes, palette), []);
+      await everywhere((value) => encoder(4, value, bytes, palette), []);
+      await everywhere((value) => encoder(2 ** 32 + 4, 4, value, palette), []);
+      await everywhere((value) => encoder(4, 4, value, palette), channels === 1 ? ['bytes that are called something else'] : []);
+    }
+    await everywhere((value) => codecs.encodeIndexedPng(4, 4, new Uint8Array(16), value), []);
+    await everywhere((value) => codecs.encodeIndexedPng(4, 4, new Uint8Array(16), [[0, 0, value]]), ['zero', 'half', 'one']);
+    assert.equal((await codecs.decodeImage(png(first))).width, 16);
+  });
+
+  test('what the attributes of the element may say', async () => {
+    for (const [name, values] of Object.entries({
+      motions: ['0', '11', '2.5', 'AUTO', 'two', '1e9', '-1', 'NaN', '0x'],
+      quality: ['good', 'FAST', '1', 'null'],
+      seed: ['-1', '0.5', 'one', '1e300'],
+    })) {
+      for (const value of values) {
+        const options = optionsOf((asked) => (asked === name ? value : null));
+        const { code, message } = await outcome(() => index.segmentPair(first, second, options));
+        assert.equal(code, 'invalid-option', value);
+        assert.ok(message.includes(`'${name}'`), message);
+      }
+    }
+    assert.deepEqual(optionsOf(() => ''), {});
+    assert.deepEqual([...VeroneseSegmenterElement.observedAttributes].sort(), ['first', 'grouped', 'motions', 'quality', 'second', 'seed']);
+  });
+});
+
+describe('init', () => {
+  test('a source that is none', async () => {
+    // Instances of their own, which have loaded nothing yet.
+    const fresh = async (call) => call(await import(`../dist/slim.js?${Math.random()}`));
+    for (const value of Object.values(VALUES)) {
+      for (const name of ['init', 'initPoints']) {
+        const error = await failure(fresh((entry) => entry[name](value)));
+        assert.equal(error.name, 'VeroneseError');
+        assert.equal(checked(error).code, 'wasm-load-failed');
+      }
+    }
+  });
+});
+
+describe('formats', () => {
+  const labels = Uint8Array.of(0, 1, 255, 1);
+  const frame = { labels, width: 2, height: 2 };
+  const whole = [labels, 2, 2];
+  const ONE = ['encodeCoco', 'encodeCvatXml', 'encodeCvatPoints', 'encodeLabelStudio', 'encodeLabelMe', 'encodeYolo', 'encodeSupervisely', 'encodeWebAnnotation', 'encodeVeronese'];
+  const SHAPED = ['encodeCoco', 'encodeCvatXml', 'encodeLabelStudio', 'encodeLabelMe'];
+  const calls = {
+    ...Object.fromEntries(ONE.map((name) => [name, (meta) => formats[name](...whole, meta)])),
+    encodeCocoVideo: (meta) => formats.encodeCocoVideo([frame], meta),
+    encodeCvatMots: (meta) => formats.encodeCvatMots([frame], meta),
+  };
+
+  for (const name of [...ONE, 'encodeDavis', 'encodeCocoRle', 'encodeCocoRleCounts']) {
+    test(`${name}: labels and sizes`, async () => {
+      await everywhere((value) => formats[name](value, 4, 4), ['bytes that are called something else']);
+      await everywhere((value) => formats[name](labels, value, 2), []);
+      await everywhere((value) => formats[name](labels, 2, value), []);
+    });
+  }
+
+  for (const [name, call] of Object.entries(calls)) {
+    test(`${name}: what is known beside the labels`, async () => {
+      await everywhere(call, OPTIONS);
+      await everywhere((value) => call({ image: value }), ['undefined', 'text', 'empty text']);
+      await everywhere((value) => call({ names: value }), ['undefined', 'empty list', 'sparse list', ...EMPTY]);
+      await everywhere((value) => call({ names: { 1: value } }), ['undefined', 'text', 'empty text']);
+      await everywhere((value) => call({ motions: value }), ['undefined', 'empty list']);
+      await everywhere((value) => call({ motions: [value] }), []);
+      await everywhere((value) => call({ motions: [{ label: value, matrix: [0, 0, 0, 0, 0, 0] }] }), ['zero', 'one']);
+      await everywhere((value) => call({ motions: [{ label: 1, matrix: [0, 0, value, 0, 0, 0] }] }), FINITE);
+      await everywhere((value) => call({ motions: [{ label: 1, matrix: [0, 0, 0, 0, 0, 0], bbox: value }] }), ['undefined']);
+      await everywhere((value) => call({ labels: value }), ['undefined', 'empty list']);
+      await everywhere((value) => call({ labels: [value] }), ['zero', 'one']);
+      await everywhere((value) => call({ nonsense: value }), ['undefined']);
+    });
+  }
+
+  for (const name of [...SHAPED, 'encodeYolo', 'encodeWebAnnotation']) {
+    test(`${name}: options`, async () => {
+      await everywhere((value) => formats[name](...whole, {}, value), OPTIONS);
+      await everywhere((value) => formats[name](...whole, {}, { shape: value }), ['undefined']);
+      await everywhere((value) => formats[name](...whole, {}, { tolerance: value }), ['undefined', 'zero', 'half', 'one', '300', 'more than 32 bits', 'more than 53 bits']);
+      await everywhere((value) => formats[name](...whole, {}, { nonsense: value }), ['undefined']);
+      await everywhere((value) => formats[name](...whole, {}, { modelVersion: value }), ['undefined', ...(name === 'encodeLabelStudio' ? ['text', 'empty text'] : [])]);
+    });
+  }
+
+  for (const name of ['encodeCocoVideo', 'encodeCvatMots']) {
+    test(`${name}: frames`, async () => {
+      await everywhere((value) => formats[name](value), []);
+      await everywhere((value) => formats[name]([frame, value]), []);
+      await everywhere((value) => formats[name]([{ ...frame, labels: value }]), []);
+      await everywhere((value) => formats[name]([{ ...frame, width: value }]), []);
+      await everywhere((value) => formats[name]([frame, { ...frame, image: value }]), ['undefined', 'text', 'empty text']);
+    });
+  }
+
+  test('decodeVeronese', async () => {
+    const document = formats.encodeVeronese(...whole, { names: { 1: 'car' }, motions: found.motions });
+    await everywhere((value) => formats.decodeVeronese(value), []);
+    const harmless = {
+      image: ['text', 'empty text'], motions: ['empty list'], names: EMPTY, convention: Object.keys(VALUES), version: ['one'],
+    };
+    for (const name of Object.keys(document)) {
+      await everywhere((value) => formats.decodeVeronese({ ...document, [name]: value }), harmless[name] ?? []);
+    }
+    await everywhere((value) => formats.decodeVeronese({ ...document, runs: [0, value] }), []);
+    await everywhere((value) => formats.decodeVeronese({ ...document, runs: [value, 4] }), ['zero', 'one']);
+  });
+});

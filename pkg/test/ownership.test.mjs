@@ -1,0 +1,333 @@
+// Who owns the bytes: what a call needs is taken when it is made, whatever happens to the caller's arrays afterwards.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { describe, test } from 'node:test';
+import { setFlagsFromString } from 'node:v8';
+import { runInNewContext } from 'node:vm';
+import { Worker } from 'node:worker_threads';
+import { decode } from 'fast-png';
+import { fitMotions, paintLabels, relabel, segmentPair, segmentPairs, Segmenter, SegmenterPool } from 'veronese';
+import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
+import { encodeCoco, encodeVeronese, decodeVeronese } from 'veronese/formats';
+import { Api } from '../build/api.js';
+import { Core } from '../build/core.js';
+import { glue } from '../build/glue.js';
+import { glue as pointsGlue } from '../build/glue-points.js';
+import { frame, pair, points, png } from './support/frames.mjs';
+import { failure, timeless } from './support/shapes.mjs';
+
+const module = (file) => new URL(`../wasm/${file}_bg.wasm`, import.meta.url);
+const read = async (place) => readFileSync(place);
+
+/** The direct calls on modules that are yet to be loaded. */
+function unloaded() {
+  glue.forgetInstance();
+  pointsGlue.forgetInstance();
+  return new Api(new Core(glue, read, module('veronese')), new Core(pointsGlue, read, module('points/veronese_points')));
+}
+
+function pool(t) {
+  const made = new SegmenterPool({ jobs: 1 });
+  t.after(() => made.close());
+  return made;
+}
+
+const HOSTS = {
+  'direct, the module not loaded': unloaded,
+  'direct, the module loaded': () => ({ segmentPair, relabel, fitMotions }),
+  'in a worker that is busy': (t) => {
+    const busy = pool(t);
+    void busy.segmentPair(...pair());
+    return busy;
+  },
+};
+
+const scribble = (...arrays) => arrays.forEach((array) => array.fill(77));
+
+/** Copies that may be written to. */
+const own = ({ data, ...rest }) => ({ ...rest, data: new Uint8Array(data) });
+const [first, second] = pair();
+const before = frame(-1);
+const expected = timeless(await segmentPair(first, second, { before }));
+
+describe('arrays that are written to after the call change nothing', () => {
+  for (const [title, make] of Object.entries(HOSTS)) {
+    test(`segmentPair, ${title}`, async (t) => {
+      const frames = [own(first), own(second), own(before)];
+      const result = make(t).segmentPair(frames[0], frames[1], { before: frames[2] });
+      frames.forEach((each) => {
+        scribble(each.data);
+        each.width = 3;
+      });
+      assert.deepEqual(timeless(await result), expected);
+    });
+
+    test(`relabel, ${title}`, async (t) => {
+      const found = await segmentPair(first, second, { before });
+      const evidence = new Uint16Array(found.labels.length).fill(0b01, 1000, 1200);
+      const wanted = timeless(await relabel(first, second, found, evidence, { before }));
+      const frames = [own(first), own(second), own(before)];
+      const given = structuredClone(found);
+      const result = make(t).relabel(frames[0], frames[1], given, evidence, { before: frames[2] });
+      scribble(...frames.map(({ data }) => data), given.labels, evidence);
+      for (const motion of given.motions) {
+        scribble(motion.matrix);
+        motion.group = 9;
+      }
+      given.evidence.candidates.length = 0;
+      given.settings.quality = 'fast';
+      given.width = 5;
+      assert.deepEqual(timeless(await result), wanted);
+    });
+
+    test(`fitMotions, ${title}`, async (t) => {
+      const measurements = points(80, 1, 2);
+      const wanted = timeless(await fitMotions(points(80, 1, 2)));
+      const result = make(t).fitMotions(measurements);
+      scribble(measurements.positions, measurements.derivatives);
+      assert.deepEqual(timeless(await result), wanted);
+    });
+  }
+
+  test('segmentPairs, from a generator that has one buffer for each frame', async () => {
+    const input = (number) => pair({ square: [number % 4, 1] });
+    function* reusing(count) {
+      const [one, other] = [own(first), own(second)];
+      for (let number = 0; number < count; number++) {
+        const [from, to] = input(number);
+        one.data.set(from.data);
+        other.data.set(to.data);
+        yield { first: one, second: other };
+      }
+    }
+    async function* slowly(count) {
+      for (const each of reusing(count)) {
+        yield each;
+        await null;
+      }
+    }
+    for (const source of [reusing(7), slowly(7)]) {
+      for await (const { index, segmentation } of segmentPairs(source, { jobs: 2 })) {
+        assert.deepEqual(timeless(segmentation), timeless(await segmentPair(...input(index))), `pair ${index}`);
+      }
+    }
+  });
+
+  test('decodeImage and the encoders', async () => {
+    const picture = frame(0, { width: 37, height: 21 });
+    const file = Uint8Array.from(png(picture));
+    const decoded = decodeImage(file);
+    scribble(file);
+    assert.deepEqual(new Uint8Array((await decoded).data), new Uint8Array(picture.data));
+    const palette = Array.from({ length: 256 }, (_, k) => [k, 255 - k, 7]);
+    for (const [encoder, channels] of [[encodeGreyPng, 1], [encodeColourPng, 3], [encodeIndexedPng, 1]]) {
+      const bytes = Uint8Array.from({ length: 15 * channels }, (_, k) => k);
+      const wanted = [...bytes];
+      const encoded = encoder(5, 3, bytes, palette);
+      scribble(bytes);
+      assert.deepEqual([...decode(await encoded).data], wanted, encoder.name);
+    }
+  });
+
+  test('paintLabels', async (t) => {
+    // Node has no ImageData.
+    globalThis.ImageData = class {
+      constructor(data) {
+        this.data = data;
+      }
+    };
+    t.after(() => delete globalThis.ImageData);
+    const labels = Uint8Array.of(0, 1, 1, 0);
+    let painted;
+    const done = paintLabels({ putImageData: ({ data }) => (painted = [...data]) }, { labels, width: 2, height: 2 }, { palette: [[0, 0, 0, 0], [9, 9, 9]], opacity: 1 });
+    scribble(labels);
+    await done;
+    const [none, nine] = [[0, 0, 0, 0], [9, 9, 9, 255]];
+    assert.deepEqual(painted, [none, nine, nine, none].flat());
+  });
+});
+
+/** A segmenter whose messages to its worker are looked at. */
+function watched(t) {
+  const posted = [];
+  const worker = () => {
+    const made = new Worker(new URL('../dist/worker-node.js', import.meta.url));
+    const post = made.postMessage.bind(made);
+    made.postMessage = (message, ...rest) => {
+      posted.push({ bytes: [...buffersIn(message.task)].reduce((sum, { byteLength }) => sum + byteLength, 0) });
+      post(message, ...rest);
+    };
+    return made;
+  };
+  const made = new Segmenter(undefined, { worker });
+  t.after(() => made.close());
+  return { segmenter: made, posted };
+}
+
+function buffersIn(value, found = new Set()) {
+  if (ArrayBuffer.isView(value)) found.add(value.buffer);
+  else if (typeof value === 'object' && value !== null) Object.values(value).forEach((entry) => buffersIn(entry, found));
+  return found;
+}
+
+describe('what goes to a worker', () => {
+  const size = 64 * 48 * 4;
+
+  /** The frames as views into one large buffer. */
+  function views(Buffer = ArrayBuffer, options) {
+    const buffer = new Buffer(64 * size, options);
+    return [first, second].map(({ data, ...rest }, k) => {
+      const view = new Uint8Array(buffer, (7 + k) * size, size);
+      view.set(data);
+      return { ...rest, data: view };
+    });
+  }
+
+  test('is what the views show, not the whole buffer', async (t) => {
+    const { segmenter, posted } = watched(t);
+    await segmenter.segmentPair(...views());
+    const found = await segmentPair(first, second);
+    const room = new ArrayBuffer(2 ** 20);
+    const evidence = new Uint16Array(room, 1024, found.labels.length);
+    const labels = new Uint8Array(room, 2 ** 18, found.labels.length).fill(0);
+    await segmenter.relabel(first, second, { ...found, confidence: new Uint8Array(room), labels }, evidence);
+    const { positions, derivatives } = points(80, 1, 2);
+    const wide = new Float64Array(2 ** 16);
+    wide.set(positions, 5);
+    wide.set(derivatives, 1000);
+    await segmenter.fitMotions({ positions: wide.subarray(5, 165), derivatives: wide.subarray(1000, 1240) });
+    const matrices = found.count * (6 * 8 + 1);
+    assert.deepEqual(posted.map(({ bytes }) => bytes), [2 * size, 2 * size + 3 * found.labels.length + matrices, 8 * (160 + 240)]);
+  });
+
+  test('may be shared or resizable memory', async (t) => {
+    const { segmenter } = watched(t);
+    const wanted = timeless(await segmentPair(first, second));
+    for (const frames of [views(SharedArrayBuffer), views(ArrayBuffer, { maxByteLength: 128 * size }), views(SharedArrayBuffer, { maxByteLength: 128 * size })]) {
+      for (const transfer of [false, true]) {
+        const again = frames.map(({ data, ...rest }) => ({ ...rest, data }));
+        const call = transfer && frames[0].data.buffer instanceof ArrayBuffer ? frames.map(own) : again;
+        assert.deepEqual(timeless(await segmenter.segmentPair(...call, { transfer })), wanted);
+        assert.deepEqual(timeless(await segmentPair(...again)), wanted);
+      }
+    }
+  });
+
+  test('leaves nothing of the caller behind while the call waits', async (t) => {
+    setFlagsFromString('--expose-gc');
+    const collect = runInNewContext('gc');
+    const lane = pool(t);
+    const running = lane.segmentPair(...pair({ width: 1024, height: 1024 }));
+    const weak = [];
+    const waiting = (() => {
+      const frames = [own(first), own(second), own(before)];
+      const measurements = points(80, 1, 2);
+      const owned = [...frames.map(({ data }) => data.buffer), ...Object.values(measurements).map(({ buffer }) => buffer)];
+      weak.push(...owned.map((buffer) => new WeakRef(buffer)));
+      return [lane.segmentPair(frames[0], frames[1], { before: frames[2] }), lane.fitMotions(measurements)];
+    })();
+    await new Promise((resolve) => setImmediate(resolve));
+    collect();
+    assert.deepEqual(weak.map((reference) => reference.deref()), [undefined, undefined, undefined, undefined, undefined]);
+    lane.close();
+    for (const call of [running, ...waiting]) assert.equal((await failure(call)).code, 'cancelled');
+  });
+});
+
+describe('transfer: true gives the buffers away', () => {
+  for (const [title, make] of Object.entries(HOSTS)) {
+    test(title, async (t) => {
+      const calls = make(t);
+      const frames = [own(first), own(second), own(before)];
+      const result = calls.segmentPair(frames[0], frames[1], { before: frames[2], transfer: true });
+      assert.deepEqual(frames.map(({ data }) => data.length), [0, 0, 0], 'at once');
+      assert.deepEqual(timeless(await result), expected);
+
+      const measurements = points(80, 1, 2);
+      const fit = calls.fitMotions(measurements, { transfer: true });
+      assert.deepEqual([measurements.positions.length, measurements.derivatives.length], [0, 0]);
+      assert.deepEqual(timeless(await fit), timeless(await fitMotions(points(80, 1, 2))));
+
+      const found = await segmentPair(first, second);
+      const evidence = new Uint16Array(found.labels.length);
+      const given = [own(first), own(second)];
+      const again = calls.relabel(...given, found, evidence, { transfer: true });
+      assert.deepEqual([...given.map(({ data }) => data.length), evidence.length], [0, 0, 0]);
+      assert.equal(found.labels.length, 64 * 48, 'the segmentation stays whole');
+      assert.deepEqual((await again).labels, found.labels);
+    });
+  }
+
+  test('both frames in one buffer, and one frame twice', async (t) => {
+    const worker = pool(t);
+    const size = first.data.length;
+    const twoIn = () => {
+      const both = new Uint8Array(2 * size + 3);
+      both.set(first.data, 3);
+      both.set(second.data, size + 3);
+      return [{ ...first, data: both.subarray(3, size + 3) }, { ...second, data: both.subarray(size + 3) }];
+    };
+    const wanted = timeless(await segmentPair(first, second));
+    for (const calls of [{ segmentPair }, worker]) {
+      assert.deepEqual(timeless(await calls.segmentPair(...twoIn(), { transfer: true })), wanted);
+      const still = own(first);
+      assert.equal((await calls.segmentPair(still, still, { transfer: true })).count, 1);
+    }
+  });
+
+  test('what cannot be given away is copied', async (t) => {
+    const worker = pool(t);
+    const tiny = pair({ width: 16, height: 16 });
+    const pooled = tiny.map(({ data, ...rest }) => ({ ...rest, data: Buffer.from(data) }));
+    assert.ok(pooled[0].data.buffer.byteLength > pooled[0].data.length, "one of Node's shared pools");
+    const memory = new WebAssembly.Memory({ initial: 1 });
+    const inModule = tiny.map(({ data, ...rest }, k) => {
+      const view = new Uint8Array(memory.buffer, 2048 * k, data.length);
+      view.set(data);
+      return { ...rest, data: view };
+    });
+    const wanted = timeless(await segmentPair(...tiny));
+    for (const calls of [{ segmentPair }, worker]) {
+      for (const frames of [pooled, inModule]) {
+        assert.deepEqual(timeless(await calls.segmentPair(...frames, { transfer: true })), wanted);
+        assert.equal(frames[0].data.length, 16 * 16 * 4);
+      }
+    }
+  });
+
+  test('in segmentPairs too; a frame that was given away is refused', async () => {
+    const shared = own(second);
+    const inputs = [{ first: own(first), second: shared }, { first: shared, second: own(first) }, { first: own(first), second: own(second) }];
+    const outcomes = [];
+    for await (const outcome of segmentPairs(inputs, { jobs: 1, transfer: true })) outcomes.push(outcome);
+    assert.deepEqual(outcomes.map(({ error }) => error?.code), [undefined, 'invalid-input', undefined]);
+    assert.match(outcomes[1].error.message, /given away/);
+    assert.equal(inputs[2].first.data.length, 0);
+  });
+
+  test('nothing is given away by a call that is refused', async (t) => {
+    for (const calls of [{ segmentPair }, pool(t)]) {
+      const frames = [own(first), own(second)];
+      for (const options of [{ transfer: true, nonsense: 1 }, { transfer: true, before: {} }, { transfer: 1 }, { transfer: true, signal: AbortSignal.abort() }]) {
+        assert.match((await failure(calls.segmentPair(...frames, options))).code, /^(invalid-|cancelled)/);
+        assert.deepEqual(frames.map(({ data }) => data.length), [first.data.length, second.data.length]);
+      }
+    }
+  });
+});
+
+test('documents for annotation tools share nothing with what they were made of', () => {
+  const labels = Uint8Array.of(0, 1);
+  const meta = { motions: [{ label: 1, matrix: [1, 2, 3, 4, 5, 6], bbox: [1, 0, 1, 1] }], names: { 1: 'car' } };
+  const [coco, document] = [encodeCoco(labels, 2, 1, meta), encodeVeronese(labels, 2, 1, meta)];
+  const decoded = decodeVeronese(document);
+  const copies = structuredClone([coco, document, decoded]);
+  meta.motions[0].matrix[0] = 99;
+  meta.motions[0].bbox[0] = 99;
+  assert.deepEqual([coco, document], copies.slice(0, 2));
+  document.motions[0].matrix[0] = 99;
+  document.motions[0].bbox[0] = 99;
+  document.names[1] = 'bus';
+  assert.deepEqual(decoded, copies[2]);
+});
