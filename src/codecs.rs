@@ -1,19 +1,21 @@
 //! Image files: PNG, JPEG, WebP, BMP and PNM in, PNG out. For Node and native programs (feature `codecs`); a browser decodes
 //! by itself.
 //!
-//! The bytes come from outside, so nothing is believed: the header's size is checked before anything is allocated for the
-//! pixels, and whatever a decoder complains about becomes [`Error::UnreadableImage`].
+//! The bytes come from outside, so nothing is believed: the header's size is checked before a decoder opens the file, what is
+//! packed beside the pixels stays packed, and whatever a decoder complains about becomes [`Error::UnreadableImage`].
 
 use std::io::Cursor;
 
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, MAX_SIDE};
 
+mod header;
+
 /// Most that one decoder may allocate, bytes: 16-bit RGBA of the largest frame, three times over.
-const MAX_ALLOCATION: u64 = 3 * 8 * (MAX_SIDE as u64) * (MAX_SIDE as u64);
+const MAX_ALLOCATION: usize = 3 * 8 * MAX_SIDE * MAX_SIDE;
 
 /// A decoded image: RGBA bytes row by row, as `ImageData` has them.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,34 +42,70 @@ impl Picture {
 /// browsers do; of an animation the first image is taken.
 ///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`] for a header with a side above 4096, [`Error::UnreadableImage`] for everything that a
-/// decoder refuses: another format, damaged or truncated data.
+/// [`Error::FrameSizeUnsupported`] for a header with a side of 0 or above 4096, [`Error::UnreadableImage`] for everything
+/// that a decoder refuses: another format, damaged or truncated data.
 pub fn decode_image(bytes: &[u8]) -> Result<Picture> {
     if bytes.is_empty() {
         return Err(unreadable("it is empty"));
     }
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(unreadable)?;
-    let format = reader
-        .format()
-        .filter(|format| format.reading_enabled())
+    let format = image::guess_format(bytes)
+        .ok()
+        .filter(|format| *format == ImageFormat::Png || format.reading_enabled())
         .ok_or_else(|| unreadable("it is neither PNG, JPEG, WebP, BMP nor PNM"))?;
+    header::check(format, bytes)?;
     if format == ImageFormat::Jpeg && !jpeg_ends(bytes) {
         return Err(unreadable("it is a JPEG file without its end"));
     }
-    let mut limits = Limits::no_limits();
-    limits.max_alloc = Some(MAX_ALLOCATION);
-    reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(unreadable)?;
-    let (width, height) = decoder.dimensions();
-    let (width, height) = (width as usize, height as usize);
-    if width > MAX_SIDE || height > MAX_SIDE {
-        return Err(Error::FrameSizeUnsupported { width, height, min: crate::MIN_SIDE, max: MAX_SIDE });
-    }
-    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-    let mut image = DynamicImage::from_decoder(decoder).map_err(unreadable)?;
+    let (mut image, orientation) =
+        if format == ImageFormat::Png { png_image(bytes) } else { other_image(bytes, format) }?;
     image.apply_orientation(orientation);
     let rgba = image.into_rgba8();
     Ok(Picture { width: rgba.width() as usize, height: rgba.height() as usize, rgba: rgba.into_raw() })
+}
+
+/// By the crate png itself: through the crate image, opening a file unpacks its colour profile, which nobody asks for here and
+/// which can be a thousand times as large as the file.
+fn png_image(bytes: &[u8]) -> Result<(DynamicImage, Orientation)> {
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: MAX_ALLOCATION });
+    decoder.set_ignore_iccp_chunk(true);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let mut reader = decoder.read_info().map_err(unreadable)?;
+    let (width, height) = reader.info().size();
+    let orientation = reader.info().exif_metadata.as_ref().and_then(|exif| Orientation::from_exif_chunk(exif));
+    let mut samples = vec![0; reader.output_buffer_size().ok_or_else(|| unreadable("it is too large"))?];
+    reader.next_frame(&mut samples).map_err(unreadable)?;
+    let wide = |samples: Vec<u8>| samples.as_chunks().0.iter().map(|pair| u16::from_be_bytes(*pair)).collect();
+    let image = match reader.output_color_type() {
+        (png::ColorType::Grayscale, png::BitDepth::Eight) => DynamicImage::ImageLuma8(filled(width, height, samples)?),
+        (png::ColorType::GrayscaleAlpha, png::BitDepth::Eight) => {
+            DynamicImage::ImageLumaA8(filled(width, height, samples)?)
+        }
+        (png::ColorType::Rgb, png::BitDepth::Eight) => DynamicImage::ImageRgb8(filled(width, height, samples)?),
+        (png::ColorType::Rgba, png::BitDepth::Eight) => DynamicImage::ImageRgba8(filled(width, height, samples)?),
+        (png::ColorType::Grayscale, _) => DynamicImage::ImageLuma16(filled(width, height, wide(samples))?),
+        (png::ColorType::GrayscaleAlpha, _) => DynamicImage::ImageLumaA16(filled(width, height, wide(samples))?),
+        (png::ColorType::Rgb, _) => DynamicImage::ImageRgb16(filled(width, height, wide(samples))?),
+        (png::ColorType::Rgba, _) => DynamicImage::ImageRgba16(filled(width, height, wide(samples))?),
+        (png::ColorType::Indexed, _) => return Err(unreadable("its palette is missing")),
+    };
+    Ok((image, orientation.unwrap_or(Orientation::NoTransforms)))
+}
+
+fn filled<P: Pixel>(width: u32, height: u32, samples: Vec<P::Subpixel>) -> Result<ImageBuffer<P, Vec<P::Subpixel>>> {
+    ImageBuffer::from_raw(width, height, samples).ok_or_else(|| unreadable("it has too few pixels"))
+}
+
+fn other_image(bytes: &[u8], format: ImageFormat) -> Result<(DynamicImage, Orientation)> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(MAX_ALLOCATION as u64);
+    reader.limits(limits);
+    let mut decoder = reader.into_decoder().map_err(unreadable)?;
+    let (width, height) = decoder.dimensions();
+    header::supported((width as usize, height as usize))?;
+    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+    Ok((DynamicImage::from_decoder(decoder).map_err(unreadable)?, orientation))
 }
 
 /// Whether the marker "end of image" follows the start of the (last) scan. The decoder fills what a truncated file lacks
@@ -189,10 +227,144 @@ mod tests {
         }
     }
 
+    /// A PNG of 64×64 black pixels with a chunk of its own between header and pixels.
+    fn png_with(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
+        let plain = encode_grey_png(64, 64, &[0; 64 * 64]).unwrap();
+        let mut file = plain[..33].to_vec();
+        file.extend(chunk(kind, content));
+        file.extend(&plain[33..]);
+        file
+    }
+
+    fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
+        let mut chunk = (content.len() as u32).to_be_bytes().to_vec();
+        chunk.extend(kind);
+        chunk.extend(content);
+        let sum = chunk[4..].iter().fold(!0_u32, |sum, &byte| {
+            (0..8).fold(sum ^ u32::from(byte), |sum, _| (sum >> 1) ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 })
+        });
+        chunk.extend((!sum).to_be_bytes());
+        chunk
+    }
+
+    fn png_header(width: u32, height: u32) -> Vec<u8> {
+        let mut content = [width.to_be_bytes(), height.to_be_bytes()].concat();
+        content.extend([16, 6, 0, 0, 0]);
+        [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &content)].concat()
+    }
+
+    fn bmp_header(width: i32, height: i32) -> Vec<u8> {
+        let mut file =
+            [b"BM".to_vec(), vec![0; 8], 54_u32.to_le_bytes().to_vec(), 40_u32.to_le_bytes().to_vec()].concat();
+        file.extend([width.to_le_bytes(), height.to_le_bytes()].concat());
+        file.extend([1, 0, 24, 0]);
+        file.resize(60, 0);
+        file
+    }
+
+    fn jpeg_header(width: u16, height: u16) -> Vec<u8> {
+        let mut file = vec![0xff, 0xd8, 0xff, 0xe0, 0, 4, 0, 0, 0xff, 0xff, 0xc0, 0, 11, 8];
+        file.extend([height.to_be_bytes(), width.to_be_bytes()].concat());
+        file.extend([1, 1, 0x11, 0, 0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 0xff, 0xd9]);
+        file
+    }
+
+    /// A WebP file of these chunks.
+    fn webp(chunks: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
+        let mut body = b"WEBP".to_vec();
+        for (kind, content) in chunks {
+            body.extend(*kind);
+            body.extend((content.len() as u32).to_le_bytes());
+            body.extend(content);
+            body.resize(body.len().next_multiple_of(2), 0);
+        }
+        [b"RIFF".to_vec(), (body.len() as u32).to_le_bytes().to_vec(), body].concat()
+    }
+
+    fn lossy(width: u16, height: u16) -> Vec<u8> {
+        let mut content = vec![0x10, 0, 0, 0x9d, 0x01, 0x2a];
+        content.extend([width.to_le_bytes(), height.to_le_bytes()].concat());
+        content
+    }
+
+    fn lossless(width: u32, height: u32) -> Vec<u8> {
+        let mut content = vec![0x2f];
+        content.extend(((width - 1) | (height - 1) << 14).to_le_bytes());
+        content
+    }
+
+    fn extended(flags: u8, width: u32, height: u32) -> Vec<u8> {
+        let mut content = vec![flags, 0, 0, 0];
+        for side in [width, height] {
+            content.extend(&(side - 1).to_le_bytes()[..3]);
+        }
+        content
+    }
+
     #[test]
-    fn a_header_of_enormous_sides_is_refused_before_its_pixels_are_allocated() {
-        let error = decode_image(b"P6\n1000000 1000000\n255\n").unwrap_err();
-        assert_eq!(error.code(), "frame-size-unsupported");
+    fn a_header_of_unsupported_sides_is_refused_as_such_in_every_format() {
+        let pam =
+            |side: &str| format!("P7\nWIDTH {side}\n# wide\nHEIGHT 8\nDEPTH 1\nMAXVAL 255\nENDHDR\n").into_bytes();
+        let files = [
+            png_header(30_000, 30_000),
+            png_header(u32::MAX, u32::MAX),
+            png_header(0, 0),
+            png_header(4097, 1),
+            bmp_header(70_000, 16),
+            bmp_header(16, -70_000),
+            bmp_header(0, 0),
+            jpeg_header(65_535, 65_535),
+            jpeg_header(0, 16),
+            webp(&[(b"VP8 ", lossy(16_383, 16_383))]),
+            webp(&[(b"VP8 ", lossy(0, 0))]),
+            webp(&[(b"VP8L", lossless(16_384, 16_384))]),
+            webp(&[(b"VP8X", extended(0, 1 << 24, 1 << 24))]),
+            b"P6\n1000000 1000000\n255\n".to_vec(),
+            b"P5 99999999999999999999 4 255\n".to_vec(),
+            b"P4 4294967295 4294967295 ".to_vec(),
+            b"P5\n0 0\n255\n".to_vec(),
+            b"P5 # 1\n16 # 2\n 0 255\n".to_vec(),
+            b"P2 0 0 255".to_vec(),
+            pam("0"),
+            pam("99999999999"),
+        ];
+        for file in files {
+            let error = decode_image(&file).unwrap_err();
+            let start = String::from_utf8_lossy(&file[..file.len().min(40)]).into_owned();
+            assert_eq!(error.code(), "frame-size-unsupported", "{start:?}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_frame_inside_a_file_is_no_larger_than_the_file_says() {
+        // 400 MB of planes for a canvas of 64×64.
+        for file in [
+            webp(&[(b"VP8X", extended(0, 64, 64)), (b"VP8 ", lossy(16_383, 16_383))]),
+            webp(&[
+                (b"VP8X", extended(2, 64, 64)),
+                (b"ANIM", vec![0; 6]),
+                (b"ANMF", [vec![0; 16], webp(&[(b"VP8 ", lossy(16_383, 16_383))])[12..].to_vec()].concat()),
+            ]),
+        ] {
+            assert_eq!(decode_image(&file).unwrap_err().code(), "frame-size-unsupported");
+        }
+    }
+
+    #[test]
+    fn a_chunk_that_claims_more_than_the_file_has_is_refused() {
+        let mut file = webp(&[(b"VP8X", extended(8, 64, 64)), (b"VP8 ", lossy(64, 64)), (b"EXIF", vec![0; 4])]);
+        let size = file.len() - 8;
+        file[size..size + 4].copy_from_slice(&0x7000_0000_u32.to_le_bytes());
+        assert_eq!(decode_image(&file).unwrap_err().code(), "unreadable-image");
+    }
+
+    #[test]
+    fn what_png_carries_beside_the_pixels_changes_none_of_them() {
+        let plain = decode_image(&encode_grey_png(64, 64, &[0; 64 * 64]).unwrap()).unwrap();
+        // Not one of them is what its kind should be.
+        for kind in [b"iCCP", b"zTXt", b"iTXt", b"tEXt", b"eXIf", b"gAMA", b"veRo"] {
+            assert_eq!(decode_image(&png_with(kind, &[b'a'; 300])).unwrap(), plain, "{kind:?}");
+        }
     }
 
     #[test]

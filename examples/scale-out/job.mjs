@@ -22,14 +22,27 @@ export function placeOf(out, job) {
   return { json: `${stem}.json`, png: `${stem}.png` };
 }
 
-/** What a job found, or undefined where it is not done. The JSON is written last: where it is, the PNG is too. */
+/**
+ * What a job found, or undefined where it is not done, or where its files are no longer what was written. The JSON is written
+ * last: where it is, the PNG is too.
+ */
 export async function resultOf(out, job) {
+  const place = placeOf(out, job);
   try {
-    return JSON.parse(await readFile(placeOf(out, job).json, 'utf8'));
+    const text = await readFile(place.json, 'utf8');
+    const { seal: _, ...sealed } = JSON.parse(text);
+    if (text !== recordOf(job, sealed)) return undefined;
+    const { image, ...report } = sealed;
+    return image === undefined || sha256(await readFile(place.png)) === image ? report : undefined;
   } catch (error) {
-    if (error.code === 'ENOENT') return undefined;
+    if (error.code === 'ENOENT' || error instanceof SyntaxError || error instanceof TypeError) return undefined;
     throw error;
   }
+}
+
+/** The text of a result, with a hash of job and text at its end. */
+function recordOf(job, content) {
+  return JSON.stringify({ ...content, seal: sha256(job + JSON.stringify(content)) });
 }
 
 /** Errors that lie in the frames: another attempt would find the same, so they are the result. */
@@ -44,11 +57,12 @@ export async function perform(pool, { job, first, second, out, options }) {
   try {
     const [one, two] = await Promise.all(files.map((file) => decodeImage(file)));
     const { labels, confidence: _, milliseconds: __, ...report } = await pool.segmentPair(one, two, options);
-    await writeWhole(place.png, await encodeIndexedPng(report.width, report.height, labels, davisPalette()));
-    await writeWhole(place.json, JSON.stringify(report));
+    const image = await encodeIndexedPng(report.width, report.height, labels, davisPalette());
+    await writeWhole(place.png, image);
+    await writeWhole(place.json, recordOf(job, { ...report, image: sha256(image) }));
   } catch (error) {
     if (!FINAL.has(error.code)) throw error;
-    await writeWhole(place.json, JSON.stringify({ error: { code: error.code, message: error.message } }));
+    await writeWhole(place.json, recordOf(job, { error: { code: error.code, message: error.message } }));
   }
   return true;
 }

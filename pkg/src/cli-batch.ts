@@ -127,9 +127,12 @@ function count(pairs: number, { index, of }: SequenceCommand['shard']): number {
   return Math.max(0, Math.ceil((pairs - index) / of));
 }
 
+/** Characters of a frame's name in that of its pair: with what is added while a folder is written, file systems take it. */
+const LONGEST_STEM = 200;
+
 /** The pair's number, and its first frame for people who look for it. */
 function nameOf(index: number, { name, stem = basename(name, extname(name)) }: Frame): string {
-  return `${String(index).padStart(6, '0')}-${stem.replace(/[^\w.-]/g, '_')}`;
+  return `${String(index).padStart(6, '0')}-${stem.slice(0, LONGEST_STEM).replace(/[^\w.-]/g, '_')}`;
 }
 
 function namesOf({ frames: [first, second] }: Pair): { first: string | undefined; second: string | undefined } {

@@ -10,11 +10,11 @@ import { version } from './version.js';
 
 /** What a pair's result.json has besides the report; the report's times are left out, since they differ between two runs. */
 export interface Record extends Omit<Report, 'milliseconds'> {
-  /** Hash of everything that decides what the files hold. */
-  job: string;
   inputs: { name: string; sha256: string }[];
   /** Names and hashes of the images beside result.json. */
   files: { [name: string]: string };
+  /** Hash of everything that decides what the files hold, and of the rest of this record. */
+  job: string;
 }
 
 const RESULT = 'result.json';
@@ -27,11 +27,13 @@ export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay 
   return sha256(JSON.stringify({ software: `veronese ${version}`, options, grouped, overlay, contents }));
 }
 
-/** The record in a pair's folder if it is of this job and all its files are whole. */
+/** The record in a pair's folder if it is of this job and nothing of it or of its files has changed. */
 export function finished(folder: string, job: string): Record | undefined {
   try {
-    const record = JSON.parse(readFileSync(join(folder, RESULT), 'utf8')) as Record;
-    if (record.job !== job) return undefined;
+    const text = readFileSync(join(folder, RESULT), 'utf8');
+    const { job: _, ...content } = JSON.parse(text) as Record;
+    const record = sealed(content, job);
+    if (jsonLine(record) !== text) return undefined;
     const whole = Object.entries(record.files).every(([name, hash]) => sha256(readFileSync(join(folder, name))) === hash);
     return whole ? record : undefined;
   } catch {
@@ -39,15 +41,19 @@ export function finished(folder: string, job: string): Record | undefined {
   }
 }
 
+/** The text of a record tells by itself whether it is still what was written. */
+function sealed(content: Omit<Record, 'job'>, job: string): Record {
+  return { ...content, job: sha256(job + jsonLine(content)) };
+}
+
 export function recordFiles(report: Report, job: string, inputs: readonly InputFile[], images: readonly OutputFile[]): OutputFile[] {
   const { milliseconds: _, ...lasting } = report;
-  const record: Record = {
+  const content = {
     ...lasting,
-    job,
     inputs: inputs.map(({ name, bytes }) => ({ name: name.split(/[\\/]/).at(-1) ?? name, sha256: sha256(bytes) })),
     files: Object.fromEntries(images.map(({ name, bytes }) => [name, sha256(bytes)])),
   };
-  return [...images, { name: RESULT, bytes: Buffer.from(jsonLine(record)) }];
+  return [...images, { name: RESULT, bytes: Buffer.from(jsonLine(sealed(content, job))) }];
 }
 
 /** A mark of this machine, so that two of them may write into one shared folder. */

@@ -122,6 +122,57 @@ describe('veronese batch', () => {
     assert.ok(existsSync(join(out, '000000-f0', 'mine.txt')), 'other files do');
   });
 
+  test('a pair is done again whatever was changed of it', async (t) => {
+    const { frames, out } = clip(t, 2);
+    const status = async () => (await batch([frames, '--out', out, '--confidence'])).lines.map(({ status }) => status).join(' ');
+    assert.equal(await status(), 'done');
+    const before = tree(out);
+    const place = (name) => join(out, '000000-f0', name);
+    const report = before[join('000000-f0', 'result.json')];
+    const edits = {
+      'the number of motions': (record) => (record.count += 1),
+      'an entry of a matrix': ({ motions }) => (motions[0].matrix[2] += 1e-9),
+      'a new entry': (record) => (record.note = 'mine'),
+      'an entry taken away': (record) => delete record.evidence,
+      'an image taken out of the list': ({ files }) => delete files['labels.png'],
+      'a hash': ({ files }) => (files['labels.png'] = files['labels.png'].replace(/^./, (c) => (c === '0' ? '1' : '0'))),
+      'the name of an input': ({ inputs }) => (inputs[0].name = 'other.png'),
+    };
+    for (const [title, edit] of Object.entries(edits)) {
+      const record = JSON.parse(report);
+      edit(record);
+      writeFileSync(place('result.json'), `${JSON.stringify(record)}\n`);
+      assert.equal(await status(), 'done', title);
+      assert.deepEqual(tree(out), before, title);
+    }
+    const texts = {
+      'another layout': JSON.stringify(JSON.parse(report), null, 1),
+      'an entry twice': report.replace('{', '{"count":7,'),
+      'a line more': `${report}\n`,
+      'a line end less': report.trimEnd(),
+      'the first half': report.slice(0, report.length / 2),
+      'nothing': '',
+      'null': 'null',
+      'a list': '[]',
+    };
+    for (const [title, text] of Object.entries(texts)) {
+      writeFileSync(place('result.json'), text);
+      assert.equal(await status(), 'done', title);
+      assert.deepEqual(tree(out), before, title);
+    }
+    for (const name of ['labels.png', 'mask-0.png', 'confidence.png']) {
+      const whole = Buffer.from(before[join('000000-f0', name)], 'latin1');
+      const flipped = Buffer.from(whole);
+      flipped[whole.length >> 1] ^= 1;
+      for (const bytes of [flipped, whole.subarray(0, -1), Buffer.alloc(0)]) {
+        writeFileSync(place(name), bytes);
+        assert.equal(await status(), 'done', name);
+        assert.deepEqual(tree(out), before, name);
+      }
+    }
+    assert.equal(await status(), 'skipped');
+  });
+
   test('what is skipped prints what was found then', async (t) => {
     const { frames, out } = clip(t, 3);
     const [first, again] = [await batch([frames, '--out', out]), await batch([frames, '--out', out])];
@@ -147,6 +198,16 @@ describe('veronese batch', () => {
     // Repaired, only those are done.
     writeFileSync(one(2), png(clipFrame(2)));
     assert.deepEqual((await batch([frames, '--out', out])).lines.map(({ status }) => status), ['skipped', 'done', 'done', 'skipped', 'skipped']);
+  });
+
+  test('frames with the longest names there may be have results', async (t) => {
+    const { one, path, out } = clip(t, 1);
+    const names = ['a', 'b'].map((letter) => path(`${letter.repeat(251)}.png`));
+    for (const name of names) writeFileSync(name, readFileSync(one(0)));
+    const { lines: [{ name, status }] } = await batch([...names, '--out', out]);
+    assert.equal(status, 'done');
+    assert.deepEqual(readdirSync(out), [name]);
+    assert.equal(name, `000000-${'a'.repeat(200)}`);
   });
 
   test('a missing file and a frame of another size fail alone', async (t) => {

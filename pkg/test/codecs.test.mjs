@@ -1,8 +1,11 @@
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
+import { deflateSync } from 'node:zlib';
 import { decode, encode } from 'fast-png';
 import { davisPalette } from 'veronese';
 import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
+import { glue } from '../build/glue-codecs.js';
 import { bmp, frame, png, ppm, ramp, turnedJpeg } from './support/frames.mjs';
 import { failure } from './support/shapes.mjs';
 
@@ -92,6 +95,112 @@ describe('decodeImage', () => {
     }
   });
 });
+
+describe('a file costs the memory of its pixels, whatever else it claims or carries', () => {
+  const MIB = 2 ** 20;
+  const module = new WebAssembly.Module(readFileSync(new URL('../wasm/codecs/veronese_codecs_bg.wasm', import.meta.url)));
+  const plain = png(frame(0, { width: 64, height: 64 }));
+  const zeros = deflateSync(Buffer.alloc(512 * MIB), { level: 9 });
+  const keyword = Buffer.from('name\0');
+  const header = plain.subarray(0, 33);
+  /** The picture with one more chunk after its header. */
+  const carrying = (kind, ...content) => Buffer.concat([header, pngChunk(kind, Buffer.concat(content)), plain.subarray(33)]);
+  const fails = (code) => (file) => assert.throws(() => glue.decodeImage(file), { code });
+  const decodes = (file) => assert.deepEqual(glue.decodeImage(file), glue.decodeImage(plain));
+  const cases = {
+    'a colour profile of 512 MB': [carrying('iCCP', keyword, Buffer.of(0), zeros), decodes],
+    'a compressed text': [carrying('zTXt', keyword, Buffer.of(0), zeros), decodes],
+    'an international text': [carrying('iTXt', keyword, Buffer.of(1, 0, 0, 0), zeros), decodes],
+    'an XMP packet': [carrying('iTXt', Buffer.from('XML:com.adobe.xmp\0'), Buffer.of(1, 0, 0, 0), zeros), decodes],
+    'pixels after the last row': [Buffer.concat([header, pngChunk('IDAT', zeros), pngChunk('IEND', Buffer.alloc(0))]), () => {}],
+    'a PNG of enormous sides': [pngOf(30_000, 30_000, zeros), fails('frame-size-unsupported')],
+    'a WebP whose Exif claims 1.8 GB': [webp(['VP8X', extended(8, 64, 64)], ['VP8 ', lossy(64, 64)], ['EXIF', Buffer.alloc(4), 0x7000_0000]), fails('unreadable-image')],
+    'a WebP whose Exif claims 4 GB': [webp(['VP8X', extended(8, 64, 64)], ['VP8 ', lossy(64, 64)], ['EXIF', Buffer.alloc(4), 0xffff_fff0]), fails('unreadable-image')],
+    'a WebP with a frame larger than itself': [webp(['VP8X', extended(0, 64, 64)], ['VP8 ', lossy(16_383, 16_383)]), fails('frame-size-unsupported')],
+  };
+  for (const [title, [file, check]] of Object.entries(cases)) {
+    test(title, async () => {
+      glue.forgetInstance();
+      const { memory } = await glue.instantiate(module);
+      check(new Uint8Array(file));
+      assert.ok(memory.buffer.byteLength <= 8 * MIB, `${memory.buffer.byteLength / MIB} MiB`);
+    });
+  }
+});
+
+describe('sides that no frame can have', () => {
+  const cases = {
+    'PNG 30000 × 30000': pngOf(30_000, 30_000, deflateSync(Buffer.alloc(100))),
+    'PNG 0 × 0': pngOf(0, 0, deflateSync(Buffer.alloc(0))),
+    'PGM 0 × 0': Buffer.from('P5\n0 0\n255\n'),
+    'PPM 1000000 × 1000000': Buffer.from('P6\n1000000 1000000\n255\n'),
+    'WebP 16384 × 16384': webp(['VP8L', Buffer.from('2fffffff0f', 'hex')]),
+  };
+  for (const [title, file] of Object.entries(cases)) {
+    test(title, async () => {
+      const error = await failure(decodeImage(file));
+      assert.equal(error.code, 'frame-size-unsupported', error.message);
+      assert.ok(error.message.includes(title.split(' ').slice(1).join('').replace(' ', '')), error.message);
+      assert.match(error.message, /both sides must be between 16 and 4096 pixels$/);
+    });
+  }
+});
+
+/** A chunk of a PNG. */
+function pngChunk(kind, content) {
+  const chunk = Buffer.alloc(content.length + 12);
+  chunk.writeUInt32BE(content.length, 0);
+  chunk.write(kind, 4, 'latin1');
+  content.copy(chunk, 8);
+  let sum = ~0;
+  for (const byte of chunk.subarray(4, -4)) {
+    sum ^= byte;
+    for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (sum & 1 ? 0xedb88320 : 0);
+  }
+  chunk.writeUInt32BE(~sum >>> 0, content.length + 8);
+  return chunk;
+}
+
+/** An RGBA PNG whose header says these sides. */
+function pngOf(width, height, compressed) {
+  const header = Buffer.alloc(13);
+  header.writeUInt32BE(width, 0);
+  header.writeUInt32BE(height, 4);
+  header.set([8, 6], 8);
+  const chunks = [['IHDR', header], ['IDAT', compressed], ['IEND', Buffer.alloc(0)]];
+  return Buffer.concat([Buffer.from('89504e470d0a1a0a', 'hex'), ...chunks.map(([kind, content]) => pngChunk(kind, content))]);
+}
+
+/** A WebP of chunks: their kind, their content, and the length they claim. */
+function webp(...chunks) {
+  const body = chunks.map(([kind, content, length = content.length]) => {
+    const chunk = Buffer.alloc(8 + content.length + (content.length % 2));
+    chunk.write(kind, 'latin1');
+    chunk.writeUInt32LE(length, 4);
+    content.copy(chunk, 8);
+    return chunk;
+  });
+  const file = Buffer.concat([Buffer.from('RIFF\0\0\0\0WEBP', 'latin1'), ...body]);
+  file.writeUInt32LE(file.length - 8, 4);
+  return file;
+}
+
+/** The chunk that begins an extended WebP. */
+function extended(flags, width, height) {
+  const content = Buffer.alloc(10);
+  content[0] = flags;
+  content.writeUIntLE(width - 1, 4, 3);
+  content.writeUIntLE(height - 1, 7, 3);
+  return content;
+}
+
+/** The start of a lossy WebP frame. */
+function lossy(width, height) {
+  const content = Buffer.from('1000009d012a00000000', 'hex');
+  content.writeUInt16LE(width, 6);
+  content.writeUInt16LE(height, 8);
+  return content;
+}
 
 describe('encoders', () => {
   test('an indexed PNG reads back as indices and palette', async () => {

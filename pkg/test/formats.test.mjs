@@ -6,7 +6,7 @@ import { decode } from 'fast-png';
 import { unzipSync } from 'fflate';
 import { davisPalette } from 'veronese';
 import * as formats from 'veronese/formats';
-import { drawn, labelImages, present } from './support/masks.mjs';
+import { drawn, labelImages, present, random } from './support/masks.mjs';
 
 const IMAGES = labelImages(300);
 const each = (check) => IMAGES.forEach(({ labels, width, height }, index) => check(labels, width, height, index));
@@ -78,6 +78,67 @@ test('masks with thousands of holes are outlined', () => {
   const [{ segmentation }] = formats.encodeCoco(labels, width, height, {}, { shape: 'polygon' }).annotations;
   assert.equal(segmentation.length, 1);
   assert.deepEqual(filled(segmentation, width, height), mask(labels, 1));
+});
+
+describe('masks of noise', () => {
+  const noise = (side) => {
+    const next = random(3);
+    return [Uint8Array.from({ length: side * side }, () => Number(next() < 0.5)), side, side];
+  };
+  /** Seconds of a processor, which others on the machine do not change: five times what is needed. */
+  const PATIENCE = 30;
+  const soon = (title, encode) => {
+    test(title, () => {
+      const started = process.cpuUsage();
+      encode();
+      const { user, system } = process.cpuUsage(started);
+      const seconds = (user + system) / 1e6;
+      assert.ok(seconds < PATIENCE, `${seconds} s`);
+    });
+  };
+  const frame = ([labels, width, height]) => ({ labels, width, height });
+  const [large, larger] = [noise(1024), noise(2048)];
+  const polygons = { shape: 'polygon' };
+  const encoders = {
+    'COCO, run lengths': (all) => formats.encodeCoco(...all),
+    'COCO, polygons': (all) => formats.encodeCoco(...all, {}, polygons),
+    'COCO, polygons with a tolerance': (all) => formats.encodeCoco(...all, {}, { ...polygons, tolerance: 1 }),
+    'YouTube-VIS': (all) => formats.encodeCocoVideo([frame(all)]),
+    'CVAT, polygons': (all) => formats.encodeCvatXml(...all, {}, polygons),
+    'CVAT MOTS': (all) => formats.encodeCvatMots([frame(all)]),
+    'Label Studio, brush': (all) => formats.encodeLabelStudio(...all),
+    'Label Studio, polygons': (all) => formats.encodeLabelStudio(...all, {}, polygons),
+    'LabelMe, masks': (all) => formats.encodeLabelMe(...all),
+    'LabelMe, polygons': (all) => formats.encodeLabelMe(...all, {}, polygons),
+    YOLO: (all) => formats.encodeYolo(...all),
+    DAVIS: (all) => formats.encodeDavis(...all),
+    Supervisely: (all) => formats.encodeSupervisely(...all),
+    'Web Annotation': (all) => formats.encodeWebAnnotation(...all),
+  };
+  for (const [title, encode] of Object.entries(encoders)) soon(`${title}: 1024 × 1024`, () => encode(large));
+  for (const title of ['CVAT MOTS', 'DAVIS', 'Supervisely']) soon(`${title}: 2048 × 2048`, () => encoders[title](larger));
+  for (const title of ['COCO, polygons', 'CVAT, polygons', 'Label Studio, polygons', 'LabelMe, polygons', 'YOLO', 'Web Annotation']) {
+    soon(`${title}: 2048 × 2048 has too many vertices`, () => {
+      assert.throws(() => encoders[title](larger), { code: 'invalid-input', message: /more than 4000000 vertices/ });
+    });
+  }
+
+  test('are the same pixels', () => {
+    const [labels, width, height] = noise(256);
+    const png = decode(formats.encodeDavis(labels, width, height), { checkCrc: true });
+    assert.deepEqual(Uint8Array.from(png.data), labels);
+    for (const { category_id, segmentation } of formats.encodeCoco(labels, width, height, {}, polygons).annotations) {
+      assert.deepEqual(filled(segmentation, width, height), mask(labels, category_id - 1));
+    }
+  });
+
+  soon('teeth that a tolerance takes off one by one', () => {
+    const side = 2048;
+    const teeth = (x, y) => y % 6 < 2 || (y % 6 === 2 && x % 2 === 0) || x === (Math.floor(y / 6) % 2 ? 0 : side - 1);
+    const labels = Uint8Array.from({ length: side * side }, (_, at) => Number(teeth(at % side, Math.floor(at / side))));
+    const [{ segmentation }] = formats.encodeCoco(labels, side, side, { labels: [1] }, { ...polygons, tolerance: 0.4 }).annotations;
+    assert.equal(segmentation.length, 1);
+  });
 });
 
 test('DAVIS PNG: indices and palette', () => {
@@ -163,6 +224,28 @@ describe('wrong input is refused', () => {
       }
     });
   }
+
+  test('names that lead out of an archive of frames, or that some system cannot have', () => {
+    const encode = (image, names) => formats.encodeCvatMots([{ ...drawn('01'), image }], { names });
+    const wrong = [
+      '', '.png', 'a/.png', '/a.png', 'a//b.png', '../a.png', 'a/../b.png', '..', './a.png', 'a/./b.png', '..\\a.png', 'a\\..\\..\\b.png',
+      '\\\\host\\share.png', 'C:\\a.png', 'C:a.png', 'c:/a.png', 'a\0.png', 'a\0b.png', 'a\nb.png', 'a\x7f.png', 'a\x85.png', 'NUL.png', 'a/con.png',
+      'Com1.png', 'lpt9.tar.png', 'a .png', '.. /a.png', 'a./b.png', `${'a'.repeat(252)}.png`, `${'ä'.repeat(126)}.png`, `${'a/'.repeat(2001)}a.png`,
+    ];
+    for (const image of wrong) assert.throws(() => encode(image), { code: 'invalid-input', message: /cannot be the name of a file: it / }, JSON.stringify(image));
+    const right = ['a.png', 'a b/c d.png', 'clip.v2/00001.jpg', 'ä/日本.png', '.hidden.png', 'null.png', 'concert/a.png', '12:30.png', `${'a'.repeat(251)}.png`];
+    for (const image of right) {
+      const [, name] = Object.keys(unzipSync(encode(image)));
+      assert.equal(name, `default/instances/${image.replace(/\.[^.]*$/, '')}.png`);
+    }
+    const labels = unzipSync(encode('a.png', { 0: 'a\0b\nc', 1: 'd' }))['default/instances/labels.txt'];
+    assert.equal(new TextDecoder().decode(labels), 'a b c\nd\n');
+    // Where a name is a reference to an image and no file of ours, it stays what it is.
+    for (const image of ['../images/a.png', 'images\\a.png', 'https://example.org/a.png?b=c']) {
+      assert.equal(formats.encodeCoco(...Object.values(drawn('01')), { image }).images[0].file_name, image);
+      assert.equal(formats.encodeLabelMe(...Object.values(drawn('01')), { image }).imagePath, image);
+    }
+  });
 
   test('frames of two sizes, no frame, two frames of one name, too many labels for MOTS', () => {
     const frames = [drawn('01'), drawn('0', '1')];

@@ -11,7 +11,7 @@ export interface Picture {
 /**
  * Decodes a PNG, JPEG, WebP, BMP or PNM file; an Exif orientation is applied.
  *
- * Rejects with code `unreadable-image`, or `frame-size-unsupported` for a side above 4096 pixels.
+ * Rejects with code `unreadable-image`, or `frame-size-unsupported` for a side of 0 or above 4096 pixels.
  */
 export function decodeImage(file: Uint8Array): Promise<Picture>;
 

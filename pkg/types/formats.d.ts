@@ -36,7 +36,10 @@ export interface LabelFrame {
 
 export interface FormatOptions<Shape extends string> {
   shape?: Shape;
-  /** Polygons may leave the border by so many pixels to have fewer vertices; default 0: exact. */
+  /**
+   * Polygons may leave the border by so many pixels to have fewer vertices; default 0: exact. More than 4 million vertices in one
+   * document, which take masks of noise, are `invalid-input`.
+   */
   tolerance?: number;
 }
 
@@ -205,7 +208,10 @@ export function encodeCvatXml(
 /** Shapes for CVAT's REST interface and SDK. */
 export function encodeCvatPoints(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): CvatShape[];
 
-/** A zip archive in CVAT's MOTS PNG layout, without the frames; 64 labels at most. */
+/**
+ * A zip archive in CVAT's MOTS PNG layout, without the frames; 64 labels at most. Names of frames are paths in the archive: one that
+ * would lead out of it, or that some system cannot have, is `invalid-input`.
+ */
 export function encodeCvatMots(frames: readonly LabelFrame[], meta?: FormatMeta): Uint8Array;
 
 /** A Label Studio task with its predictions. Names must be those of the project's labelling configuration. */

@@ -3,7 +3,7 @@
 import type { CocoDocument, FormatMeta, FormatOptions } from '../../types/formats.js';
 import { cocoRle } from './coco-rle.js';
 import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
-import { bridgedRings } from './outline.js';
+import { Outlines } from './outline.js';
 
 export function encodeCoco(
   labels: Uint8Array,
@@ -14,6 +14,7 @@ export function encodeCoco(
 ): CocoDocument {
   const { shape, tolerance } = checkedOptions(options, ['rle', 'polygon']);
   const masks = masksOf(labels, width, height, meta);
+  const outlines = new Outlines(tolerance);
   return {
     info: { description: 'Masks of what moves together' },
     images: [{ id: 1, file_name: imageOf(meta), width, height }],
@@ -25,7 +26,7 @@ export function encodeCoco(
       iscrowd: 0,
       area: mask.area,
       bbox: [mask.left, mask.top, mask.width, mask.height],
-      segmentation: shape === 'rle' ? cocoRle(mask, width, height) : bridgedRings(mask, tolerance),
+      segmentation: shape === 'rle' ? cocoRle(mask, width, height) : outlines.bridged(mask),
       ...(mask.motion && { attributes: { matrix: mask.motion.matrix } }),
     })),
   };

@@ -4,6 +4,7 @@ import { type Zippable, zipSync } from 'fflate';
 import type { FormatMeta, LabelFrame } from '../../types/formats.js';
 import { VeroneseError } from '../errors.js';
 import { checkFrames, imageOf, masksOf, nameOf } from './input.js';
+import { checkPath } from './names.js';
 import { png } from './png.js';
 
 const CLASS = 1000;
@@ -18,7 +19,7 @@ export function encodeCvatMots(frames: readonly LabelFrame[], meta: FormatMeta =
   const perFrame = frames.map(({ labels }) => masksOf(labels, width, height, meta));
   const present = [...new Set(perFrame.flatMap((masks) => masks.map(({ label }) => label)))].sort((a, b) => a - b);
   if (present.length > MOST) throw new VeroneseError('invalid-input', `MOTS holds ${MOST} labels at most, not ${present.length}`);
-  const names = present.map((label) => nameOf(label, meta).replace(/\s+/g, ' '));
+  const names = present.map((label) => nameOf(label, meta).replace(/[\s\p{Cc}]+/gu, ' '));
   const files: Zippable = { 'default/instances/labels.txt': [new TextEncoder().encode(`${names.join('\n')}\n`), EPOCH] };
   const taken = new Set<string>();
   perFrame.forEach((masks, index) => {
@@ -34,9 +35,8 @@ export function encodeCvatMots(frames: readonly LabelFrame[], meta: FormatMeta =
       });
     }
     const name = (frames[index]?.image ?? (index === 0 ? imageOf(meta) : `frame-${index}`)).replace(/\.[^./]*$/, '');
-    if (name.split('/').includes('..') || name.startsWith('/') || taken.has(name)) {
-      throw new VeroneseError('invalid-input', `'${name}' cannot be the name of a frame: it is taken or leads elsewhere`);
-    }
+    checkPath(name);
+    if (taken.has(name)) throw new VeroneseError('invalid-input', `two frames have the name '${name}'`);
     taken.add(name);
     files[`default/instances/${name}.png`] = [png(width, height, samples, { depth: 16 }), EPOCH];
   });

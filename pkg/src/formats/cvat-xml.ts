@@ -2,7 +2,7 @@
 
 import type { FormatMeta, FormatOptions } from '../../types/formats.js';
 import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
-import { bridgedRings } from './outline.js';
+import { Outlines, points } from './outline.js';
 import { rowRuns } from './runs.js';
 import { escaped } from './xml.js';
 
@@ -15,7 +15,8 @@ export function encodeCvatXml(
 ): string {
   const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
   const masks = masksOf(labels, width, height, meta);
-  const shapes = masks.flatMap((mask) => (shape === 'mask' ? [maskElement(mask)] : polygonElements(mask, tolerance)));
+  const outlines = new Outlines(tolerance);
+  const shapes = masks.flatMap((mask) => (shape === 'mask' ? [maskElement(mask)] : polygonElements(mask, outlines)));
   return [
     '<?xml version="1.0" encoding="utf-8"?>',
     '<annotations>',
@@ -43,12 +44,12 @@ function maskElement({ name, left, top, width, height, pixels }: Mask): string {
 }
 
 /** One polygon for each connected part, all of one group. */
-function polygonElements(mask: Mask, tolerance: number): string[] {
-  const parts = bridgedRings(mask, tolerance);
+function polygonElements(mask: Mask, outlines: Outlines): string[] {
+  const parts = outlines.bridged(mask);
   const group = parts.length > 1 ? ` group_id="${mask.label + 1}"` : '';
   return parts.map((ring) => {
-    const points = ring.flatMap((x, at) => (at % 2 === 0 ? [`${x.toFixed(2)},${(ring[at + 1] as number).toFixed(2)}`] : []));
-    const rest = `source="auto" occluded="0" points="${points.join(';')}" z_order="0"${group}`;
+    const vertices = points(ring).map(([x, y]) => `${x}.00,${y}.00`);
+    const rest = `source="auto" occluded="0" points="${vertices.join(';')}" z_order="0"${group}`;
     return `    <polygon label="${escaped(mask.name)}" ${rest}></polygon>`;
   });
 }

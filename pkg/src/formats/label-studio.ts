@@ -3,7 +3,7 @@
 
 import type { FormatMeta, FormatOptions, LabelStudioResult, LabelStudioTask } from '../../types/formats.js';
 import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
-import { bridgedRings } from './outline.js';
+import { Outlines, points, type Ring } from './outline.js';
 
 /** What the labelling configuration calls its parts, and who made the prediction. */
 const NAMES = { fromName: 'tag', toName: 'image', modelVersion: 'veronese' };
@@ -17,13 +17,14 @@ export function encodeLabelStudio(
 ): LabelStudioTask {
   const { shape, tolerance, fromName, toName, modelVersion } = checkedOptions(options, ['brush', 'polygon'], NAMES);
   const shared = { from_name: fromName, to_name: toName, original_width: width, original_height: height, image_rotation: 0 as const };
+  const outlines = new Outlines(tolerance);
   const result = masksOf(labels, width, height, meta).flatMap((mask): LabelStudioResult[] => {
     const id = `motion-${mask.label}`;
     if (shape === 'brush') {
       const value = { format: 'rle' as const, rle: packed(mask, width, height), brushlabels: [mask.name] };
       return [{ id, type: 'brushlabels', ...shared, value }];
     }
-    return bridgedRings(mask, tolerance).map((ring, part) => {
+    return outlines.bridged(mask).map((ring, part) => {
       const value = { points: percentages(ring, width, height), closed: true as const, polygonlabels: [mask.name] };
       return { id: `${id}-${part}`, type: 'polygonlabels' as const, ...shared, value };
     });
@@ -31,8 +32,8 @@ export function encodeLabelStudio(
   return { data: { image: imageOf(meta) }, predictions: [{ model_version: modelVersion, result }] };
 }
 
-function percentages(ring: readonly number[], width: number, height: number): [number, number][] {
-  return ring.flatMap((x, at): [number, number][] => (at % 2 === 0 ? [[(100 * x) / width, (100 * (ring[at + 1] as number)) / height]] : []));
+function percentages(ring: Ring, width: number, height: number): [number, number][] {
+  return points(ring).map(([x, y]) => [(100 * x) / width, (100 * y) / height]);
 }
 
 /** Bits of a run's length less one, by the two bits that choose; the ones Label Studio writes. */

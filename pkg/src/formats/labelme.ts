@@ -3,7 +3,7 @@
 import type { FormatMeta, FormatOptions, LabelMeDocument, LabelMeShape } from '../../types/formats.js';
 import { base64 } from './base64.js';
 import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
-import { bridgedRings } from './outline.js';
+import { Outlines, points } from './outline.js';
 import { png } from './png.js';
 
 /** The release whose files these are. */
@@ -18,10 +18,11 @@ export function encodeLabelMe(
 ): LabelMeDocument {
   const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
   const masks = masksOf(labels, width, height, meta);
+  const outlines = new Outlines(tolerance);
   return {
     version: VERSION,
     flags: {},
-    shapes: masks.flatMap((mask) => (shape === 'mask' ? [maskShape(mask)] : polygonShapes(mask, tolerance))),
+    shapes: masks.flatMap((mask) => (shape === 'mask' ? [maskShape(mask)] : polygonShapes(mask, outlines))),
     imagePath: imageOf(meta),
     imageData: null,
     imageHeight: height,
@@ -35,11 +36,11 @@ function maskShape({ label, name, left, top, width, height, pixels }: Mask): Lab
   return { label: name, points: corners, group_id: label, description: '', shape_type: 'mask', flags: {}, mask };
 }
 
-function polygonShapes({ label, name, ...mask }: Mask, tolerance: number): LabelMeShape[] {
-  return bridgedRings({ label, name, ...mask }, tolerance).map((ring) => ({
-    label: name,
-    points: ring.flatMap((x, at): [number, number][] => (at % 2 === 0 ? [[x, ring[at + 1] as number]] : [])),
-    group_id: label,
+function polygonShapes(mask: Mask, outlines: Outlines): LabelMeShape[] {
+  return outlines.bridged(mask).map((ring) => ({
+    label: mask.name,
+    points: points(ring),
+    group_id: mask.label,
     description: '',
     shape_type: 'polygon',
     flags: {},

@@ -1,83 +1,139 @@
 // Outlines of masks along the cracks between pixels: vertices are corners of pixels, (0, 0) the top-left corner of the image's
 // first pixel. Filled by the even-odd rule they give the same pixels back. Pixels that touch at a corner only are apart.
+//
+// Time and memory are linear in the border and the box: a mask of noise has as many vertices as pixels, so they are numbers in typed
+// arrays.
 
+import { VeroneseError } from '../errors.js';
 import type { Mask } from './input.js';
 
-/** x, y of one vertex after another; the last is joined to the first. Integers unless simplified. */
+/** x, y of one vertex after another, whole numbers; the last is joined to the first. */
 export type Ring = number[];
 
 /** Rings of unit steps in one list: the vertices of ring r are `from[r]` to `from[r + 1]`, exclusive. */
 interface Cracks {
-  x: number[];
-  y: number[];
+  x: Uint16Array;
+  y: Uint16Array;
   from: number[];
 }
 
-/** A hole, and its vertex at the end of the bridge. */
+/** The holes that hang at a vertex, as a list: the first, and from each to the next; `start` is a hole's own end of its bridge. */
 interface Hanging {
-  ring: number;
-  start: number;
+  first: ReadonlyMap<number, number>;
+  next: Int32Array;
+  start: Int32Array;
 }
 
-/** Heading right, down, left, up: the step, and the pixels in front of a vertex to the left and to the right. */
-const HEADINGS = [
-  { step: [1, 0], left: [0, -1], right: [0, 0] },
-  { step: [0, 1], left: [0, 0], right: [-1, 0] },
-  { step: [-1, 0], left: [-1, 0], right: [-1, -1] },
-  { step: [0, -1], left: [-1, -1], right: [0, -1] },
-] as const;
+/** Most vertices in the outlines of one document. Only masks of noise have more, and files that no tool opens. */
+const MOST_VERTICES = 4_000_000;
 
-/** Every border of the mask as a ring of its own, to be filled by the even-odd rule: outer ones clockwise, holes the other way. */
-export function rings(mask: Mask, tolerance = 0): Ring[] {
-  const cracks = traced(mask);
-  return cracks.from.slice(0, -1).map((_, ring) => {
-    return points(mask, cracks, shortened(cracks, walk(cracks, ring, new Map()), new Set(), tolerance));
-  });
-}
+/** Recursion of Douglas and Peucker that is deeper than this splits rings so unevenly that its time is quadratic. */
+const DEEPEST = 64;
 
-/**
- * One ring per connected part. A hole is reached over a bridge without width: a horizontal line that the ring takes there and back.
- */
-export function bridgedRings(mask: Mask, tolerance = 0): Ring[] {
-  const cracks = traced(mask);
-  const { roots, children } = bridges(mask, cracks);
-  const fixed = new Set([...children].flatMap(([anchor, holes]) => [anchor, ...holes.map(({ start }) => start)]));
-  return roots.map((root) => points(mask, cracks, shortened(cracks, walk(cracks, root, children), fixed, tolerance)));
-}
+const NONE = -1;
 
-/** All parts in a single ring: bridges between the parts, too, all from the first part's first vertex. */
-export function singleRing(mask: Mask, tolerance = 0): Ring {
-  const [first = [], ...others] = bridgedRings(mask, tolerance);
-  const start = first.slice(0, 2);
-  const ring = [...first];
-  for (const other of others) {
-    for (const value of [...start, ...other, ...other.slice(0, 2)]) ring.push(value);
+/** The outlines of the masks of one document. Throws `invalid-input` where they have too many vertices together. */
+export class Outlines {
+  readonly #tolerance: number;
+  #left = MOST_VERTICES;
+
+  /** Outlines may leave the border by `tolerance` pixels to have fewer vertices; 0 is exact. */
+  constructor(tolerance = 0) {
+    this.#tolerance = tolerance;
   }
-  return ring;
+
+  /** Every border of the mask as a ring of its own, to be filled by the even-odd rule: outer ones clockwise, holes the other way. */
+  rings(mask: Mask): Ring[] {
+    const cracks = traced(mask);
+    return cracks.from.slice(0, -1).map((begin, ring) => {
+      const vertices = new Int32Array((cracks.from[ring + 1] as number) - begin);
+      for (let at = 0; at < vertices.length; at++) vertices[at] = begin + at;
+      return this.#ring(mask, cracks, shortened(cracks, vertices, undefined, this.#tolerance));
+    });
+  }
+
+  /**
+   * One ring per connected part. A hole is reached over a bridge without width: a horizontal line that the ring takes there and back.
+   */
+  bridged(mask: Mask): Ring[] {
+    const cracks = traced(mask);
+    const { roots, hanging, fixed } = bridges(mask, cracks);
+    const walk = walker(cracks, hanging);
+    return roots.map((root) => this.#ring(mask, cracks, shortened(cracks, walk(root), fixed, this.#tolerance)));
+  }
+
+  /** All parts in a single ring: bridges between the parts, too, all from the first part's first vertex. */
+  single(mask: Mask): Ring {
+    const [ring = [], ...others] = this.bridged(mask);
+    const [x, y] = ring as [number, number];
+    this.#take(2 * others.length);
+    for (const other of others) {
+      ring.push(x, y);
+      for (const value of other) ring.push(value);
+      ring.push(other[0] as number, other[1] as number);
+    }
+    return ring;
+  }
+
+  #ring({ left, top }: Mask, { x, y }: Cracks, vertices: Int32Array): Ring {
+    this.#take(vertices.length);
+    const ring: Ring = [];
+    for (const vertex of vertices) ring.push(left + (x[vertex] as number), top + (y[vertex] as number));
+    return ring;
+  }
+
+  #take(vertices: number): void {
+    this.#left -= vertices;
+    if (this.#left >= 0) return;
+    const sentence = `the outlines have more than ${MOST_VERTICES} vertices: take a larger tolerance or a format that holds masks`;
+    throw new VeroneseError('invalid-input', sentence);
+  }
+}
+
+/** The points of a ring. */
+export function points(ring: Ring): [number, number][] {
+  const pairs: [number, number][] = [];
+  for (let at = 0; at < ring.length; at += 2) pairs.push([ring[at] as number, ring[at + 1] as number]);
+  return pairs;
 }
 
 /** Every border, the pixels of the mask on its right. */
 function traced({ width, height, pixels }: Mask): Cracks {
-  const inside = (x: number, y: number) => x >= 0 && y >= 0 && x < width && y < height && pixels[y * width + x] === 1;
-  const cracks: Cracks = { x: [], y: [], from: [0] };
+  // With a margin, so that no step asks where it is.
+  const stride = width + 2;
+  const inside = new Uint8Array(stride * (height + 2));
+  for (let y = 0; y < height; y++) inside.set(pixels.subarray(y * width, (y + 1) * width), (y + 1) * stride + 1);
+  const set = (at: number) => inside[at] as number;
+  let steps = 0;
+  for (let at = stride; at < inside.length - stride; at++) {
+    if (set(at)) steps += 4 - set(at - 1) - set(at + 1) - set(at - stride) - set(at + stride);
+  }
+  const cracks: Cracks = { x: new Uint16Array(steps), y: new Uint16Array(steps), from: [0] };
+  // Heading right, down, left, up: the step, and the pixels in front of a vertex to the left and to the right, both as ways from the
+  // pixel whose top-left corner the vertex is.
+  const [stepX, stepY] = [[1, 0, -1, 0], [0, 1, 0, -1]];
+  const left = [-stride, 0, -1, -stride - 1];
+  const right = [0, -1, -stride - 1, -stride];
+  const ahead = [1, stride, -1, -stride];
   // Every ring has a crack above a pixel: those are looked for, and crossed off when a ring passes.
-  const passed = new Uint8Array(width * height);
+  const passed = new Uint8Array(inside.length);
+  let count = 0;
   for (let y = 0; y < height; y++) {
     for (let x = 0; x < width; x++) {
-      if (!inside(x, y) || inside(x, y - 1) || passed[y * width + x]) continue;
-      let [atX, atY, heading] = [x, y, 0];
+      const start = (y + 1) * stride + x + 1;
+      if (!set(start) || set(start - stride) || passed[start]) continue;
+      let [at, atX, atY, heading] = [start, x, y, 0];
       do {
-        cracks.x.push(atX);
-        cracks.y.push(atY);
-        if (heading === 0) passed[atY * width + atX] = 1;
-        const [stepX, stepY] = (HEADINGS[heading] as (typeof HEADINGS)[number]).step;
-        atX += stepX;
-        atY += stepY;
-        const { left, right } = HEADINGS[heading] as (typeof HEADINGS)[number];
-        if (!inside(atX + right[0], atY + right[1])) heading = (heading + 1) % 4;
-        else if (inside(atX + left[0], atY + left[1])) heading = (heading + 3) % 4;
-      } while (atX !== x || atY !== y || heading !== 0);
-      cracks.from.push(cracks.x.length);
+        cracks.x[count] = atX;
+        cracks.y[count++] = atY;
+        if (heading === 0) passed[at] = 1;
+        at += ahead[heading] as number;
+        atX += stepX[heading] as number;
+        atY += stepY[heading] as number;
+        if (!set(at + (right[heading] as number))) heading = (heading + 1) % 4;
+        else if (set(at + (left[heading] as number))) heading = (heading + 3) % 4;
+      } while (at !== start || heading !== 0);
+      cracks.from.push(count);
     }
   }
   return cracks;
@@ -85,45 +141,47 @@ function traced({ width, height, pixels }: Mask): Cracks {
 
 /**
  * Where each hole hangs: at the first vertex to the left of its top-left one that lies on a ring. That ring has a vertex above or
- * left of the hole's first, so there is no circle. Roots are the rings that are no holes.
+ * left of the hole's first, so there is no circle. Roots are the rings that are no holes; vertices at the ends of bridges are fixed.
  */
 function bridges({ width, height }: Mask, { x, y, from }: Cracks) {
-  const vertexAt = new Int32Array((width + 1) * (height + 1)).fill(-1);
-  x.forEach((atX, vertex) => {
-    vertexAt[(y[vertex] as number) * (width + 1) + atX] = vertex;
-  });
+  const vertexAt = new Int32Array((width + 1) * (height + 1)).fill(NONE);
+  for (let vertex = 0; vertex < x.length; vertex++) vertexAt[(y[vertex] as number) * (width + 1) + (x[vertex] as number)] = vertex;
   const roots: number[] = [];
-  const children = new Map<number, Hanging[]>();
+  const first = new Map<number, number>();
+  const hanging = { first, next: new Int32Array(from.length).fill(NONE), start: new Int32Array(from.length) } satisfies Hanging;
+  const fixed = new Uint8Array(x.length);
   for (let ring = 0; ring + 1 < from.length; ring++) {
-    const start = from[ring] as number;
+    const begin = from[ring] as number;
     const end = from[ring + 1] as number;
-    if (signedArea(x, y, start, end) > 0) {
+    if (signedArea(x, y, begin, end) > 0) {
       roots.push(ring);
       continue;
     }
-    const top = topLeft(x, y, start, end);
+    const top = topLeft(x, y, begin, end);
     let at = (y[top] as number) * (width + 1) + (x[top] as number) - 1;
-    while (vertexAt[at] === -1) at--;
+    while (vertexAt[at] === NONE) at--;
     const anchor = vertexAt[at] as number;
-    const others = children.get(anchor);
-    if (others) others.push({ ring, start: top });
-    else children.set(anchor, [{ ring, start: top }]);
+    hanging.start[ring] = top;
+    hanging.next[ring] = first.get(anchor) ?? NONE;
+    first.set(anchor, ring);
+    fixed[anchor] = 1;
+    fixed[top] = 1;
   }
-  return { roots, children };
+  return { roots, hanging, fixed };
 }
 
 /** Twice the area inside: positive for an outer ring. */
-function signedArea(x: readonly number[], y: readonly number[], start: number, end: number): number {
+function signedArea(x: Uint16Array, y: Uint16Array, begin: number, end: number): number {
   let area = 0;
-  for (let vertex = start, before = end - 1; vertex < end; before = vertex++) {
+  for (let vertex = begin, before = end - 1; vertex < end; before = vertex++) {
     area += (x[before] as number) * (y[vertex] as number) - (x[vertex] as number) * (y[before] as number);
   }
   return area;
 }
 
-function topLeft(x: readonly number[], y: readonly number[], start: number, end: number): number {
-  let best = start;
-  for (let vertex = start; vertex < end; vertex++) {
+function topLeft(x: Uint16Array, y: Uint16Array, begin: number, end: number): number {
+  let best = begin;
+  for (let vertex = begin; vertex < end; vertex++) {
     const below = (y[vertex] as number) - (y[best] as number);
     if (below < 0 || (below === 0 && (x[vertex] as number) < (x[best] as number))) best = vertex;
   }
@@ -136,84 +194,108 @@ interface Tour {
   begin: number;
   size: number;
   done: number;
-  /** The vertex it stands at, and the rings that hang there and are still to come. */
+  /** The vertex it stands at, and the first of the rings that hang there and are still to come. */
   at: number;
-  pending: Hanging[];
+  pending: number;
 }
 
-/** The vertices of a ring with all that hangs on it. A stack and not recursion: holes may hang on holes by the thousand. */
-function walk({ from }: Cracks, root: number, children: ReadonlyMap<number, readonly Hanging[]>): number[] {
+/** Gives the vertices of a ring with all that hangs on it. A stack and not recursion: holes may hang on holes by the thousand. */
+function walker({ x, from }: Cracks, { first, next, start }: Hanging): (root: number) => Int32Array {
+  // Each ring is walked once, and each bridge has two ends to come back over.
+  const room = new Int32Array(x.length + 2 * from.length);
   const tour = (ring: number, start: number): Tour => {
     const begin = from[ring] as number;
-    return { start, begin, size: (from[ring + 1] as number) - begin, done: 0, at: start, pending: [] };
+    return { start, begin, size: (from[ring + 1] as number) - begin, done: 0, at: start, pending: NONE };
   };
-  const vertices: number[] = [];
-  const stack: Tour[] = [tour(root, from[root] as number)];
-  for (let current = stack.at(-1); current !== undefined; current = stack.at(-1)) {
-    const next = current.pending.pop();
-    if (next !== undefined) {
-      stack.push(tour(next.ring, next.start));
-    } else if (current.done < current.size) {
-      current.at = current.begin + ((current.start - current.begin + current.done++) % current.size);
-      current.pending = [...(children.get(current.at) ?? [])];
-      vertices.push(current.at);
-    } else {
-      stack.pop();
-      // The hole is closed; then back over the bridge.
-      const parent = stack.at(-1);
-      if (parent) vertices.push(current.start, parent.at);
+  return (root) => {
+    let count = 0;
+    let current = tour(root, from[root] as number);
+    const stack: Tour[] = [];
+    for (;;) {
+      if (current.pending !== NONE) {
+        const hole = current.pending;
+        current.pending = next[hole] as number;
+        stack.push(current);
+        current = tour(hole, start[hole] as number);
+      } else if (current.done < current.size) {
+        current.at = current.begin + ((current.start - current.begin + current.done++) % current.size);
+        current.pending = first.get(current.at) ?? NONE;
+        room[count++] = current.at;
+      } else {
+        const parent = stack.pop();
+        if (!parent) return room.slice(0, count);
+        // The hole is closed; then back over the bridge.
+        room[count++] = current.start;
+        room[count++] = parent.at;
+        current = parent;
+      }
     }
-  }
-  return vertices;
+  };
 }
 
-/** Only the vertices that matter: corners, and with a tolerance those that Douglas and Peucker keep, and all of `fixed`. */
-function shortened({ x, y }: Cracks, ring: readonly number[], fixed: ReadonlySet<number>, tolerance: number): number[] {
-  const direction = (from: number, to: number) => {
-    const across = Math.sign((x[to] as number) - (x[from] as number));
-    return 3 * across + Math.sign((y[to] as number) - (y[from] as number));
-  };
-  const corners = ring.filter((vertex, at) => {
-    const before = ring.at(at - 1) as number;
-    const after = ring[(at + 1) % ring.length] as number;
-    return direction(before, vertex) !== direction(vertex, after);
-  });
-  if (!(tolerance > 0) || corners.length <= 4) return corners;
-  const distance = (vertex: number, from: number, to: number) => {
-    const [alongX, alongY] = [(x[to] as number) - (x[from] as number), (y[to] as number) - (y[from] as number)];
-    const [offX, offY] = [(x[vertex] as number) - (x[from] as number), (y[vertex] as number) - (y[from] as number)];
-    const length = alongX * alongX + alongY * alongY;
-    const share = length === 0 ? 0 : Math.min(1, Math.max(0, (offX * alongX + offY * alongY) / length));
-    const [awayX, awayY] = [offX - share * alongX, offY - share * alongY];
-    return awayX * awayX + awayY * awayY;
-  };
-  const farthest = (from: number, to: number) => {
-    let best = { at: from, distance: -1 };
+/** Only the vertices that matter: corners, and with a tolerance those that Douglas and Peucker keep, and all that are `fixed`. */
+function shortened({ x, y }: Cracks, ring: Int32Array, fixed: Uint8Array | undefined, tolerance: number): Int32Array {
+  const corners = cornersOf(x, y, ring);
+  const { length } = corners;
+  if (!(tolerance > 0) || length <= 4) return corners;
+  /** The corner between two others that is farthest from the line between them; none where all are nearer than `least`. */
+  const farthest = (from: number, to: number, least = -1): number => {
+    const [start, end] = [corners[from] as number, corners[to < length ? to : 0] as number];
+    const [startX, startY] = [x[start] as number, y[start] as number];
+    const [alongX, alongY] = [(x[end] as number) - startX, (y[end] as number) - startY];
+    const squared = alongX * alongX + alongY * alongY;
+    let [best, distance] = [NONE, least];
     for (let at = from + 1; at < to; at++) {
-      const away = distance(corners[at] as number, corners[from] as number, corners[to % corners.length] as number);
-      if (away > best.distance) best = { at, distance: away };
+      const vertex = corners[at] as number;
+      const [offX, offY] = [(x[vertex] as number) - startX, (y[vertex] as number) - startY];
+      const share = squared === 0 ? 0 : Math.min(1, Math.max(0, (offX * alongX + offY * alongY) / squared));
+      const [awayX, awayY] = [offX - share * alongX, offY - share * alongY];
+      const away = awayX * awayX + awayY * awayY;
+      if (away > distance) [best, distance] = [at, away];
     }
     return best;
   };
   // The first corner, the one farthest from it and those in between that are farthest to either side always stay: a ring
   // never becomes a line.
-  const keep = corners.map((vertex, at) => at === 0 || fixed.has(vertex));
-  const opposite = farthest(0, corners.length).at;
-  keep[opposite] = true;
-  keep[farthest(0, opposite).at] = true;
-  keep[farthest(opposite, corners.length).at] = true;
-  const stops = [...corners.keys()].filter((at) => keep[at]);
-  const spans = stops.map((from, index): [number, number] => [from, stops[index + 1] ?? corners.length]);
-  for (let span = spans.pop(); span !== undefined; span = spans.pop()) {
-    const [from, to] = span;
-    const { at, distance } = farthest(from, to);
-    if (distance <= tolerance * tolerance) continue;
-    keep[at] = true;
-    spans.push([from, at], [at, to]);
+  const keep = new Uint8Array(length);
+  if (fixed) for (let at = 0; at < length; at++) keep[at] = fixed[corners[at] as number] as number;
+  const opposite = farthest(0, length);
+  for (const at of [0, opposite, farthest(0, opposite), farthest(opposite, length)]) if (at !== NONE) keep[at] = 1;
+  let last = 0;
+  for (let at = 1; at <= length; at++) {
+    if (at < length && !keep[at]) continue;
+    thin(last, at);
+    last = at;
   }
   return corners.filter((_, at) => keep[at]);
+
+  function thin(first: number, end: number): void {
+    const spans: [from: number, to: number, depth: number][] = [[first, end, 0]];
+    for (let span = spans.pop(); span !== undefined; span = spans.pop()) {
+      const [from, to, depth] = span;
+      const at = farthest(from, to, tolerance * tolerance);
+      if (at === NONE) continue;
+      const split = depth < DEEPEST ? at : (from + to) >> 1;
+      keep[split] = 1;
+      spans.push([from, split, depth + 1], [split, to, depth + 1]);
+    }
+  }
 }
 
-function points({ left, top }: Mask, { x, y }: Cracks, vertices: readonly number[]): Ring {
-  return vertices.flatMap((vertex) => [left + (x[vertex] as number), top + (y[vertex] as number)]);
+/** The vertices at which a ring turns. */
+function cornersOf(x: Uint16Array, y: Uint16Array, ring: Int32Array): Int32Array {
+  const direction = (from: number, to: number) => {
+    const across = Math.sign((x[to] as number) - (x[from] as number));
+    return 3 * across + Math.sign((y[to] as number) - (y[from] as number));
+  };
+  const corners = new Int32Array(ring.length);
+  let count = 0;
+  let before = direction(ring.at(-1) as number, ring[0] as number);
+  for (let at = 0; at < ring.length; at++) {
+    const vertex = ring[at] as number;
+    const after = direction(vertex, ring[at + 1 < ring.length ? at + 1 : 0] as number);
+    if (before !== after) corners[count++] = vertex;
+    before = after;
+  }
+  return corners.slice(0, count);
 }

@@ -2,7 +2,7 @@
 
 import type { FormatMeta, WebAnnotation } from '../../types/formats.js';
 import { checkedOptions, imageOf, masksOf } from './input.js';
-import { type Ring, rings } from './outline.js';
+import { Outlines, type Ring } from './outline.js';
 
 export function encodeWebAnnotation(
   labels: Uint8Array,
@@ -12,6 +12,7 @@ export function encodeWebAnnotation(
   options?: { tolerance?: number },
 ): WebAnnotation[] {
   const { tolerance } = checkedOptions(options, []);
+  const outlines = new Outlines(tolerance);
   return masksOf(labels, width, height, meta).map((mask) => ({
     '@context': 'http://www.w3.org/ns/anno.jsonld',
     id: `#motion-${mask.label}`,
@@ -21,7 +22,7 @@ export function encodeWebAnnotation(
       source: imageOf(meta),
       selector: {
         type: 'SvgSelector',
-        value: `<svg xmlns="http://www.w3.org/2000/svg"><path fill-rule="evenodd" d="${rings(mask, tolerance).map(path).join('')}"/></svg>`,
+        value: `<svg xmlns="http://www.w3.org/2000/svg"><path fill-rule="evenodd" d="${outlines.rings(mask).map(path).join('')}"/></svg>`,
       },
     },
   }));

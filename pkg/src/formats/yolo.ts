@@ -2,7 +2,7 @@
 
 import type { FormatMeta, YoloFiles } from '../../types/formats.js';
 import { checkedOptions, masksOf } from './input.js';
-import { singleRing } from './outline.js';
+import { Outlines } from './outline.js';
 
 /** Enough for an error far below a thousandth of a pixel. */
 const DECIMALS = 8;
@@ -16,9 +16,16 @@ export function encodeYolo(
 ): YoloFiles {
   const { tolerance } = checkedOptions(options, []);
   const masks = masksOf(labels, width, height, meta);
-  const lines = masks.map((mask, index) => {
-    const shares = singleRing(mask, tolerance).map((value, at) => (value / (at % 2 === 0 ? width : height)).toFixed(DECIMALS));
-    return `${index} ${shares.map((share) => Number(share)).join(' ')}\n`;
+  const outlines = new Outlines(tolerance);
+  const [shareX, shareY] = [shares(width), shares(height)];
+  const rings = masks.map((mask) => outlines.single(mask));
+  const lines = rings.map((ring, index) => {
+    return `${index} ${ring.map((value, at) => (at % 2 === 0 ? shareX : shareY)[value]).join(' ')}\n`;
   });
   return { text: lines.join(''), names: masks.map(({ name }) => name) };
+}
+
+/** What the whole numbers up to a side are of it, as text: once each and not for every vertex. */
+function shares(side: number): string[] {
+  return Array.from({ length: side + 1 }, (_, value) => String(Number((value / side).toFixed(DECIMALS))));
 }
