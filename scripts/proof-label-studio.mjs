@@ -7,6 +7,7 @@ import { join, relative } from 'node:path';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
 import { decodedByStudio, picture, predictions, prepareLabelStudio, serveFrames, startLabelStudio } from './lib/label-studio.mjs';
+import { SERVERS, prepareNpmPackages } from './lib/npm-packages.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command } from './lib/run.mjs';
@@ -19,6 +20,7 @@ await command(async () => {
   if (chromium.problem) throw new Stop(chromium.problem);
   await buildModules();
   await buildPackage();
+  await prepareNpmPackages(SERVERS);
   await prepareLabelStudio();
   rmSync(OUT, { recursive: true, force: true });
   console.log('Starting Label Studio with a new database (a minute or more) …');

@@ -7,7 +7,10 @@ import { parseArgs } from 'node:util';
 import { encodeLabelStudio } from 'veronese/formats';
 import { version } from 'veronese';
 import { Refusal, serveJson } from './http.mjs';
+import { readConfig } from './label-config.mjs';
 import { createSegment, score } from './segment.mjs';
+
+export { readConfig };
 
 /** Largest frame file that is fetched, bytes, and how long that may take, milliseconds: Label Studio itself gives up after 100 s. */
 const LARGEST = 64 * 1024 * 1024;
@@ -60,31 +63,6 @@ export async function startBackend({ port, host, jobs } = {}) {
 
 function health() {
   return { status: 'UP', model_class: 'Veronese' };
-}
-
-/**
- * What the labelling configuration says: the brush and what it paints on, the names of its labels, and the two images, of which
- * the one that is painted on is the first frame.
- */
-export function readConfig(config) {
-  const tags = [...String(config).matchAll(/<(\w+)\b([^>]*)>/g)].map(([, name, text]) => ({
-    name,
-    ...Object.fromEntries([...text.matchAll(/(\w+)\s*=\s*"([^"]*)"/g)].map(([, key, value]) => [`@${key}`, unescaped(value)])),
-  }));
-  const brush = tags.find(({ name }) => name === 'BrushLabels');
-  if (!brush) throw new Refusal(422, 'invalid-input', 'the labelling configuration has no BrushLabels');
-  const images = tags.filter(({ name }) => name === 'Image');
-  const painted = images.find((image) => image['@name'] === brush['@toName']);
-  const other = images.find((image) => image !== painted);
-  if (!painted || !other) throw new Refusal(422, 'invalid-input', 'the labelling configuration needs two Image tags, the brush on the first frame');
-  const labels = tags.filter(({ name }) => name === 'Label').map((label) => label['@value']);
-  const keys = [painted, other].map((image) => String(image['@value']).replace(/^\$/, ''));
-  return { fromName: brush['@name'], toName: brush['@toName'], labels, keys };
-}
-
-function unescaped(text) {
-  const named = { amp: '&', lt: '<', gt: '>', quot: '"', apos: "'" };
-  return text.replace(/&(amp|lt|gt|quot|apos);/g, (_, name) => named[name]);
 }
 
 /** A frame by its address; one without a host is a file uploaded to Label Studio, which wants the token. */
