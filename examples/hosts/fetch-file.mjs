@@ -58,7 +58,8 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
     const host = url.hostname.replace(/^\[|\]$/g, '');
     const free = named.has(url.origin);
     if (!free && isIP(host)) checkAddress(host, url);
-    const headers = { Accept: 'image/*', 'Accept-Encoding': 'identity', ...(token && { Authorization: `Token ${token}` }) };
+    // Label Studio answers 406 to who wants images alone.
+    const headers = { Accept: '*/*', 'Accept-Encoding': 'identity', ...(token && { Authorization: `Token ${token}` }) };
     const request = url.protocol === 'https:' ? secureRequest : plainRequest;
     const options = { agent: false, headers, signal, lookup: free ? lookup : checkedLookup(url) };
     return new Promise((resolve, reject) => request(url, options).once('response', resolve).on('error', reject).end());
@@ -70,6 +71,7 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
       lookup(host, { ...options, all: true }, (error, found) => {
         try {
           if (error) throw error;
+          if (found.length === 0) throw new Error(`${host} has no address`);
           for (const { address } of found) checkAddress(address, url);
         } catch (problem) {
           return callback(problem);

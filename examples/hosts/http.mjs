@@ -73,8 +73,13 @@ async function answer({ routes, known, budget }, request, response) {
  */
 function checkHost(known, { headers, socket }) {
   const name = hostname(headers.host ?? '');
-  if (name !== '' && (known.has(name) || name === ipaddr.process(socket.localAddress).toString())) return;
+  if (name !== '' && (known.has(name) || name === plain(socket.localAddress))) return;
   throw new Refusal(403, 'unknown-host', `this server is not known as '${headers.host ?? ''}': start it with --known-as NAME`);
+}
+
+/** An address as it is written in URLs: that of IPv4 where a socket of IPv6 has one. */
+function plain(address) {
+  return ipaddr.isValid(address ?? '') ? ipaddr.process(address).toString() : undefined;
 }
 
 /** The name in `name`, `name:port` or `[::1]:port`, written in the one way that URLs have; empty where there is none. */

@@ -22,15 +22,20 @@ export async function listen(t, answer, host = '127.0.0.1') {
   return `http://${host}:${server.address().port}`;
 }
 
-/** The frames on a server of their own; those below /data want a token, as Label Studio's uploads do. `asked` is what came. */
+/**
+ * The frames on a server of their own; those below /data want a token, and that everything is accepted, as Label Studio's uploads
+ * do. `asked` is what came.
+ */
 export async function files(t) {
   const asked = [];
   const origin = await listen(t, (incoming, response) => {
     const { url, headers } = incoming;
     asked.push({ url, token: headers.authorization });
     const [, index] = /^\/(?:data\/)?(\d)\.png$/.exec(url) ?? [];
-    const allowed = !url.startsWith('/data/') || headers.authorization === 'Token secret';
-    if (!frames[index] || !allowed) response.writeHead(allowed ? 404 : 401).end();
+    const upload = url.startsWith('/data/');
+    if (upload && headers.authorization !== 'Token secret') response.writeHead(401).end();
+    else if (upload && headers.accept !== '*/*') response.writeHead(406).end();
+    else if (!frames[index]) response.writeHead(404).end();
     else response.end(png(frames[index]));
   });
   return { origin, asked };
