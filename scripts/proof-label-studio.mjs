@@ -7,6 +7,7 @@ import { join, relative } from 'node:path';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
 import { decodedByStudio, picture, predictions, prepareLabelStudio, serveFrames, startLabelStudio } from './lib/label-studio.mjs';
+import { SERVERS, prepareNpmPackages } from './lib/npm-packages.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command } from './lib/run.mjs';
@@ -19,16 +20,18 @@ await command(async () => {
   if (chromium.problem) throw new Stop(chromium.problem);
   await buildModules();
   await buildPackage();
+  await prepareNpmPackages(SERVERS);
   await prepareLabelStudio();
   rmSync(OUT, { recursive: true, force: true });
   console.log('Starting Label Studio with a new database (a minute or more) …');
   const studio = await startLabelStudio(join(OUT, 'data'), await freePort());
   process.once('exit', studio.stop);
   const { startBackend } = await import('../examples/hosts/label-studio.mjs');
-  const backend = await startBackend({ jobs: 1 });
   const frames = await serveFrames(FRAMES);
+  // The token for uploaded files is the one that the studio sends.
+  const backend = await startBackend({ jobs: 1, studio: studio.address, allow: [frames.origin] });
   try {
-    const held = await predictions(studio, backend.address, frames.addresses);
+    const held = await predictions(studio, backend.address, frames.addresses, FRAMES);
     await checkMasks(held.found);
     const file = join(OUT, 'task.png');
     const text = await picture(studio, held, chromium.path, file);
@@ -47,15 +50,16 @@ async function checkMasks(found) {
   const { decodeImage } = await import('../pkg/dist/codecs.js');
   const [first, second] = await Promise.all(FRAMES.map((path) => decodeImage(readFileSync(path))));
   const { labels, count, width, height } = await segmentPair(first, second);
-  assert.equal(found.length, 1, 'one prediction for the task');
-  const [{ result, score, model_version: version }] = found;
-  assert.equal(result.length, Math.min(count - 1, 3));
-  for (const [index, { value, original_width: w, original_height: h }] of result.entries()) {
-    assert.deepEqual([w, h], [width, height]);
-    const pixels = await decodedByStudio(value.rle);
-    assert.deepEqual(pixels, Array.from(labels, (label) => (label === index + 1 ? 255 : 0)), `mask ${index + 1}`);
+  assert.deepEqual(found.map(({ length }) => length), [1, 1], 'one prediction for each task');
+  for (const [{ result, score, model_version: version }] of found) {
+    assert.equal(result.length, Math.min(count - 1, 3));
+    for (const [index, { value, original_width: w, original_height: h }] of result.entries()) {
+      assert.deepEqual([w, h], [width, height]);
+      const pixels = await decodedByStudio(value.rle);
+      assert.deepEqual(pixels, Array.from(labels, (label) => (label === index + 1 ? 255 : 0)), `mask ${index + 1}`);
+    }
+    console.log(`Label Studio holds ${result.length} masks of ${version}, score ${score.toFixed(3)}: pixel by pixel those of a direct call.`);
   }
-  console.log(`Label Studio holds ${result.length} masks of ${version}, score ${score.toFixed(3)}: pixel by pixel those of a direct call.`);
 }
 
 function freePort() {

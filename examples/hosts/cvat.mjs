@@ -1,12 +1,16 @@
 // A function for CVAT as nuclio runs it: two frames in, masks of what moves between them out.
 //
-// Under nuclio `handler` is the function (see function.yaml). Elsewhere: node cvat.mjs [--port 8070] [--host 127.0.0.1] [--jobs N]
+// Under nuclio `handler` is the function (see function.yaml). Elsewhere:
+// node cvat.mjs [--port 8070] [--host 127.0.0.1] [--known-as NAME …] [--jobs N] [--tasks N] [--pixels N]
 
 import { fileURLToPath } from 'node:url';
-import { parseArgs } from 'node:util';
 import { encodeCoco } from 'veronese/formats';
-import { Refusal, serveJson } from './http.mjs';
+import { run } from './command-line.mjs';
+import { Refusal, isObject, parse, refusal, serveJson } from './http.mjs';
 import { createSegment, score } from './segment.mjs';
+
+/** Largest request, bytes: two frames of 4K as base64 of PNG. */
+const LARGEST = 64 * 1024 * 1024;
 
 /** Polygons beside the masks may leave the border by so many pixels: nobody wants a vertex for each. */
 const TOLERANCE = 1;
@@ -15,16 +19,26 @@ let shared;
 
 /** nuclio's handler: `event.body` as JSON, the answer by `context.callback`. */
 export async function handler(context, event) {
-  shared ??= createSegment();
-  const respond = (status, value) =>
-    context.callback(new context.Response(JSON.stringify(value), {}, 'application/json', status));
+  shared ??= createDetect();
+  const respond = (status, value, headers = {}) =>
+    context.callback(new context.Response(JSON.stringify(value), headers, 'application/json', status));
   try {
-    const body = Buffer.isBuffer(event.body) ? JSON.parse(event.body.toString()) : event.body;
-    respond(200, await detect(shared.segment, body));
+    const parsed = isObject(event.body) && !Buffer.isBuffer(event.body);
+    respond(200, await shared.detect(parsed ? event.body : parse(event.body)));
   } catch (error) {
-    const known = error instanceof Refusal || error.name === 'VeroneseError';
-    respond(error.status ?? (known ? 422 : 500), { error: { code: known ? error.code : 'internal', message: error.message } });
+    const { status, code, message, headers } = refusal(error);
+    respond(status, { error: { code, message } }, headers);
   }
+}
+
+/** `detect` for a few requests at a time. */
+function createDetect(options) {
+  const { segment, perform, close } = createSegment(options);
+  const one = async (request, signal) => {
+    const [found] = await perform([request], () => detect((...files) => segment(...files, { confidence: true, signal }), request), signal);
+    return found;
+  };
+  return { detect: one, close };
 }
 
 /**
@@ -34,7 +48,8 @@ export async function handler(context, event) {
  */
 export async function detect(segment, request) {
   const { image, second, threshold = 0 } = Object(request);
-  const found = await segment(decoded('image', image), decoded('second', second), { confidence: true });
+  if (!(Number(threshold) >= 0)) throw new Refusal(422, 'invalid-input', "'threshold' must be a number from 0 to 1");
+  const found = await segment(decoded('image', image), decoded('second', second));
   const { labels, width, height, motions } = found;
   const confidence = score(found);
   if (confidence < Number(threshold)) return [];
@@ -60,14 +75,13 @@ function largest(rings) {
 }
 
 /** The same over plain HTTP, as nuclio puts it on the network. */
-export async function startFunction({ port, host, jobs } = {}) {
-  const { segment, close } = createSegment({ jobs });
-  const server = await serveJson({ 'POST /': (body) => detect(segment, body), 'GET /health': () => ({ status: 'UP' }) }, { port, host });
+export async function startFunction({ port, host, knownAs, largest = LARGEST, ...limits } = {}) {
+  const { detect: found, close } = createDetect(limits);
+  const server = await serveJson({ 'POST /': found, 'GET /health': () => ({ status: 'UP' }) }, { port, host, knownAs, largest });
   return {
-    address: `http://${server.address().address}:${server.address().port}`,
+    address: server.address,
     close: () => {
       server.close();
-      server.closeAllConnections();
       close();
     },
   };
@@ -79,12 +93,4 @@ export function end() {
   shared = undefined;
 }
 
-if (process.argv[1] === fileURLToPath(import.meta.url)) {
-  const text = { type: 'string' };
-  const { values } = parseArgs({ options: { port: { ...text, default: '8070' }, host: text, jobs: text } });
-  const jobs = values.jobs === undefined ? undefined : Number(values.jobs);
-  startFunction({ port: Number(values.port), host: values.host, jobs }).then((server) => {
-    console.log(`CVAT function at ${server.address}`);
-    for (const signal of ['SIGINT', 'SIGTERM']) process.once(signal, () => server.close());
-  });
-}
+if (process.argv[1] === fileURLToPath(import.meta.url)) run('CVAT function', startFunction, { port: 8070 });

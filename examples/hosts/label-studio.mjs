@@ -1,44 +1,65 @@
 // An ML backend for Label Studio: every task with two frames gets brush masks of what moves between them.
 //
-// node label-studio.mjs [--port 9090] [--host 127.0.0.1] [--jobs N]
+// node label-studio.mjs [--port 9090] [--host 127.0.0.1] [--known-as NAME …] [--allow ORIGIN …] [--jobs N] [--tasks N] [--pixels N]
 
 import { fileURLToPath } from 'node:url';
-import { parseArgs } from 'node:util';
 import { encodeLabelStudio } from 'veronese/formats';
 import { version } from 'veronese';
-import { Refusal, serveJson } from './http.mjs';
+import { run } from './command-line.mjs';
+import { createFetch, originOf } from './fetch-file.mjs';
+import { Refusal, isObject, serveJson } from './http.mjs';
+import { readConfig } from './label-config.mjs';
 import { createSegment, score } from './segment.mjs';
 
-/** Largest frame file that is fetched, bytes, and how long that may take, milliseconds: Label Studio itself gives up after 100 s. */
-const LARGEST = 64 * 1024 * 1024;
-const PATIENCE = 30_000;
+export { readConfig };
+
+/** Most numbers in the masks of one answer: they wait in memory until the last task is done. */
+const NUMBERS = 32 * 1024 * 1024;
 const MODEL = `veronese-${version}`;
 
-/** Starts the server; `close()` of what it returns ends it. */
-export async function startBackend({ port, host, jobs } = {}) {
-  const { segment, close } = createSegment({ jobs });
-  /** Where tasks with uploaded files are, as Label Studio says at set-up. */
-  let studio = { hostname: process.env.LABEL_STUDIO_URL, token: process.env.LABEL_STUDIO_API_KEY };
+/**
+ * Starts the server; `close()` of what it returns ends it. `studio` is where tasks with uploaded files are, for as long as the
+ * server runs; `token` opens them, or else what the studio sends at set-up.
+ */
+export async function startBackend({
+  port, host, knownAs, largest, jobs, tasks: most, pixels, allow,
+  studio = process.env.LABEL_STUDIO_URL,
+  token: configured = process.env.LABEL_STUDIO_API_KEY,
+} = {}) {
+  const home = studio ? originOf(studio) : undefined;
+  const fetchFile = createFetch({ home, allow });
+  const { segment, perform, close } = createSegment({ jobs, tasks: most, pixels });
+  let token = configured;
 
   const routes = {
     'GET /': health,
     'GET /health': health,
     'GET /versions': () => ({ versions: [MODEL] }),
-    'POST /setup': ({ hostname, access_token: token }) => {
-      studio = { hostname: studio.hostname ?? hostname, token: studio.token ?? token };
+    'POST /setup': ({ hostname, access_token: sent }) => {
+      if (!configured && home && isToken(sent) && URL.canParse(hostname) && new URL(hostname).origin === home) token = sent;
       return { model_version: MODEL };
     },
     'POST /webhook': () => ({ status: 'nothing to learn' }),
-    'POST /predict': async ({ tasks, label_config: config }) => {
-      if (!Array.isArray(tasks)) throw new Refusal(400, 'invalid-input', 'tasks must be a list');
+    'POST /predict': async ({ tasks, label_config: config }, signal) => {
+      if (!Array.isArray(tasks) || !tasks.every(isObject)) throw new Refusal(400, 'invalid-input', 'tasks must be a list of objects');
       const wanted = readConfig(config);
-      return { results: await Promise.all(tasks.map((task) => predict(task, wanted))) };
+      let numbers = 0;
+      const results = await perform(tasks, async (task) => {
+        const prediction = await predict(task, wanted, signal);
+        for (const { value } of prediction.result) numbers += value.rle.length;
+        if (numbers > NUMBERS) throw new Refusal(413, 'too-large', 'the masks of so many tasks are too much for one answer');
+        return prediction;
+      }, signal);
+      return { results };
     },
   };
 
-  async function predict({ data }, { fromName, toName, labels, keys }) {
-    const files = await Promise.all(keys.map((key) => fetchFrame(data?.[key], key, studio)));
-    const found = await segment(files[0], files[1], { confidence: true });
+  async function predict({ data }, { fromName, toName, labels, keys }, signal) {
+    const files = await Promise.all(keys.map(async (key) => {
+      if (typeof data?.[key] !== 'string') throw new Refusal(422, 'invalid-input', `the task has no '${key}'`);
+      return fetchFile(data[key], { token, signal });
+    }));
+    const found = await segment(files[0], files[1], { confidence: true, signal });
     // The dominant motion, usually the background, is nobody's mask; the others take the labels of the configuration in order.
     const motions = found.motions.slice(1, 1 + labels.length);
     const names = Object.fromEntries(motions.map(({ label }, index) => [label, labels[index]]));
@@ -47,12 +68,11 @@ export async function startBackend({ port, host, jobs } = {}) {
     return { result: task.predictions[0].result, score: score(found), model_version: MODEL };
   }
 
-  const server = await serveJson(routes, { port, host });
+  const server = await serveJson(routes, { port, host, knownAs, largest });
   return {
-    address: `http://${server.address().address}:${server.address().port}`,
+    address: server.address,
     close: () => {
       server.close();
-      server.closeAllConnections();
       close();
     },
   };
@@ -62,65 +82,9 @@ function health() {
   return { status: 'UP', model_class: 'Veronese' };
 }
 
-/**
- * What the labelling configuration says: the brush and what it paints on, the names of its labels, and the two images, of which
- * the one that is painted on is the first frame.
- */
-export function readConfig(config) {
-  const tags = [...String(config).matchAll(/<(\w+)\b([^>]*)>/g)].map(([, name, text]) => ({
-    name,
-    ...Object.fromEntries([...text.matchAll(/(\w+)\s*=\s*"([^"]*)"/g)].map(([, key, value]) => [`@${key}`, unescaped(value)])),
-  }));
-  const brush = tags.find(({ name }) => name === 'BrushLabels');
-  if (!brush) throw new Refusal(422, 'invalid-input', 'the labelling configuration has no BrushLabels');
-  const images = tags.filter(({ name }) => name === 'Image');
-  const painted = images.find((image) => image['@name'] === brush['@toName']);
-  const other = images.find((image) => image !== painted);
-  if (!painted || !other) throw new Refusal(422, 'invalid-input', 'the labelling configuration needs two Image tags, the brush on the first frame');
-  const labels = tags.filter(({ name }) => name === 'Label').map((label) => label['@value']);
-  const keys = [painted, other].map((image) => String(image['@value']).replace(/^\$/, ''));
-  return { fromName: brush['@name'], toName: brush['@toName'], labels, keys };
+/** What can stand in a header. */
+function isToken(text) {
+  return typeof text === 'string' && /^[\x21-\x7e]+$/.test(text);
 }
 
-function unescaped(text) {
-  const named = { amp: '&', lt: '<', gt: '>', quot: '"', apos: "'" };
-  return text.replace(/&(amp|lt|gt|quot|apos);/g, (_, name) => named[name]);
-}
-
-/** A frame by its address; one without a host is a file uploaded to Label Studio, which wants the token. */
-async function fetchFrame(address, key, { hostname, token }) {
-  if (typeof address !== 'string') throw new Refusal(422, 'invalid-input', `the task has no '${key}'`);
-  const own = address.startsWith('/');
-  if (own && !hostname) throw new Refusal(422, 'invalid-input', `'${address}' is a file of Label Studio: set LABEL_STUDIO_URL and LABEL_STUDIO_API_KEY`);
-  if (!own && !/^https?:/.test(address)) throw new Refusal(422, 'invalid-input', `'${key}' must be an address of http or https`);
-  const headers = own && token ? { Authorization: `Token ${token}` } : {};
-  let response;
-  try {
-    response = await fetch(own ? new URL(address, hostname) : address, { headers, signal: AbortSignal.timeout(PATIENCE) });
-  } catch (error) {
-    throw new Refusal(422, 'file-not-found', `${address} cannot be fetched: ${error.cause?.message ?? error.message}`);
-  }
-  if (!response.ok) throw new Refusal(422, 'file-not-found', `${address} answered ${response.status}`);
-  return limited(response, address);
-}
-
-async function limited(response, address) {
-  const pieces = [];
-  let length = 0;
-  for await (const piece of response.body) {
-    length += piece.length;
-    if (length > LARGEST) throw new Refusal(422, 'unreadable-file', `${address} has more than ${LARGEST} bytes`);
-    pieces.push(piece);
-  }
-  return new Uint8Array(Buffer.concat(pieces));
-}
-
-if (process.argv[1] === fileURLToPath(import.meta.url)) {
-  const text = { type: 'string' };
-  const { values } = parseArgs({ options: { port: { ...text, default: '9090' }, host: text, jobs: text } });
-  const jobs = values.jobs === undefined ? undefined : Number(values.jobs);
-  startBackend({ port: Number(values.port), host: values.host, jobs }).then((server) => {
-    console.log(`ML backend at ${server.address}`);
-    for (const signal of ['SIGINT', 'SIGTERM']) process.once(signal, () => server.close());
-  });
-}
+if (process.argv[1] === fileURLToPath(import.meta.url)) run('ML backend', startBackend, { port: 9090, more: ['allow'] });

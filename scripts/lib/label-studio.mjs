@@ -4,7 +4,7 @@ import { spawn } from 'node:child_process';
 import { createWriteStream, existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
-import { dirname, join } from 'node:path';
+import { basename, dirname, join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 
 import { root, toolsFolder, which } from './project.mjs';
@@ -28,10 +28,13 @@ export async function prepareLabelStudio() {
 /** Starts it on loopback with a new database in `folder`; `stop()` ends it. */
 export async function startLabelStudio(folder, port) {
   mkdirSync(folder, { recursive: true });
+  const address = `http://127.0.0.1:${port}`;
   const env = {
     ...process.env,
     LABEL_STUDIO_BASE_DATA_DIR: folder,
     LABEL_STUDIO_ENABLE_LEGACY_API_TOKEN: 'true',
+    // What it calls itself at set-up.
+    LABEL_STUDIO_HOST: address,
     // The backend and the frames are on this computer, which a studio on the open net has to refuse.
     ML_BLOCK_LOCAL_IP: 'false',
     SSRF_PROTECTION_ENABLED: 'false',
@@ -44,7 +47,6 @@ export async function startLabelStudio(folder, port) {
   const log = createWriteStream(join(folder, 'log.txt'));
   child.stdout.pipe(log);
   child.stderr.pipe(log);
-  const address = `http://127.0.0.1:${port}`;
   const studio = { address, ...USER, stop: () => child.kill() };
   const since = Date.now();
   while (!(await fetch(`${address}/health`).then(({ ok }) => ok, () => false))) {
@@ -66,8 +68,8 @@ export async function serveFrames(paths) {
     return response.writeHead(200, { 'Content-Type': 'image/png', 'Access-Control-Allow-Origin': '*' }).end(readFileSync(path));
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  const address = `http://127.0.0.1:${server.address().port}`;
-  return { addresses: paths.map((_, index) => `${address}/${index}.png`), close: () => server.close() };
+  const origin = `http://127.0.0.1:${server.address().port}`;
+  return { origin, addresses: paths.map((_, index) => `${origin}/${index}.png`), close: () => server.close() };
 }
 
 const CONFIG = `<View>
@@ -80,23 +82,36 @@ const CONFIG = `<View>
   </View>
 </View>`;
 
-/** By the studio's interface: a project, our backend, a task with two frames, predictions. Returns what it then holds. */
-export async function predictions(studio, backend, [first, second]) {
+/**
+ * By the studio's interface: a project, our backend, a task with two linked frames and one with two uploaded files, predictions.
+ * Returns what it then holds for each task.
+ */
+export async function predictions(studio, backend, linked, files) {
   const api = async (method, path, body) => {
-    const headers = { Authorization: `Token ${studio.token}`, 'Content-Type': 'application/json' };
-    const response = await fetch(`${studio.address}/api/${path}`, { method, headers, ...(body && { body: JSON.stringify(body) }) });
+    const form = body instanceof FormData;
+    const headers = { Authorization: `Token ${studio.token}`, ...(!form && { 'Content-Type': 'application/json' }) };
+    const response = await fetch(`${studio.address}/api/${path}`, { method, headers, ...(body && { body: form ? body : JSON.stringify(body) }) });
     const text = await response.text();
     if (!response.ok) throw new Stop(`${method} /api/${path} answered ${response.status}: ${text.slice(0, 2000)}`);
     return text === '' ? undefined : JSON.parse(text);
   };
-  const project = await api('POST', 'projects', { title: 'What moves', label_config: CONFIG, show_collab_predictions: true });
+  const project = await api('POST', 'projects', { title: 'What moves', show_collab_predictions: true });
+  const uploaded = [];
+  for (const path of files) {
+    const form = new FormData();
+    form.append('file', new Blob([readFileSync(path)], { type: 'image/png' }), basename(path));
+    const { file_upload_ids: [id] } = await api('POST', `projects/${project.id}/import?commit_to_project=false`, form);
+    uploaded.push(`/data/${(await api('GET', `import/file-upload/${id}`)).file}`);
+  }
+  // Only now: files are not taken where the configuration has two images.
+  await api('PATCH', `projects/${project.id}`, { label_config: CONFIG });
   const connection = await api('POST', 'ml', { url: backend, project: project.id, title: 'Veronese' });
-  await api('POST', `projects/${project.id}/import?return_task_ids=true`, [{ data: { first, second } }]);
+  for (const [first, second] of [linked, uploaded]) await api('POST', `projects/${project.id}/import?return_task_ids=true`, [{ data: { first, second } }]);
   const { tasks } = await api('GET', `tasks?project=${project.id}`);
   const selectedItems = { all: false, included: tasks.map(({ id }) => id) };
   await api('POST', `dm/actions?id=retrieve_tasks_predictions&project=${project.id}`, { selectedItems, ordering: [] });
-  const found = await api('GET', `predictions?task=${tasks[0].id}`);
-  await api('PATCH', `projects/${project.id}`, { model_version: found[0]?.model_version });
+  const found = await Promise.all(tasks.map(({ id }) => api('GET', `predictions?task=${id}`)));
+  await api('PATCH', `projects/${project.id}`, { model_version: found[0][0]?.model_version });
   return { project: project.id, task: tasks[0].id, state: connection.state ?? connection.readable_state, found };
 }
 

@@ -7,6 +7,7 @@ import { Stop, longStep } from './run.mjs';
 
 /** Tools that only some tests and commands need; no workspace, so that nobody else has to install them. */
 export const HOSTS = 'pkg/test/hosts';
+export const SERVERS = 'examples/hosts';
 export const SCALE_OUT = 'examples/scale-out';
 
 /** Installs what the package-lock.json of a folder names, unless it is there already. */

@@ -2,7 +2,7 @@
 // and nothing is recorded: each piece is looked at anew, which takes less than a second.
 
 import { prepareChromium } from './chromium.mjs';
-import { HOSTS, SCALE_OUT, prepareNpmPackages } from './npm-packages.mjs';
+import { HOSTS, SCALE_OUT, SERVERS, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
 import { preparePython } from './python-packages.mjs';
 import { Stop } from './run.mjs';
@@ -10,8 +10,8 @@ import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
  * Prepares compiler, wasm tools and npm packages; with `checks` formatter and clippy too, with `browser` Chromium, with
- * `hosts` the bundlers and checkers that the packed package is tried in, with `python` the
- * decoders of annotation tools.
+ * `hosts` the bundlers and checkers that the packed package is tried in and what the examples need, with
+ * `python` the decoders of annotation tools.
  * Throws `Stop` with a sentence for every missing piece. Only a missing browser or Python is returned instead,
  * as `{ chromium: { problem } }` or `{ python: { problem } }`, because everything but their tests works without.
  */
@@ -20,7 +20,7 @@ export async function prepare({ checks = false, browser = false, hosts = false, 
   await checkRust();
   const rust = prepareCompiler({ checks }).then(prepareWasmTools);
   const javascript = prepareNpmPackages()
-    .then(() => (hosts ? prepareNpmPackages(HOSTS).then(() => prepareNpmPackages(SCALE_OUT)) : undefined))
+    .then(() => prepareFolders(hosts ? [HOSTS, SCALE_OUT, SERVERS] : []))
     .then(() => (browser ? prepareChromium() : {}));
   const decoders = python ? preparePython() : {};
   const outcomes = await Promise.allSettled([rust, javascript, decoders]);
@@ -29,6 +29,10 @@ export async function prepare({ checks = false, browser = false, hosts = false, 
   if (surprise) throw surprise;
   if (failures.length > 0) throw new Stop(failures.map(({ message }) => message).join('\n'));
   return { chromium: outcomes[1].value, python: outcomes[2].value };
+}
+
+async function prepareFolders(folders) {
+  for (const folder of folders) await prepareNpmPackages(folder);
 }
 
 function checkNode() {

@@ -1,8 +1,9 @@
 // A small web server for the built page: files of one folder, on this computer only unless told otherwise.
 
-import { createReadStream, statSync } from 'node:fs';
+import { open, realpath, stat } from 'node:fs/promises';
 import { createServer } from 'node:http';
-import { extname, join, normalize, sep } from 'node:path';
+import { extname, join, sep } from 'node:path';
+import { pipeline } from 'node:stream/promises';
 
 import { HEADERS } from './policy.mjs';
 import { Stop } from './run.mjs';
@@ -16,6 +17,7 @@ const TYPES = {
   '.json': 'application/json',
   '.map': 'application/json',
   '.md': 'text/markdown; charset=utf-8',
+  '.mjs': 'text/javascript; charset=utf-8',
   '.png': 'image/png',
   '.svg': 'image/svg+xml',
   '.txt': 'text/plain; charset=utf-8',
@@ -30,10 +32,11 @@ const ATTEMPTS = 20;
  * every answer.
  */
 export async function serve(folder, { port, host, headers = HEADERS }) {
+  const home = await realpath(folder);
   const first = port ?? 4173;
   const last = port === undefined ? first + ATTEMPTS : first;
   for (let candidate = first; candidate <= last; candidate += 1) {
-    const server = createServer((request, response) => answer({ folder, headers }, request, response));
+    const server = createServer((request, response) => void answer({ home, headers }, request, response));
     const error = await listening(server, candidate, host);
     if (!error) return server;
     if (error.code !== 'EADDRINUSE') throw new Stop(`The page cannot be served on port ${candidate}: ${error.message}.`);
@@ -49,29 +52,45 @@ function listening(server, port, host) {
   });
 }
 
-function answer({ folder, headers }, request, response) {
-  const refuse = (code, sentence) => {
-    response.writeHead(code, { ...headers, 'Content-Type': 'text/plain; charset=utf-8' });
-    response.end(`${sentence}\n`);
-  };
-  if (request.method !== 'GET' && request.method !== 'HEAD') return refuse(405, 'Only GET and HEAD.');
-  const path = fileFor(folder, request.url);
-  if (!path) return refuse(404, 'Not found.');
-  const type = TYPES[extname(path).toLowerCase()] ?? 'application/octet-stream';
-  response.writeHead(200, { ...headers, 'Content-Type': type, 'Content-Length': statSync(path).size, 'Cache-Control': 'no-cache' });
-  if (request.method === 'HEAD') return response.end();
-  return createReadStream(path).on('error', () => response.destroy()).pipe(response);
+async function answer({ home, headers }, request, response) {
+  const say = (code, fields) => response.writeHead(code, { ...headers, 'X-Content-Type-Options': 'nosniff', ...fields });
+  const refuse = (code, sentence, fields) => say(code, { 'Content-Type': 'text/plain; charset=utf-8', ...fields }).end(`${sentence}\n`);
+  if (request.method !== 'GET' && request.method !== 'HEAD') return refuse(405, 'Only GET and HEAD.', { Allow: 'GET, HEAD' });
+  const name = fileName(request.url);
+  if (name === undefined) return refuse(400, 'No address of a file.');
+  const path = await fileFor(home, name);
+  const file = path && (await open(path).catch(() => undefined));
+  if (!file) return refuse(404, 'Not found.');
+  try {
+    const { size } = await file.stat();
+    const type = TYPES[extname(path).toLowerCase()] ?? 'application/octet-stream';
+    say(200, { 'Content-Type': type, 'Content-Length': size, 'Cache-Control': 'no-cache' });
+    if (request.method === 'HEAD' || size === 0) return response.end();
+    return await pipeline(file.createReadStream({ end: size - 1, autoClose: false }), response);
+  } catch {
+    return response.destroy(); // The file cannot be read, or nobody is there to take it.
+  } finally {
+    await file.close();
+  }
 }
 
-/** The file an address means, or undefined; never one outside the folder. */
-function fileFor(folder, url) {
+/** The name in an address; undefined where a part of it is no name: malformed, or with a separator or NUL in disguise. */
+function fileName(url) {
   try {
-    const name = decodeURIComponent(new URL(url, 'http://localhost').pathname);
-    let path = normalize(join(folder, name));
-    if (path !== folder && !path.startsWith(folder + sep)) return undefined;
-    if (statSync(path).isDirectory()) path = join(path, 'index.html');
-    return statSync(path).isFile() ? path : undefined;
+    const parts = new URL(url, 'http://localhost').pathname.split('/').map(decodeURIComponent);
+    return parts.some((part) => /[/\\\0]/.test(part)) ? undefined : parts.join('/');
   } catch {
-    return undefined; // No such file, or an address that is none.
+    return undefined;
+  }
+}
+
+/** The file of that name, or undefined; never one outside the folder, whatever links say. */
+async function fileFor(home, name) {
+  try {
+    let path = await realpath(join(home, name));
+    if ((await stat(path)).isDirectory()) path = await realpath(join(path, 'index.html'));
+    return path.startsWith(home + sep) && (await stat(path)).isFile() ? path : undefined;
+  } catch {
+    return undefined; // No such file.
   }
 }

@@ -1,12 +1,8 @@
 // A browser, and a server for it.
 
 import { createHash } from 'node:crypto';
-import { readFileSync, statSync } from 'node:fs';
-import { createServer } from 'node:http';
-import { extname, join, normalize, sep } from 'node:path';
 import { chromium } from '@playwright/test';
-
-const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.mjs': 'text/javascript', '.wasm': 'application/wasm', '.png': 'image/png' };
+import { serve as serveFolder } from '../../../scripts/lib/static-server.mjs';
 
 export function launch() {
   const executablePath = process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium';
@@ -17,17 +13,8 @@ export function launch() {
 /** Serves a folder on loopback with the headers; returns the address and what was asked for in vain. */
 export async function serve(t, folder, headers = {}) {
   const missing = [];
-  const server = createServer((request, response) => {
-    const name = decodeURIComponent(new URL(request.url, 'http://localhost').pathname);
-    const path = normalize(join(folder, name.endsWith('/') ? `${name}index.html` : name));
-    if (!path.startsWith(folder + sep) || !statSync(path, { throwIfNoEntry: false })?.isFile()) {
-      missing.push(name);
-      response.writeHead(404).end('not found');
-      return;
-    }
-    response.writeHead(200, { 'Content-Type': TYPES[extname(path)] ?? 'application/octet-stream', ...headers }).end(readFileSync(path));
-  });
-  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const server = await serveFolder(folder, { port: 0, host: '127.0.0.1', headers });
+  server.on('request', ({ url }, response) => response.once('finish', () => response.statusCode === 404 && missing.push(url)));
   t.after(() => {
     server.close();
     server.closeAllConnections();

@@ -1,40 +1,12 @@
 // The servers of examples/hosts, asked over HTTP as the annotation tools ask.
 
 import assert from 'node:assert/strict';
-import { createServer } from 'node:http';
 import { describe, test } from 'node:test';
 import { segmentPair } from 'veronese';
 import { detect, end, handler, startFunction } from '../../../examples/hosts/cvat.mjs';
-import { readConfig, startBackend } from '../../../examples/hosts/label-studio.mjs';
+import { startBackend } from '../../../examples/hosts/label-studio.mjs';
 import { png } from '../support/frames.mjs';
-import { pair } from '../support/moving.mjs';
-
-const CONFIG = `<View>
-  <Image name="before" value="$first"/><Image name="after" value="$second"/>
-  <BrushLabels name="moving" toName="before"><Label value="car &amp; shadow" background="#f00"/><Label value="second"/></BrushLabels>
-</View>`;
-const frames = pair();
-
-/** The frames on a server of their own; one address wants a token, as Label Studio's uploads do. */
-async function files(t) {
-  const asked = [];
-  const server = createServer((request, response) => {
-    asked.push(request.url);
-    const [, index] = /^\/(?:data\/)?(\d)\.png$/.exec(request.url) ?? [];
-    const allowed = !request.url.startsWith('/data/') || request.headers.authorization === 'Token secret';
-    if (!frames[index] || !allowed) response.writeHead(allowed ? 404 : 401).end();
-    else response.end(png(frames[index]));
-  });
-  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
-  t.after(() => server.close());
-  return { address: `http://127.0.0.1:${server.address().port}`, asked };
-}
-
-async function post(address, body) {
-  const text = typeof body === 'string' ? body : JSON.stringify(body);
-  const response = await fetch(address, { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: text });
-  return { status: response.status, body: await response.json() };
-}
+import { CONFIG, files, frames, post, task } from './asking.mjs';
 
 /** Label Studio's own way of reading a brush, by its description: bits, from the highest of each byte. */
 function decodeBrush(bytes) {
@@ -60,8 +32,8 @@ function decodeBrush(bytes) {
 }
 
 describe('the Label Studio backend', () => {
-  async function backend(t) {
-    const started = await startBackend({ jobs: 1 });
+  async function backend(t, options = {}) {
+    const started = await startBackend({ jobs: 1, ...options });
     t.after(() => started.close());
     return started.address;
   }
@@ -75,8 +47,9 @@ describe('the Label Studio backend', () => {
   });
 
   test('predictions are the masks of segmentPair, one answer for each task', async (t) => {
-    const [address, { address: host }] = [await backend(t), await files(t)];
-    const data = { first: `${host}/0.png`, second: `${host}/1.png` };
+    const { origin } = await files(t);
+    const address = await backend(t, { allow: [origin] });
+    const data = { first: `${origin}/0.png`, second: `${origin}/1.png` };
     const { status, body } = await post(`${address}/predict`, { tasks: [{ id: 1, data }, { id: 2, data }], label_config: CONFIG });
     assert.equal(status, 200);
     assert.equal(body.results.length, 2);
@@ -91,38 +64,70 @@ describe('the Label Studio backend', () => {
     assert.deepEqual(decodeBrush(value.rle), [...labels].flatMap((label) => Array(4).fill(label === 1 ? 255 : 0)));
   });
 
+  test('frames may be in the task itself, as data addresses', async (t) => {
+    const address = await backend(t);
+    const [first, second] = frames.map((frame) => `data:image/png;base64,${Buffer.from(png(frame)).toString('base64')}`);
+    const { status, body } = await post(`${address}/predict`, task(first, second));
+    assert.equal(status, 200, JSON.stringify(body));
+    assert.equal(body.results[0].result.length, 1);
+  });
+
   test("fetches Label Studio's own files by the token of its set-up", async (t) => {
-    const [address, { address: host, asked }] = [await backend(t), await files(t)];
-    const task = { data: { first: '/data/0.png', second: '/data/1.png' } };
-    const before = await post(`${address}/predict`, { tasks: [task], label_config: CONFIG });
-    assert.deepEqual([before.status, before.body.error.code], [422, 'invalid-input']);
-    await post(`${address}/setup`, { hostname: host, access_token: 'secret' });
-    assert.equal((await post(`${address}/predict`, { tasks: [task], label_config: CONFIG })).status, 200);
-    assert.deepEqual(asked.sort(), ['/data/0.png', '/data/1.png']);
+    const { origin, asked } = await files(t);
+    const wanted = task('/data/0.png', `${origin}/data/1.png`);
+    const without = await post(`${await backend(t)}/predict`, wanted);
+    assert.deepEqual([without.status, without.body.error.code], [422, 'invalid-input']);
+    const address = await backend(t, { studio: origin });
+    const before = await post(`${address}/predict`, wanted);
+    assert.deepEqual([before.status, before.body.error.code], [422, 'file-not-found']);
+    assert.match(before.body.error.message, /answered 401.*LABEL_STUDIO_API_KEY/);
+    await post(`${address}/setup`, { hostname: origin, access_token: 'secret' });
+    asked.length = 0;
+    assert.equal((await post(`${address}/predict`, wanted)).status, 200);
+    assert.deepEqual(asked.map(({ url }) => url).sort(), ['/data/0.png', '/data/1.png']);
+  });
+
+  test('origin and token of the environment', async (t) => {
+    const { origin } = await files(t);
+    Object.assign(process.env, { LABEL_STUDIO_URL: `${origin}/`, LABEL_STUDIO_API_KEY: 'secret' });
+    t.after(() => {
+      delete process.env.LABEL_STUDIO_URL;
+      delete process.env.LABEL_STUDIO_API_KEY;
+    });
+    assert.equal((await post(`${await backend(t)}/predict`, task('/data/0.png', '/data/1.png'))).status, 200);
   });
 
   test('says what is wrong, and goes on', async (t) => {
-    const [address, { address: host }] = [await backend(t), await files(t)];
-    const task = (first, second) => ({ tasks: [{ data: { first, second } }], label_config: CONFIG });
+    const { origin } = await files(t);
+    const address = await backend(t, { allow: [origin, 'http://127.0.0.1:9'] });
     for (const [body, status, code] of [
       ['{"tasks', 400, 'invalid-json'],
+      ['', 400, 'invalid-json'],
+      ['null', 400, 'invalid-input'],
+      ['[]', 400, 'invalid-input'],
+      ['"tasks"', 400, 'invalid-input'],
       [{}, 400, 'invalid-input'],
+      [{ tasks: [null], label_config: CONFIG }, 400, 'invalid-input'],
+      [{ tasks: [3], label_config: CONFIG }, 400, 'invalid-input'],
+      [{ tasks: [[]], label_config: CONFIG }, 400, 'invalid-input'],
+      [{ tasks: [{}] }, 422, 'invalid-input'],
+      [{ tasks: [{}], label_config: null }, 422, 'invalid-input'],
+      [{ tasks: [{}], label_config: CONFIG }, 422, 'invalid-input'],
+      [{ tasks: [{ data: null }], label_config: CONFIG }, 422, 'invalid-input'],
       [{ tasks: [{}], label_config: '<View/>' }, 422, 'invalid-input'],
       [{ tasks: [{}], label_config: '<View><Image name="a" value="$a"/><BrushLabels name="b" toName="a"/></View>' }, 422, 'invalid-input'],
-      [task(`${host}/0.png`), 422, 'invalid-input'],
-      [task(`${host}/0.png`, 'file:///etc/hostname'), 422, 'invalid-input'],
-      [task(`${host}/0.png`, `${host}/7.png`), 422, 'file-not-found'],
-      [task(`${host}/0.png`, 'http://127.0.0.1:9/1.png'), 422, 'file-not-found'],
+      [task(`${origin}/0.png`), 422, 'invalid-input'],
+      [task(`${origin}/0.png`, `${origin}/7.png`), 422, 'file-not-found'],
+      [task(`${origin}/0.png`, 'http://127.0.0.1:9/1.png'), 422, 'file-not-found'],
+      [task(`${origin}/0.png`, 'data:image/png;base64,AAAA'), 422, 'unreadable-image'],
+      [task(`${origin}/0.png`, 'data:nonsense'), 422, 'unreadable-file'],
     ]) {
       const answer = await post(`${address}/predict`, body);
-      assert.deepEqual([answer.status, answer.body.error.code], [status, code], JSON.stringify(body));
+      assert.deepEqual([answer.status, answer.body.error.code], [status, code], `${JSON.stringify(body)}: ${JSON.stringify(answer.body)}`);
     }
+    for (const path of ['/setup', '/webhook']) assert.equal((await post(address + path, 'null')).status, 400, path);
     assert.equal((await fetch(`${address}/train`)).status, 404);
-    assert.equal((await post(`${address}/predict`, task(`${host}/0.png`, `${host}/1.png`))).status, 200);
-  });
-
-  test('reads configurations however they are written', () => {
-    assert.deepEqual(readConfig(CONFIG), { fromName: 'moving', toName: 'before', labels: ['car & shadow', 'second'], keys: ['first', 'second'] });
+    assert.equal((await post(`${address}/predict`, task(`${origin}/0.png`, `${origin}/1.png`))).status, 200);
   });
 });
 
@@ -157,9 +162,16 @@ describe('the CVAT function', () => {
     assert.equal(status, 200);
     await check(body);
     assert.deepEqual((await post(server.address, { ...request(), threshold: 1 })).body, []);
-    for (const [bad, code] of [[{}, 'invalid-input'], [{ image: request().image }, 'invalid-input'], [{ ...request(), second: 'AAAA' }, 'unreadable-image']]) {
+    for (const [bad, status, code] of [
+      ['null', 400, 'invalid-input'],
+      ['{', 400, 'invalid-json'],
+      [{}, 422, 'invalid-input'],
+      [{ image: request().image }, 422, 'invalid-input'],
+      [{ ...request(), threshold: 'half' }, 422, 'invalid-input'],
+      [{ ...request(), second: 'AAAA' }, 422, 'unreadable-image'],
+    ]) {
       const answer = await post(server.address, bad);
-      assert.deepEqual([answer.status, answer.body.error.code], [422, code]);
+      assert.deepEqual([answer.status, answer.body.error.code], [status, code]);
     }
   });
 
@@ -174,6 +186,7 @@ describe('the CVAT function', () => {
     await check(JSON.parse(body));
     assert.equal((await call(request())).status, 200, 'or an object, as nuclio gives it');
     assert.equal((await call({})).status, 422);
+    for (const bad of [Buffer.from('{'), Buffer.from('null'), null, undefined]) assert.equal((await call(bad)).status, 400, String(bad));
   });
 
   test('nothing moves: no masks', async (t) => {

@@ -1,0 +1,51 @@
+// What the Label Studio backend reads in labelling configurations.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { readConfig } from '../../../examples/hosts/label-config.mjs';
+import { CONFIG } from './asking.mjs';
+
+const simple = { fromName: 'b', toName: 'a', labels: ['x'], keys: ['one', 'two'] };
+const around = (inside) => `<View>${inside}<Image name="a" value="$one"/><Image name="z" value="$two"/></View>`;
+
+test('configurations are read however they are written', () => {
+  assert.deepEqual(readConfig(CONFIG), { fromName: 'moving', toName: 'before', labels: ['car & shadow', 'second'], keys: ['first', 'second'] });
+  for (const config of [
+    around('<BrushLabels name="b" toName="a"><Label value="x"/></BrushLabels>'),
+    around("<BrushLabels toName = 'a'\n name='b' ><View><Label value='x'></Label></View></BrushLabels>"),
+    `<?xml version="1.0" encoding="UTF-8"?>\n<!-- > -->${around('<BrushLabels name="b" toName="a" hint="a > b"><Label value="x"/></BrushLabels>')}`,
+    around('<!-- <BrushLabels name="no" toName="z"/> --><BrushLabels name="b" toName="a"><!-- <Label value="no"/> --><Label value="x"/></BrushLabels>'),
+    around('<Choices name="c" toName="a"><Label value="no"/></Choices><BrushLabels name="b" toName="a"><Label value="&#120;"/></BrushLabels>'),
+  ]) assert.deepEqual(readConfig(config), simple, config);
+});
+
+test('configurations that are none are refused with a sentence', () => {
+  for (const config of [
+    undefined, null, 7, {}, '', 'text', '<View', '<View>', '<View></Viewer>', around('<BrushLabels name="b" toName="a">'),
+    around('<BrushLabels toName="a"/>'), around('<BrushLabels name="b"/>'), around('<BrushLabels name="b" toName="nowhere"/>'),
+    around('<BrushLabels name="b" toName="a"><Label/></BrushLabels>'), around('<BrushLabels name="b" name="c" toName="a"/>'),
+    '<View><BrushLabels name="b" toName="a"/><Image name="a"/><Image name="z" value="$two"/></View>',
+    `<!DOCTYPE View [<!ENTITY e "eeee">]>${around('<BrushLabels name="b" toName="a"><Label value="&e;"/></BrushLabels>')}`,
+    around(`<BrushLabels name="b" toName="a"><Label value="${'x'.repeat(70_000)}"/></BrushLabels>`),
+  ]) assert.throws(() => readConfig(config), { status: 422, code: 'invalid-input' }, String(config).slice(0, 100));
+});
+
+test('configurations take no longer than they are long', () => {
+  const length = 60_000;
+  const of = (piece) => piece.repeat(length / piece.length);
+  const brush = '<BrushLabels name="b" toName="a"><Label value="x"/></BrushLabels>';
+  const since = performance.now();
+  for (const config of [
+    of('<a '), of('<'), `<a ${of('a')}`, `<a ${of('a ')}/>`, `<a ${of('a="')}`, of('<a>'), of('<!--'), of('<![CDATA['), of('<?a '), `<!DOCTYPE ${of('[')}`, of('&'),
+    `<a ${Array.from({ length: length / 10 }, (_, index) => `a${index}=""`).join(' ')}/>`,
+    around(brush + of('<Image/>').slice(0, -1000)), around(brush + '<i>'.repeat(length / 8) + '</i>'.repeat(length / 8)), around(brush.replace('"x"', `"${of('&amp;').slice(0, -1000)}"`)),
+  ]) {
+    try {
+      readConfig(config);
+    } catch (error) {
+      assert.equal(error.code, 'invalid-input', error.stack);
+    }
+  }
+  // With a pattern that went back from every '<' a single one of these took seconds.
+  assert.ok(performance.now() - since < 10_000, `${Math.round(performance.now() - since)} ms`);
+});
