@@ -3,12 +3,19 @@
 //! so half-transparent pixels come back rounded; and JPEG decoders differ from each other by a grey level here and there.
 
 import type { Pixels } from 'veronese';
+import type { Clip } from './clips/clip.js';
 import { PageError } from './errors.js';
+import type { Sample } from './samples.js';
 import { strings } from './strings.js';
+
+/** What a frame was taken from: a place in a film, or a place in a sample. */
+export type Origin = { readonly clip: Clip; readonly index: number } | { readonly sample: Sample; readonly slot: 'first' | 'second' };
 
 /** A decoded frame. `data` is RGBA, row by row; nobody changes it. */
 export interface LoadedFrame extends Pixels {
   readonly name: string;
+  /** `null` where it is a file of its own. */
+  readonly origin: Origin | null;
   readonly data: Uint8ClampedArray<ArrayBuffer>;
   readonly width: number;
   readonly height: number;
@@ -52,7 +59,7 @@ export async function frameFromBitmap(given: ImageBitmap, name: string, longestS
   if (context === null) throw new PageError('unsupported-browser', strings.errors.noCanvas);
   context.drawImage(bitmap, 0, 0);
   const { data } = context.getImageData(0, 0, width, height);
-  return { name, data, width, height, full, bitmap, decoded: performance.now() - began };
+  return { name, origin: null, data, width, height, full, bitmap, decoded: performance.now() - began };
 }
 
 /** The size that keeps the longer side within `longest`. */
@@ -66,11 +73,4 @@ export async function frameFromUrl(url: string, name: string, longestSide: numbe
   const response = await fetch(url).catch(() => null);
   if (response === null || !response.ok) throw new PageError('unreadable-image', strings.errors.unreachable(name));
   return frameFromBlob(await response.blob(), name, longestSide);
-}
-
-const naturally = new Intl.Collator('en', { numeric: true });
-
-/** Files in the order of a film: `frame2.png` before `frame10.png`. */
-export function filesByName(files: Iterable<File>): File[] {
-  return [...files].sort((a, b) => naturally.compare(a.name, b.name));
 }

@@ -23,9 +23,9 @@ export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quali
   readonly longestSide: number;
 };
 
-/** What the work is doing. `index` counts stages from 0; `of` is 0 while the number of stages is not known. */
+/** What the segmentation is doing. `index` counts stages from 0; `of` is 0 while the number of stages is not known. */
 export type Run =
-  | { readonly phase: 'idle' | 'opening' | 'done' | 'cancelled' | 'failed' | 'live' }
+  | { readonly phase: 'idle' | 'done' | 'cancelled' | 'failed' | 'live' }
   | { readonly phase: 'working'; readonly stage: string; readonly index: number; readonly of: number };
 
 /** A segmentation together with the frames it was made from, so that late views never mix two requests. */
@@ -87,11 +87,18 @@ export interface Tool {
   readonly radius: number;
 }
 
-/** A clip that is open, and the frames chosen from it. */
+/** A clip that is open, and the frames chosen from it; `null` where the pair's frame is another file. */
 export interface Film {
   readonly clip: Clip;
-  readonly first: number;
-  readonly second: number;
+  readonly first: number | null;
+  readonly second: number | null;
+}
+
+/** The film that the frames of a pair are of: it is open for as long as one of them is. */
+export function filmOf({ first, second }: FramePair): Film | null {
+  const [a, b] = [first, second].map((frame) => (frame?.origin && 'clip' in frame.origin ? frame.origin : null));
+  const clip = a?.clip ?? b?.clip;
+  return clip === undefined ? null : { clip, first: a?.index ?? null, second: b?.clip === clip ? b.index : null };
 }
 
 /** The camera is on. */
@@ -110,6 +117,8 @@ export interface State {
   readonly pair: FramePair;
   readonly film: Film | null;
   readonly live: Live | null;
+  /** Something is being opened; what is open stays until it is there. */
+  readonly opening: boolean;
   readonly settings: Settings;
   readonly run: Run;
   readonly result: Result | null;
@@ -118,6 +127,11 @@ export interface State {
   readonly camera: Camera;
   readonly tool: Tool;
   readonly notice: Notice | null;
+}
+
+/** Whether the result of a new pair is still to come: what shows the last one shows it until then, so that nothing jumps. */
+export function isAwaited({ result, run }: State): boolean {
+  return result === null && run.phase === 'working';
 }
 
 /** What of a look belongs to one result. */
@@ -129,6 +143,7 @@ export const INITIAL: State = {
   pair: { first: null, second: null },
   film: null,
   live: null,
+  opening: false,
   settings: DEFAULT_SETTINGS,
   run: { phase: 'idle' },
   result: null,

@@ -19,14 +19,14 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   again.addEventListener('click', () => void session.segment());
 
   store.subscribe((now, before) => {
-    if (now.run === before.run && now.pair === before.pair && now.result === before.result && now.live === before.live) return;
-    const { run } = now;
-    const busy = run.phase === 'working' || run.phase === 'opening';
-    root.dataset.phase = run.phase;
+    if (now.run === before.run && now.pair === before.pair && now.result === before.result && now.live === before.live && now.opening === before.opening) return;
+    const { run, opening } = now;
+    const busy = run.phase === 'working' || opening;
+    root.dataset.phase = opening ? 'opening' : run.phase;
     // The rate changes many times a second, which nobody wants to hear.
     status.setAttribute('aria-live', run.phase === 'live' ? 'off' : 'polite');
     status.textContent = sentenceFor(now);
-    again.hidden = !(run.phase === 'cancelled' && now.pair.first !== null && now.pair.second !== null);
+    again.hidden = !(!opening && run.phase === 'cancelled' && now.pair.first !== null && now.pair.second !== null);
     cancel.hidden = !busy;
     if (!busy) {
       clearTimeout(patience);
@@ -35,12 +35,13 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
     } else if (patience === 0) {
       patience = window.setTimeout(() => (bar.hidden = false), PATIENCE);
     }
-    if (run.phase === 'working' && run.of > 0) bar.value = run.index / run.of;
+    if (!opening && run.phase === 'working' && run.of > 0) bar.value = run.index / run.of;
     else bar.removeAttribute('value');
   });
 }
 
-function sentenceFor({ run, pair, result, live, history }: State): string {
+function sentenceFor({ run, pair, result, live, history, opening }: State): string {
+  if (opening) return strings.status.opening;
   switch (run.phase) {
     case 'working':
       return strings.status.working(run.stage, run.index, run.of);
@@ -52,7 +53,6 @@ function sentenceFor({ run, pair, result, live, history }: State): string {
     case 'idle':
       if ((pair.first === null) === (pair.second === null)) return strings.status.idle;
       return strings.status.waiting(pair.first === null ? 'first' : 'second');
-    case 'opening':
     case 'cancelled':
     case 'failed':
       return strings.status[run.phase];
