@@ -6,13 +6,14 @@ import { PageError } from '../errors.js';
 import { type LoadedFrame, frameFromBitmap } from '../frames.js';
 import { strings } from '../strings.js';
 import { type Clip, type Picture, frameName } from './clip.js';
+import { codecName } from './codecs.js';
 
 /** Times closer than this are the same, seconds: containers round them to their own clocks. */
 const SAME_TIME = 1e-4;
 
 /** `null` where the file is none that can be read and decoded here. */
 export async function openExact(file: File): Promise<Clip | null> {
-  const input = new Input({ source: new BlobSource(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
+  const input = inputOf(file);
   try {
     const track = await input.getPrimaryVideoTrack();
     if (track === null || !(await track.canDecode())) {
@@ -26,6 +27,28 @@ export async function openExact(file: File): Promise<Clip | null> {
   }
   input.dispose();
   return null;
+}
+
+function inputOf(file: File): Input {
+  return new Input({ source: new BlobSource(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
+}
+
+/** What the codec of a video is called that this browser has no decoder for; `null` where it has one, or where the file is none that can be read. */
+export async function undecodable(file: File): Promise<string | null> {
+  const input = inputOf(file);
+  try {
+    const track = await input.getPrimaryVideoTrack();
+    if (track === null || (await track.canDecode())) return null;
+    // Without WebCodecs nothing can be decoded here, and yet be played.
+    const named = (await track.getCodecParameterString()) !== null;
+    if (named && document.createElement('video').canPlayType(await input.getMimeType()) !== '') return null;
+    const { internalCodecId } = track;
+    return codecName(await track.getCodec(), typeof internalCodecId === 'string' ? internalCodecId : null);
+  } catch {
+    return null;
+  } finally {
+    input.dispose();
+  }
 }
 
 /** When each frame is shown, in that order. */
