@@ -8,7 +8,7 @@ import { nameOf } from '../naming.js';
 import { colourOfMask, isShown } from '../paint.js';
 import { colourFromHex, cssColour, hexColour } from '../palette.js';
 import type { Session } from '../session.js';
-import { type Look, type Result, type State, type Store, keyOf } from '../state.js';
+import { type Look, type Result, type State, type Store, isAwaited, keyOf } from '../state.js';
 import { strings } from '../strings.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
@@ -27,7 +27,11 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
   store.subscribe((now, before) => {
     const { result, look, live } = now;
     const renamed = look.names !== before.look.names;
-    const other = result !== before.result || look.kind !== before.look.kind || live !== before.live;
+    const awaited = isAwaited(now);
+    const other = result !== before.result || look.kind !== before.look.kind || live !== before.live || isAwaited(before);
+    list.inert = awaited;
+    list.ariaBusy = awaited ? 'true' : null;
+    if (awaited) return;
     if (other) {
       empty.hidden = result !== null && live === null;
       empty.textContent = live === null ? strings.noMasksYet : strings.liveMasks(result?.segmentation.count ?? 0);
