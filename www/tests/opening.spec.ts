@@ -130,3 +130,45 @@ test('a broken file does not undo the strokes that are being solved', async ({ p
   await expect(page.locator('#undo')).toBeEnabled();
   await expect(page.locator('#strokes .stroke:not(.now)')).toHaveCount(1);
 });
+
+test('a step that is cancelled while its frame is read leaves numbers and picture together', async ({ page }) => {
+  await open(page);
+  await openFilm(page, 8);
+  // In one task: no frame can be there between the two keys.
+  await page.evaluate(() => {
+    for (const key of ['.', 'Escape']) document.body.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true, cancelable: true }));
+  });
+  await expect(page.locator('#film-first-at')).toHaveText('#0, 0.000 s');
+  await expect(page.locator('[name=film-second]')).toHaveValue('1');
+  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  await expectToStep(page, 1);
+  await expect(page.locator('#film-first-at')).toHaveText('#1, 0.033 s');
+});
+
+test('what is drawn while a film is stepped on belongs to the frames that are shown', async ({ page }) => {
+  await open(page);
+  await openFilm(page, 8);
+  await page.locator('#tools [value=brush]').check();
+  // The stroke begins before the step and ends before the frames are there.
+  await page.locator('.layers').evaluate((layers) => {
+    layers.setPointerCapture = () => undefined; // this pointer is not real
+    const { x, y, width, height } = layers.getBoundingClientRect();
+    const point = (type: string, u: number): void => {
+      const at = { clientX: x + u * width, clientY: y + 0.2 * height };
+      layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
+    };
+    point('pointerdown', 0.8);
+    document.body.dispatchEvent(new KeyboardEvent('keydown', { key: '.', bubbles: true, cancelable: true }));
+    point('pointermove', 0.9);
+    point('pointerup', 0.9);
+  });
+  const strokes = page.locator('#strokes g path');
+  await expect(strokes).toHaveCount(1);
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
+  await done(page);
+  await expect(strokes).toHaveCount(0);
+  await page.getByRole('button', { name: 'Both one back' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#0,');
+  await done(page);
+  await expect(strokes).toHaveCount(1);
+});

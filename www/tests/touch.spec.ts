@@ -8,15 +8,26 @@ test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true
 
 type Point = readonly [number, number];
 
-/** Puts fingers down, moves them in steps from the first to the last of their places, and lifts them. */
-async function fingers(page: Page, ...paths: (readonly [Point, Point])[]): Promise<void> {
+type Path = readonly [Point, Point];
+
+/** Puts fingers down and moves them in steps from the first to the last of their places. Gives what is to be done to them then. */
+async function press(page: Page, ...paths: Path[]): Promise<(type: 'touchStart' | 'touchEnd' | 'touchCancel', ...more: Point[]) => Promise<void>> {
   const cdp = await page.context().newCDPSession(page);
   const steps = 12;
   const at = (k: number): { x: number; y: number; id: number }[] =>
     paths.map(([[x, y], [u, v]], id) => ({ x: x + ((u - x) * k) / steps, y: y + ((v - y) * k) / steps, id }));
   await cdp.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: at(0) });
   for (let k = 1; k <= steps; k++) await cdp.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: at(k) });
-  await cdp.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+  return async (type, ...more) => {
+    const touchPoints = type === 'touchStart' ? [...at(steps), ...more.map(([x, y], k) => ({ x, y, id: paths.length + k }))] : [];
+    await cdp.send('Input.dispatchTouchEvent', { type, touchPoints });
+  };
+}
+
+/** Puts fingers down, moves them and lifts them. */
+async function fingers(page: Page, ...paths: Path[]): Promise<void> {
+  const then = await press(page, ...paths);
+  await then('touchEnd');
   await page.waitForTimeout(300); // a scroll ends by itself
 }
 
@@ -115,4 +126,26 @@ test('one finger draws with the brush, two still enlarge the picture', async ({ 
   await done(page);
   const after = await seen(page);
   expect([after.zoom, after.left, after.scrolled]).toEqual([large.zoom, large.left, 0]);
+});
+
+test('what a finger drew stays when a second one comes down or the browser takes it over', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Brush', { exact: true }).check({ force: true });
+  const at = await placeOf(page);
+  const strokes = page.locator('#strokes g path');
+  const second = await press(page, [at(0.4, 0.4), at(0.6, 0.6)]);
+  await second('touchStart', at(0.8, 0.4));
+  await second('touchEnd');
+  await expect(strokes).toHaveCount(1);
+
+  const cancelled = await press(page, [at(0.4, 0.6), at(0.6, 0.4)]);
+  await cancelled('touchCancel');
+  await expect(strokes).toHaveCount(2);
+  await done(page);
+
+  // A finger that only came down has drawn nothing yet.
+  const still = await press(page, [at(0.5, 0.5), at(0.5, 0.5)]);
+  await still('touchCancel');
+  await expect(page.locator('#strokes .now')).toHaveAttribute('d', '');
+  await expect(strokes).toHaveCount(2);
 });
