@@ -177,12 +177,6 @@ export class Correcting {
     return { found, edits, result: { segmentation, pair, waited: known.waited, under: solved === undefined ? null : last } };
   }
 
-  /** Whether the result that is shown is what the settings give, so that the frames need not be segmented again. */
-  isCurrent(): boolean {
-    const { found, settings } = this.#store.get();
-    return found !== null && (['motions', 'quality', 'markUnknown', 'seed'] as const).every((name) => found.settings[name] === settings[name]);
-  }
-
   /** No answer is waited for any more; strokes without one stay. */
   interrupt(): void {
     this.#solving = null;
@@ -201,7 +195,7 @@ export class Correcting {
       const regrouped = motions.some(({ group }, k) => group !== result.segmentation.motions[k]!.group);
       if (regrouped) this.#show(result.segmentation, result.under, null);
       // Another segmentation is coming and will be solved under all strokes.
-      if (run.phase !== 'opening' && !isSegmenting(run)) void this.#solve();
+      if (!isSegmenting(run)) void this.#solve();
     }
   }
 
@@ -260,10 +254,15 @@ export class Correcting {
     const segmentation = grouped(solved, edits, found);
     this.#store.set({
       result: { ...result, segmentation, under, waited: waited ?? result.waited },
-      run: after === null || run.phase === 'opening' || isSegmenting(run) ? run : { phase: 'done', after },
+      run: after === null || isSegmenting(run) ? run : { phase: 'done', after },
       look: { ...look, ...carried(before, segmentation, found), ...appearance(edits.given, segmentation, found) },
     });
   }
+}
+
+/** Whether what was found is what the settings give, so that the frames need not be segmented again. */
+export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>): boolean {
+  return found !== null && (['motions', 'quality', 'markUnknown', 'seed'] as const).every((name) => found.settings[name] === settings[name]);
 }
 
 /** Whether strokes wait for their answer. */

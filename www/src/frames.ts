@@ -3,15 +3,22 @@
 //! so half-transparent pixels come back rounded; and JPEG decoders differ from each other by a grey level here and there.
 
 import type { Pixels } from 'veronese';
+import type { Clip } from './clips/clip.js';
 import { PageError } from './errors.js';
-import { sourceOfImage } from './sources.js';
+import { fingerprintOfImage } from './fingerprints.js';
+import type { Sample } from './samples.js';
 import { strings } from './strings.js';
+
+/** What a frame was taken from: a place in a film, or a place in a sample. */
+export type Origin = { readonly clip: Clip; readonly index: number } | { readonly sample: Sample; readonly slot: 'first' | 'second' };
 
 /** A decoded frame. `data` is RGBA, row by row; nobody changes it. */
 export interface LoadedFrame extends Pixels {
   readonly name: string;
-  /** What it is known by: the same when the same frame is opened again. */
-  readonly source: string;
+  /** What it was taken from; `null` where it is a file of its own. */
+  readonly origin: Origin | null;
+  /** What it is known by: the same when the same frame is opened again, from wherever. */
+  readonly fingerprint: string;
   readonly data: Uint8ClampedArray<ArrayBuffer>;
   readonly width: number;
   readonly height: number;
@@ -28,21 +35,26 @@ const MOST_PIXELS = 16384 * 8192;
 
 /** Decodes an image, no larger than `longestSide`. Throws a {@link PageError} `unreadable-image` when it is none. */
 export async function frameFromBlob(blob: Blob, name: string, longestSide: number): Promise<LoadedFrame> {
-  const began = performance.now();
+  let fingerprint: string;
+  let began: number;
   let bitmap: ImageBitmap;
   try {
+    fingerprint = await fingerprintOfImage(blob);
+    began = performance.now();
     bitmap = await createImageBitmap(blob, { imageOrientation: 'from-image', colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
   } catch {
     throw new PageError('unreadable-image', strings.errors.unreadable(name));
   }
-  return { ...(await frameFromBitmap(bitmap, name, longestSide, began)), source: await sourceOfImage(blob) };
+  return frameFromBitmap(bitmap, { name, fingerprint }, longestSide, began);
 }
 
-/** Frames that come from nowhere a second time are known by a number. */
-let unknown = 0;
-
 /** Takes the bitmap over. `began` is when work on it began. */
-export async function frameFromBitmap(given: ImageBitmap, name: string, longestSide: number, began: number): Promise<LoadedFrame> {
+export async function frameFromBitmap(
+  given: ImageBitmap,
+  { name, fingerprint }: Pick<LoadedFrame, 'name' | 'fingerprint'>,
+  longestSide: number,
+  began: number,
+): Promise<LoadedFrame> {
   const full = { width: given.width, height: given.height };
   if (full.width * full.height > MOST_PIXELS) {
     given.close();
@@ -58,7 +70,7 @@ export async function frameFromBitmap(given: ImageBitmap, name: string, longestS
   if (context === null) throw new PageError('unsupported-browser', strings.errors.noCanvas);
   context.drawImage(bitmap, 0, 0);
   const { data } = context.getImageData(0, 0, width, height);
-  return { name, source: `${++unknown}`, data, width, height, full, bitmap, decoded: performance.now() - began };
+  return { name, origin: null, fingerprint, data, width, height, full, bitmap, decoded: performance.now() - began };
 }
 
 /** The size that keeps the longer side within `longest`. */
@@ -72,11 +84,4 @@ export async function frameFromUrl(url: string, name: string, longestSide: numbe
   const response = await fetch(url).catch(() => null);
   if (response === null || !response.ok) throw new PageError('unreadable-image', strings.errors.unreachable(name));
   return frameFromBlob(await response.blob(), name, longestSide);
-}
-
-const naturally = new Intl.Collator('en', { numeric: true });
-
-/** Files in the order of a film: `frame2.png` before `frame10.png`. */
-export function filesByName(files: Iterable<File>): File[] {
-  return [...files].sort((a, b) => naturally.compare(a.name, b.name));
 }

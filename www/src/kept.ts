@@ -18,7 +18,7 @@ export interface Kept {
 
 /** What a pair is remembered under; null where a frame is missing. */
 export function keyOfPair({ first, second }: FramePair): string | null {
-  return first === null || second === null ? null : `${first.source} ${second.source}`;
+  return first === null || second === null ? null : `${first.fingerprint} ${second.fingerprint}`;
 }
 
 /** Whether something would be lost with the page. */

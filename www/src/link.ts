@@ -1,12 +1,15 @@
-//! Settings out of the page's address. What is not one of the choices is left out: a link can set nothing else.
+//! Settings and the sample out of the page's address. What is not one of the choices is left out: a link can set nothing else.
 
 import { CONTROLS } from './controls.js';
 import type { Kind } from './masks.js';
+import { type Sample, sampleCalled } from './samples.js';
 import type { Settings } from './state.js';
 
 export interface Linked {
   readonly settings: Partial<Settings>;
   readonly kind: Kind | null;
+  readonly sample: Sample | null;
+  readonly swapped: boolean;
 }
 
 export function settingsFromHash(hash: string): Linked {
@@ -26,5 +29,10 @@ export function settingsFromHash(hash: string): Linked {
     }
   }
   const kind = values.get('masks');
-  return { settings: settings as Partial<Settings>, kind: kind === 'motions' || kind === 'groups' ? kind : null };
+  return {
+    settings: settings as Partial<Settings>,
+    kind: kind === 'motions' || kind === 'groups' ? kind : null,
+    sample: sampleCalled(values.get('sample')),
+    swapped: values.get('swapped') === 'true',
+  };
 }

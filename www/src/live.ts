@@ -4,7 +4,7 @@ import { UNTOUCHED } from './edits.js';
 import { PageError } from './errors.js';
 import { type LoadedFrame, frameFromBitmap } from './frames.js';
 import { Segmenting } from './segmenting.js';
-import { FRESH, type Store } from './state.js';
+import { FRESH, type Result, type State, type Store } from './state.js';
 import { strings } from './strings.js';
 
 /** Longer side of what is worked on: more is not seen at this speed. */
@@ -12,49 +12,54 @@ const LONGEST_SIDE = 480;
 /** Weight of the newest time in the rate. */
 const NEWEST = 0.15;
 
+/** The frames of the camera are known by a number: none comes a second time. */
+let seen = 0;
+
+/** A pair of the camera, segmented. */
+interface View {
+  readonly result: Result;
+  /** Segmentations per second, lately. */
+  readonly rate: number;
+}
+
 export class LiveView {
   readonly #store: Store;
-  /** The pair that was open gives way to the camera. */
-  readonly #leave: () => void;
   readonly #fail: (error: unknown) => void;
   readonly #segmenting = new Segmenting();
-  /** Changes with every start and stop: a loop goes on as long as it is its own. */
+  /** Changes with every start and stop: a view goes on as long as it is its own. */
   #turn = 0;
   #stream: MediaStream | null = null;
 
-  constructor(store: Store, leave: () => void, fail: (error: unknown) => void) {
+  constructor(store: Store, fail: (error: unknown) => void) {
     this.#store = store;
-    this.#leave = leave;
     this.#fail = fail;
   }
 
-  async start(): Promise<void> {
+  /**
+   * Switches the camera on and waits until its first pair is segmented; until then nothing in the state changes. What it gives shows that
+   * pair and those that follow.
+   */
+  async start(): Promise<() => void> {
     const turn = ++this.#turn;
     const current = (): boolean => turn === this.#turn;
+    const stream = await openCamera();
+    if (!current()) {
+      end(stream);
+      return () => undefined;
+    }
+    this.#stream = stream;
     try {
-      const stream = await openCamera();
-      if (!current()) return end(stream);
-      this.#stream = stream;
       const video = document.createElement('video');
       video.muted = true;
       video.playsInline = true;
       video.srcObject = stream;
       await video.play();
-      this.#leave();
-      const { look } = this.#store.get();
-      this.#store.set({
-        live: { rate: 0 },
-        run: { phase: 'live' },
-        result: null,
-        found: null,
-        edits: UNTOUCHED,
-        look: { ...look, ...FRESH, view: 'second' },
-      });
-      await this.#loop(video, current);
+      const views = this.#views(video, current);
+      const first = await views.next();
+      return () => void this.#run(first, views, current);
     } catch (error) {
-      if (!current()) return;
-      this.stop();
-      this.#fail(error);
+      if (current()) this.stop();
+      throw error;
     }
   }
 
@@ -70,21 +75,35 @@ export class LiveView {
     this.#store.set({ live: null, run, found: result?.segmentation ?? null });
   }
 
-  async #loop(video: HTMLVideoElement, current: () => boolean): Promise<void> {
+  async #run(first: IteratorResult<View, void>, views: AsyncIterable<View>, current: () => boolean): Promise<void> {
+    if (!current() || first.done) return;
+    const { look } = this.#store.get();
+    this.#show(first.value, { film: null, found: null, edits: UNTOUCHED, look: { ...look, ...FRESH, view: 'second' } });
+    try {
+      for await (const view of views) this.#show(view);
+    } catch (error) {
+      if (!current()) return;
+      this.stop();
+      this.#fail(error);
+    }
+  }
+
+  /** What the camera sees, each frame segmented with the one before. */
+  async *#views(video: HTMLVideoElement, current: () => boolean): AsyncGenerator<View, void> {
     let before: LoadedFrame | null = null;
     let milliseconds = 0;
     while (current()) {
       const began = performance.now();
-      const frame: LoadedFrame = await frameFromBitmap(await createImageBitmap(video), strings.cameraFrame, LONGEST_SIDE, began);
+      const frame: LoadedFrame = await frameFromBitmap(await createImageBitmap(video), { name: strings.cameraFrame, fingerprint: `camera ${++seen}` }, LONGEST_SIDE, began);
       if (!current()) return;
       if (before !== null && before.width === frame.width && before.height === frame.height) {
         const { settings } = this.#store.get();
         const segmentation = await this.#segmenting.run({ first: before, second: frame }, { ...settings, quality: 'fast' });
         if (!current()) return;
         if (segmentation !== null) {
-          const took = performance.now() - began;
-          milliseconds = milliseconds === 0 ? took : (1 - NEWEST) * milliseconds + NEWEST * took;
-          this.#show(before, frame, segmentation, took, 1000 / milliseconds);
+          const waited = performance.now() - began;
+          milliseconds = milliseconds === 0 ? waited : (1 - NEWEST) * milliseconds + NEWEST * waited;
+          yield { result: { segmentation, pair: { first: before, second: frame }, waited, under: null }, rate: 1000 / milliseconds };
         }
       }
       before = frame;
@@ -92,15 +111,11 @@ export class LiveView {
     }
   }
 
-  #show(first: LoadedFrame, second: LoadedFrame, segmentation: NonNullable<Awaited<ReturnType<Segmenting['run']>>>, waited: number, rate: number): void {
-    const before = this.#store.get().pair;
-    this.#store.set({
-      pair: { first, second },
-      result: { segmentation, pair: { first, second }, waited, under: null },
-      live: { rate },
-      run: { phase: 'live' },
-    });
-    for (const frame of [before.first, before.second]) if (frame !== first && frame !== second) frame?.bitmap.close();
+  #show({ result, rate }: View, others: Partial<State> = {}): void {
+    const { pair: before } = this.#store.get();
+    const { pair } = result;
+    this.#store.set({ ...others, pair, result, live: { rate }, run: { phase: 'live' } });
+    for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
   }
 }
 

@@ -3,6 +3,7 @@
 import { keysFor } from './keys.js';
 import { settingsFromHash } from './link.js';
 import { keepForOffline } from './offline.js';
+import { SAMPLES } from './samples.js';
 import { Session } from './session.js';
 import { Store } from './state.js';
 import { mountArrows } from './views/arrows.js';
@@ -15,7 +16,7 @@ import { mountEvidence } from './views/evidence.js';
 import { mountGestures } from './views/gestures.js';
 import { mountKeys } from './views/keys.js';
 import { mountLeaving } from './views/leaving.js';
-import { mountLook } from './views/look.js';
+import { mountLook, showKind } from './views/look.js';
 import { find } from './views/markup.js';
 import { mountMotions } from './views/motions.js';
 import { mountOptions } from './views/options.js';
@@ -63,6 +64,11 @@ keepForOffline(store);
 const linked = settingsFromHash(location.hash);
 store.set({ settings: { ...store.get().settings, ...linked.settings } });
 if (linked.kind !== null) store.look({ kind: linked.kind });
-window.addEventListener('hashchange', () => session.change(settingsFromHash(location.hash).settings));
+window.addEventListener('hashchange', () => {
+  const { settings, kind, sample, swapped } = settingsFromHash(location.hash);
+  if (kind !== null) showKind(store, kind);
+  session.change(settings);
+  if (sample !== null) void session.openSample(sample, swapped);
+});
 
-void session.openSample();
+void session.openSample(linked.sample ?? SAMPLES[0], linked.swapped);

@@ -2,20 +2,23 @@
 //! the state; every failure ends as a notice in the state, and the page goes on working.
 
 import { WHOLE } from './camera.js';
-import { type Clip, looksLikeFilm, openClip } from './clips/clip.js';
-import { Correcting, isPending } from './correcting.js';
-import { codeOf, sentenceOf } from './errors.js';
-import { type LoadedFrame, filesByName, frameFromBlob, frameFromUrl } from './frames.js';
+import { type Clip, openClip } from './clips/clip.js';
+import { Correcting, isCurrent, isPending } from './correcting.js';
+import { PageError, codeOf, sentenceOf } from './errors.js';
+import { type LoadedFrame, frameFromBlob, frameFromUrl } from './frames.js';
+import { nameOfFile, sortedOut } from './given.js';
 import { openFolder } from './clips/folder.js';
 import { LiveView } from './live.js';
 import { type Sample, SAMPLES } from './samples.js';
 import { Segmenting } from './segmenting.js';
-import { sourceOfFilm } from './sources.js';
-import { type Film, FRESH, type FramePair, type Settings, type Slot, type Store } from './state.js';
+import { FRESH, type Film, type FramePair, type Run, type Settings, type Slot, type Store, filmOf } from './state.js';
 import { strings } from './strings.js';
 
 /** A film is opened at its start, with so many frames between the two. */
 const FRAMES_APART = 1;
+
+/** The work on a pair before its first stage. */
+const STARTING: Run = { phase: 'working', work: 'segmenting', stage: '', index: 0, of: 0 };
 
 export class Session {
   readonly #store: Store;
@@ -28,104 +31,77 @@ export class Session {
   constructor(store: Store) {
     this.#store = store;
     this.correcting = new Correcting(store, this.#segmenting, (error) => this.#fail(error));
-    this.#live = new LiveView(
-      store,
-      () => this.correcting.leave(),
-      (error) => this.#fail(error),
-    );
+    this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
-  openSample(sample: Sample = SAMPLES[0]): Promise<void> {
-    return this.#open(async () => {
-      const { first, second } = sample;
-      const { longestSide } = this.#store.get().settings;
-      const [a, b] = await Promise.all([
-        frameFromUrl(first, 'first.png', longestSide),
-        frameFromUrl(second, 'second.png', longestSide),
-      ]);
-      this.#close(this.#store.get().film?.clip);
-      return { first: a, second: b };
-    });
+  /** Opens a sample, the second frame first where it is `swapped`. */
+  openSample(sample: Sample = SAMPLES[0], swapped = false): Promise<void> {
+    return this.#openFrames(
+      () => Promise.all((swapped ? (['second', 'first'] as const) : (['first', 'second'] as const)).map((slot) => this.#frameOfSample(sample, slot))),
+      pairOf,
+    );
   }
 
   /**
    * Opens files. A video, or more than two images, is a film to choose from; two images make a new pair, in the order of their
    * names; one goes into `slot`, or, where none is named, into the slot that is empty, or begins a new pair.
    */
-  openFiles(files: Iterable<File>, slot: Slot | null = null): Promise<void> {
-    const given = [...files];
-    const film = given.find(looksLikeFilm);
-    if (film !== undefined) return this.#openFilm(() => openClip(film), film);
-    const sorted = filesByName(given.filter((file) => file.type.startsWith('image/') || given.length <= 2));
-    const [one, two] = sorted;
-    if (one === undefined) {
-      this.say(strings.notices.noFiles, 'no-image');
-      return Promise.resolve();
-    }
-    if (sorted.length > 2) return this.#openFilm(() => openFolder(sorted));
-    return this.#open(async () => {
-      const { longestSide } = this.#store.get().settings;
-      if (two !== undefined) {
-        const [first, second] = await Promise.all([
-          frameFromBlob(one, one.name, longestSide),
-          frameFromBlob(two, two.name, longestSide),
-        ]);
-        this.#close(this.#store.get().film?.clip);
-        return { first, second };
-      }
-      const frame = await frameFromBlob(one, one.name, longestSide);
-      const { pair } = this.#store.get();
-      if (slot !== null) return { ...pair, [slot]: frame };
-      if (pair.first !== null && pair.second === null) return { ...pair, second: frame };
-      return { first: frame, second: null };
-    });
+  openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+    return this.#openFrames(
+      async () => {
+        const { film, images } = sortedOut(await files);
+        if (film !== null) return this.#startOf(await openClip(film));
+        if (images.length > 2) return this.#startOf(await openFolder(images));
+        if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
+        const { longestSide } = this.#store.get().settings;
+        return Promise.all(images.map((image) => frameFromBlob(image, nameOfFile(image), longestSide)));
+      },
+      (frames, pair) => {
+        if (frames.length === 2) return pairOf(frames);
+        const [frame] = frames as [LoadedFrame];
+        if (slot !== null) return { ...pair, [slot]: frame };
+        return pair.first !== null && pair.second === null ? { ...pair, second: frame } : { first: frame, second: null };
+      },
+    );
   }
 
   /** Chooses a frame of the film that is open; frames outside are the nearest inside. */
   choose(slot: Slot, index: number): Promise<void> {
-    const { film, settings } = this.#store.get();
+    const { film } = this.#store.get();
     if (film === null) return Promise.resolve();
-    const chosen = Math.min(Math.max(Math.round(index), 0), film.clip.count - 1);
-    if (film[slot] === chosen) return Promise.resolve();
-    this.#store.set({ film: { ...film, [slot]: chosen } });
-    return this.#open(async () => {
-      const frame = await frameOf(film, chosen, settings.longestSide);
-      return { ...this.#store.get().pair, [slot]: frame };
-    });
+    return this.#goTo({ [slot]: Math.min(Math.max(Math.round(index), 0), film.clip.count - 1) });
   }
 
-  /** Moves both frames along the film. */
+  /** Moves both frames along the film, or the one that is of it. */
   step(by: number): Promise<void> {
-    const { film, settings } = this.#store.get();
+    const { film } = this.#store.get();
     if (film === null) return Promise.resolve();
-    const { clip } = film;
-    const most = clip.count - 1;
-    const shift = Math.min(Math.max(by, -Math.min(film.first, film.second)), most - Math.max(film.first, film.second));
-    if (shift === 0) return Promise.resolve();
-    const [first, second] = [film.first + shift, film.second + shift];
-    this.#store.set({ film: { ...film, first, second } });
-    return this.#open(async () => ({
-      first: await frameOf(film, first, settings.longestSide),
-      second: await frameOf(film, second, settings.longestSide),
-    }));
+    const { clip, first, second } = film;
+    const places = [first, second].filter((place) => place !== null);
+    const shift = Math.min(Math.max(by, -Math.min(...places)), clip.count - 1 - Math.max(...places));
+    return this.#goTo({ first: first === null ? null : first + shift, second: second === null ? null : second + shift });
   }
 
   /** Switches the camera on or off. */
-  async toggleLive(): Promise<void> {
-    if (this.#store.get().live !== null) return this.#live.stop();
-    this.#opened += 1;
-    this.#stop();
-    this.#close(this.#store.get().film?.clip);
-    this.#store.set({ run: { phase: 'opening' }, notice: null });
-    await this.#live.start();
+  toggleLive(): Promise<void> {
+    if (this.#store.get().live !== null) return Promise.resolve(this.#live.stop());
+    return this.#open(
+      () => this.#live.start(),
+      (show) => {
+        this.correcting.leave();
+        this.#stop();
+        const { film } = this.#store.get();
+        show();
+        film?.clip.close();
+      },
+    );
   }
 
   /** The first frame becomes the second. */
   swap(): void {
-    const { pair, film } = this.#store.get();
-    this.#opened += 1;
-    if (film !== null) this.#store.set({ film: { ...film, first: film.second, second: film.first } });
-    this.#take({ first: pair.second, second: pair.first });
+    const { first, second } = this.#store.get().pair;
+    this.#overtake();
+    this.#take({ first: second, second: first });
   }
 
   /** Takes other settings and, where there is a pair, segments it again. */
@@ -144,7 +120,7 @@ export class Session {
 
   /** Takes up again what was cancelled. */
   again(): void {
-    if (this.correcting.isCurrent()) this.correcting.settle(isPending(this.#store.get()) ? 'solved' : 'found');
+    if (isCurrent(this.#store.get())) this.correcting.settle(isPending(this.#store.get()) ? 'solved' : 'found');
     else void this.segment();
   }
 
@@ -158,7 +134,7 @@ export class Session {
       this.#store.set({ run: { phase: 'idle' } });
       return;
     }
-    this.#store.set({ run: { phase: 'working', work: 'segmenting', stage: '', index: 0, of: 0 } });
+    this.#store.set({ run: STARTING });
     const began = performance.now();
     try {
       // Of a new pair something is seen soon: what fast work finds, until better work is done.
@@ -183,9 +159,9 @@ export class Session {
 
   /** Stops at once; an older result stays. */
   cancel(): void {
-    const { run } = this.#store.get();
-    if (run.phase !== 'working' && run.phase !== 'opening') return;
-    this.#opened += 1;
+    const { run, opening } = this.#store.get();
+    if (opening) return this.#giveUp();
+    if (run.phase !== 'working') return;
     this.#stop();
     this.#store.set({ run: { phase: 'cancelled' } });
   }
@@ -200,70 +176,122 @@ export class Session {
     this.#store.set({ notice: { sentence, code } });
   }
 
-  #openFilm(load: () => Promise<Clip>, file: File | null = null): Promise<void> {
-    return this.#open(async (current) => {
-      const clip = await load();
-      if (!current()) {
-        clip.close();
-        return this.#store.get().pair;
-      }
-      try {
-        const second = Math.min(FRAMES_APART, clip.count - 1);
-        const { longestSide } = this.#store.get().settings;
-        const film = { clip, source: file === null ? null : await sourceOfFilm(file), first: 0, second };
-        const frames = { first: await frameOf(film, 0, longestSide), second: await frameOf(film, second, longestSide) };
-        if (!current()) throw new Error('overtaken');
-        this.#close(this.#store.get().film?.clip);
-        this.#store.set({ film });
-        return frames;
-      } catch (error) {
-        clip.close();
-        throw error;
-      }
-    });
-  }
-
-  #close(clip: Clip | undefined): void {
-    if (clip === undefined) return;
-    clip.close();
-    this.#store.set({ film: null });
-  }
-
-  async #open(load: (current: () => boolean) => Promise<FramePair>): Promise<void> {
-    const turn = ++this.#opened;
-    const before = this.#store.get().run;
-    this.#stop();
-    this.#live.stop();
-    this.#store.set({ run: { phase: 'opening' }, notice: null });
+  /** The first two frames of a film. */
+  async #startOf(clip: Clip): Promise<LoadedFrame[]> {
     try {
-      const pair = await load(() => turn === this.#opened);
-      if (turn === this.#opened) this.#take(pair);
+      return [await this.#frameOf(clip, 0), await this.#frameOf(clip, Math.min(FRAMES_APART, clip.count - 1))];
+    } catch (error) {
+      clip.close();
+      throw error;
+    }
+  }
+
+  async #frameOf(clip: Clip, index: number): Promise<LoadedFrame> {
+    return { ...(await clip.frame(index, this.#store.get().settings.longestSide)), origin: { clip, index } };
+  }
+
+  async #frameOfSample(sample: Sample, slot: Slot): Promise<LoadedFrame> {
+    return { ...(await frameFromUrl(sample[slot], `${slot}.png`, this.#store.get().settings.longestSide)), origin: { sample, slot } };
+  }
+
+  /** Goes to other places of the film. Its timeline is there at once; the frames that are not shown yet are loaded. */
+  #goTo(places: Partial<Pick<Film, Slot>>): Promise<void> {
+    const { film, pair, opening } = this.#store.get();
+    if (film === null) return Promise.resolve();
+    const { clip } = film;
+    const wanted: Film = { ...film, ...places };
+    const shown = filmOf(pair);
+    const missing = (['first', 'second'] as const).flatMap((slot) => {
+      const index = wanted[slot];
+      return index === null || index === shown?.[slot] ? [] : [{ slot, index }];
+    });
+    if (missing.length === 0) {
+      if (opening) this.#giveUp();
+      return Promise.resolve();
+    }
+    this.#store.set({ film: wanted });
+    return this.#openFrames(
+      async () => {
+        const frames: LoadedFrame[] = [];
+        for (const { index } of missing) frames.push(await this.#frameOf(clip, index));
+        return frames;
+      },
+      (frames, now) => ({ ...now, ...Object.fromEntries(missing.map(({ slot }, k) => [slot, frames[k]])) }),
+    );
+  }
+
+  /** Loads frames and puts them into the pair. */
+  #openFrames(load: () => Promise<LoadedFrame[]>, place: (frames: LoadedFrame[], pair: FramePair) => FramePair): Promise<void> {
+    return this.#open(
+      load,
+      (frames) => {
+        this.#live.stop();
+        this.#take(place(frames, this.#store.get().pair));
+      },
+      (frames) => {
+        for (const { bitmap, origin } of frames) {
+          bitmap.close();
+          if (origin !== null && 'clip' in origin && origin.clip !== this.#store.get().film?.clip) origin.clip.close();
+        }
+      },
+    );
+  }
+
+  /**
+   * Opens something: what is there stays as it is, and whatever works on it goes on, until `take` has what replaces it. What was asked for
+   * last wins; the others are discarded.
+   */
+  async #open<T>(load: () => Promise<T>, take: (opened: T) => void, discard: (opened: T) => void = () => undefined): Promise<void> {
+    const turn = this.#overtake();
+    this.#store.set({ opening: true, notice: null });
+    try {
+      const opened = await load();
+      if (turn !== this.#opened) return discard(opened);
+      this.#store.set({ opening: false });
+      take(opened);
     } catch (error) {
       if (turn !== this.#opened) return;
-      this.#fail(error);
-      // What was open stays open; where work on it was interrupted, it is taken up again.
-      if (before.phase === 'working' && before.work === 'segmenting') void this.segment();
-      else this.correcting.settle(before.phase === 'done' ? before.after : 'found');
+      this.#giveUp();
+      this.say(sentenceOf(error), codeOf(error));
     }
+  }
+
+  /** Makes whatever is being opened come too late. */
+  #overtake(): number {
+    if (this.#store.get().live === null) this.#live.stop();
+    return ++this.#opened;
+  }
+
+  /** Leaves open what is: the timeline returns to the frames that are shown. */
+  #giveUp(): void {
+    this.#overtake();
+    this.#store.set({ opening: false, film: filmOf(this.#store.get().pair) });
   }
 
   #take(pair: FramePair): void {
     this.correcting.leave();
     this.#stop();
-    const { look, pair: before, camera } = this.#store.get();
+    const { look, pair: before, camera, film: left } = this.#store.get();
     const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
-    const view = pair.first !== null && pair.second !== null && look.view === 'split' ? 'split' : only;
+    const complete = pair.first !== null && pair.second !== null;
+    const view = complete && look.view === 'split' ? 'split' : only;
     const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
+    const film = filmOf(pair);
+    const arrival = this.correcting.arrival(pair);
+    const current = isCurrent(arrival);
     this.#store.set({
       pair,
-      run: { phase: 'idle' },
-      ...this.correcting.arrival(pair),
+      film,
+      opening: false,
+      ...arrival,
+      run: current ? { phase: 'done', after: 'restored' } : complete ? STARTING : { phase: 'idle' },
       look: { ...look, ...FRESH, view },
       camera: sameSize ? camera : WHOLE,
     });
     // Nobody draws the old frames any more: give their memory back now, not at the next collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
-    if (this.correcting.isCurrent()) this.correcting.settle('restored');
+    if (left !== null && left.clip !== film?.clip) left.clip.close();
+    if (current) this.correcting.settle('restored');
     else void this.segment();
   }
 
@@ -272,8 +300,6 @@ export class Session {
   }
 }
 
-/** A frame of the film, known by the film and its number there. */
-async function frameOf({ clip, source }: Film, index: number, longestSide: number): Promise<LoadedFrame> {
-  const frame = await clip.frame(index, longestSide);
-  return source === null ? frame : { ...frame, source: `${source} ${index}` };
+function pairOf([first, second]: readonly LoadedFrame[]): FramePair {
+  return { first: first ?? null, second: second ?? null };
 }

@@ -30,7 +30,7 @@ export type After = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'apart
 
 /** What the work is doing. `index` counts stages from 0; `of` is 0 while the number of stages is not known. */
 export type Run =
-  | { readonly phase: 'idle' | 'opening' | 'cancelled' | 'failed' | 'live' }
+  | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'live' }
   | { readonly phase: 'done'; readonly after: After }
   | { readonly phase: 'working'; readonly work: 'segmenting' | 'solving'; readonly stage: string; readonly index: number; readonly of: number };
 
@@ -81,13 +81,18 @@ export interface Tool {
   readonly radius: number;
 }
 
-/** A clip that is open, and the frames chosen from it. */
+/** A clip that is open, and the frames chosen from it; `null` where the pair's frame is another file. */
 export interface Film {
   readonly clip: Clip;
-  /** What the file is known by; null for a folder, whose frames are known one by one. */
-  readonly source: string | null;
-  readonly first: number;
-  readonly second: number;
+  readonly first: number | null;
+  readonly second: number | null;
+}
+
+/** The film that the frames of a pair are of: it is open for as long as one of them is. */
+export function filmOf({ first, second }: FramePair): Film | null {
+  const [a, b] = [first, second].map((frame) => (frame?.origin && 'clip' in frame.origin ? frame.origin : null));
+  const clip = a?.clip ?? b?.clip;
+  return clip === undefined ? null : { clip, first: a?.index ?? null, second: b?.clip === clip ? b.index : null };
 }
 
 /** The camera is on. */
@@ -106,6 +111,8 @@ export interface State {
   readonly pair: FramePair;
   readonly film: Film | null;
   readonly live: Live | null;
+  /** Something is being opened; what is open stays until it is there. */
+  readonly opening: boolean;
   readonly settings: Settings;
   /** The number of motions that was set before somebody insisted on another for this pair alone; null where nobody did. */
   readonly insisting: Settings['motions'] | null;
@@ -123,6 +130,11 @@ export interface State {
   readonly notice: Notice | null;
 }
 
+/** Whether the result of a new pair is still to come: what shows the last one shows it until then, so that nothing jumps. */
+export function isAwaited({ result, run }: State): boolean {
+  return result === null && run.phase === 'working';
+}
+
 /** What of a look belongs to one result. */
 export const FRESH = { hidden: new Set<number>(), solo: null, still: null, selected: null, blinking: false, names: {}, colours: {} } as const;
 
@@ -130,6 +142,7 @@ export const INITIAL: State = {
   pair: { first: null, second: null },
   film: null,
   live: null,
+  opening: false,
   settings: DEFAULT_SETTINGS,
   insisting: null,
   run: { phase: 'idle' },

@@ -71,6 +71,7 @@ export const strings = {
   heldStill: (name: string): string => `, ${name} held still`,
 
   film: (name: string, count: number, width: number, height: number): string => `${name}, ${whole.format(count)} frames, ${size(width, height)}`,
+  anotherFile: 'another file',
   frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
 
   motion,
@@ -154,6 +155,9 @@ export const strings = {
     unreachable: (name: string): string => `“${name}” could not be loaded.`,
     tooLarge: (name: string, width: number, height: number): string => `“${name}” is too large: ${width} × ${height} pixels.`,
     unreadableVideo: (name: string): string => `“${name}” is not a video that this browser can read.`,
+    unreadableFolder: (name: string): string => `The folder “${name}” cannot be read.`,
+    unsupportedCodec: (name: string, codec: string, command: string): string =>
+      `“${name}” is ${codec}, which this browser cannot decode. Convert it to H.264 or VP9, e.g. with \`${command}\`, or open it in a browser that plays it.`,
     slowVideo: 'The video does not answer.',
     inexactFrame: (name: string, index: number): string => `Frame ${index} of “${name}” cannot be read exactly.`,
     noCamera: 'There is no camera, or the page may not use it.',

@@ -1,56 +1,11 @@
 //! Films: a real video file with a number in every frame, read back exactly; folders; the fallback without WebCodecs; the camera.
 
-import { readFile } from 'node:fs/promises';
-
 import { type Page } from '@playwright/test';
 
+import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
+
+import { BIT, BITS, WIDTH, film } from './film.js';
 import { type Upload, done, expect, open, pixelsOf, square, test, upload } from './support.js';
-
-const WIDTH = 192;
-const HEIGHT = 128;
-/** Frames of a film are this long, seconds: NTSC's, which no clock of a container counts exactly. */
-const FRAME = 1001 / 30_000;
-const BITS = 6;
-/** Side of the square that shows one bit, pixels. */
-const BIT = 24;
-
-/** A film of `count` frames, each with its number as black and white squares over moving texture, encoded by the browser itself. */
-async function film(page: Page, count: number, kind: 'webm' | 'mp4', codec: string): Promise<Upload> {
-  const bundle = await readFile(new URL('../../node_modules/mediabunny/dist/bundles/mediabunny.mjs', import.meta.url));
-  await page.route('**/maker/mediabunny.mjs', (route) => route.fulfill({ body: bundle, contentType: 'text/javascript' }));
-  const base64 = await page.evaluate(
-    async ([url, count, kind, codec, width, height, frame, bits, bit]) => {
-      const { BufferTarget, CanvasSource, Mp4OutputFormat, Output, WebMOutputFormat } = (await import(url)) as typeof import('mediabunny');
-      const canvas = new OffscreenCanvas(width, height);
-      const context = canvas.getContext('2d')!;
-      const target = new BufferTarget();
-      const output = new Output({ format: kind === 'webm' ? new WebMOutputFormat() : new Mp4OutputFormat(), target });
-      const source = new CanvasSource(canvas, { codec: codec as 'vp8', bitrate: 2e6, keyFrameInterval: 0.5 });
-      output.addVideoTrack(source);
-      await output.start();
-      for (let k = 0; k < count; k++) {
-        for (let y = 0; y < height; y += 8) {
-          for (let x = 0; x < width; x += 8) {
-            const grey = 128 + 70 * Math.sin(0.31 * (x + 2 * k) + 0.17 * y) + 40 * Math.cos(0.23 * y - 0.11 * x);
-            context.fillStyle = `rgb(${grey} ${grey} ${grey})`;
-            context.fillRect(x, y, 8, 8);
-          }
-        }
-        for (let b = 0; b < bits; b++) {
-          context.fillStyle = (k >> b) & 1 ? 'white' : 'black';
-          context.fillRect(8 + b * bit, 8, bit, bit);
-        }
-        await source.add(k * frame, frame);
-      }
-      await output.finalize();
-      let binary = '';
-      for (const byte of new Uint8Array(target.buffer!)) binary += String.fromCharCode(byte);
-      return btoa(binary);
-    },
-    [new URL('maker/mediabunny.mjs', page.url()).href, count, kind, codec, WIDTH, HEIGHT, FRAME, BITS, BIT] as const,
-  );
-  return { name: `film.${kind}`, mimeType: `video/${kind}`, buffer: Buffer.from(base64, 'base64') };
-}
 
 /** The number in the frame that is shown. */
 async function numberShown(page: Page): Promise<number> {
@@ -150,6 +105,35 @@ test('what is no video is refused and the pair stays', async ({ page }) => {
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
   await expect(page.locator('#motions > li').first()).toBeVisible();
 });
+
+/** An MP4 that says its video is HEVC, as telephones write it; there is nothing to decode in it. */
+async function hevc(name: string): Promise<Upload> {
+  const target = new BufferTarget();
+  const output = new Output({ format: new Mp4OutputFormat(), target });
+  const source = new EncodedVideoPacketSource('hevc');
+  output.addVideoTrack(source);
+  await output.start();
+  // HEVCDecoderConfigurationRecord of the Main profile, level 3.1, without parameter sets.
+  const description = Uint8Array.from([1, 1, 0x60, 0, 0, 0, 0x90, 0, 0, 0, 0, 0, 93, 0xf0, 0, 0xfc, 0xfd, 0xf8, 0xf8, 0, 0, 0x0f, 0]);
+  const decoderConfig = { codec: 'hvc1.1.6.L93.90', codedWidth: 640, codedHeight: 360, description };
+  for (let k = 0; k < 3; k++) await source.add(new EncodedPacket(new Uint8Array([0, 0, 0, 2, 0x26, 1]), 'key', k / 30, 1 / 30), { decoderConfig });
+  await output.finalize();
+  return { name, mimeType: 'video/mp4', buffer: Buffer.from(target.buffer!) };
+}
+
+for (const webCodecs of [true, false]) {
+  test(`a video of a codec that the browser has not is refused by the codec's name, ${webCodecs ? 'with' : 'without'} WebCodecs`, async ({ page }) => {
+    if (!webCodecs) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
+    await open(page);
+    await upload(page, [await hevc("my 'clip'.mov")]);
+    await expect(page.locator('#notice-code')).toHaveText('unsupported-codec');
+    const notice = page.getByRole('alert');
+    await expect(notice).toContainText("“my 'clip'.mov” is HEVC (H.265), which this browser cannot decode.");
+    await expect(notice).toContainText("ffmpeg -i 'my '\\''clip'\\''.mov' -c:v libx264 -pix_fmt yuv420p 'my '\\''clip'\\''-h264.mp4'");
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+    await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  });
+}
 
 test('a folder of frames is a film in the order of the names', async ({ page }) => {
   await open(page);

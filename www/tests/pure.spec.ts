@@ -6,6 +6,8 @@ import type { Segmentation } from 'veronese';
 import { arrowsOf } from '../src/arrows.js';
 import { DEFAULT_SETTINGS } from '../src/controls.js';
 import type { Matrix } from '../src/describe.js';
+import type { Clip } from '../src/clips/clip.js';
+import { codecName } from '../src/clips/codecs.js';
 import { UNTOUCHED, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/edits.js';
 import { settingsFromHash } from '../src/link.js';
 import { labelSet, masksOf, merged, takenApart } from '../src/masks.js';
@@ -118,24 +120,40 @@ test('arrows point where the motion goes', () => {
 
 test('a link holds the settings, and nothing that is no choice', () => {
   const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true, seed: 9 };
-  const link = linkFor(settings, { ...INITIAL.look, kind: 'motions' }, 'https://example.org/veronese/?x=1#old');
+  const link = linkFor({ ...INITIAL, settings, look: { ...INITIAL.look, kind: 'motions' } }, 'https://example.org/veronese/?x=1#old');
   expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&seed=9&masks=motions');
-  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true, seed: 9 }, kind: 'motions' });
-  expect(linkFor(DEFAULT_SETTINGS, INITIAL.look, 'https://example.org/')).toBe('https://example.org/');
-  expect(settingsFromHash('#motions=11&quality=silly&seed=-1&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null });
+  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true, seed: 9 }, kind: 'motions', sample: null, swapped: false });
+  expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
+  expect(settingsFromHash('#motions=11&quality=silly&seed=-1&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false });
+});
+
+test('codecs are called what people call them', () => {
+  expect(codecName('hevc', 'hvc1')).toBe('HEVC (H.265)');
+  expect(codecName(null, 'mp4v')).toBe('MPEG-4 Part 2 (DivX, Xvid)');
+  expect(codecName(null, 'SVQ3')).toBe('SVQ3');
+  expect(codecName(null, null)).toBeNull();
 });
 
 test('a command and a script say what is not the default', () => {
-  const frame = (name: string) => ({ name }) as Result['pair']['first'];
+  type Frame = Result['pair']['first'];
+  const frame = (name: string, origin: Partial<Frame['origin']> = null) => ({ name, origin }) as Frame;
   const result = { pair: { first: frame("it's a.png"), second: frame('b.png') } } as Result;
   const settings = { ...DEFAULT_SETTINGS, motions: 2, seed: 5 };
-  expect(commandFor(result, settings, INITIAL.look, null)).toBe(`veronese pair 'it'\\''s a.png' b.png --motions 2 --grouped --seed 5 --out masks --overlay`);
-  expect(scriptFor(result, settings, { ...INITIAL.look, kind: 'motions' }, null)).toContain('segmentPair(first, second, { motions: 2, seed: 5 })');
-  const film = { clip: { name: 'my clip.mp4', times: new Float64Array(9) }, first: 3, second: 5 } as unknown as Parameters<typeof commandFor>[3];
-  expect(commandFor(result, DEFAULT_SETTINGS, INITIAL.look, film).split('\n')).toEqual([
+  expect(commandFor(result, settings, INITIAL.look)).toBe(`veronese pair 'it'\\''s a.png' b.png --motions 2 --grouped --seed 5 --out masks --overlay`);
+  expect(scriptFor(result, settings, { ...INITIAL.look, kind: 'motions' })).toContain('segmentPair(first, second, { motions: 2, seed: 5 })');
+  const clip = { name: 'my clip.mp4', exact: true, times: Float64Array.from({ length: 9 }, (_, k) => k / 30) } as unknown as Clip;
+  const film = { pair: { first: frame('my clip.mp4 #3', { clip, index: 3 }), second: frame('my clip.mp4 #5', { clip, index: 5 }) } } as Result;
+  expect(commandFor(film, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
     `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,3)' -frames:v 1 frame-3.png`,
     `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,5)' -frames:v 1 frame-5.png`,
     'veronese pair frame-3.png frame-5.png --grouped --out masks --overlay',
+  ]);
+  // One frame of a film that is read by time, and a file.
+  const seeking = { ...clip, exact: false };
+  const mixed = { pair: { first: frame('b.png'), second: frame('my clip.mp4 #5', { clip: seeking, index: 5 }) } } as Result;
+  expect(commandFor(mixed, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
+    `ffmpeg -i 'my clip.mp4' -vf 'select=between(t\\,-0.817\\,0.183)' -update 1 frame-5.png`,
+    'veronese pair b.png frame-5.png --grouped --out masks --overlay',
   ]);
 });
 

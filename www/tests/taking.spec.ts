@@ -11,6 +11,7 @@ import { unzipSync } from 'fflate';
 import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
+import { film } from './film.js';
 import { differences, done, expect, open, sample, segmentedInNode, test, upload, square } from './support.js';
 
 /** Presses a button that saves a file. */
@@ -141,6 +142,80 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   await expect(other.locator('#motions > li')).toHaveCount(2);
   await expect(other.locator('#look [value=motions]')).toBeChecked();
 });
+
+test('a copied link opens the sample that is shown', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page);
+  const copied = async (): Promise<string> => {
+    await page.evaluate(() => navigator.clipboard.writeText(''));
+    await page.getByRole('button', { name: 'Copy link' }).click();
+    await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).not.toBe('');
+    return page.evaluate(() => navigator.clipboard.readText());
+  };
+  await page.getByRole('button', { name: 'Parallax' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
+  await done(page);
+  await page.getByRole('button', { name: 'Swap the two frames' }).click();
+  await done(page);
+  const link = await copied();
+  expect(new URL(link).hash).toBe('#sample=parallax&swapped=true&quality=fast&masks=motions');
+  const other = await context.newPage();
+  await other.goto(link);
+  await done(other);
+  await expect(other.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
+
+  // In a page that is open, too.
+  await other.evaluate(() => (location.hash = '#sample=leader-follower&motions=2&masks=groups'));
+  await expect(other.locator('.slot-name')).toHaveText(['first.png, 200 × 150', 'second.png, 200 × 150']);
+  await done(other);
+  await expect(other.locator('#look [value=groups]')).toBeChecked();
+  await expect(other.getByLabel('Number of motions')).toHaveValue('2');
+
+  // A pair of which a frame is another file is no sample.
+  await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('other.png');
+  expect(new URL(await copied()).hash).toBe('#quality=fast&masks=motions');
+});
+
+test('the command names the frames of the result, also where one was replaced', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page);
+  await upload(page, [await film(page, 8, 'webm', 'vp8')]);
+  await expect(page.locator('#film-name')).toContainText('film.webm');
+  await done(page);
+  await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
+  await done(page);
+  await page.getByRole('button', { name: 'Both one on' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
+  await done(page);
+  await page.getByRole('button', { name: 'Copy command' }).click();
+  await expect(page.locator('#notice')).toContainText('The command is on the clipboard.');
+  expect((await page.evaluate(() => navigator.clipboard.readText())).split('\n')).toEqual([
+    "ffmpeg -i film.webm -vf 'select=eq(n\\,1)' -frames:v 1 frame-1.png",
+    'veronese pair frame-1.png other.png --quality fast --out masks --overlay',
+  ]);
+});
+
+for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 780]] as const) {
+  test(`what was copied is said where it is seen, ${screen}`, async ({ page, context }) => {
+    await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+    await page.setViewportSize({ width, height });
+    await open(page);
+    const notice = page.locator('#notice');
+    for (const name of ['Copy picture', 'Copy command', 'Copy JavaScript', 'Copy link']) {
+      await page.getByRole('button', { name }).click();
+      await expect(notice).toContainText('is on the clipboard.');
+      await expect(notice).toBeInViewport({ ratio: 1 });
+      await page.getByRole('button', { name: 'Dismiss' }).click();
+      await expect(notice).toBeHidden();
+    }
+    // An error stays, what was done is said for a while.
+    await page.getByRole('button', { name: 'Copy link' }).click();
+    await expect(notice).toBeInViewport({ ratio: 1 });
+    await expect(notice).toBeHidden({ timeout: 10_000 });
+  });
+}
 
 /** Uncompressed COCO run lengths from the compressed, after the description of the format. */
 function countsOf(text: string): number[] {

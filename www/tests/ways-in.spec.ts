@@ -1,7 +1,12 @@
 //! Files dropped or pasted, the keyboard alone, a phone, a folder of another host.
 
+import { mkdir, mkdtemp, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+
 import { type Page } from '@playwright/test';
 
+import { film } from './film.js';
 import { type Upload, done, expect, labelsOnCanvas, open, sample, segmentedInNode, differences, square, test } from './support.js';
 
 /** Sends files to the page as a drop or a paste would. */
@@ -30,6 +35,97 @@ test('two files are dropped at once', async ({ page }) => {
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
   await done(page);
   expect(differences(await labelsOnCanvas(page), (await segmentedInNode(a, b)).labels)).toBe(0);
+});
+
+/** Drops files and folders of the disk, as a person does. */
+async function dropPaths(page: Page, paths: string[]): Promise<void> {
+  const cdp = await page.context().newCDPSession(page);
+  const data = { items: [], files: paths, dragOperationsMask: 1 };
+  for (const type of ['dragEnter', 'dragOver', 'drop'] as const) await cdp.send('Input.dispatchDragEvent', { type, x: 300, y: 300, data });
+}
+
+/** A folder of these files, for as long as `use` takes. */
+async function withFolder(files: Record<string, Buffer>, use: (path: string) => Promise<void>): Promise<void> {
+  const root = await mkdtemp(join(tmpdir(), 'veronese-'));
+  try {
+    for (const [name, bytes] of Object.entries(files)) {
+      await mkdir(dirname(join(root, name)), { recursive: true });
+      await writeFile(join(root, name), bytes);
+    }
+    await use(root);
+  } finally {
+    await rm(root, { recursive: true });
+  }
+}
+
+test('a dropped folder is a film in the order of its names', async ({ page }) => {
+  await open(page);
+  // More files than browsers hand over at once; what is no image and what is hidden is passed by.
+  const files: Record<string, Buffer> = { 'clip/notes.txt': Buffer.from('notes'), 'clip/.thumb.png': Buffer.from('hidden') };
+  const [still, moved] = [await square('', 96, 64, 0, 0), await square('', 96, 64, 2, 0)];
+  for (let k = 0; k < 130; k++) files[`clip/f${k}.png`] = (k % 2 === 0 ? still : moved).buffer;
+  await withFolder(files, async (root) => {
+    await dropPaths(page, [join(root, 'clip')]);
+    await expect(page.locator('#film-name')).toHaveText('clip, 130 frames, 96 × 64');
+    await done(page);
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f1.png, 96 × 64');
+    await page.locator('[name=film-second]').fill('129');
+    await page.locator('[name=film-second]').dispatchEvent('change');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f129.png, 96 × 64');
+    await done(page);
+  });
+});
+
+test('folders inside a dropped folder come one after the other', async ({ page }) => {
+  await open(page);
+  const { buffer } = await square('', 96, 64, 0, 0);
+  const names = ['b/1.png', 'a10/1.png', 'a2/2.png', 'a2/1.png', '10.png', '9.png'];
+  await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
+    await dropPaths(page, [join(root, 'clip')]);
+    await expect(page.locator('#film-name')).toHaveText('clip, 6 frames, 96 × 64');
+    const seen: string[] = [];
+    for (let k = 0; k < names.length; k++) {
+      await page.locator('[name=film-first]').fill(String(k));
+      await page.locator('[name=film-first]').dispatchEvent('change');
+      await expect(page.locator('#film-first-at')).toHaveText(`#${k}`);
+      await done(page);
+      seen.push((await page.locator('[data-slot=first] .slot-name').textContent())!.split(',')[0]!);
+    }
+    expect(seen).toEqual(['9.png', '10.png', 'a2/1.png', 'a2/2.png', 'a10/1.png', 'b/1.png']);
+  });
+});
+
+test('a chosen folder has the same order and the same names', async ({ page }) => {
+  await open(page);
+  const { buffer } = await square('', 96, 64, 0, 0);
+  const names = ['b/1.png', 'a/2.png', 'a/1.png', '.hidden.png'];
+  await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
+    await page.locator('#open-folder').setInputFiles(join(root, 'clip'));
+    await expect(page.locator('#film-name')).toHaveText('clip, 3 frames, 96 × 64');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('a/2.png, 96 × 64');
+    await done(page);
+  });
+});
+
+test('a dropped folder with a video opens it, one of two frames is a pair, an empty one says so', async ({ page }) => {
+  await open(page);
+  const { buffer } = await film(page, 4, 'webm', 'vp8');
+  const pair = { 'pair/.hidden': Buffer.from(''), 'pair/b.png': (await square('', 80, 60, 2, 1)).buffer, 'pair/a.png': (await square('', 80, 60, 0, 0)).buffer };
+  await withFolder({ 'filmed/film.webm': buffer, 'filmed/read.me': Buffer.from(''), 'empty/notes.txt': Buffer.from(''), ...pair }, async (root) => {
+    await dropPaths(page, [join(root, 'filmed')]);
+    await expect(page.locator('#film-name')).toHaveText('film.webm, 4 frames, 192 × 128');
+    await done(page);
+    await dropPaths(page, [join(root, 'empty')]);
+    await expect(page.getByRole('alert')).toContainText('There was no image or video in what you gave.');
+    await expect(page.locator('#timeline')).toBeVisible();
+    await dropPaths(page, [join(root, 'pair')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 80 × 60');
+    await done(page);
+    // Files of the disk still come as they are.
+    await dropPaths(page, [join(root, 'pair', 'b.png')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('b.png, 80 × 60');
+  });
 });
 
 test('one file is pasted, then the other', async ({ page }) => {

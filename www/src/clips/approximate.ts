@@ -4,7 +4,7 @@
 import { PageError } from '../errors.js';
 import { type LoadedFrame, frameFromBitmap } from '../frames.js';
 import { strings } from '../strings.js';
-import { type Clip, type Picture, frameName } from './clip.js';
+import { type Clip, type Picture, knownInFilm } from './clip.js';
 
 /** The file does not tell its frame rate here: steps are of this many a second. */
 const STEPS_PER_SECOND = 30;
@@ -12,7 +12,7 @@ const STEPS_PER_SECOND = 30;
 const PATIENCE = 10_000;
 
 /** `null` where the browser cannot play the file. */
-export async function openApproximate(file: File): Promise<Clip | null> {
+export async function openApproximate(file: File, fingerprint: string): Promise<Clip | null> {
   const video = document.createElement('video');
   video.muted = true;
   video.playsInline = true;
@@ -23,7 +23,7 @@ export async function openApproximate(file: File): Promise<Clip | null> {
     release(video);
     return null;
   }
-  return new ApproximateClip(file.name, video);
+  return new ApproximateClip(file.name, fingerprint, video);
 }
 
 class ApproximateClip implements Clip {
@@ -37,6 +37,7 @@ class ApproximateClip implements Clip {
 
   constructor(
     readonly name: string,
+    readonly fingerprint: string,
     readonly video: HTMLVideoElement,
   ) {
     this.count = Math.max(1, Math.floor(video.duration * STEPS_PER_SECOND));
@@ -48,7 +49,7 @@ class ApproximateClip implements Clip {
   async frame(index: number, longestSide: number): Promise<LoadedFrame> {
     const began = performance.now();
     const bitmap = await this.#at(index, () => createImageBitmap(this.video));
-    return frameFromBitmap(bitmap, frameName(this.name, index), longestSide, began);
+    return frameFromBitmap(bitmap, knownInFilm(this.name, this.fingerprint, index), longestSide, began);
   }
 
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {

@@ -1,7 +1,9 @@
 //! Films: a video file or a folder of frames, from which two frames are chosen by number.
 
 import { PageError } from '../errors.js';
+import { fingerprintOfFilm } from '../fingerprints.js';
 import type { LoadedFrame } from '../frames.js';
+import { quoted } from '../shell.js';
 import { strings } from '../strings.js';
 
 export interface Clip {
@@ -33,21 +35,33 @@ export function looksLikeFilm(file: File): boolean {
 
 /**
  * Opens a video: with exact frames where the browser has WebCodecs and the codec, else by seeking, which the clip then says.
- * Throws a {@link PageError} `unreadable-video` when the browser can do neither.
+ * Throws a {@link PageError} when the browser can do neither: `unsupported-codec` where that is the codec's fault, else `unreadable-video`.
  */
 export async function openClip(file: File): Promise<Clip> {
+  const fingerprint = await fingerprintOfFilm(file).catch(() => {
+    throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
+  });
   if (typeof VideoDecoder === 'function') {
     const { openExact } = await import('./exact.js');
-    const clip = await openExact(file);
+    const clip = await openExact(file, fingerprint);
     if (clip !== null) return clip;
   }
   const { openApproximate } = await import('./approximate.js');
-  const clip = await openApproximate(file);
-  if (clip === null) throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
-  return clip;
+  const clip = await openApproximate(file, fingerprint);
+  if (clip !== null) return clip;
+  const { undecodable } = await import('./exact.js');
+  const codec = await undecodable(file);
+  if (codec === null) throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
+  throw new PageError('unsupported-codec', strings.errors.unsupportedCodec(file.name, codec, conversion(file.name)));
 }
 
-/** The name of a frame in lists and files: "clip.mp4 #12". */
-export function frameName(clip: string, index: number): string {
-  return `${clip} #${index}`;
+/** Converts a video into one that every browser plays; some play no more than eight bits a sample. */
+function conversion(name: string): string {
+  const output = `${name.replace(/\.[^.]*$/, '')}-h264.mp4`;
+  return `ffmpeg -i ${quoted(name)} -c:v libx264 -pix_fmt yuv420p ${quoted(output)}`;
+}
+
+/** The name of a frame in lists and files, "clip.mp4 #12", and what it is known by. */
+export function knownInFilm(name: string, fingerprint: string, index: number): Pick<LoadedFrame, 'name' | 'fingerprint'> {
+  return { name: `${name} #${index}`, fingerprint: `${fingerprint} ${index}` };
 }

@@ -5,14 +5,15 @@ import { BlobSource, EncodedPacketSink, Input, type InputVideoTrack, MATROSKA, M
 import { PageError } from '../errors.js';
 import { type LoadedFrame, frameFromBitmap } from '../frames.js';
 import { strings } from '../strings.js';
-import { type Clip, type Picture, frameName } from './clip.js';
+import { type Clip, type Picture, knownInFilm } from './clip.js';
+import { codecName } from './codecs.js';
 
 /** Times closer than this are the same, seconds: containers round them to their own clocks. */
 const SAME_TIME = 1e-4;
 
 /** `null` where the file is none that can be read and decoded here. */
-export async function openExact(file: File): Promise<Clip | null> {
-  const input = new Input({ source: new BlobSource(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
+export async function openExact(file: File, fingerprint: string): Promise<Clip | null> {
+  const input = inputOf(file);
   try {
     const track = await input.getPrimaryVideoTrack();
     if (track === null || !(await track.canDecode())) {
@@ -20,12 +21,34 @@ export async function openExact(file: File): Promise<Clip | null> {
       return null;
     }
     const times = await timesOf(track);
-    if (times.length > 0) return new ExactClip(file.name, input, track, times);
+    if (times.length > 0) return new ExactClip(file.name, fingerprint, input, track, times);
   } catch {
     // No container that is known, or a damaged one: somebody else may read it.
   }
   input.dispose();
   return null;
+}
+
+function inputOf(file: File): Input {
+  return new Input({ source: new BlobSource(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
+}
+
+/** What the codec of a video is called that this browser has no decoder for; `null` where it has one, or where the file is none that can be read. */
+export async function undecodable(file: File): Promise<string | null> {
+  const input = inputOf(file);
+  try {
+    const track = await input.getPrimaryVideoTrack();
+    if (track === null || (await track.canDecode())) return null;
+    // Without WebCodecs nothing can be decoded here, and yet be played.
+    const named = (await track.getCodecParameterString()) !== null;
+    if (named && document.createElement('video').canPlayType(await input.getMimeType()) !== '') return null;
+    const { internalCodecId } = track;
+    return codecName(await track.getCodec(), typeof internalCodecId === 'string' ? internalCodecId : null);
+  } catch {
+    return null;
+  } finally {
+    input.dispose();
+  }
 }
 
 /** When each frame is shown, in that order. */
@@ -46,6 +69,7 @@ class ExactClip implements Clip {
 
   constructor(
     readonly name: string,
+    readonly fingerprint: string,
     readonly input: Input,
     track: InputVideoTrack,
     readonly times: Float64Array,
@@ -67,7 +91,7 @@ class ExactClip implements Clip {
       const context = canvas.getContext('2d', { alpha: false });
       if (context === null) throw new PageError('unsupported-browser', strings.errors.noCanvas);
       sample.draw(context, 0, 0);
-      return await frameFromBitmap(canvas.transferToImageBitmap(), frameName(this.name, index), longestSide, began);
+      return await frameFromBitmap(canvas.transferToImageBitmap(), knownInFilm(this.name, this.fingerprint, index), longestSide, began);
     } finally {
       sample?.close();
     }

@@ -1,10 +1,11 @@
 //! A folder of frames, in the order of their names.
 
+import { folderOf, nameOfFile } from '../given.js';
 import { type LoadedFrame, frameFromBlob } from '../frames.js';
 import type { Clip, Picture } from './clip.js';
 
 export async function openFolder(files: readonly File[]): Promise<Clip> {
-  const size = await frameFromBlob(files[0]!, files[0]!.name, Infinity);
+  const size = await frameFromBlob(files[0]!, nameOfFile(files[0]!), Infinity);
   size.bitmap.close();
   return new Folder(files, size.width, size.height);
 }
@@ -20,13 +21,13 @@ class Folder implements Clip {
     readonly width: number,
     readonly height: number,
   ) {
-    this.name = files[0]!.webkitRelativePath.split('/')[0] || files[0]!.name;
+    this.name = folderOf(files[0]!) ?? files[0]!.name;
     this.count = files.length;
   }
 
   frame(index: number, longestSide: number): Promise<LoadedFrame> {
     const file = this.files[index]!;
-    return frameFromBlob(file, file.name, longestSide);
+    return frameFromBlob(file, nameOfFile(file), longestSide);
   }
 
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {

@@ -1,7 +1,11 @@
-//! The same result elsewhere: as a command line, as JavaScript, as a link with the settings. Never the pixels.
+//! The same result elsewhere: as a command line, as JavaScript, as a link with the settings and the sample. Never the pixels.
 
 import { DEFAULT_SETTINGS } from '../controls.js';
-import type { Film, Look, Result, Settings } from '../state.js';
+import type { Clip } from '../clips/clip.js';
+import type { LoadedFrame } from '../frames.js';
+import { SAMPLES, sampleOf } from '../samples.js';
+import { quoted } from '../shell.js';
+import type { Look, Result, Settings, State } from '../state.js';
 
 /** What differs from the defaults, as the package's options. */
 function changed(settings: Settings): Partial<Settings> {
@@ -9,22 +13,24 @@ function changed(settings: Settings): Partial<Settings> {
   return Object.fromEntries(Object.entries(options).filter(([name, value]) => value !== DEFAULT_SETTINGS[name as keyof Settings]));
 }
 
-/** A word that a shell takes as it is. */
-function quoted(word: string): string {
-  return /^[\w./-]+$/.test(word) && !word.startsWith('-') ? word : `'${word.replaceAll("'", "'\\''")}'`;
+/** Under which name a frame is found, and how to get it out of the film that it is of. */
+function found({ name, origin }: LoadedFrame): { name: string; before: string[] } {
+  if (origin === null || !('clip' in origin) || origin.clip.times === null) return { name, before: [] };
+  const { clip, index } = origin;
+  const file = `frame-${index}.png`;
+  return { name: file, before: [`ffmpeg -i ${quoted(clip.name)} ${selecting(clip, index)} ${file}`] };
 }
 
-/** The names under which the frames are found, and how to get them out of a film. */
-function frames({ pair }: Result, film: Film | null): { first: string; second: string; before: string[] } {
-  if (film === null || film.clip.times === null) return { first: pair.first.name, second: pair.second.name, before: [] };
-  const { clip, first, second } = film;
-  const name = (index: number): string => `frame-${index}.png`;
-  const extract = (index: number): string => `ffmpeg -i ${quoted(clip.name)} -vf 'select=eq(n\\,${index})' -frames:v 1 ${name(index)}`;
-  return { first: name(first), second: name(second), before: [extract(first), extract(second)] };
+/** ffmpeg's options for one frame: by its number or, where that is not known, the last that is shown by the time which the page seeks to. */
+function selecting({ exact, times }: Clip, index: number): string {
+  if (exact) return `-vf 'select=eq(n\\,${index})' -frames:v 1`;
+  const [begun, next] = [times![index]!, times![index + 1] ?? times![index]!];
+  const time = (begun + next) / 2;
+  return `-vf 'select=between(t\\,${(time - 1).toFixed(3)}\\,${time.toFixed(3)})' -update 1`;
 }
 
-export function commandFor(result: Result, settings: Settings, look: Look, film: Film | null): string {
-  const { first, second, before } = frames(result, film);
+export function commandFor({ pair }: Result, settings: Settings, look: Look): string {
+  const [first, second] = [found(pair.first), found(pair.second)];
   const { motions, quality, markUnknown, seed } = changed(settings);
   const options = [
     motions === undefined ? '' : `--motions ${motions}`,
@@ -33,12 +39,12 @@ export function commandFor(result: Result, settings: Settings, look: Look, film:
     markUnknown ? '--mark-unknown' : '',
     seed === undefined ? '' : `--seed ${seed}`,
   ];
-  const words = ['veronese pair', quoted(first), quoted(second), ...options.filter((option) => option !== ''), '--out masks --overlay'];
-  return [...before, words.join(' ')].join('\n');
+  const words = ['veronese pair', quoted(first.name), quoted(second.name), ...options.filter((option) => option !== ''), '--out masks --overlay'];
+  return [...new Set([...first.before, ...second.before]), words.join(' ')].join('\n');
 }
 
-export function scriptFor(result: Result, settings: Settings, look: Look, film: Film | null): string {
-  const { first, second } = frames(result, film);
+export function scriptFor({ pair }: Result, settings: Settings, look: Look): string {
+  const [first, second] = [found(pair.first).name, found(pair.second).name];
   const options = Object.entries(changed(settings)).map(([name, value]) => `${name}: ${JSON.stringify(value)}`);
   const given = options.length === 0 ? '' : `, { ${options.join(', ')} }`;
   const grouped = look.kind === 'groups';
@@ -55,9 +61,12 @@ export function scriptFor(result: Result, settings: Settings, look: Look, film: 
   ].join('\n');
 }
 
-/** The page's address with the settings behind the `#`, where no server sees them. */
-export function linkFor(settings: Settings, { kind }: Look, address: string): string {
+/** The page's address with the sample and the settings behind the `#`, where no server sees them. */
+export function linkFor({ settings, look: { kind }, pair }: Pick<State, 'settings' | 'look' | 'pair'>, address: string): string {
   const values = new URLSearchParams();
+  const shown = sampleOf(pair);
+  if (shown !== null && (shown.sample !== SAMPLES[0] || shown.swapped)) values.set('sample', shown.sample.id);
+  if (shown?.swapped) values.set('swapped', 'true');
   for (const [name, value] of Object.entries(settings)) {
     if (value !== DEFAULT_SETTINGS[name as keyof Settings]) values.set(name, String(value));
   }

@@ -14,8 +14,8 @@ const BUTTONS: readonly Format[] = [LABELS, MASKS, RESULT];
 
 /** Texts to copy; those with a result need one. */
 const COPIES: readonly { readonly title: string; readonly text: (state: State, result: Result) => string }[] = [
-  { title: 'command', text: ({ settings, look, film }, result) => commandFor(result, settings, look, film) },
-  { title: 'JavaScript', text: ({ settings, look, film }, result) => scriptFor(result, settings, look, film) },
+  { title: 'command', text: ({ settings, look }, result) => commandFor(result, settings, look) },
+  { title: 'JavaScript', text: ({ settings, look }, result) => scriptFor(result, settings, look) },
 ];
 
 export function mountDownloads(root: HTMLElement, store: Store, session: Session): void {
@@ -60,10 +60,7 @@ export function mountDownloads(root: HTMLElement, store: Store, session: Session
   copies.append(...COPIES.map(({ title, text }) => button(`Copy ${title}`, (result) => copyText(text(store.get(), result), strings.copiedText(title), session))));
   const link = element('button', 'Copy link', 'button small quiet');
   link.type = 'button';
-  link.addEventListener('click', () => {
-    const { settings, look } = store.get();
-    copyText(linkFor(settings, look, location.href), strings.copiedText('link with the settings'), session);
-  });
+  link.addEventListener('click', () => copyText(linkFor(store.get(), location.href), strings.copiedText('link with the settings'), session));
   copies.append(link);
 
   store.subscribe(({ result, live }, before) => {

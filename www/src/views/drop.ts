@@ -1,5 +1,6 @@
-//! Files dropped anywhere on the page, or pasted.
+//! Files and folders dropped anywhere on the page, or pasted.
 
+import { filesOf } from '../dropped.js';
 import type { Session } from '../session.js';
 
 export function mountDrop(root: HTMLElement, session: Session): void {
@@ -25,14 +26,14 @@ export function mountDrop(root: HTMLElement, session: Session): void {
   root.addEventListener('drop', (event) => {
     inside = 0;
     show();
-    if (!carriesFiles(event)) return;
+    if (event.dataTransfer === null || !carriesFiles(event)) return;
     event.preventDefault();
-    void session.openFiles(event.dataTransfer?.files ?? []);
+    void session.openFiles(filesOf(event.dataTransfer));
   });
   document.addEventListener('paste', (event) => {
-    const files = event.clipboardData?.files;
-    if (files === undefined || files.length === 0) return; // text for a field
+    const { clipboardData } = event;
+    if (clipboardData === null || clipboardData.files.length === 0) return; // text for a field
     event.preventDefault();
-    void session.openFiles(files);
+    void session.openFiles(filesOf(clipboardData));
   });
 }

@@ -1,7 +1,7 @@
 //! What the number of motions rests on: the score of each number, smaller is better, and a button to insist on one.
 
 import type { Session } from '../session.js';
-import type { State, Store } from '../state.js';
+import { type State, type Store, isAwaited } from '../state.js';
 import { strings } from '../strings.js';
 import { drawn, element, find } from './markup.js';
 
@@ -17,7 +17,9 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
   /** Of the last automatic search: a forced number says nothing about the others. */
   let scores: readonly { motions: number; score: number }[] = [];
 
-  const render = ({ result, settings }: State): void => {
+  const render = (now: State): void => {
+    const { result, settings } = now;
+    if (isAwaited(now)) return;
     const found = result?.segmentation;
     root.hidden = found === undefined;
     if (found === undefined) return;
@@ -44,7 +46,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
   store.subscribe((now, before) => {
     if (now.pair !== before.pair) scores = [];
     if (now.live !== null) root.hidden = true;
-    else if (now.result !== before.result || now.settings !== before.settings || before.live !== null) render(now);
+    else if (now.result !== before.result || now.settings !== before.settings || before.live !== null || isAwaited(before)) render(now);
   });
 }
 

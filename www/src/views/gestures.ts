@@ -20,6 +20,8 @@ interface Press {
   x: number;
   y: number;
   readonly began: readonly [number, number];
+  /** Whether it was ever farther from there than a press that is held still. */
+  moved: boolean;
 }
 
 export function mountGestures(layers: HTMLElement, store: Store, session: Session, zoom: Zoom, brush: Brush): void {
@@ -33,16 +35,18 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     return [(clientX - box.left) / box.width, (clientY - box.top) / box.height];
   };
   const paints = (): boolean => store.get().tool.name !== 'look';
+  /** Something else takes the fingers over: what they drew so far stays, but a finger that only came down drew nothing. */
+  const leaveOff = (drawn: boolean): void => (drawn ? brush.end() : brush.abandon());
 
   layers.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || event.target instanceof HTMLInputElement) return;
-    presses.set(event.pointerId, { x: event.clientX, y: event.clientY, began: [event.clientX, event.clientY] });
+    presses.set(event.pointerId, { x: event.clientX, y: event.clientY, began: [event.clientX, event.clientY], moved: false });
     layers.setPointerCapture(event.pointerId);
     clearTimeout(holding);
     if (presses.size > 1) {
       dragged = true;
       peek.release();
-      brush.abandon();
+      leaveOff([...presses.values()].some(({ moved }) => moved));
       return;
     }
     dragged = false;
@@ -57,6 +61,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
       return;
     }
     const [dx, dy] = [event.clientX - press.x, event.clientY - press.y];
+    press.moved ||= Math.hypot(event.clientX - press.began[0], event.clientY - press.began[1]) > STILL;
     const box = layers.getBoundingClientRect();
     if (presses.size === 2) {
       const [other] = [...presses].filter(([id]) => id !== event.pointerId).map(([, value]) => value);
@@ -69,7 +74,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
       }
     } else if (paints()) {
       if (!dragged || brush.painting) for (const point of coalesced(event)) brush.move(pixelAt(store.get(), inView(point)));
-    } else if (dragged || Math.hypot(event.clientX - press.began[0], event.clientY - press.began[1]) > STILL) {
+    } else if (dragged || press.moved) {
       if (!dragged && store.get().camera.zoom > 1) clearTimeout(holding);
       dragged = true;
       zoom.pan(dx / box.width, dy / box.height);
@@ -84,8 +89,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     presses.delete(event.pointerId);
     clearTimeout(holding);
     if (paints()) {
-      if (event.type === 'pointerup') void brush.end();
-      else brush.abandon();
+      leaveOff(event.type === 'pointerup' || press.moved);
       return;
     }
     const tapped = !dragged && event.type === 'pointerup' && !peek.held;

@@ -8,7 +8,7 @@ import { nameOf } from '../naming.js';
 import { colourOfMask, isShown } from '../paint.js';
 import { colourFromHex, cssColour, hexColour } from '../palette.js';
 import type { Session } from '../session.js';
-import { type Look, type Result, type State, type Store } from '../state.js';
+import { type Look, type Result, type State, type Store, isAwaited } from '../state.js';
 import { strings } from '../strings.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
@@ -27,11 +27,15 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
   store.subscribe((now, before) => {
     const { result, look, live, run } = now;
     const renamed = look.names !== before.look.names;
-    const other = result !== before.result || look.kind !== before.look.kind || live !== before.live;
+    const awaited = isAwaited(now);
+    const other = result !== before.result || look.kind !== before.look.kind || live !== before.live || isAwaited(before);
+    list.inert = awaited;
+    list.ariaBusy = awaited ? 'true' : null;
     if (other || run.phase !== before.run.phase) {
-      empty.hidden = result !== null && live === null;
+      empty.hidden = live === null && (result !== null || (awaited && rows.length > 0));
       empty.textContent = live === null ? whyNone(run) : strings.liveMasks(result?.segmentation.count ?? 0);
     }
+    if (awaited) return;
     if (other) {
       const typed = typedName(list, before.look.kind);
       list.replaceChildren();

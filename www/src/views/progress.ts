@@ -22,16 +22,16 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   again.addEventListener('click', () => session.again());
 
   store.subscribe((now, before) => {
-    const same = (['run', 'pair', 'result', 'edits', 'live'] as const).every((part) => now[part] === before[part]);
+    const same = (['run', 'pair', 'result', 'edits', 'live', 'opening'] as const).every((part) => now[part] === before[part]);
     if (same && now.look.kind === before.look.kind) return;
-    const { run } = now;
-    const busy = run.phase === 'working' || run.phase === 'opening';
-    root.dataset.phase = run.phase;
+    const { run, opening } = now;
+    const busy = run.phase === 'working' || opening;
+    root.dataset.phase = opening ? 'opening' : run.phase;
     // The rate changes many times a second, which nobody wants to hear.
     status.setAttribute('aria-live', run.phase === 'live' ? 'off' : 'polite');
     status.textContent = sentenceFor(now);
     const stopped = run.phase === 'cancelled' || (run.phase === 'failed' && isPending(now));
-    again.hidden = !(stopped && now.pair.first !== null && now.pair.second !== null);
+    again.hidden = opening || !(stopped && now.pair.first !== null && now.pair.second !== null);
     cancel.hidden = !busy;
     if (!busy) {
       clearTimeout(patience);
@@ -40,14 +40,15 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
     } else if (patience === 0) {
       patience = window.setTimeout(() => (bar.hidden = false), PATIENCE);
     }
-    if (run.phase === 'working' && run.of > 0) bar.value = run.index / run.of;
+    if (!opening && run.phase === 'working' && run.of > 0) bar.value = run.index / run.of;
     else bar.removeAttribute('value');
   });
 }
 
 function sentenceFor(state: State): string {
-  const { run, pair, result, live } = state;
+  const { run, pair, result, live, opening } = state;
   const { status } = strings;
+  if (opening) return status.opening;
   switch (run.phase) {
     case 'working':
       return status.working(run.stage, run.index, run.of);
@@ -64,8 +65,6 @@ function sentenceFor(state: State): string {
     case 'failed':
       if (isPending(state)) return status.failedStrokes;
       return result === null ? status.failed : status.failedBefore;
-    case 'opening':
-      return status.opening;
   }
 }
 

@@ -16,9 +16,9 @@ export function mountStage(stage: HTMLElement, store: Store): void {
   const invitation = find(stage, '#invitation', HTMLElement);
 
   store.subscribe((now, before) => {
-    const { pair, result, look, run } = now;
+    const { pair, result, look, opening } = now;
     const slot = shownSlot(now);
-    invitation.hidden = slot !== null || run.phase === 'opening';
+    invitation.hidden = slot !== null || opening;
     if (look.names !== before.look.names || look.kind !== before.look.kind) caption.textContent = captionOf(now);
     if (pair === before.pair && result === before.result && look.view === before.look.view && look.still === before.look.still) return;
     layers.hidden = slot === null;

@@ -7,6 +7,8 @@ import { contextOf, find } from './markup.js';
 
 /** Width of a thumbnail at least, screen pixels. */
 const THUMB = 72;
+/** Where a mark is that is not seen, as a part of the strip. */
+const OUTSIDE = '-1';
 
 export function mountTimeline(root: HTMLElement, store: Store, session: Session): void {
   const strip = find(root, '#strip', HTMLCanvasElement);
@@ -40,26 +42,27 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
       note.hidden = clip.exact;
       void drawStrip(strip, film, () => store.get().film?.clip === clip);
     }
-    root.style.setProperty('--first', String((film.first + 0.5) / clip.count));
-    root.style.setProperty('--second', String((film.second + 0.5) / clip.count));
     for (const { slot, input, readout } of sliders) {
+      const index = film[slot];
+      root.style.setProperty(`--${slot}`, index === null ? OUTSIDE : String((index + 0.5) / clip.count));
       input.max = String(clip.count - 1);
-      input.value = String(film[slot]);
-      readout.textContent = placeOf(film, film[slot]);
+      if (index !== null) input.value = String(index);
+      readout.textContent = placeOf(film, index);
     }
   });
 }
 
-/** One frame on or back, for one of the frames or both. */
+/** One frame on or back, for one of the frames or both; from the other's place where the frame is another file. */
 export function stepOne(store: Store, session: Session, which: Slot | 'both', by: number): void {
   const { film } = store.get();
   if (film === null) return;
   if (which === 'both') void session.step(by);
-  else void session.choose(which, film[which] + by);
+  else void session.choose(which, (film[which] ?? film.first ?? film.second ?? 0) + by);
 }
 
-function placeOf(film: Film | null, index: number): string {
+function placeOf(film: Film | null, index: number | null): string {
   if (film === null) return '';
+  if (index === null) return strings.anotherFile;
   return strings.frameAt(index, film.clip.times?.[index] ?? null);
 }
 

@@ -1,13 +1,14 @@
 //! Where the time went, stage by stage.
 
-import type { Result, Store } from '../state.js';
+import { type Result, type Store, isAwaited } from '../state.js';
 import { strings } from '../strings.js';
 import { find } from './markup.js';
 
 export function mountTimings(root: HTMLElement, store: Store): void {
   const body = find(root, 'tbody', HTMLElement);
-  store.subscribe(({ result }, before) => {
-    if (result === before.result) return;
+  store.subscribe((now, before) => {
+    const { result } = now;
+    if (isAwaited(now) || (result === before.result && !isAwaited(before))) return;
     root.hidden = result === null;
     body.replaceChildren(...(result === null ? [] : linesOf(result).map(([what, ms]) => line(what, ms))));
   });

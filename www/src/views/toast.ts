@@ -1,20 +1,41 @@
-//! The notice: an error as a sentence with its code in small, or something that needs saying.
+//! The notice: an error as a sentence with its code in small, or something that needs saying. It lies over the page, where it is seen; what
+//! is no error goes by itself.
 
 import type { Store } from '../state.js';
-import { find } from './markup.js';
+import { element, find } from './markup.js';
+
+/** How long something that was done is said, milliseconds. */
+const SEEN = 6000;
 
 export function mountToast(root: HTMLElement, store: Store): void {
   const sentence = find(root, '#notice-sentence', HTMLElement);
   const code = find(root, '#notice-code', HTMLElement);
-  find(root, '#notice-close', HTMLButtonElement).addEventListener('click', () => store.set({ notice: null }));
+  let going = 0;
+  const close = (): void => store.set({ notice: null });
+  find(root, '#notice-close', HTMLButtonElement).addEventListener('click', close);
+
+  const goSoon = (): void => {
+    clearTimeout(going);
+    const { notice } = store.get();
+    if (notice !== null && notice.code === null) going = window.setTimeout(close, SEEN);
+  };
+  // Not while somebody is at it.
+  for (const event of ['pointerenter', 'focusin']) root.addEventListener(event, () => clearTimeout(going));
+  for (const event of ['pointerleave', 'focusout']) root.addEventListener(event, goSoon);
 
   store.subscribe(({ notice }, before) => {
     if (notice === before.notice) return;
     root.hidden = notice === null;
     root.classList.toggle('error', notice?.code != null);
-    sentence.textContent = notice === null ? '' : asSentence(notice.sentence);
+    sentence.replaceChildren(...(notice === null ? [] : written(asSentence(notice.sentence))));
     code.textContent = notice?.code ?? '';
+    goSoon();
   });
+}
+
+/** What stands between backticks is to be typed. */
+function written(text: string): (string | HTMLElement)[] {
+  return text.split('`').map((part, k) => (k % 2 === 1 ? element('code', part) : part));
 }
 
 /** The package's messages begin in lower case and end without a full stop, as messages on a command line do. */

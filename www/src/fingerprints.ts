@@ -4,12 +4,12 @@
 const SAMPLE = 1 << 18;
 
 /** The whole content of an image. */
-export async function sourceOfImage(blob: Blob): Promise<string> {
+export async function fingerprintOfImage(blob: Blob): Promise<string> {
   return hashOf(await blob.arrayBuffer());
 }
 
 /** Films are large: no two that differ agree in their size and in these parts of them. */
-export async function sourceOfFilm(blob: Blob): Promise<string> {
+export async function fingerprintOfFilm(blob: Blob): Promise<string> {
   const starts = [0, Math.max(0, (blob.size - SAMPLE) / 2), Math.max(0, blob.size - SAMPLE)];
   const parts = starts.map((start) => blob.slice(start, start + SAMPLE));
   return `${blob.size} ${hashOf(await new Blob(parts).arrayBuffer())}`;

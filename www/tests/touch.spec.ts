@@ -1,0 +1,151 @@
+//! Fingers on the picture, as the browser itself hears them: what they do to the picture and what is left to the page.
+
+import { type Page } from '@playwright/test';
+
+import { done, expect, open, test } from './support.js';
+
+test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
+
+type Point = readonly [number, number];
+
+type Path = readonly [Point, Point];
+
+/** Puts fingers down and moves them in steps from the first to the last of their places. Gives what is to be done to them then. */
+async function press(page: Page, ...paths: Path[]): Promise<(type: 'touchStart' | 'touchEnd' | 'touchCancel', ...more: Point[]) => Promise<void>> {
+  const cdp = await page.context().newCDPSession(page);
+  const steps = 12;
+  const at = (k: number): { x: number; y: number; id: number }[] =>
+    paths.map(([[x, y], [u, v]], id) => ({ x: x + ((u - x) * k) / steps, y: y + ((v - y) * k) / steps, id }));
+  await cdp.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: at(0) });
+  for (let k = 1; k <= steps; k++) await cdp.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: at(k) });
+  return async (type, ...more) => {
+    const touchPoints = type === 'touchStart' ? [...at(steps), ...more.map(([x, y], k) => ({ x, y, id: paths.length + k }))] : [];
+    await cdp.send('Input.dispatchTouchEvent', { type, touchPoints });
+  };
+}
+
+/** Puts fingers down, moves them and lifts them. */
+async function fingers(page: Page, ...paths: Path[]): Promise<void> {
+  const then = await press(page, ...paths);
+  await then('touchEnd');
+  await page.waitForTimeout(300); // a scroll ends by itself
+}
+
+interface Seen {
+  /** How much the browser has enlarged the page. */
+  page: number;
+  scrolled: number;
+  /** The enlarged picture, in parts of the whole one. */
+  zoom: number;
+  left: number;
+  top: number;
+}
+
+async function seen(page: Page): Promise<Seen> {
+  return page.evaluate(() => {
+    const [whole, picture] = ['.layers', '#frame'].map((selector) => document.querySelector(selector)!.getBoundingClientRect()) as [DOMRect, DOMRect];
+    return {
+      page: visualViewport!.scale,
+      scrolled: window.scrollY,
+      zoom: picture.width / whole.width,
+      left: picture.left - whole.left,
+      top: picture.top - whole.top,
+    };
+  });
+}
+
+/** A place of the picture, on the screen. */
+async function placeOf(page: Page): Promise<(u: number, v: number) => Point> {
+  const box = (await page.locator('.layers').boundingBox())!;
+  return (u, v) => [box.x + u * box.width, box.y + v * box.height];
+}
+
+test('two fingers enlarge the picture, not the page, and move it', async ({ page }) => {
+  await open(page);
+  const at = await placeOf(page);
+  await fingers(page, [at(0.45, 0.5), at(0.2, 0.5)], [at(0.55, 0.5), at(0.8, 0.5)]);
+  const large = await seen(page);
+  expect(large.page).toBe(1);
+  expect(large.zoom).toBeGreaterThan(3);
+
+  const [x, y] = at(0.4, 0.4);
+  await fingers(page, [[x, y], [x + 24, y + 16]], [[x + 80, y], [x + 104, y + 16]]);
+  const moved = await seen(page);
+  expect(moved.page).toBe(1);
+  expect(moved.scrolled).toBe(0);
+  expect(moved.zoom).toBeCloseTo(large.zoom, 1);
+  expect(moved.left - large.left).toBeCloseTo(24, -1);
+  expect(moved.top - large.top).toBeCloseTo(16, -1);
+});
+
+test('two fingers beside the picture do not enlarge the page', async ({ page }) => {
+  await page.setViewportSize({ width: 780, height: 300 }); // lying down: the picture does not fill the width of its stage
+  await open(page);
+  await page.locator('#stage').evaluate((stage) => stage.scrollIntoView({ block: 'center' }));
+  const stage = (await page.locator('#stage').boundingBox())!;
+  const layers = (await page.locator('.layers').boundingBox())!;
+  expect(layers.x - stage.x).toBeGreaterThan(100);
+  const y = 150;
+  expect(Math.abs(stage.y + stage.height / 2 - y)).toBeLessThan(stage.height / 2);
+  const x = (stage.x + layers.x) / 2;
+  await fingers(page, [[x, y - 20], [x, y - 130]], [[x, y + 20], [x, y + 130]]);
+  expect((await seen(page)).page).toBe(1);
+});
+
+test('one finger scrolls the page, and moves the picture once it is enlarged', async ({ page }) => {
+  await open(page);
+  const at = await placeOf(page);
+  const [x, y] = at(0.5, 0.8);
+  await fingers(page, [[x, y], [x, y - 120]]);
+  const scrolled = await seen(page);
+  expect(scrolled.scrolled).toBeGreaterThan(60);
+  expect(scrolled.zoom).toBe(1);
+
+  await page.evaluate(() => window.scrollTo(0, 0));
+  for (let k = 0; k < 3; k++) await page.locator('#zoom-in').tap();
+  const large = await seen(page);
+  await fingers(page, [at(0.5, 0.5), at(0.4, 0.4)]);
+  const moved = await seen(page);
+  expect(moved.scrolled).toBe(0);
+  expect(moved.left).toBeLessThan(large.left - 20);
+  expect(moved.top).toBeLessThan(large.top - 10);
+});
+
+test('one finger draws with the brush, two still enlarge the picture', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Brush', { exact: true }).check({ force: true });
+  const at = await placeOf(page);
+  await fingers(page, [at(0.45, 0.5), at(0.2, 0.5)], [at(0.55, 0.5), at(0.8, 0.5)]);
+  const large = await seen(page);
+  expect(large.page).toBe(1);
+  expect(large.zoom).toBeGreaterThan(3);
+  await expect(page.locator('#undo')).toBeDisabled(); // no stroke came of it
+
+  await fingers(page, [at(0.4, 0.4), at(0.6, 0.6)]);
+  await expect(page.locator('#undo')).toBeEnabled();
+  await done(page);
+  const after = await seen(page);
+  expect([after.zoom, after.left, after.scrolled]).toEqual([large.zoom, large.left, 0]);
+});
+
+test('what a finger drew stays when a second one comes down or the browser takes it over', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Brush', { exact: true }).check({ force: true });
+  const at = await placeOf(page);
+  const strokes = page.locator('#strokes g path');
+  const second = await press(page, [at(0.4, 0.4), at(0.6, 0.6)]);
+  await second('touchStart', at(0.8, 0.4));
+  await second('touchEnd');
+  await expect(strokes).toHaveCount(1);
+
+  const cancelled = await press(page, [at(0.4, 0.6), at(0.6, 0.4)]);
+  await cancelled('touchCancel');
+  await expect(strokes).toHaveCount(2);
+  await done(page);
+
+  // A finger that only came down has drawn nothing yet.
+  const still = await press(page, [at(0.5, 0.5), at(0.5, 0.5)]);
+  await still('touchCancel');
+  await expect(page.locator('#strokes .now')).toHaveAttribute('d', '');
+  await expect(strokes).toHaveCount(2);
+});
