@@ -17,10 +17,10 @@ use crate::alignment::cost::{View, noise};
 use crate::alignment::dominant::dominant_motion;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
 use crate::error::{Error, Result};
+use crate::frame::Frame;
 use crate::frame::Plane;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::pyramid::{Level, PRE_BLUR, build};
-use crate::frame::{Frame, MIN_SIDE};
 use crate::labelling::appearance::Palette;
 use crate::labelling::energy::Picture;
 use crate::motion::AffineMotion;
@@ -47,7 +47,7 @@ pub fn segment_pair(
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
-    segment_with(first, second, before, options, Settings::of(options), progress)
+    segment_with(first, second, before, options, Settings::new(options, size(first)), progress)
 }
 
 /// [`segment_pair`] without one part of the pipeline, for measuring what it is worth.
@@ -63,7 +63,7 @@ pub fn segment_pair_without(
     before: Option<&Frame>,
     options: &SegmentOptions,
 ) -> Result<Segmentation> {
-    let mut settings = Settings { without: Some(part), ..Settings::of(options) };
+    let mut settings = Settings { without: Some(part), ..Settings::new(options, size(first)) };
     if part == Part::Coherence {
         settings.coherence.smoothness = 0.0;
     }
@@ -95,6 +95,10 @@ fn segment_with(
     let labelled = masks::label(&work, found, &settings);
     stages.begin("masks");
     Ok(report::report(&work, labelled, &settings, first, second, options))
+}
+
+fn size(frame: &Frame) -> [usize; 2] {
+    [frame.width(), frame.height()]
 }
 
 fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<()> {
@@ -169,9 +173,7 @@ impl Work {
         let mut reduction = 1.0;
         let mut planes: Vec<Plane> =
             [Some(first), Some(second), before].into_iter().flatten().map(|f| f.luminance().clone()).collect();
-        while planes[0].width().max(planes[0].height()) > settings.work_side
-            && planes[0].width().min(planes[0].height()) >= 2 * MIN_SIDE
-        {
+        for _ in 0..settings.halvings {
             planes.iter_mut().for_each(|p| *p = halve(p));
             reduction *= 2.0;
         }

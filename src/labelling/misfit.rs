@@ -13,7 +13,7 @@ use crate::lanes::{each, each_with};
 /// Standard deviation of the window in which the fit is judged, pixels.
 const WINDOW: f32 = 4.0;
 /// Smallest cost, averaged over a window, that the noise alone does not explain.
-const EXPECTED: f32 = 0.8;
+const EXPECTED: f32 = 0.5;
 /// Largest ratio of standard deviations.
 const LARGEST: f32 = 3.0;
 

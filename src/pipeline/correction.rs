@@ -98,7 +98,7 @@ pub fn relabel(
     super::check_sizes(first, second, before)?;
     correction.check(first.width() * first.height())?;
     let _call = workspace::begin([first.width(), first.height()]);
-    let settings = Settings::of(options);
+    let settings = Settings::new(options, super::size(first));
     let mut stages = Stages::new(STAGES, progress);
     let labels = if correction.allowed.iter().all(|&set| set == 0) {
         correction.labels.to_vec()

@@ -20,7 +20,7 @@ use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 
 /// A label that came from a split competes only this far around its region, as a share of the root of its pixels …
-const REACH_SHARE: f64 = 0.25;
+const REACH_SHARE: f64 = 0.6;
 /// … and at least this many pixels of the working size.
 const SMALLEST_REACH: usize = 12;
 /// Nats of a pixel of a coarser level beside those of a working pixel: it stands for four, whose noise is not independent.

@@ -1,6 +1,7 @@
-//! Every number of the pipeline that a quality or an option changes. The values come from the measurements on generated scenes
-//! that docs describe; those that no option touches stand as constants beside the code that uses them.
+//! Every number of the pipeline that depends on the quality, an option or the size of the frames. The values come from measurements
+//! on generated scenes and on real pairs (docs/masks.md). Numbers that never change are constants beside the code that uses them.
 
+use crate::frame::MIN_SIDE;
 use crate::labelling::energy::Coherence;
 use crate::labelling::potts::Solver;
 use crate::options::{MotionCount, Quality, SegmentOptions};
@@ -39,8 +40,8 @@ pub enum Part {
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    /// Longer side of the working size at most, pixels: frames are halved until it holds, or their shorter side would be too short.
-    pub(crate) work_side: usize,
+    /// How often the frames are halved to reach the working size.
+    pub(crate) halvings: usize,
     /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
     pub(crate) base_side: usize,
     /// Longer side of the level on which motions are first selected at most, pixels.
@@ -76,13 +77,33 @@ pub(crate) struct Settings {
     pub(crate) without: Option<Part>,
 }
 
+/// Longer side of the working size at most, pixels.
+const WORK_SIDE_BEST: usize = 448;
+/// The same with quality `fast`.
+const WORK_SIDE_FAST: usize = 320;
+
+/// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.
+fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
+    let (mut longer, mut shorter, mut halvings) = (width.max(height), width.min(height), 0);
+    while longer > work_side && shorter >= 2 * MIN_SIDE {
+        (longer, shorter) = (longer.div_ceil(2), shorter.div_ceil(2));
+        halvings += 1;
+    }
+    halvings
+}
+
 impl Settings {
-    pub(crate) fn of(options: &SegmentOptions) -> Settings {
+    /// The settings for a pair of frames of the given width and height.
+    pub(crate) fn new(options: &SegmentOptions, size: [usize; 2]) -> Settings {
+        let halvings = halvings_to(WORK_SIDE_BEST, size);
+        // Halving averages the noise, and what remains are errors of the model, which neighbours share: motions are told apart on the
+        // working size itself, and labels hold together more strongly. Of frames as they come, a coarser level averages the noise.
+        let (fine_side, smoothness) = if halvings > 0 { (448, 12.0) } else { (320, 8.0) };
         let best = Settings {
-            work_side: 448,
+            halvings,
             base_side: 224,
-            selection_side: 320,
-            draft_side: 320,
+            selection_side: fine_side,
+            draft_side: fine_side,
             smallest_side: 24,
             degrees: 3,
             measurements: 2000,
@@ -95,7 +116,7 @@ impl Settings {
             gain_window: 2.0,
             visibility_rounds: 2,
             coherence: Coherence {
-                smoothness: 8.0,
+                smoothness,
                 departure: 0.05,
                 draft_solver: Solver::FAST,
                 solver: Solver::BEST,
@@ -107,7 +128,7 @@ impl Settings {
         let mut settings = match options.quality {
             Quality::Best => best,
             Quality::Fast => Settings {
-                work_side: 320,
+                halvings: halvings_to(WORK_SIDE_FAST, size),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
                 selection_side: 224,
                 draft_side: 224,
@@ -117,7 +138,12 @@ impl Settings {
                 tries: 1,
                 visibility_rounds: 1,
                 gain_window: 1.5,
-                coherence: Coherence { solver: Solver::FAST, sharpening: Solver::LIGHT, ..best.coherence },
+                coherence: Coherence {
+                    smoothness: 8.0,
+                    solver: Solver::FAST,
+                    sharpening: Solver::LIGHT,
+                    ..best.coherence
+                },
                 ..best
             },
         };

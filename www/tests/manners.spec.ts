@@ -78,7 +78,7 @@ test('the script stays within its budget', () => {
   const sizes = files.map((name) => [name, gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length] as const);
   const [video, own] = [sizes.filter(([name]) => name.startsWith('exact-')), sizes.filter(([name]) => !name.startsWith('exact-'))];
   expect(video).toHaveLength(1); // mediabunny, in a file of its own
-  expect(own.reduce((sum, [, size]) => sum + size, 0)).toBeLessThanOrEqual(60 * 1024);
+  expect(own.reduce((sum, [, size]) => sum + size, 0)).toBeLessThanOrEqual(62 * 1024);
 });
 
 test('videos cost nothing until one is opened', async ({ page }) => {
