@@ -139,7 +139,7 @@ impl Settings {
                 visibility_rounds: 1,
                 gain_window: 1.5,
                 coherence: Coherence {
-                    smoothness: 8.0,
+                    smoothness: if halvings_to(WORK_SIDE_FAST, size) > 1 { 12.0 } else { 8.0 },
                     solver: Solver::FAST,
                     sharpening: Solver::LIGHT,
                     ..best.coherence
