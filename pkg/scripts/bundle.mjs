@@ -24,7 +24,7 @@ const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-wo
 /** What an encoder of masks shares with the calls. */
 const SHARED = ['common/'];
 /** What all entries with calls share. */
-const CALLS = ['module/', 'calls/', 'pool/'];
+const CALLS = ['module/', 'calls/', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({

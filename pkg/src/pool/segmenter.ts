@@ -30,7 +30,7 @@ import { spawnWith } from './threads.js';
 /** Most workers of one pool: more is a mistake, not a wish. */
 const MOST_JOBS = 256;
 
-/** What differs between the package's entries. */
+/** What the classes need of the place where they run. */
 export interface Host {
   newCore: () => Core<Glue>;
   /** For measurements. */
