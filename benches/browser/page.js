@@ -80,7 +80,7 @@ globalThis.bench = {
 
   /** Bytes of memory of a fresh instance after one call. */
   async memory(quality, size) {
-    const { glue } = await import('/pkg/build/glue.js');
+    const { glue } = await import('/pkg/build/module/glue.js');
     const response = await fetch('/pkg/wasm/veronese_bg.wasm');
     const { memory } = await glue.instantiate(await WebAssembly.compileStreaming(response));
     const { first, second } = frames.get(size);

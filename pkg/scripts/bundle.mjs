@@ -1,44 +1,65 @@
 // Joins the compiled sources into few files: each one is a request, and a browser that loads the package unbundled is ready only
 // after the last; part of `npm run build`.
 
+import { dirname, resolve } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { rolldown } from 'rolldown';
 
 const folder = (name) => fileURLToPath(new URL(`../${name}/`, import.meta.url));
-/** What package.json names, and the files that workers are started from. */
-const ENTRIES = ['web', 'node', 'slim', 'inline', 'worker', 'worker-node', 'element', 'element-class', 'codecs', 'formats/index'];
-const PROGRAM = ['cli', 'cli-work', 'cli-batch-work'];
+const sources = (names) => Object.fromEntries(Object.entries(names).map(([name, source]) => [name, resolve(folder('build'), `${source}.js`)]));
+/** What package.json names, and the files that workers are started from: each with its source. */
+const ENTRIES = sources({
+  web: 'entries/web',
+  node: 'entries/node',
+  slim: 'entries/slim',
+  inline: 'entries/inline',
+  codecs: 'entries/codecs',
+  worker: 'worker/worker',
+  'worker-node': 'worker/worker-node',
+  element: 'element/element',
+  'element-class': 'element/element-class',
+  'formats/index': 'formats/index',
+});
+const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-work': 'cli/batch-work' });
 /** What an encoder of masks shares with the calls. */
-const SHARED = ['checks', 'errors', 'palette'];
+const SHARED = ['common/'];
 /** What all entries with calls share. */
-const CALLS = ['glue', 'glue-points', 'api', 'tasks', 'taking', 'messages', 'core', 'loading', 'labels', 'version', 'segmenter', 'pool', 'threads', 'ordered'];
+const CALLS = ['module/', 'calls/', 'pool/', 'entries/package.js'];
 
-const named = (names) => new RegExp(`[\\\\/]build[\\\\/](?:${names.join('|')})\\.js$`);
+const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({
-  input: Object.fromEntries([...ENTRIES, ...PROGRAM].map((name) => [name, `${folder('build')}${name}.js`])),
+  input: { ...ENTRIES, ...PROGRAM },
   external: [/^node:/, 'fflate'],
   plugins: [
     {
       name: 'entries',
-      // An entry that another one imports stays the one file that package.json names. Importers lie in the top folder.
-      resolveId: (id, importer) =>
-        importer && ENTRIES.some((name) => id === `./${name}.js`) ? { id, external: 'relative' } : undefined,
+      // An entry that another one imports stays the one file that package.json names. Importers end up in the top folder.
+      resolveId: (id, importer) => {
+        const file = importer && resolve(dirname(importer), id);
+        const entry = Object.keys(ENTRIES).find((name) => ENTRIES[name] === file);
+        return entry && { id: `./${entry}.js`, external: 'relative' };
+      },
     },
   ],
   platform: 'neutral',
+  // No comments that name compiled sources, which are not in the package.
+  experimental: { attachDebugInfo: 'none' },
+  // A warning stops the build, as does a circle of imports.
+  checks: { circularDependency: true },
+  onLog: (level, log, standard) => standard(level === 'warn' ? 'error' : level, log),
 });
 await bundle.write({
   dir: folder('dist'),
   cleanDir: true,
   entryFileNames: '[name].js',
-  chunkFileNames: '[name].js',
+  chunkFileNames: ({ moduleIds }) => (moduleIds.some((id) => within(['cli/']).test(id)) ? 'cli-[name].js' : '[name].js'),
   comments: false,
   minify: false,
   minifyInternalExports: false,
   codeSplitting: {
     groups: [
-      { name: 'shared', test: named(SHARED), priority: 1 },
-      { name: 'calls', test: named(CALLS) },
+      { name: 'shared', test: within(SHARED), priority: 1 },
+      { name: 'calls', test: within(CALLS) },
     ],
   },
 });

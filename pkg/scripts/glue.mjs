@@ -1,19 +1,21 @@
 // Takes the JavaScript that wasm-bindgen wrote beside each module to the compiled sources, with the calls that are used and a
 // loader of our own, and the modules as text; part of `npm run build`.
 
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
 const FRAME_CALLS = ['segmentPair', 'relabel', 'paintLabels', 'paintLabelsOffscreen'];
 const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [
-  { from: '../wasm/veronese.js', to: '../build/glue.js', calls: FRAME_CALLS },
-  { from: '../wasm/points/veronese_points.js', to: '../build/glue-points.js', calls: POINT_CALLS },
-  { from: '../wasm/codecs/veronese_codecs.js', to: '../build/glue-codecs.js', calls: [...FRAME_CALLS, ...POINT_CALLS, ...FILE_CALLS] },
+  { from: '../wasm/veronese.js', to: '../build/module/glue.js', calls: FRAME_CALLS },
+  { from: '../wasm/points/veronese_points.js', to: '../build/module/glue-points.js', calls: POINT_CALLS },
+  { from: '../wasm/codecs/veronese_codecs.js', to: '../build/entries/glue-codecs.js', calls: [...FRAME_CALLS, ...POINT_CALLS, ...FILE_CALLS] },
 ];
 
-mkdirSync(new URL('../build/', import.meta.url), { recursive: true });
+// What is no longer compiled must not be found by anything.
+rmSync(new URL('../build/', import.meta.url), { recursive: true, force: true });
+for (const folder of ['module', 'entries']) mkdirSync(new URL(`../build/${folder}/`, import.meta.url), { recursive: true });
 for (const { from, to, calls } of MODULES) {
   writeFileSync(new URL(to, import.meta.url), adapted(readGlue(new URL(from, import.meta.url)), calls));
 }
@@ -22,7 +24,7 @@ for (const { from, to, calls } of MODULES) {
 const packed = (file) => deflateSync(readFileSync(new URL(file, import.meta.url)), { level: 9 }).toString('base64');
 const inside = { frames: packed('../wasm/veronese_bg.wasm'), points: packed('../wasm/points/veronese_points_bg.wasm') };
 const lines = Object.entries(inside).map(([name, text]) => `export const ${name} = '${text}';\n`);
-writeFileSync(new URL('../build/inline-module.js', import.meta.url), lines.join(''));
+writeFileSync(new URL('../build/entries/inline-module.js', import.meta.url), lines.join(''));
 
 /** One object of the calls, from which whatever bundles the rest sees what nobody uses. */
 function adapted(glue, calls) {

@@ -5,7 +5,7 @@ import { deflateSync } from 'node:zlib';
 import { decode, encode } from 'fast-png';
 import { davisPalette } from 'veronese';
 import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
-import { glue } from '../build/glue-codecs.js';
+import { glue } from '../build/entries/glue-codecs.js';
 import { bmp, frame, png, ppm, ramp, turnedJpeg } from './support/frames.mjs';
 import { failure } from './support/shapes.mjs';
 

@@ -12,8 +12,8 @@ import { VeroneseSegmenterElement } from 'veronese/element-class';
 import * as formats from 'veronese/formats';
 import * as inline from 'veronese/inline';
 import * as slim from 'veronese/slim';
-import { glue } from '../build/glue.js';
-import { optionsOf } from '../build/element-options.js';
+import { glue } from '../build/module/glue.js';
+import { optionsOf } from '../build/element/options.js';
 import { pair, points, png } from './support/frames.mjs';
 import { failure, timeless } from './support/shapes.mjs';
 

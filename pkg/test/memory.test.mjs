@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
-import { glue } from '../build/glue.js';
-import { glue as pointsGlue } from '../build/glue-points.js';
+import { glue } from '../build/module/glue.js';
+import { glue as pointsGlue } from '../build/module/glue-points.js';
 import { frame, pair, points } from './support/frames.mjs';
 
 const MIB = 2 ** 20;

@@ -10,10 +10,10 @@ import { decode } from 'fast-png';
 import { fitMotions, paintLabels, relabel, segmentPair, segmentPairs, Segmenter, SegmenterPool } from 'veronese';
 import { decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } from 'veronese/codecs';
 import { encodeCoco, encodeVeronese, decodeVeronese } from 'veronese/formats';
-import { Api } from '../build/api.js';
-import { Core } from '../build/core.js';
-import { glue } from '../build/glue.js';
-import { glue as pointsGlue } from '../build/glue-points.js';
+import { Api } from '../build/calls/api.js';
+import { Core } from '../build/module/core.js';
+import { glue } from '../build/module/glue.js';
+import { glue as pointsGlue } from '../build/module/glue-points.js';
 import { frame, pair, points, png } from './support/frames.mjs';
 import { failure, timeless } from './support/shapes.mjs';
 

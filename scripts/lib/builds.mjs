@@ -52,7 +52,7 @@ export async function buildPackage() {
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
   const inputs = [...sources, ...glue, 'package-lock.json'];
-  await step('the npm package', 'pkg/dist', ['pkg/build/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>
+  await step('the npm package', 'pkg/dist', ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>
     must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
   );
 }

@@ -1,39 +1,43 @@
-// Who may import whom: ARCHITECTURE.md holds the table of the crate's modules, and this compares the sources with it.
+// Who may import whom: ARCHITECTURE.md holds the tables of the crate's modules and of the package's folders, and this compares the
+// sources with them.
 
 import { readdirSync } from 'node:fs';
-import { join } from 'node:path';
+import { join, posix } from 'node:path';
 
 import { projectText, root } from './project.mjs';
 
 const DOCUMENT = 'ARCHITECTURE.md';
 
-/** Whether the modules in `src` import what the table says, no more and no less. Prints what differs. */
+/** Whether the sources import what the tables say, no more and no less. Prints what differs. */
 export function importsAgree() {
-  const table = tableOf(projectText(DOCUMENT));
-  const problems = differences(table, importsOf('src'));
+  const document = projectText(DOCUMENT);
+  const problems = [
+    ...differences('src', tableOf(document, 'imports'), importsOfCrate('src')),
+    ...differences('pkg/src', tableOf(document, 'imports-of-package'), importsOfPackage('pkg/src')),
+  ];
   for (const problem of problems) console.error(problem);
   return problems.length === 0;
 }
 
-/** What differs between the table and the sources, a sentence each. */
-function differences(table, imports) {
+/** What differs between a table and the sources in `folder`, a sentence each. */
+function differences(folder, table, imports) {
   const problems = [];
   for (const [module, found] of imports) {
     const allowed = table.get(module);
-    if (!allowed) problems.push(`${DOCUMENT} has no line for src/${module}.`);
-    for (const name of found) if (allowed && !allowed.has(name)) problems.push(`src/${module} imports ${name}, which ${DOCUMENT} does not allow.`);
+    if (!allowed) problems.push(`${DOCUMENT} has no line for ${folder}/${module}.`);
+    for (const name of found) if (allowed && !allowed.has(name)) problems.push(`${folder}/${module} imports ${name}, which ${DOCUMENT} does not allow.`);
   }
   for (const [module, allowed] of table) {
     const found = imports.get(module);
-    if (!found) problems.push(`${DOCUMENT} has a line for src/${module}, which does not exist.`);
-    for (const name of allowed) if (found && !found.has(name)) problems.push(`${DOCUMENT} says that src/${module} imports ${name}; it does not.`);
+    if (!found) problems.push(`${DOCUMENT} has a line for ${folder}/${module}, which does not exist.`);
+    for (const name of allowed) if (found && !found.has(name)) problems.push(`${DOCUMENT} says that ${folder}/${module} imports ${name}; it does not.`);
   }
   return problems;
 }
 
-/** The lines `module → imports` of the block that is marked `imports`. */
-function tableOf(document) {
-  const block = /```imports\n([\s\S]*?)```/.exec(document)?.[1] ?? '';
+/** The lines `module → imports` of the block with this mark. */
+function tableOf(document, mark) {
+  const block = new RegExp(`\`\`\`${mark}\\n([\\s\\S]*?)\`\`\``).exec(document)?.[1] ?? '';
   const table = new Map();
   for (const line of block.split('\n').filter(Boolean)) {
     const [modules, imported] = line.split('→').map((half) => half.trim().split(/\s+/).filter(Boolean));
@@ -43,7 +47,7 @@ function tableOf(document) {
 }
 
 /** For every top module of the crate the other top modules that its sources name, tests left out. */
-function importsOf(folder) {
+function importsOfCrate(folder) {
   const names = readdirSync(join(root, folder)).map((name) => name.replace(/\.rs$/, ''));
   const modules = new Set(names.filter((name) => name !== 'lib'));
   const imports = new Map([...modules].map((name) => [name, new Set()]));
@@ -55,6 +59,23 @@ function importsOf(folder) {
     // Both `crate::name` and the names in `crate::{name, name::item}`.
     for (const [, path] of source.matchAll(/\bcrate::(\w+|\{[^;]*)/g)) {
       for (const [name] of path.matchAll(/(?<!::)\b\w+/g)) if (modules.has(name) && name !== own) imports.get(own).add(name);
+    }
+  }
+  return imports;
+}
+
+/** For every folder of the package's sources the other folders that its files import, values or types. */
+function importsOfPackage(folder) {
+  const imports = new Map();
+  for (const file of readdirSync(join(root, folder), { recursive: true })) {
+    const path = String(file).replaceAll('\\', '/');
+    if (!path.endsWith('.ts')) continue;
+    const own = path.split('/')[0];
+    if (!imports.has(own)) imports.set(own, new Set());
+    for (const [, place] of projectText(`${folder}/${path}`).matchAll(/(?:\bfrom |\bimport\()'(\.[^']+)'/g)) {
+      const [other] = posix.join(posix.dirname(path), place).split('/');
+      // What lies outside are the types that the package publishes.
+      if (other !== own && other !== '..') imports.get(own).add(other);
     }
   }
   return imports;

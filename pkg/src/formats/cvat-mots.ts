@@ -2,7 +2,7 @@
 
 import { type Zippable, zipSync } from 'fflate';
 import type { FormatMeta, LabelFrame } from '../../types/formats.js';
-import { VeroneseError } from '../errors.js';
+import { VeroneseError } from '../common/errors.js';
 import { checkFrames, imageOf, masksOf, nameOf } from './input.js';
 import { checkPath } from './names.js';
 import { png } from './png.js';

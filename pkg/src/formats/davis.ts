@@ -1,6 +1,6 @@
 // DAVIS: an 8-bit indexed PNG, the index is the label, in the palette of that benchmark.
 
-import { colourBytes, davisPalette } from '../palette.js';
+import { colourBytes, davisPalette } from '../common/palette.js';
 import { checkLabels } from './input.js';
 import { png } from './png.js';
 

@@ -13,8 +13,8 @@ import {
   reading,
   UNLABELLED,
   unknownOf,
-} from '../checks.js';
-import { VeroneseError } from '../errors.js';
+} from '../common/checks.js';
+import { VeroneseError } from '../common/errors.js';
 
 /** One label's pixels inside their bounding box. */
 export interface Mask {

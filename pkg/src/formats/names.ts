@@ -1,6 +1,6 @@
 // Names that become files in an archive: one that stays in its folder here may lead elsewhere on the system that unpacks it.
 
-import { VeroneseError } from '../errors.js';
+import { VeroneseError } from '../common/errors.js';
 
 /** Longest part of a path, less an extension of four characters, and longest path; bytes that every file system takes. */
 const LONGEST = { part: 251, path: 4000 };

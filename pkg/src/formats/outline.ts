@@ -4,7 +4,7 @@
 // Time and memory are linear in the border and the box: a mask of noise has as many vertices as pixels, so they are numbers in typed
 // arrays.
 
-import { VeroneseError } from '../errors.js';
+import { VeroneseError } from '../common/errors.js';
 import type { Mask } from './input.js';
 
 /** x, y of one vertex after another, whole numbers; the last is joined to the first. */

@@ -1,8 +1,8 @@
 // veronese.json: the label image with the motions, nothing lost. What the other formats cannot carry is here.
 
 import type { FormatMeta, LabelFrame, VeroneseDocument } from '../../types/formats.js';
-import { invalidInput, isListOf, isObject, isWhole, LONGEST_SIDE, reading, UNLABELLED } from '../checks.js';
-import type { VeroneseError } from '../errors.js';
+import { invalidInput, isListOf, isObject, isWhole, LONGEST_SIDE, reading, UNLABELLED } from '../common/checks.js';
+import type { VeroneseError } from '../common/errors.js';
 import { checkedMeta, checkLabels, copied, imageOf, isMotion } from './input.js';
 
 const FORMAT = 'veronese';

@@ -1,11 +1,11 @@
 // The entries are what the hand-written types say; compiled, never run.
 
-import * as codecs from '../../src/codecs.js';
+import * as codecs from '../../src/entries/codecs.js';
 import * as formats from '../../src/formats/index.js';
-import * as inline from '../../src/inline.js';
-import * as node from '../../src/node.js';
-import * as slim from '../../src/slim.js';
-import * as web from '../../src/web.js';
+import * as inline from '../../src/entries/inline.js';
+import * as node from '../../src/entries/node.js';
+import * as slim from '../../src/entries/slim.js';
+import * as web from '../../src/entries/web.js';
 
 export const entries: (typeof import('veronese'))[] = [node, web];
 export const partial: (typeof import('veronese/slim'))[] = [slim, inline];

@@ -1,0 +1,167 @@
+// The calls themselves, on the module that has them: stages reported, the signal heard, time measured.
+
+import type {
+  CallOptions,
+  FitOptions,
+  Milliseconds,
+  MotionFit,
+  PaintOptions,
+  Pixels,
+  PointMeasurements,
+  RelabelOptions,
+  Segmentation,
+  SegmentOptions,
+  WasmSource,
+} from '../../types/index.js';
+import { checkedBytes, entriesOf, invalidInput, invalidOption, isNumber, isWhole, LONGEST_SIDE, reading } from '../common/checks.js';
+import { cancelled } from '../common/errors.js';
+import { colourBytes, davisPalette } from '../common/palette.js';
+import type { Core, Glue } from '../module/core.js';
+import type { PointsGlue } from '../module/glue-points.js';
+import type { FramesGlue, OnStage } from '../module/glue.js';
+import type { CallTask, Corrected, Result } from './messages.js';
+import { taken } from './taking.js';
+import { fitCall, relabelCall, segmentCall, start } from './tasks.js';
+
+export class Api {
+  readonly #frames: Core<FramesGlue>;
+  readonly #points: Core<PointsGlue>;
+
+  /** `points` is loaded when measurements come; it may be the same as `frames`. */
+  constructor(frames: Core<FramesGlue>, points: Core<PointsGlue>) {
+    this.#frames = frames;
+    this.#points = points;
+  }
+
+  readonly init = (source?: WasmSource | Promise<WasmSource>): Promise<void> => this.#frames.init(source);
+
+  readonly initPoints = (source?: WasmSource | Promise<WasmSource>): Promise<void> => this.#points.init(source);
+
+  readonly segmentPair = (first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> =>
+    start(() => segmentCall(first, second, options), this.perform);
+
+  readonly relabel = (
+    first: Pixels,
+    second: Pixels,
+    segmentation: Segmentation,
+    evidence: Uint16Array,
+    options?: RelabelOptions,
+  ): Promise<Segmentation> => start(() => relabelCall(first, second, segmentation, evidence, options), this.perform);
+
+  readonly fitMotions = (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> =>
+    start(() => fitCall(measurements, options), this.perform);
+
+  /** What was checked and taken, here or on the other side of a worker. */
+  readonly perform = (task: CallTask, call: CallOptions): Promise<Result> => {
+    if (task.call === 'fitMotions') {
+      const { positions, derivatives } = task.measurements;
+      return run<MotionFit, PointsGlue>(this.#points, call, (glue, onStage) =>
+        glue.fitMotions(positions, derivatives, task.settings, onStage),
+      );
+    }
+    const [first, second, before] = task.frames;
+    if (task.call === 'segmentPair') {
+      return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
+        glue.segmentPair(first, second, before, task.settings, onStage),
+      );
+    }
+    const { matrices, groups, labels, sets, settings } = task.correction;
+    return run<Corrected, FramesGlue>(this.#frames, call, (glue, onStage) =>
+      glue.relabel(first, second, before, matrices, groups, labels, sets, settings, onStage),
+    );
+  };
+
+  readonly paintLabels = async (
+    context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+    segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
+    options?: PaintOptions,
+  ): Promise<void> => {
+    const rest = reading(() => paintArguments(context, segmentation, options));
+    await this.#frames.call((glue) => {
+      if (isOffscreen(context)) glue.paintLabelsOffscreen(context, ...rest);
+      else glue.paintLabels(context, ...rest);
+    });
+  };
+}
+
+/** One call of a module. Stages are timed, and between them the signal is looked at. */
+async function run<T extends { milliseconds: Milliseconds }, G extends Glue>(
+  core: Core<G>,
+  { signal, onProgress }: CallOptions,
+  work: (glue: G, onStage: OnStage) => unknown,
+): Promise<T> {
+  if (signal?.aborted) throw cancelled(signal);
+  await core.init();
+  if (signal?.aborted) throw cancelled(signal);
+  const watch = new Stopwatch();
+  let thrownByListener: { thrown: unknown } | undefined;
+  const onStage: OnStage = (stage, index, of) => {
+    watch.begin(stage);
+    try {
+      onProgress?.({ stage, index, of });
+      if (signal?.aborted) throw cancelled(signal);
+    } catch (thrown) {
+      thrownByListener = { thrown };
+      throw thrown;
+    }
+  };
+  try {
+    const report = await core.call((glue) => {
+      watch.start();
+      return { ...(work(glue, onStage) as Omit<T, 'milliseconds'>), milliseconds: watch.end() };
+    });
+    return report as T;
+  } catch (thrown) {
+    throw thrownByListener ? thrownByListener.thrown : thrown;
+  }
+}
+
+function paintArguments(context: unknown, segmentation: unknown, options: unknown) {
+  if (typeof Object(context).putImageData !== 'function') throw invalidInput('the context must be the 2d context of a canvas');
+  const { labels, width, height } = Object(segmentation) as Partial<Segmentation>;
+  const [bytes] = taken([checkedBytes('the labels', labels)], false) as [Uint8Array];
+  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) {
+    throw invalidInput(`width and height must be whole numbers from 1 to ${LONGEST_SIDE}`);
+  }
+  const { palette = overlayPalette(), opacity = 0.5 } = entriesOf(options, ['palette', 'opacity']);
+  if (!isNumber(opacity)) throw invalidOption('opacity', 'a number from 0 to 1', opacity);
+  return [bytes, width, height, colourBytes(palette, 4), opacity] as const;
+}
+
+/** The default of {@link Api.paintLabels}: DAVIS, with what is dominant or unlabelled left transparent. */
+function overlayPalette(): (readonly [number, number, number, number])[] {
+  return davisPalette().map(([r, g, b], label) => [r, g, b, label === 0 || label === 255 ? 0 : 255] as const);
+}
+
+function isOffscreen(
+  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+): context is OffscreenCanvasRenderingContext2D {
+  return typeof OffscreenCanvasRenderingContext2D === 'function' && context instanceof OffscreenCanvasRenderingContext2D;
+}
+
+/** Milliseconds per stage; a stage that is entered again goes on where it stopped. */
+class Stopwatch {
+  readonly #laps = new Map<string, number>();
+  #started = 0;
+  #stage: { name: string; since: number } | undefined;
+
+  start(): void {
+    this.#started = performance.now();
+  }
+
+  begin(name: string): void {
+    const now = performance.now();
+    this.#close(now);
+    this.#stage = { name, since: now };
+  }
+
+  end(): Milliseconds {
+    const now = performance.now();
+    this.#close(now);
+    return { total: now - this.#started, ...Object.fromEntries(this.#laps) };
+  }
+
+  #close(now: number): void {
+    if (this.#stage) this.#laps.set(this.#stage.name, (this.#laps.get(this.#stage.name) ?? 0) + now - this.#stage.since);
+  }
+}

@@ -1,0 +1,50 @@
+// What the page and its worker say to each other.
+
+import type { MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
+import type { ErrorMessage } from '../common/errors.js';
+import { buffersOf } from './taking.js';
+
+/** Options as the core takes them, all plain values; it says which of them it cannot use. */
+export type Settings = Record<string, unknown>;
+
+export type Frames = readonly [first: Pixels, second: Pixels, before?: Pixels];
+
+/** What `relabel` needs of a segmentation, and what is said about its pixels. */
+export interface Correction {
+  /** Six entries of each motion. */
+  matrices: Float64Array;
+  groups: Uint8Array;
+  labels: Uint8Array;
+  sets: Uint16Array;
+  settings: Settings;
+}
+
+/** A call with arrays of its own and with what can be copied of its options: a signal stays behind, as does a listener. */
+export type CallTask =
+  | { call: 'segmentPair'; frames: Frames; settings: Settings }
+  | { call: 'relabel'; frames: Frames; correction: Correction }
+  | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings };
+
+export type Task = CallTask | { call: 'warmUp' };
+
+/** What `relabel` changes of a segmentation. */
+export type Corrected = Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>;
+
+/** What a task gives. */
+export type Result = Segmentation | Corrected | MotionFit | undefined;
+
+/** The compiled module that a task needs comes with the first such task of a worker. */
+export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
+
+export type Reply<R = Result> =
+  | { kind: 'progress'; progress: Progress }
+  | { kind: 'done'; result: R }
+  | { kind: 'failed'; error: ErrorMessage };
+
+/** What is handed over to a worker instead of copied. */
+export function buffersOfTask(task: Task): ArrayBuffer[] {
+  if (task.call === 'warmUp') return [];
+  if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
+  const said = task.call === 'relabel' ? [task.correction.labels, task.correction.sets] : [];
+  return buffersOf([...task.frames.map((frame) => frame?.data), ...said]);
+}

@@ -1,0 +1,188 @@
+// The calls as tasks: what callers hand in, checked and taken. The same for direct calls and for workers, so that both say the same.
+
+import type {
+  CallOptions,
+  FitOptions,
+  MotionFit,
+  Pixels,
+  PointMeasurements,
+  RelabelOptions,
+  Segmentation,
+  SegmentedMotion,
+  SegmentOptions,
+} from '../../types/index.js';
+import {
+  checkAttached,
+  entriesOf,
+  invalidInput,
+  invalidOption,
+  isArrayOf,
+  isListOf,
+  isNumber,
+  isObject,
+  isWhole,
+  LONGEST_SIDE,
+  reading,
+  type TypedArray,
+  UNLABELLED,
+} from '../common/checks.js';
+import { cancelled, VeroneseError } from '../common/errors.js';
+import type { CallTask, Corrected, Frames, Result, Settings } from './messages.js';
+import { taken } from './taking.js';
+
+/** Shortest side of a frame, pixels: what the core segments. */
+const SHORTEST_SIDE = 16;
+
+/** A task, how it is to be run, and what its result becomes for the caller. */
+export interface Call<T> {
+  task: CallTask;
+  options: CallOptions;
+  finish: (result: Result) => T;
+}
+
+/**
+ * Checks and takes at once; what is thrown becomes a rejection. Not an `async` function: while it waited it would hold what it was
+ * given, the caller's arrays.
+ */
+export function start<T>(prepare: () => Call<T>, perform: (task: CallTask, options: CallOptions) => Promise<Result>): Promise<T> {
+  try {
+    const { task, options, finish } = reading(prepare);
+    return perform(task, options).then(finish);
+  } catch (thrown) {
+    return Promise.reject(thrown);
+  }
+}
+
+export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOptions): Call<Segmentation> {
+  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence', 'seed', 'before']);
+  const frames = checkedFrames(first, second, asked.before);
+  const own = takenFor(asked, dataOf(frames));
+  const task: CallTask = { call: 'segmentPair', frames: framesWith(own, frames), settings: asked.settings };
+  return { task, options: asked.call, finish: (result) => result as Segmentation };
+}
+
+export function relabelCall(
+  first: Pixels,
+  second: Pixels,
+  segmentation: Segmentation,
+  evidence: Uint16Array,
+  options?: RelabelOptions,
+): Call<Segmentation> {
+  const asked = parted(options, ['before']);
+  const frames = checkedFrames(first, second, asked.before);
+  const { kept, labels, ...correction } = checkedSegmentation(segmentation);
+  const sets = checkedArray('the evidence', evidence, 'Uint16Array', 'of one set of labels for each pixel');
+  const own = takenFor(asked, [...dataOf(frames), sets]);
+  const rest = { labels: taken([labels], false)[0] as Uint8Array, sets: own.pop() as Uint16Array };
+  const task: CallTask = { call: 'relabel', frames: framesWith(own, frames), correction: { ...correction, ...rest } };
+  return { task, options: asked.call, finish: (result) => ({ ...kept, ...(result as Corrected) }) };
+}
+
+export function fitCall(measurements: PointMeasurements, options?: FitOptions): Call<MotionFit> {
+  const asked = parted(options, ['motions', 'method', 'seed']);
+  const { positions, derivatives } = Object(measurements) as Partial<PointMeasurements>;
+  const whole = [
+    checkedArray('the positions', positions, 'Float64Array', 'of x and y of each measurement'),
+    checkedArray('the derivatives', derivatives, 'Float64Array', 'of I_x, I_y and I_t of each measurement'),
+  ];
+  const [xy, ixyt] = takenFor(asked, whole) as [Float64Array, Float64Array];
+  const task: CallTask = { call: 'fitMotions', measurements: { positions: xy, derivatives: ixyt }, settings: asked.settings };
+  return { task, options: asked.call, finish: (result) => result as MotionFit };
+}
+
+interface Asked {
+  call: CallOptions;
+  transfer: boolean;
+  before: unknown;
+  settings: Settings;
+}
+
+/** Parts what concerns the call from what goes to the core, which says which values it takes. */
+export function parted(options: unknown, known: readonly string[]): Asked {
+  const { signal, onProgress, transfer = false, before, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer']);
+  if (signal !== undefined && !isSignal(signal)) throw new VeroneseError('invalid-option', "option 'signal': must be an AbortSignal");
+  if (onProgress !== undefined && typeof onProgress !== 'function') throw invalidOption('onProgress', 'a function', onProgress);
+  if (typeof transfer !== 'boolean') throw invalidOption('transfer', 'true or false', transfer);
+  for (const [name, value] of Object.entries(settings)) {
+    // Not all of these reach a worker, and no option is one of them.
+    if (/object|function|symbol/.test(typeof value) && value !== null) throw invalidOption(name, 'a plain value', value);
+  }
+  return { call: { signal, onProgress: onProgress as CallOptions['onProgress'] }, transfer, before, settings };
+}
+
+/** Whatever works like one: other realms and older environments have classes of their own. */
+function isSignal(value: unknown): value is AbortSignal {
+  const { aborted, addEventListener, removeEventListener } = Object(value) as AbortSignal;
+  return typeof aborted === 'boolean' && typeof addEventListener === 'function' && typeof removeEventListener === 'function';
+}
+
+/** Nothing is taken for a call that will not be made. */
+function takenFor({ call: { signal }, transfer }: Asked, arrays: readonly TypedArray[]): TypedArray[] {
+  if (signal?.aborted) throw cancelled(signal);
+  return taken(arrays, transfer);
+}
+
+function checkedFrames(first: unknown, second: unknown, before: unknown): Pixels[] {
+  const frames = [checkedPixels('the first frame', first), checkedPixels('the second frame', second)];
+  if (before !== undefined) frames.push(checkedPixels('the frame before', before));
+  return frames;
+}
+
+/** A frame of the right shape and size, in the core's words; whether it has the size of the others is the core's question. */
+export function checkedPixels(which: string, pixels: unknown): Pixels {
+  const { data, width, height } = Object(pixels) as Partial<Pixels>;
+  if (!isArrayOf(data, 'Uint8Array', 'Uint8ClampedArray')) {
+    throw invalidInput(`${which} must be { data, width, height } with RGBA bytes, like ImageData`);
+  }
+  if (!isWhole(width, 0, Infinity) || !isWhole(height, 0, Infinity)) {
+    throw invalidInput(`${which}: width and height must be whole numbers of pixels`);
+  }
+  const size = `a frame of ${width}×${height} pixels`;
+  if (![width, height].every((side) => isWhole(side, SHORTEST_SIDE, LONGEST_SIDE))) {
+    const sides = `both sides must be between ${SHORTEST_SIDE} and ${LONGEST_SIDE} pixels`;
+    throw new VeroneseError('frame-size-unsupported', `${size} cannot be processed: ${sides}`);
+  }
+  checkAttached(which, data);
+  const needed = 4 * width * height;
+  if (data.length !== needed) throw new VeroneseError('pixel-count-mismatch', `${size} needs ${needed} RGBA bytes, found ${data.length}`);
+  return { data: data as Pixels['data'], width, height };
+}
+
+const dataOf = (frames: readonly Pixels[]) => frames.map(({ data }) => data);
+
+function framesWith(arrays: readonly TypedArray[], sizes: readonly Pixels[]): Frames {
+  return sizes.map(({ width, height }, k) => ({ data: arrays[k] as Uint8Array, width, height })) as unknown as Frames;
+}
+
+function checkedArray(which: string, array: unknown, kind: string, of: string): TypedArray {
+  if (!isArrayOf(array, kind)) throw invalidInput(`${which} must be a ${kind} ${of}`);
+  checkAttached(which, array);
+  return array;
+}
+
+/** What the core needs of a segmentation, as flat arrays, and what stays of it. Whether labels and motions fit is the core's question. */
+function checkedSegmentation(segmentation: unknown) {
+  // How sure the labels were says nothing about those of now.
+  const { confidence: _, ...whole } = Object(segmentation) as Partial<Segmentation>;
+  const { motions, labels, settings, evidence } = whole;
+  const quality = isObject(settings) ? settings.quality : undefined;
+  if (!isListOf(motions, isMotion) || !isArrayOf(labels, 'Uint8Array') || typeof quality !== 'string') {
+    throw invalidInput('the segmentation must be one that segmentPair or relabel gave');
+  }
+  checkAttached('the labels', labels);
+  const candidates = isListOf(evidence?.candidates, isObject) ? evidence.candidates.map((candidate) => ({ ...candidate })) : [];
+  return {
+    // What is answered anew keeps its place.
+    kept: { ...whole, motions: [], labels: [], evidence: { ...evidence, candidates }, settings: { ...settings } } as unknown as Segmentation,
+    labels,
+    matrices: Float64Array.from(motions.flatMap(({ matrix }) => matrix)),
+    groups: Uint8Array.from(motions, ({ group }) => group),
+    settings: { quality },
+  };
+}
+
+function isMotion(value: unknown): value is SegmentedMotion {
+  if (!isObject(value)) return false;
+  const { matrix, group } = value;
+  return isListOf(matrix, isNumber) && matrix.length === 6 && isWhole(group, 0, UNLABELLED - 1);
+}

@@ -1,0 +1,260 @@
+// The command line: what it means, and what is wrong with it.
+
+import { availableParallelism } from 'node:os';
+import { parseArgs } from 'node:util';
+import { VeroneseError } from '../common/errors.js';
+import { FORMATS, type FormatName, isFormatName } from './formats.js';
+import type { PairSettings } from './pair.js';
+
+/** Names of the formats in lines that fit a terminal. */
+const FORMAT_NAMES = wrapped(Object.keys(FORMATS), 80, '\n' + ' '.repeat(41));
+
+export const HELP = `veronese finds how many things move between two frames, how each moves, and which pixels belong to it.
+
+  veronese pair FIRST SECOND [options]   two frames: PNG, JPEG, WebP, BMP or PNM
+      --before FILE          the frame before FIRST, a third view that helps where something is hidden
+      --motions auto|1..10   how many motions (default: auto)
+      --quality fast|best    how much work (default: best)
+      --grouped              labels.png and mask-K.png show groups: what belongs to one rigid background counts as one
+      --mark-unknown         label 255 where a pixel is hidden or outside in SECOND, or where the data cannot tell
+      --seed N               seed of every random choice (default: 1)
+      --out DIR              write labels.png, result.json and mask-K.png into DIR
+      --confidence           and confidence.png: how sure every pixel's label is, 255 times its probability
+      --overlay              and overlay.png: the first frame with every motion in its colour
+
+  veronese batch FRAMES... [options]     every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
+      --list FILE            frames, one path in each line (- reads standard input)
+      --every K              use every K-th frame only (default: 1)
+      --with-before          each pair also gets the frame before its first, like --before of pair
+      --out DIR              a folder for each pair in DIR, with the files of pair; pairs finished before are skipped
+      --jobs N               pairs at the same time (default: as many as the machine has processors)
+      --shard I/N            only the I-th of N parts of the pairs, for N machines
+      --motions, --quality, --grouped, --mark-unknown, --confidence, --seed, --overlay as for pair
+
+  veronese video FILE [options]          the same on the frames of a video, which the program ffmpeg reads
+      options as for batch, without --list
+
+  veronese convert DIR --to FORMATS      what pair wrote into DIR, as annotation tools read it; FORMATS are separated by commas:
+                                         ${FORMAT_NAMES}
+      --grouped              groups instead of motions
+      --image NAME           the name of the image that the masks lie on (default: first.png)
+      --out DIR              where to write (default: beside the result)
+
+  veronese points FILE.json [options]    {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
+      --motions auto|1..10   how many motions (default: auto)
+      --method paper|best    the paper's own algorithm, or ours (default: best)
+      --seed N               seed of every random choice (default: 1)
+
+  veronese --help | --version
+
+One line of JSON on stdout, of batch and video one for each pair. Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
+`;
+
+/** What both commands for sequences of frames take. */
+export interface SequenceSettings extends PairSettings {
+  every: number;
+  withBefore: boolean;
+  jobs: number;
+  /** This part of all pairs; `index` from 0. */
+  shard: { index: number; of: number };
+  out?: string;
+}
+
+export type Command =
+  | { name: 'help' }
+  | { name: 'version' }
+  | ({
+      name: 'pair';
+      first: string;
+      second: string;
+      before?: string;
+      out?: string;
+    } & PairSettings)
+  | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
+  | ({ name: 'video'; file: string } & SequenceSettings)
+  | { name: 'convert'; folder: string; to: FormatName[]; grouped: boolean; image?: string; out?: string }
+  | {
+      name: 'points';
+      file: string;
+      options: { motions: 'auto' | number; method: 'paper' | 'best'; seed: number };
+    };
+
+export type PairCommand = Extract<Command, { name: 'pair' }>;
+export type PointsCommand = Extract<Command, { name: 'points' }>;
+export type ConvertCommand = Extract<Command, { name: 'convert' }>;
+export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
+export type WorkCommand = PairCommand | PointsCommand;
+
+/** The files that a command reads, in the order in which their contents are handed over. */
+export function filesOf(command: WorkCommand): string[] {
+  if (command.name === 'points') return [command.file];
+  return [command.first, command.second, ...(command.before === undefined ? [] : [command.before])];
+}
+
+/** Most pairs at the same time. */
+const MOST_JOBS = 256;
+
+const OPTIONS = {
+  help: { type: 'boolean', short: 'h' },
+  version: { type: 'boolean' },
+  before: { type: 'string' },
+  motions: { type: 'string', default: 'auto' },
+  quality: { type: 'string', default: 'best' },
+  method: { type: 'string', default: 'best' },
+  grouped: { type: 'boolean', default: false },
+  'mark-unknown': { type: 'boolean', default: false },
+  confidence: { type: 'boolean', default: false },
+  seed: { type: 'string', default: '1' },
+  out: { type: 'string' },
+  overlay: { type: 'boolean', default: false },
+  to: { type: 'string' },
+  image: { type: 'string' },
+  list: { type: 'string' },
+  every: { type: 'string', default: '1' },
+  'with-before': { type: 'boolean', default: false },
+  jobs: { type: 'string', short: 'j' },
+  shard: { type: 'string', default: '1/1' },
+} as const;
+
+const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
+const OF_SEQUENCES = [...OF_PAIRS, 'every', 'with-before', 'jobs', 'shard'];
+
+const ALLOWED: Readonly<Record<string, readonly string[]>> = {
+  pair: ['before', ...OF_PAIRS],
+  batch: ['list', ...OF_SEQUENCES],
+  video: OF_SEQUENCES,
+  convert: ['to', 'grouped', 'image', 'out'],
+  points: ['motions', 'method', 'seed'],
+};
+
+/** Throws a {@link VeroneseError} of code `usage`, or `invalid-option` for a value that an option cannot have. */
+export function parseCommand(args: string[]): Command {
+  const { values, positionals, tokens } = parsed(args);
+  if (values.help) return { name: 'help' };
+  if (values.version) return { name: 'version' };
+  const [name, ...files] = positionals;
+  if (name === undefined) throw usage('a command is missing');
+  const allowed = ALLOWED[name];
+  if (!allowed) throw usage(`there is no command '${name}'`);
+  for (const token of tokens) {
+    if (token.kind !== 'option') continue;
+    if (!allowed.includes(token.name)) throw usage(`'${name}' has no option '--${token.name}'`);
+    if (token.value === '') throw usage(`option '--${token.name}' is empty`);
+  }
+  const shared = { motions: motions(values.motions), seed: seed(values.seed) };
+  if (name === 'points') {
+    const [file] = exactly(1, files, "'points' takes one file");
+    return { name, file: file as string, options: { ...shared, method: choice('method', values.method, 'paper', 'best') } };
+  }
+  if (name === 'convert') {
+    const [folder] = exactly(1, files, "'convert' takes one folder");
+    if (values.to === undefined) throw usage("'convert' needs '--to FORMATS'");
+    const image = values.image !== undefined && { image: values.image };
+    const out = values.out !== undefined && { out: values.out };
+    return { name, folder: folder as string, to: formats(values.to), grouped: values.grouped, ...image, ...out };
+  }
+  for (const name of ['overlay', 'confidence'] as const) {
+    if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
+  }
+  const settings: PairSettings & { out?: string } = {
+    options: {
+      ...shared,
+      quality: choice('quality', values.quality, 'fast', 'best'),
+      markUnknown: values['mark-unknown'],
+      confidence: values.confidence,
+    },
+    grouped: values.grouped,
+    overlay: values.overlay,
+    ...(values.out !== undefined && { out: values.out }),
+  };
+  if (name === 'pair') {
+    const [first, second] = exactly(2, files, "'pair' takes two files");
+    const before = values.before !== undefined && { before: values.before };
+    return { name, first: first as string, second: second as string, ...before, ...settings };
+  }
+  const sequence: SequenceSettings = {
+    ...settings,
+    every: whole('every', values.every, 1_000_000),
+    withBefore: values['with-before'],
+    jobs: values.jobs === undefined ? availableParallelism() : whole('jobs', values.jobs, MOST_JOBS),
+    shard: shard(values.shard),
+  };
+  if (name === 'video') {
+    const [file] = exactly(1, files, "'video' takes one file");
+    return { name, file: file as string, ...sequence };
+  }
+  if (files.length === 0 && values.list === undefined) throw usage("'batch' takes frames, or a list of them");
+  if (files.includes('')) throw usage("a frame's name is empty");
+  return { name: 'batch', frames: files, ...(values.list !== undefined && { list: values.list }), ...sequence };
+}
+
+function parsed(args: string[]) {
+  try {
+    return parseArgs({ args, options: OPTIONS, allowPositionals: true, tokens: true });
+  } catch (thrown) {
+    const text = thrown instanceof Error ? thrown.message : String(thrown);
+    // The first sentence names the mistake; what follows explains how to quote.
+    const sentence = text.split(/[.\n]\s/)[0]?.replace(/\.$/, '') ?? text;
+    throw usage(sentence.charAt(0).toLowerCase() + sentence.slice(1));
+  }
+}
+
+function exactly(count: number, files: string[], sentence: string): string[] {
+  if (files.length !== count) throw usage(`${sentence}, found ${files.length}`);
+  if (files.includes('')) throw usage("a file's name is empty");
+  return files;
+}
+
+function motions(text: string): 'auto' | number {
+  if (text === 'auto') return text;
+  if (/^([1-9]|10)$/.test(text)) return Number(text);
+  throw invalid('motions', "'auto' or a whole number from 1 to 10", text);
+}
+
+function seed(text: string): number {
+  if (/^\d+$/.test(text) && Number.isSafeInteger(Number(text))) return Number(text);
+  throw invalid('seed', `a whole number from 0 to ${Number.MAX_SAFE_INTEGER}`, text);
+}
+
+function formats(text: string): FormatName[] {
+  const names = [...new Set(text.split(','))];
+  const known: FormatName[] = names.filter(isFormatName);
+  if (known.length === names.length) return known;
+  throw invalid('to', `formats of ${Object.keys(FORMATS).join(', ')}`, text);
+}
+
+function wrapped(words: readonly string[], width: number, lineBreak: string): string {
+  let [text, used] = ['', 0];
+  for (const [k, word] of words.entries()) {
+    const piece = k + 1 < words.length ? `${word}, ` : word;
+    if (used > 0 && used + piece.length > width) [text, used] = [text.trimEnd() + lineBreak, 0];
+    [text, used] = [text + piece, used + piece.length];
+  }
+  return text;
+}
+
+function whole(name: string, text: string, most: number): number {
+  const value = Number(text);
+  if (/^\d+$/.test(text) && value >= 1 && value <= most) return value;
+  throw invalid(name, `a whole number from 1 to ${most}`, text);
+}
+
+function shard(text: string): { index: number; of: number } {
+  const [, index, of] = (/^(\d{1,9})\/(\d{1,9})$/.exec(text) ?? []).map(Number);
+  if (index !== undefined && of !== undefined && index >= 1 && index <= of) return { index: index - 1, of };
+  throw invalid('shard', "'I/N', part I from 1 to N of N parts", text);
+}
+
+function choice<const T extends string>(name: string, text: string, ...choices: T[]): T {
+  const found = choices.find((word) => word === text);
+  if (found !== undefined) return found;
+  throw invalid(name, choices.map((word) => `'${word}'`).join(' or '), text);
+}
+
+function invalid(name: string, wanted: string, found: string): VeroneseError {
+  return new VeroneseError('invalid-option', `option '--${name}' must be ${wanted}, not '${found}'`);
+}
+
+function usage(sentence: string): VeroneseError {
+  return new VeroneseError('usage', `${sentence}; see 'veronese --help'`);
+}

@@ -1,0 +1,133 @@
+// `batch` and `video`: every pair of consecutive frames, by several threads, one line of JSON for each pair in their order.
+
+import { basename, extname, join } from 'node:path';
+import { Worker } from 'node:worker_threads';
+import { VeroneseError, veroneseError } from '../common/errors.js';
+import { core } from '../entries/codecs.js';
+import { inOrder } from '../pool/ordered.js';
+import { WorkerPool } from '../pool/pool.js';
+import { spawnWith } from '../pool/threads.js';
+import type { SequenceCommand } from './arguments.js';
+import type { BatchResult, BatchTask } from './batch-work.js';
+import { checkFolder } from './files.js';
+import { findFrames, type Frame } from './frames.js';
+import { jsonLine } from './pair.js';
+import { removeLeftovers, writePair } from './store.js';
+import { complain, print, ProgressBar, type Tally } from './terminal.js';
+import { videoFrames } from './video.js';
+
+interface Pair {
+  /** Position among all pairs, also those of other shards. */
+  index: number;
+  name: string;
+  frames: Frame[];
+}
+
+type Outcome = { pair: Pair; result: BatchResult } | { pair: Pair; error: VeroneseError };
+
+/** Throws `pairs-failed` at the end where some did, or at once what concerns all pairs. */
+export async function batch(command: SequenceCommand): Promise<void> {
+  const { out, shard, jobs } = command;
+  if (out !== undefined) checkFolder(out);
+  const paths = command.name === 'batch' ? findFrames(command.frames, command.list) : undefined;
+  if (paths) checkCount(Math.ceil(paths.length / command.every));
+  if (out !== undefined) removeLeftovers(out, (name) => ofShard(Number.parseInt(name, 10), shard));
+
+  const frames = paths ? paths.map((name) => ({ name })) : videoFrames((command as { file: string }).file, command.every);
+  const pairs = pairsOf(frames, paths ? command.every : 1, command);
+  const worker = () => new Worker(new URL('./cli-batch-work.js', import.meta.url), { name: 'veronese' });
+  const module = () => core.module();
+  const pool = new WorkerPool<BatchTask, BatchResult>(spawnWith(worker), () => module, jobs);
+  const bar = new ProgressBar(paths && count(Math.ceil(paths.length / command.every) - 1, shard));
+  const tally: Tally = { done: 0, skipped: 0, failed: 0 };
+  const failures: VeroneseError[] = [];
+  const work = (pair: Pair) => perform(pool, pair, command);
+  try {
+    for await (const { pair, ...outcome } of inOrder(pairs, work, { room: 2 * jobs, stop: () => undefined })) {
+      const { first, second } = namesOf(pair);
+      bar.clear();
+      const line = { index: pair.index, name: pair.name, first, second };
+      if ('result' in outcome) {
+        const { done, report } = outcome.result;
+        tally[done ? 'done' : 'skipped'] += 1;
+        await print(jsonLine({ ...line, status: done ? 'done' : 'skipped', ...report }));
+      } else {
+        const { code, message } = outcome.error;
+        tally.failed += 1;
+        failures.push(new VeroneseError(code, `pair ${pair.index} (${first}, ${second}): ${message}`));
+        await print(jsonLine({ ...line, status: 'failed', error: { code, message } }));
+      }
+      bar.update(tally);
+    }
+  } finally {
+    bar.clear();
+    pool.close();
+    for (const failure of failures) complain(failure);
+  }
+  if (failures.length === 0) return;
+  const all = tally.done + tally.skipped + tally.failed;
+  throw new VeroneseError('pairs-failed', `${failures.length} of ${all} pairs failed, listed above`);
+}
+
+/** Never rejects: one bad pair is not the end of the others. What it found is on the disk when it answers. */
+async function perform(pool: WorkerPool<BatchTask, BatchResult>, pair: Pair, command: SequenceCommand): Promise<Outcome> {
+  const { options, grouped, overlay, out } = command;
+  try {
+    const folder = out === undefined ? undefined : join(out, pair.name);
+    const result = await pool.run({ frames: pair.frames.map(contentOf), settings: { options, grouped, overlay }, folder });
+    if (out !== undefined && result.done) writePair(out, pair.name, result.files);
+    return { pair, result: { ...result, files: [] } };
+  } catch (thrown) {
+    return { pair, error: veroneseError(thrown) };
+  }
+}
+
+/** Pairs of consecutive frames that belong to the shard, out of every K-th frame. */
+async function* pairsOf(
+  frames: Iterable<Frame> | AsyncIterable<Frame>,
+  every: number,
+  { shard, withBefore }: SequenceCommand,
+): AsyncGenerator<Pair, void, undefined> {
+  let [before, first]: (Frame | undefined)[] = [];
+  let [position, used] = [0, 0];
+  for await (const second of frames) {
+    if (position++ % every !== 0) continue;
+    used += 1;
+    if (first && ofShard(used - 2, shard)) {
+      const index = used - 2;
+      yield { index, name: nameOf(index, first), frames: [first, second, ...(withBefore && before ? [before] : [])] };
+    }
+    [before, first] = [first, second];
+  }
+  checkCount(used);
+}
+
+function contentOf({ name, bytes }: Frame): BatchTask['frames'][number] {
+  return { name, ...(bytes && { bytes }) };
+}
+
+function checkCount(frames: number): void {
+  if (frames >= 2) return;
+  throw new VeroneseError('too-few-frames', `a pair needs two frames, found ${frames === 0 ? 'none' : 'one'}`);
+}
+
+function ofShard(index: number, shard: SequenceCommand['shard']): boolean {
+  return index % shard.of === shard.index;
+}
+
+/** How many of the numbers from 0 belong to the shard. */
+function count(pairs: number, { index, of }: SequenceCommand['shard']): number {
+  return Math.max(0, Math.ceil((pairs - index) / of));
+}
+
+/** Characters of a frame's name in that of its pair: with what is added while a folder is written, file systems take it. */
+const LONGEST_STEM = 200;
+
+/** The pair's number, and its first frame for people who look for it. */
+function nameOf(index: number, { name, stem = basename(name, extname(name)) }: Frame): string {
+  return `${String(index).padStart(6, '0')}-${stem.slice(0, LONGEST_STEM).replace(/[^\w.-]/g, '_')}`;
+}
+
+function namesOf({ frames: [first, second] }: Pair): { first: string | undefined; second: string | undefined } {
+  return { first: first?.name, second: second?.name };
+}

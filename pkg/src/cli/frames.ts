@@ -1,0 +1,125 @@
+// Which frames a batch is made of: folders, patterns, files and lists of them, in a stated order.
+
+import { lstatSync, readdirSync, readFileSync, statSync } from 'node:fs';
+import { join } from 'node:path';
+import { VeroneseError } from '../common/errors.js';
+
+const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
+const MAGIC = /[*?[\]]/;
+/** Folders below each other that `**` follows. */
+const DEPTH = 32;
+
+export interface Frame {
+  name: string;
+  /** Of a frame that is no file to read: its content, and what its results are called by. */
+  bytes?: Uint8Array;
+  stem?: string;
+}
+
+/**
+ * The paths of all frames. What is named keeps its order; what is found in a folder or by a pattern is sorted by name, numbers
+ * by their value (frame-9 before frame-10). Throws `file-not-found` or `unreadable-file`.
+ */
+export function findFrames(names: readonly string[], list?: string): string[] {
+  const listed = list === undefined ? [] : linesOf(list);
+  return [...names.flatMap(framesOf), ...listed];
+}
+
+function framesOf(name: string): string[] {
+  const kind = kindOf(name);
+  if (kind === 'folder') {
+    const frames = entries(name).filter((entry) => IMAGE.test(entry) && !entry.startsWith('.'));
+    if (frames.length === 0) throw new VeroneseError('file-not-found', `there is no image in the folder '${name}'`);
+    return frames.sort(byNumbers).map((entry) => join(name, entry));
+  }
+  if (kind || !MAGIC.test(name)) return [name];
+  const found = matching(name);
+  if (found.length === 0) throw new VeroneseError('file-not-found', `no file matches '${name}'`);
+  return found.sort(byNumbers);
+}
+
+function linesOf(list: string): string[] {
+  try {
+    const text = readFileSync(list === '-' ? 0 : list, 'utf8');
+    return text.split(/\r?\n/).filter((line) => line.trim() !== '');
+  } catch (thrown) {
+    const { code, message } = thrown as NodeJS.ErrnoException;
+    if (code === 'ENOENT') throw new VeroneseError('file-not-found', `there is no file '${list}'`);
+    throw new VeroneseError('unreadable-file', `'${list}' cannot be read: ${message}`);
+  }
+}
+
+/** Files that match a pattern: `*` and `?` within a name, `[a-c]` one of some letters, `**` folders at any depth. */
+function matching(pattern: string): string[] {
+  const [start, ...rest] = pattern.split('/').filter((part, index) => part !== '' || index === 0);
+  const parts = start === '' ? rest : [start as string, ...rest];
+  let places = [start === '' ? '/' : ''];
+  for (const [index, part] of parts.entries()) {
+    const last = index === parts.length - 1;
+    places = places.flatMap((place) => {
+      if (part === '**') return [place, ...below(place, DEPTH)];
+      if (!MAGIC.test(part)) return exists(join(place, part), last) ? [join(place, part)] : [];
+      const wanted = expression(part);
+      const hidden = part.startsWith('.');
+      const names = entries(place || '.').filter((name) => wanted.test(name) && (hidden || !name.startsWith('.')));
+      return names.map((name) => join(place, name)).filter((path) => exists(path, last));
+    });
+  }
+  return [...new Set(places)];
+}
+
+function below(folder: string, depth: number): string[] {
+  if (depth === 0) return [];
+  const folders = entries(folder || '.')
+    .filter((name) => !name.startsWith('.'))
+    .map((name) => join(folder, name))
+    .filter((path) => kindOf(path, lstatSync) === 'folder');
+  return folders.flatMap((path) => [path, ...below(path, depth - 1)]);
+}
+
+function exists(path: string, asFile: boolean): boolean {
+  return kindOf(path) === (asFile ? 'file' : 'folder');
+}
+
+/**
+ * What is there, if anything. What cannot be looked at (a link that leads to itself, something in a locked folder) counts as a file:
+ * whoever reads it is told why it cannot be read, and the other pairs go on.
+ */
+function kindOf(path: string, look = statSync): 'file' | 'folder' | 'other' | undefined {
+  try {
+    const status = look(path, { throwIfNoEntry: false });
+    return status && (status.isFile() ? 'file' : status.isDirectory() ? 'folder' : 'other');
+  } catch {
+    return 'file';
+  }
+}
+
+function entries(folder: string): string[] {
+  try {
+    return readdirSync(folder);
+  } catch (thrown) {
+    throw new VeroneseError('unreadable-file', `'${folder}' cannot be read: ${(thrown as Error).message}`);
+  }
+}
+
+function expression(part: string): RegExp {
+  const source = part.replace(/\[!?[^\]]+\]|[\s\S]/g, (piece) => {
+    if (piece === '*') return '.*';
+    if (piece === '?') return '.';
+    if (piece.length > 1) return `[${piece.slice(1, -1).replace(/^!/, '^').replace(/[\\\]]/g, '\\$&')}]`;
+    return piece.replace(/[.+^${}()|[\]\\/]/, '\\$&');
+  });
+  return new RegExp(`^${source}$`, 's');
+}
+
+/** Compares names with numbers by their value; independent of the language the system is set to. */
+export function byNumbers(one: string, other: string): number {
+  const [left, right] = [sortKey(one), sortKey(other)];
+  if (left === right) return one < other ? -1 : Number(one > other);
+  return left < right ? -1 : 1;
+}
+
+/** The name with each number preceded by how many digits it has. */
+function sortKey(name: string): string {
+  return name.replace(/0*(\d+)/g, (_, digits: string) => String(digits.length).padStart(3, '0') + digits);
+}

@@ -1,0 +1,80 @@
+// What the program says: results on stdout, errors and progress on stderr.
+
+import { writeSync } from 'node:fs';
+import { VeroneseError, veroneseError } from '../common/errors.js';
+
+export function print(text: string): Promise<void> {
+  return new Promise((resolve, reject) => {
+    const failed = (error: Error) => {
+      reject(new VeroneseError('write-failed', `the result cannot be printed: ${error.message}`));
+    };
+    process.stdout.once('error', failed);
+    process.stdout.write(text, (error) => {
+      if (error) return failed(error);
+      process.stdout.off('error', failed);
+      resolve();
+    });
+  });
+}
+
+/** One line on stderr, whatever the error's message looks like. */
+export function complain(thrown: unknown): void {
+  const { code, message } = veroneseError(thrown);
+  try {
+    writeSync(2, `veronese: error: ${code}: ${message.replace(/\s+/g, ' ').trim()}\n`);
+  } catch {
+    // Nobody listens: the exit code says it.
+  }
+}
+
+export interface Tally {
+  done: number;
+  skipped: number;
+  failed: number;
+}
+
+/** How often the bar is drawn at most, milliseconds. */
+const INTERVAL = 100;
+const WIDTH = 24;
+
+/** A line that is drawn over and over, only where a person looks: on a terminal. */
+export class ProgressBar {
+  readonly #stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'>;
+  readonly #total: number | undefined;
+  readonly #now: () => number;
+  readonly #started: number;
+  #drawn = -Infinity;
+
+  /** `total`: the number of pairs, where it is known. */
+  constructor(total: number | undefined, stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'> = process.stderr, now = () => performance.now()) {
+    this.#total = total;
+    this.#stream = stream;
+    this.#now = now;
+    this.#started = now();
+  }
+
+  update(tally: Tally): void {
+    const now = this.#now();
+    if (!this.#stream.isTTY || now - this.#drawn < INTERVAL) return;
+    this.#drawn = now;
+    this.#stream.write(`\r\u001b[K${line(tally, this.#total, (now - this.#started) / 1000)}`);
+  }
+
+  /** Takes the line away, for what is to be read there. */
+  clear(): void {
+    if (this.#stream.isTTY && this.#drawn > -Infinity) this.#stream.write('\r\u001b[K');
+  }
+}
+
+function line({ done, skipped, failed }: Tally, total: number | undefined, seconds: number): string {
+  const finished = done + skipped + failed;
+  const rate = seconds > 0 ? done / seconds : 0;
+  const parts = [`${finished}${total === undefined ? '' : ` of ${total}`} pairs`];
+  if (skipped > 0) parts.push(`${skipped} done before`);
+  if (failed > 0) parts.push(`${failed} failed`);
+  if (rate > 0) parts.push(`${rate.toFixed(1)} pairs/s`);
+  if (total !== undefined && rate > 0) parts.push(`${Math.ceil((total - finished) / rate)} s left`);
+  if (total === undefined || total === 0) return parts.join(', ');
+  const full = Math.round((WIDTH * finished) / total);
+  return `[${'#'.repeat(full)}${'.'.repeat(WIDTH - full)}] ${parts.join(', ')}`;
+}

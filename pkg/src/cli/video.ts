@@ -1,0 +1,114 @@
+// Frames of a video, one after another, as the program ffmpeg decodes them.
+
+import { spawn, spawnSync } from 'node:child_process';
+import { type Stats, statSync } from 'node:fs';
+import { basename } from 'node:path';
+import { VeroneseError } from '../common/errors.js';
+import type { Frame } from './frames.js';
+
+/** Longest side of a frame that is read at all; larger ones than the core takes are its own error. */
+const LONGEST_SIDE = 32_768;
+/** How much of what ffmpeg says is kept, characters. */
+const KEPT = 4_000;
+
+/**
+ * Every `every`-th frame as a portable pixmap, named `clip.mp4#12` by its number from 0. ffmpeg decodes no faster than frames are
+ * taken. Throws `ffmpeg-missing`, `file-not-found` or `unreadable-video`.
+ */
+export async function* videoFrames(file: string, every: number): AsyncGenerator<Frame, void, undefined> {
+  const status = statusOf(file);
+  if (!status) throw new VeroneseError('file-not-found', `there is no file '${file}'`);
+  if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
+  const input = ['-nostdin', '-v', 'error', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
+  const chosen = every === 1 ? [] : ['-vf', `select=not(mod(n\\,${every}))`];
+  // Each frame that is in the file, and none twice, whatever its time says.
+  const exact = [...framesAsTheyAre(), '-an', '-sn'];
+  const ffmpeg = spawn('ffmpeg', [...input, ...chosen, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', 'pipe:1'], {
+    stdio: ['ignore', 'pipe', 'pipe'],
+  });
+  const end = () => void ffmpeg.kill('SIGKILL');
+  process.once('exit', end);
+  let said = '';
+  ffmpeg.stderr.setEncoding('utf8').on('data', (text: string) => {
+    said = (said + text).slice(-KEPT);
+  });
+  const ended = new Promise<string | undefined>((resolve) => {
+    ffmpeg.once('error', (error) => resolve(error.message));
+    ffmpeg.once('close', (code, signal) => resolve(code === 0 ? undefined : `ffmpeg ended with ${signal ?? `code ${code}`}`));
+  });
+  try {
+    let number = 0;
+    for await (const bytes of pixmaps(ffmpeg.stdout)) {
+      yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, bytes };
+      number += every;
+    }
+    const problem = await ended;
+    if (problem) throw new VeroneseError('unreadable-video', `'${file}': ${lastLine(said) ?? problem}`);
+  } finally {
+    process.off('exit', end);
+    end();
+  }
+}
+
+function statusOf(file: string): Stats | undefined {
+  try {
+    return statSync(file, { throwIfNoEntry: false });
+  } catch (thrown) {
+    throw new VeroneseError('unreadable-file', `'${file}' cannot be read: ${(thrown as Error).message}`);
+  }
+}
+
+/** The option has had this name since 5.1; the older one went later. */
+function framesAsTheyAre(): string[] {
+  const { error, stdout } = spawnSync('ffmpeg', ['-version'], { encoding: 'utf8' });
+  if (error) {
+    const sentence = 'videos are read by the program ffmpeg, which cannot be started: install it (https://ffmpeg.org), or take the frames out otherwise and use batch';
+    throw new VeroneseError('ffmpeg-missing', sentence, { cause: error });
+  }
+  const [, major, minor] = (/^ffmpeg version n?(\d+)\.(\d+)/.exec(stdout) ?? []).map(Number);
+  const old = major !== undefined && minor !== undefined && (major < 5 || (major === 5 && minor < 1));
+  return old ? ['-vsync', 'passthrough'] : ['-fps_mode', 'passthrough'];
+}
+
+function lastLine(text: string): string | undefined {
+  return text.trim().split('\n').at(-1) || undefined;
+}
+
+/** Cuts a stream of binary pixmaps into its pictures. */
+export async function* pixmaps(stream: AsyncIterable<Uint8Array>): AsyncGenerator<Uint8Array, void, undefined> {
+  let chunks: Uint8Array[] = [];
+  let held = 0;
+  let needed: number | undefined;
+  for await (const chunk of stream) {
+    chunks.push(chunk);
+    held += chunk.length;
+    for (;;) {
+      if (needed === undefined) {
+        if (held === 0) break;
+        chunks = [Buffer.concat(chunks)];
+        needed = lengthOf(chunks[0] as Buffer);
+        if (needed === undefined) break; // The header is not whole yet.
+      }
+      if (held < needed) break;
+      const all = Buffer.concat(chunks);
+      yield new Uint8Array(all.subarray(0, needed));
+      chunks = [all.subarray(needed)];
+      held -= needed;
+      needed = undefined;
+    }
+  }
+  if (held > 0) throw new VeroneseError('unreadable-video', 'the last frame is cut off');
+}
+
+/** The length in bytes of the pixmap that begins here, or undefined while its header is not whole. */
+function lengthOf(bytes: Buffer): number | undefined {
+  const header = bytes.subarray(0, 40).toString('latin1');
+  const [text, width, height] = /^P6\s(\d+)\s(\d+)\s255\s/.exec(header) ?? [];
+  if (text === undefined) {
+    if (bytes.length < 40) return undefined;
+    throw new VeroneseError('unreadable-video', 'ffmpeg gave something else than frames');
+  }
+  const sides = [Number(width), Number(height)] as const;
+  if (Math.max(...sides) > LONGEST_SIDE) throw new VeroneseError('frame-size-unsupported', `the frames have ${sides.join(' × ')} pixels`);
+  return text.length + 3 * sides[0] * sides[1];
+}

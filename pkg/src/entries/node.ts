@@ -1,0 +1,16 @@
+// The entry for Node.
+
+import { availableParallelism } from 'node:os';
+import { Worker } from 'node:worker_threads';
+import { packageFor } from './package.js';
+import { read } from './reading.js';
+
+export { davisPalette, groupLabels, VeroneseError, version } from './package.js';
+
+export const { init, initPoints, segmentPair, relabel, fitMotions, paintLabels, Segmenter, SegmenterPool, segmentPairs } = packageFor({
+  read,
+  frames: new URL('../wasm/veronese_bg.wasm', import.meta.url),
+  points: new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url),
+  worker: () => new Worker(new URL('./worker-node.js', import.meta.url), { name: 'veronese' }),
+  jobs: availableParallelism,
+});

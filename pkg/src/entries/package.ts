@@ -1,0 +1,39 @@
+// What an entry exports, made for the place where it runs.
+
+// First in the file as well, where gzip packs it best: measured, 1 % of the whole.
+import { glue } from '../module/glue.js';
+import { glue as pointsGlue } from '../module/glue-points.js';
+import { Api } from '../calls/api.js';
+import { VeroneseError } from '../common/errors.js';
+import { Core } from '../module/core.js';
+import type { Read } from '../module/loading.js';
+import { type Host, segmenters } from '../pool/segmenter.js';
+
+export { groupLabels } from '../calls/labels.js';
+export { version } from '../calls/version.js';
+export { VeroneseError } from '../common/errors.js';
+export { davisPalette } from '../common/palette.js';
+
+/** What differs between the entries. Addresses are seen from `dist`, where all entries lie side by side. */
+interface Entry extends Partial<Pick<Host, 'worker' | 'jobs'>> {
+  read?: Read;
+  /** Where the core module lies if the caller does not say. */
+  frames?: URL;
+  /** The same for the module of measurements. */
+  points?: URL;
+}
+
+/** Without an address the caller has to name the module, without `worker` to make the workers. */
+export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors }: Entry) {
+  const newCore = () => new Core(glue, read, frames);
+  const newPoints = () => new Core(pointsGlue, read, points);
+  return { ...new Api(newCore(), newPoints()), ...segmenters({ newCore, newPoints, worker, jobs }) };
+}
+
+function noWorker(): never {
+  throw new VeroneseError('invalid-option', "option 'worker' is needed here: a function that makes a worker of veronese/worker");
+}
+
+function processors(): number {
+  return globalThis.navigator?.hardwareConcurrency ?? 1;
+}

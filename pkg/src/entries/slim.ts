@@ -1,0 +1,7 @@
+// The entry without addresses: the modules and the workers' file are the caller's to name.
+
+import { packageFor } from './package.js';
+
+export { davisPalette, groupLabels, VeroneseError, version } from './package.js';
+
+export const { init, initPoints, segmentPair, relabel, fitMotions, paintLabels, Segmenter, SegmenterPool, segmentPairs } = packageFor({});

@@ -1,0 +1,49 @@
+// From whatever the caller has to a compiled WebAssembly module.
+
+import type { WasmSource } from '../../types/index.js';
+import { VeroneseError } from '../common/errors.js';
+
+/** Fetches or reads what a URL or path names: the one thing in which browser and Node differ. */
+export type Read = (place: URL | string) => Promise<Response | BufferSource>;
+
+export async function compile(source: WasmSource | Promise<WasmSource>, read: Read): Promise<WebAssembly.Module> {
+  try {
+    const given = await source;
+    if (given instanceof WebAssembly.Module) return given;
+    const isPlace = typeof given === 'string' || given instanceof URL;
+    const bytes = await bytesOf(isPlace ? await read(given) : given);
+    checkMagic(bytes, isPlace ? String(given) : given instanceof Response ? given.url : undefined);
+    return await WebAssembly.compile(bytes);
+  } catch (thrown) {
+    if (thrown instanceof VeroneseError) throw thrown;
+    const reason = thrown instanceof Error ? thrown.message : String(thrown);
+    throw loadFailed(reason, thrown);
+  }
+}
+
+export function loadFailed(reason: string, cause?: unknown): VeroneseError {
+  return new VeroneseError('wasm-load-failed', `the WebAssembly module cannot be loaded: ${reason}`, { cause });
+}
+
+async function bytesOf(source: Response | BufferSource): Promise<Uint8Array<ArrayBuffer>> {
+  if (source instanceof Response) {
+    if (!source.ok) throw loadFailed(`${source.url || 'the server'} answered ${source.status} ${source.statusText}`);
+    return new Uint8Array(await source.arrayBuffer());
+  }
+  if (ArrayBuffer.isView(source)) return new Uint8Array(source.buffer, source.byteOffset, source.byteLength);
+  if (source instanceof ArrayBuffer) return new Uint8Array(source);
+  throw loadFailed('the source must be a URL, string, Response, BufferSource or WebAssembly.Module');
+}
+
+/** A server that answers with a page instead of the file is the usual failure: say so. */
+function checkMagic(bytes: Uint8Array, place: string | undefined): void {
+  if (bytes[0] === 0 && bytes[1] === 0x61 && bytes[2] === 0x73 && bytes[3] === 0x6d) return;
+  const where = place ? `${place} ` : 'the source ';
+  if (bytes[0] === 0x3c && bytes[1] === 0x21) {
+    throw loadFailed(
+      `${where}is an HTML page; the server sends its page where a module of the package should be. Under Vite 7 put ` +
+        "optimizeDeps: { exclude: ['veronese'] } into the configuration, or pass the file's URL to init() or initPoints()",
+    );
+  }
+  throw loadFailed(`${where}is no WebAssembly module`);
+}

@@ -1,0 +1,173 @@
+// The same calls in workers: one, or a pool of them.
+
+import type {
+  CallOptions,
+  FitOptions,
+  MotionFit,
+  PairInput,
+  PairOutcome,
+  PairsOptions,
+  Pixels,
+  PointMeasurements,
+  PoolOptions,
+  Progress,
+  RelabelOptions,
+  Segmentation,
+  SegmenterOptions,
+  SegmentOptions,
+  WasmSource,
+  WorkerLike,
+} from '../../types/index.js';
+import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
+import { fitCall, parted, relabelCall, segmentCall, start } from '../calls/tasks.js';
+import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
+import { cancelled, VeroneseError } from '../common/errors.js';
+import type { Core, Glue } from '../module/core.js';
+import { inOrder } from './ordered.js';
+import { WorkerPool } from './pool.js';
+import { spawnWith } from './threads.js';
+
+/** Most workers of one pool: more is a mistake, not a wish. */
+const MOST_JOBS = 256;
+
+/** What the classes need of the place where they run. */
+export interface Host {
+  newCore: () => Core<Glue>;
+  /** For measurements. */
+  newPoints: () => Core<Glue>;
+  /** Makes a worker where the caller does not. */
+  worker: () => WorkerLike;
+  /** Number of workers where the caller does not say. */
+  jobs: () => number;
+}
+
+/** The classes for one host. */
+export function segmenters(host: Host) {
+  class Segmenter {
+    readonly #pool: WorkerPool<Task, Result>;
+    readonly #perform = (task: CallTask, options: CallOptions) => this.#pool.run(task, options);
+
+    constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions, jobs = 1) {
+      const { worker = host.worker, points: place } = workerOptions(options);
+      const [core, points] = [host.newCore(), host.newPoints()];
+      const frames = () => core.module(source);
+      const measurements = () => points.module(place);
+      const supply = ({ call }: Task) => (call === 'fitMotions' ? measurements : frames);
+      this.#pool = new WorkerPool(spawnWith(worker, buffersOfTask), supply, jobs);
+    }
+
+    segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation> {
+      return start(() => segmentCall(first, second, options), this.#perform);
+    }
+
+    relabel(
+      first: Pixels,
+      second: Pixels,
+      segmentation: Segmentation,
+      evidence: Uint16Array,
+      options?: RelabelOptions,
+    ): Promise<Segmentation> {
+      return start(() => relabelCall(first, second, segmentation, evidence, options), this.#perform);
+    }
+
+    fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {
+      return start(() => fitCall(measurements, options), this.#perform);
+    }
+
+    async warmUp(): Promise<void> {
+      await this.#pool.run({ call: 'warmUp' });
+    }
+
+    close(): void {
+      this.#pool.close();
+    }
+  }
+
+  class SegmenterPool extends Segmenter {
+    readonly jobs: number;
+
+    constructor(options?: PoolOptions) {
+      const { jobs = host.jobs(), source, ...rest } = reading(() => entriesOf(options, ['jobs', 'source', ...WORKER]));
+      super(source as PoolOptions['source'], rest, checkedJobs(jobs));
+      this.jobs = jobs as number;
+    }
+
+    async *segmentPairs<Input extends PairInput>(
+      pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
+      options?: PairsOptions,
+    ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
+      const { signal, onProgress, ...rest } = reading(() => checkedPairsOptions(pairs, options));
+      if (signal?.aborted) throw cancelled(signal);
+      // Ends what is under way when the reader stops early or the caller's signal says so.
+      const ending = new AbortController();
+      const end = () => ending.abort(signal?.reason);
+      signal?.addEventListener('abort', end);
+      const work = async (input: Input, index: number): Promise<PairOutcome<Input>> => {
+        try {
+          const { first, second, before } = reading(() => framesOf(input));
+          const listener = onProgress && ((progress: Progress) => onProgress({ ...progress, pair: index }));
+          const call = { signal: ending.signal, onProgress: listener };
+          const segmentation = await this.segmentPair(first, second, { ...rest, before, ...call });
+          return { index, input, segmentation };
+        } catch (thrown) {
+          // What is not of the package was thrown by the listener.
+          const error = thrown instanceof VeroneseError ? thrown : new VeroneseError('cancelled', 'the listener threw', { cause: thrown });
+          return { index, input, error };
+        }
+      };
+      try {
+        // As many again as there are workers: a slow pair leaves the other workers something to do.
+        yield* inOrder(pairs, work, { room: 2 * this.jobs, signal, stop: () => cancelled(signal) });
+      } finally {
+        signal?.removeEventListener('abort', end);
+        ending.abort();
+      }
+    }
+  }
+
+  async function* segmentPairs<Input extends PairInput>(
+    pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
+    options?: PairsOptions & PoolOptions,
+  ): AsyncGenerator<PairOutcome<Input>, void, undefined> {
+    const { jobs, source, points, worker, ...rest } = reading(() => ({ ...optionsObject(options) })) as PairsOptions & PoolOptions;
+    const pool = new SegmenterPool({ jobs, source, points, worker });
+    try {
+      yield* pool.segmentPairs(pairs, rest);
+    } finally {
+      pool.close();
+    }
+  }
+
+  return { Segmenter, SegmenterPool, segmentPairs };
+}
+
+/** Names of {@link SegmenterOptions}. */
+const WORKER = ['worker', 'points'];
+
+function workerOptions(options: unknown): SegmenterOptions {
+  const { worker, ...rest } = reading(() => entriesOf(options, WORKER));
+  if (worker === undefined || typeof worker === 'function') return { worker: worker as SegmenterOptions['worker'], ...rest };
+  throw invalidOption('worker', 'a function that makes a worker', worker);
+}
+
+function checkedJobs(jobs: unknown): number {
+  if (isWhole(jobs, 1, MOST_JOBS)) return jobs;
+  throw invalidOption('jobs', `a whole number from 1 to ${MOST_JOBS}`, jobs);
+}
+
+function checkedPairsOptions(pairs: unknown, options: unknown): PairsOptions {
+  const iterable = Object(pairs) as Partial<Iterable<unknown> & AsyncIterable<unknown>>;
+  if (typeof iterable[Symbol.asyncIterator] !== 'function' && typeof iterable[Symbol.iterator] !== 'function') {
+    throw invalidInput('the pairs must be an iterable or async iterable of { first, second }');
+  }
+  const { before, ...rest } = optionsObject(options);
+  if (before !== undefined) throw new VeroneseError('invalid-option', "there is no option 'before' for all pairs; each pair may have one");
+  // The rest is that of each pair.
+  parted({ signal: rest.signal, onProgress: rest.onProgress }, []);
+  return rest;
+}
+
+function framesOf(input: unknown): PairInput {
+  const { first, second, before } = Object(input) as PairInput;
+  return { first, second, before };
+}

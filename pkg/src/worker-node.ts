@@ -1,8 +1,0 @@
-// The worker thread under Node.
-
-import { parentPort } from 'node:worker_threads';
-import type { Request } from './messages.js';
-import { serve } from './serve.js';
-
-const answer = serve((reply, transfer) => parentPort?.postMessage(reply, transfer));
-parentPort?.on('message', (request: Request) => void answer(request));

@@ -1,9 +1,0 @@
-// The Web Worker: a file of its own, so that a strict content security policy lets it run.
-
-import type { Request } from './messages.js';
-import { serve } from './serve.js';
-
-const answer = serve((reply, transfer) => {
-  self.postMessage(reply, { transfer });
-});
-self.addEventListener('message', (event: MessageEvent<Request>) => void answer(event.data));

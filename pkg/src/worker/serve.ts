@@ -1,0 +1,36 @@
+// The worker's side: one task at a time, answered by messages.
+
+import type { Segmentation } from '../../types/index.js';
+import { Api } from '../calls/api.js';
+import type { Reply, Request, Result } from '../calls/messages.js';
+import { buffersOf } from '../calls/taking.js';
+import { errorMessage } from '../common/errors.js';
+import { Core } from '../module/core.js';
+import { glue as pointsGlue } from '../module/glue-points.js';
+import { glue } from '../module/glue.js';
+import { warmUp } from './warming.js';
+
+/** Answers one request at a time: the page sends the next when it has the answer to the last. */
+export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (request: Request) => Promise<void> {
+  const fromPage = () => Promise.reject(new Error('a worker gets its modules from the page'));
+  const api = new Api(new Core(glue, fromPage), new Core(pointsGlue, fromPage));
+  return async ({ task, module }) => {
+    try {
+      if (module) await (task.call === 'fitMotions' ? api.initPoints(module) : api.init(module));
+      const onProgress = (progress: { stage: string; index: number; of: number }) => {
+        post({ kind: 'progress', progress }, []);
+      };
+      const result = task.call === 'warmUp' ? await warmUp(api) : await api.perform(task, { onProgress });
+      post({ kind: 'done', result }, buffersOfResult(result));
+    } catch (thrown) {
+      // An exception in an asynchronous handler would not reach the page by itself.
+      post({ kind: 'failed', error: errorMessage(thrown) }, []);
+    }
+  };
+}
+
+/** What is handed over instead of copied. */
+function buffersOfResult(result: Result): ArrayBuffer[] {
+  const { labels, confidence }: Partial<Pick<Segmentation, 'labels' | 'confidence'>> = result ?? {};
+  return buffersOf([labels, confidence]);
+}
