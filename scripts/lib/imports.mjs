@@ -1,4 +1,4 @@
-// Who may import whom: ARCHITECTURE.md holds the table of the crate's modules, and this compares the sources with it.
+// Compares the imports of the crate's modules with the table in ARCHITECTURE.md.
 
 import { readdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -7,7 +7,7 @@ import { projectText, root } from './project.mjs';
 
 const DOCUMENT = 'ARCHITECTURE.md';
 
-/** Whether the modules in `src` import what the table says, no more and no less. Prints what differs. */
+/** Whether the modules in `src` import exactly what the table says. Prints the differences. */
 export function importsAgree() {
   const table = tableOf(projectText(DOCUMENT));
   const problems = differences(table, importsOf('src'));
@@ -15,7 +15,7 @@ export function importsAgree() {
   return problems.length === 0;
 }
 
-/** What differs between the table and the sources, a sentence each. */
+/** The differences between the table and the sources, one sentence each. */
 function differences(table, imports) {
   const problems = [];
   for (const [module, found] of imports) {
@@ -31,7 +31,7 @@ function differences(table, imports) {
   return problems;
 }
 
-/** The lines `module → imports` of the block that is marked `imports`. */
+/** The lines `module → imports` of the block marked `imports`. */
 function tableOf(document) {
   const block = /```imports\n([\s\S]*?)```/.exec(document)?.[1] ?? '';
   const table = new Map();
@@ -42,7 +42,7 @@ function tableOf(document) {
   return table;
 }
 
-/** For every top module of the crate the other top modules that its sources name, tests left out. */
+/** For every top-level module of the crate, the other top-level modules that its sources name, without tests. */
 function importsOf(folder) {
   const names = readdirSync(join(root, folder)).map((name) => name.replace(/\.rs$/, ''));
   const modules = new Set(names.filter((name) => name !== 'lib'));
