@@ -173,7 +173,7 @@ impl Page<'_> {
         let _ = writeln!(
             text,
             "## Ablation\n\nEach row leaves out one part of the pipeline (best). The scores are those of {} generated scenes, the {} scenes of \
-             cars on a bare ground and the real pairs, with the change in brackets.\n\n| without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | J, real | J by hand, real | F, real | ms, scenes |\n\
+             cars on bare ground and the real pairs, with the change in brackets.\n\n| without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | J, real | J by hand, real | F, real | ms, scenes |\n\
              |---|---|---|---|---|---|---|---|---|---|",
             whole.scenes.cases, whole.bare.cases
         );

@@ -38,7 +38,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
                                          ${FORMAT_NAMES}
       --grouped              groups instead of motions
       --image NAME           file name of the image that the masks belong to (default: first.png)
-      --out DIR              output folder (default: beside the result)
+      --out DIR              output folder (default: the input folder)
 
   veronese points FILE.json [options]    fit motions to {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
       --motions auto|1..10   number of motions (default: auto)
