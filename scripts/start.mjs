@@ -17,8 +17,8 @@ const OUT = join(root, 'out', 'demo');
 const USAGE = `npm start [-- OPTIONS]: segments the bundled pair of frames and serves the page.
 
   --no-serve      stop before serving
-  --port N        serve on port N (without it: 4173, or the next that is free)
-  --host ADDRESS  listen on ADDRESS (without it: 127.0.0.1, this computer only)`;
+  --port N        serve on port N (default: 4173, or the next free port)
+  --host ADDRESS  listen on ADDRESS (default: 127.0.0.1, this computer only)`;
 
 await command(async (args) => {
   const options = parse(args);
