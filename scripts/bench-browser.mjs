@@ -1,9 +1,9 @@
-// npm run bench:browser: the package in headless Chromium beside OpenCV.js and jsfeat, on the same frames, calls in turn, and
-// beside the same source compiled natively. Writes out/bench/browser.json and prints tables. Options:
+// npm run bench:browser: compares the package in headless Chromium with OpenCV.js, jsfeat and the same source compiled to native
+// code, in alternating calls on the same frames. Writes out/bench/browser.json and prints tables. Options:
 //   --rounds N                 calls of each kind (30)
 //   --sizes 320x240,640x480,…  sizes of the frames (320x240,640x480,1280x720)
-//   --scaling                  also time and memory against pixels and motions (some minutes)
-//   --alone                    without the others; nothing is installed
+//   --scaling                  also measure time and memory against pixels and motions (several minutes)
+//   --alone                    without the alternatives; nothing is installed
 //   --write-docs               writes the tables to docs/performance.md as well
 
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
@@ -29,19 +29,19 @@ const PEERS = { '@techstark/opencv-js': '5.0.0-release.1', jsfeat: '0.0.8' };
 const PEER_FILES = { opencv: '@techstark/opencv-js/dist/opencv.js', jsfeat: 'jsfeat/build/jsfeat-min.js' };
 const OURS = ['fast', 'best'];
 const THEIRS = ['farneback', 'opencvPipeline', 'jsfeat'];
-/** Fresh pages for each case and size: what a first call takes, and how long until it can be made. */
+/** Number of fresh pages for each case and size, to measure the first call and the time until the page is ready. */
 const FRESH_PAGES = 3;
-/** One and two workers by turns. */
+/** Rounds that alternate between one and two workers. */
 const THROUGHPUT_ROUNDS = 5;
 const THROUGHPUT_PAIRS = 12;
-/** 0.05 to 16.8 megapixels, the largest frame there may be. */
+/** 0.05 to 16.8 megapixels, the largest supported frame. */
 const SCALES = ['256x192', '512x384', '1024x768', '2048x1536', '3264x2448', '4096x4096'];
 const SCALING_ROUNDS = 3;
-/** Megapixels above which the exponents are fitted: below, the work does not depend on the frame's size. */
+/** Megapixels above which the exponents are fitted; below, the work does not depend on the frame's size. */
 const LARGE = 0.5;
 const MOST_MOTIONS = 10;
 const HOST = '127.0.0.1';
-/** Without the page's own policy: OpenCV.js makes functions from text when it starts. */
+/** Without the page's own policy, because OpenCV.js creates functions from text when it starts. */
 const HEADERS = { 'X-Content-Type-Options': 'nosniff' };
 
 await command(async (args) => {
@@ -96,7 +96,7 @@ function options(args) {
   return { rounds, sizes, scaling: values.scaling, alone: values.alone, writeDocs: values['write-docs'] };
 }
 
-/** The others are nobody's dependency: they are installed here, at fixed versions, into a folder of their own. */
+/** The alternatives are not dependencies; fixed versions are installed here, in a separate folder. */
 async function preparePeers() {
   const folder = join(toolsFolder, 'peers');
   const installed = (name) => {
@@ -113,7 +113,7 @@ async function preparePeers() {
   await longStep('Installing OpenCV.js and jsfeat (13 MB)', 'They could not be installed.', 'npm', install, { cwd: folder });
 }
 
-/** Generated pairs with their true labels, where the page fetches them. */
+/** Writes generated pairs with their true labels to the folder from which the page fetches them. */
 async function writeFrames(sizes) {
   mkdirSync(FRAMES, { recursive: true });
   console.log('Generating the frames (building the native program first if it has changed) …');
@@ -124,7 +124,7 @@ function playwright() {
   return createRequire(join(root, 'www/package.json'))('@playwright/test').chromium;
 }
 
-/** Bytes to download, gzip -9: the module, and the JavaScript that the entry for browsers imports. */
+/** Download size in bytes (gzip -9): the module, and the JavaScript that the browser entry imports. */
 function downloads(alone) {
   const read = (path) => readFileSync(join(root, path));
   const zipped = (path) => gzipSync(read(path), { level: 9 }).length;
@@ -172,7 +172,7 @@ async function measured(browser, address, { rounds, sizes, cases }) {
   return { readyMs, ...(opencv && { peersReadyMs: { opencv, jsfeat } }), sizes: bySize };
 }
 
-/** One page after another, each in a context without cache: time until ready, first call, first call warmed up, memory. */
+/** Opens one page after another, each without cache, and measures the time until ready, the first call, the warmed-up call and memory. */
 async function freshPages(browser, address, sizes, cases) {
   const ready = {};
   const first = {};
@@ -213,7 +213,7 @@ async function freshPages(browser, address, sizes, cases) {
   return { ready: Object.fromEntries(Object.entries(ready).map(([k, v]) => [k, median(v)])), first, warmedUp, memory };
 }
 
-/** All cases of all sizes in one page and natively, by turns, so that whatever else the machine does slows all of them. */
+/** Alternates between all cases of all sizes in one page and in native code, so that other load on the machine slows all of them. */
 async function interleaved(browser, address, { rounds, sizes, cases }) {
   const calls = Object.fromEntries(sizes.map((size) => [size, Object.fromEntries(cases.map((name) => [name, []]))]));
   const native = [];
@@ -250,7 +250,7 @@ async function throughput(browser, address, size) {
   return { size, onePairsPerSecond: one, twoPairsPerSecond: two, ratio: two / one };
 }
 
-/** Time and memory against pixels, time against the number of motions asked for, with the exponents of power laws. */
+/** Time and memory against pixels, and time against the requested number of motions, with power-law exponents. */
 async function scaled(browser, address, from) {
   const pixels = [];
   for (const size of SCALES) {
@@ -316,7 +316,7 @@ async function onPage(browser, address, work) {
   }
 }
 
-/** A fresh page with the frames of one size scaled to another. */
+/** Opens a fresh page with the frames of one size scaled to another. */
 function onResized(browser, address, from, to, work) {
   return onPage(browser, address, async (page) => {
     await page.evaluate((from) => globalThis.bench.prepare(from), from);
@@ -329,7 +329,7 @@ function call(page, name, size) {
   return page.evaluate(([name, size]) => globalThis.bench.run(name, size), [name, size]);
 }
 
-/** Medians of the stages of calls that say how long each took. */
+/** Medians of the stages over calls that report their times. */
 function stageMedians(calls) {
   const names = Object.keys(calls[0]).filter((name) => name !== 'total');
   return Object.fromEntries(names.map((name) => [name, median(calls.map((stages) => stages[name] ?? 0))]));

@@ -1,6 +1,6 @@
-// npm run bench:masks: masks of generated scenes and real pairs beside what OpenCV gives; `-- --help` lists the options.
-// The frames are written first, the baseline (a Python program that lies beside the checkout, not in it) runs on them, and then
-// the program measures both.
+// npm run bench:masks: scores masks of generated scenes and real pairs against an OpenCV baseline; `-- --help` lists the options.
+// First the frames are written, then the baseline runs on them (a Python program next to the checkout, not in it), and finally the
+// program measures both.
 
 import { existsSync, mkdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
@@ -10,7 +10,7 @@ import { checkRust } from './lib/rust.mjs';
 import { command, must, run } from './lib/run.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'masks', '--'];
-/** Baselines at a time. */
+/** Number of baselines that run at once. */
 const AT_ONCE = 2;
 
 await command(async (args) => {
@@ -35,7 +35,7 @@ function valueOf(args, option) {
   return place < 0 ? undefined : args[place + 1];
 }
 
-/** The baseline on every case, or a sentence that says what is missing. */
+/** Runs the baseline on every case, or says what is missing. */
 async function runBaseline(cases, folder, shared) {
   const program = join(shared, 'tools', 'baseline.py');
   if (!existsSync(program)) {
@@ -61,7 +61,7 @@ async function runBaseline(cases, folder, shared) {
   await Promise.all(Array.from({ length: AT_ONCE }, worker));
 }
 
-/** The first Python that has what the baseline needs. */
+/** The first Python that has the baseline's requirements. */
 async function findPython() {
   const candidates = process.env.VERONESE_PYTHON ? [process.env.VERONESE_PYTHON] : ['python3', 'python'];
   for (const python of candidates) {

@@ -1,5 +1,5 @@
-// npm run bench:ratio: how much longer WebAssembly takes than native code, on the same problems, as a table.
-// Native and WebAssembly runs take turns, so that whatever else the machine does slows both; medians are compared.
+// npm run bench:ratio: prints a table that compares WebAssembly with native code on the same problems.
+// Native and WebAssembly runs alternate, so that other load on the machine slows both; medians are compared.
 
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { cpus, tmpdir } from 'node:os';
@@ -90,7 +90,7 @@ function gather(times, target, found) {
 }
 
 function print(times) {
-  console.log(`${cpus()[0].model}, Node ${process.versions.node}, ${ROUNDS} rounds in turn, milliseconds: median [quartiles]\n`);
+  console.log(`${cpus()[0].model}, Node ${process.versions.node}, ${ROUNDS} alternating rounds, milliseconds: median [quartiles]\n`);
   console.log('| call | native | WebAssembly in Node | ratio |\n|---|---|---|---|');
   for (const [name, { native, wasm }] of Object.entries(times)) {
     const ratio = (median(wasm) / median(native)).toFixed(2);

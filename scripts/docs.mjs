@@ -1,4 +1,4 @@
-// npm run docs: the reference of the package from its types, and of the crate by rustdoc, into out/docs.
+// npm run docs: builds the reference of the package from its types, and of the crate with rustdoc, in out/docs.
 
 import { cpSync, existsSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,7 +9,7 @@ import { inProject, root } from './lib/project.mjs';
 import { command, must } from './lib/run.mjs';
 
 const OUT = join(root, 'out', 'docs');
-/** Files of hand-written types: one for each thing that can be imported. */
+/** The hand-written types, one file per entry of the package. */
 const ENTRIES = ['index', 'slim', 'codecs', 'formats', 'element-class', 'element'].map((name) => `pkg/types/${name}.d.ts`);
 
 await command(async () => {

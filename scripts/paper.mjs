@@ -1,4 +1,4 @@
-// npm run paper: the paper's experiments beside ours; `npm run paper -- --help` lists the options.
+// npm run paper: repeats the paper's experiments with its method and ours; `npm run paper -- --help` lists the options.
 
 import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';

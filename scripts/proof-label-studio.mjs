@@ -1,4 +1,4 @@
-// npm run proof:label-studio: Label Studio itself asks our backend what moves in two frames, keeps the masks and shows them.
+// npm run proof:label-studio: runs Label Studio with our backend, and checks the masks that it stores and shows.
 
 import assert from 'node:assert/strict';
 import { readFileSync, rmSync } from 'node:fs';
@@ -28,7 +28,7 @@ await command(async () => {
   process.once('exit', studio.stop);
   const { startBackend } = await import('../examples/hosts/label-studio.mjs');
   const frames = await serveFrames(FRAMES);
-  // The token for uploaded files is the one that the studio sends.
+  // Label Studio sends the token for uploaded files.
   const backend = await startBackend({ jobs: 1, studio: studio.address, allow: [frames.origin] });
   try {
     const held = await predictions(studio, backend.address, frames.addresses, FRAMES);
@@ -44,7 +44,7 @@ await command(async () => {
   }
 });
 
-/** What the studio keeps is what a direct call finds, pixel by pixel, by its own decoder. */
+/** Checks pixel by pixel that the stored masks, read by Label Studio's own decoder, equal those of a direct call. */
 async function checkMasks(found) {
   const { segmentPair } = await import('../pkg/dist/node.js');
   const { decodeImage } = await import('../pkg/dist/codecs.js');
@@ -58,7 +58,7 @@ async function checkMasks(found) {
       const pixels = await decodedByStudio(value.rle);
       assert.deepEqual(pixels, Array.from(labels, (label) => (label === index + 1 ? 255 : 0)), `mask ${index + 1}`);
     }
-    console.log(`Label Studio holds ${result.length} masks of ${version}, score ${score.toFixed(3)}: pixel by pixel those of a direct call.`);
+    console.log(`Label Studio holds ${result.length} masks of ${version}, score ${score.toFixed(3)}. Every pixel equals that of a direct call.`);
   }
 }
 

@@ -1,4 +1,5 @@
-// npm run proof:scale-out: 200 pairs by two workers on Redis, one worker killed in the middle of a job, the server restarted once.
+// npm run proof:scale-out: two workers process 200 pairs from Redis; one worker is killed in the middle of a job, and the server is
+// restarted once.
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
 import { SCALE_OUT, prepareNpmPackages } from './lib/npm-packages.mjs';
@@ -15,5 +16,5 @@ await command(async () => {
   if (!program) throw new Stop('There is no redis-server and no valkey-server: install one (Debian: `apt-get install redis-server`).');
   const { pairs, seconds, jobsFinished, foundDone } = await prove(program, { pairs: 200, size: { width: 48, height: 36 }, say: console.log });
   console.log(`Every one of ${pairs} pairs is in the output exactly once, after ${seconds.toFixed(1)} s.`);
-  console.log(`The queue finished ${jobsFinished} jobs that a worker lived to report; ${foundDone} of them found their result there.`);
+  console.log(`Workers reported ${jobsFinished} finished jobs; ${foundDone} of them found an existing result.`);
 });

@@ -1,4 +1,4 @@
-// npm run setup: prepares everything, also what only the tests need.
+// npm run setup: sets up everything, including what only the tests need.
 
 import { prepare } from './lib/prepare.mjs';
 import { command } from './lib/run.mjs';

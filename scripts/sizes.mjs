@@ -1,4 +1,4 @@
-// npm run sizes: what a user of the package downloads, as a table in docs/sizes.md.
+// npm run sizes: writes the package's download sizes to docs/sizes.md.
 
 import { readFileSync, statSync, writeFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
@@ -12,15 +12,15 @@ import { command, must } from './lib/run.mjs';
 const PKG = join(root, 'pkg');
 const FILE = 'docs/sizes.md';
 const ROWS = [
-  ['the core module, for browser and Node', ['wasm/veronese_bg.wasm']],
-  ['the module of measurements, loaded by `fitMotions`', ['wasm/points/veronese_points_bg.wasm']],
+  ['core module, for browser and Node', ['wasm/veronese_bg.wasm']],
+  ['measurements module, loaded by `fitMotions`', ['wasm/points/veronese_points_bg.wasm']],
   ['JavaScript of `veronese` in a browser', ['dist/web.js']],
   ['JavaScript of `veronese/worker`', ['dist/worker.js']],
   ['JavaScript of `veronese/slim`', ['dist/slim.js']],
-  ['`veronese/inline`, both modules inside', ['dist/inline.js']],
+  ['`veronese/inline`, with both modules embedded', ['dist/inline.js']],
   ['`veronese/formats`', ['dist/formats/index.js']],
   ['`veronese/element`', ['dist/element.js']],
-  ['the module with image codecs, for Node alone', ['wasm/codecs/veronese_codecs_bg.wasm']],
+  ['module with image codecs, for Node only', ['wasm/codecs/veronese_codecs_bg.wasm']],
 ];
 
 await command(async () => {
@@ -41,12 +41,12 @@ await command(async () => {
   const text = [
     '# Sizes',
     '',
-    'Kilobytes of 1024 bytes, each with every file it imports, as they are in the package: unminified. Written by `npm run sizes`.',
+    'Sizes in kilobytes (1024 bytes) of each entry and all files it imports, as published: unminified. Written by `npm run sizes`.',
     '',
-    '| | files | as it is | gzip | brotli |',
+    '| | files | raw | gzip | brotli |',
     '|---|---:|---:|---:|---:|',
     ...rows,
-    `| what \`npm install\` fetches | ${entryCount} | ${kilobytes(unpackedSize)} | ${kilobytes(size)} | |`,
+    `| \`npm install veronese\` | ${entryCount} | ${kilobytes(unpackedSize)} | ${kilobytes(size)} | |`,
     '',
   ].join('\n');
   writeFileSync(join(root, FILE), text);
@@ -57,7 +57,7 @@ function exists(file) {
   return statSync(join(PKG, file), { throwIfNoEntry: false })?.isFile() === true;
 }
 
-/** A file and all that it imports, below the package's folder. */
+/** A file and everything it imports, as paths in the package's folder. */
 function withImports(file, seen = new Set()) {
   if (seen.has(file)) return [...seen];
   seen.add(file);

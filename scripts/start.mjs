@@ -17,8 +17,8 @@ const OUT = join(root, 'out', 'demo');
 const USAGE = `npm start [-- OPTIONS]: segments the bundled pair of frames and serves the page.
 
   --no-serve      stop before serving
-  --port N        serve on port N (without it: 4173, or the next that is free)
-  --host ADDRESS  listen on ADDRESS (without it: 127.0.0.1, this computer only)`;
+  --port N        serve on port N (default: 4173, or the next free port)
+  --host ADDRESS  listen on ADDRESS (default: 127.0.0.1, this computer only)`;
 
 await command(async (args) => {
   const options = parse(args);
@@ -33,7 +33,7 @@ await command(async (args) => {
   return 0;
 });
 
-/** The options, or the exit code where the command ends at once. */
+/** The options, or an exit code if the command ends at once. */
 function parse(args) {
   const wrong = (sentence) => {
     console.error(`${sentence}\n\n${USAGE}`);
@@ -58,7 +58,7 @@ function parse(args) {
   return { serve: !values['no-serve'], port, host: values.host ?? '127.0.0.1' };
 }
 
-/** The real pair through the command line tool, as a user would call it. */
+/** Segments the real pair with the command line tool, as a user would. */
 async function segmentSample() {
   rmSync(OUT, { recursive: true, force: true });
   const frames = ['first.png', 'second.png'].map((name) => join(SAMPLE, name));
@@ -85,6 +85,6 @@ async function serveUntilInterrupted({ port, host }) {
   await ended;
   server.close();
   server.closeAllConnections();
-  // npm passes on the signal that the terminal has sent already: be there to hear it, or it would end us with an error.
+  // npm forwards the signal that the terminal has already sent. Stay alive to receive it; otherwise it ends this process with an error.
   await sleep(200);
 }

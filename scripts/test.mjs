@@ -74,7 +74,7 @@ await command(async (args) => {
   return summarise(results);
 });
 
-/** One part; whatever goes wrong in it, the next ones still run. */
+/** Runs one part; a failure does not stop the parts after it. */
 async function runPart({ title, run: runTests }, setup) {
   console.log(`\n=== ${title} ===`);
   const start = Date.now();
@@ -86,7 +86,7 @@ async function runPart({ title, run: runTests }, setup) {
   return { title, seconds: (Date.now() - start) / 1000, ...outcome };
 }
 
-/** Runs a test program. Its exit code has the last word: a crash fails the part, and so does a run without a test. */
+/** Runs a test program. Its exit code decides: a crash fails the part, and so does a run without tests. */
 async function tests(count, program, args, env = {}) {
   const { code, text } = await run(program, args, { output: 'both', env });
   const counts = count(text);

@@ -1,4 +1,4 @@
-//! What each part of the pipeline is worth: the same cases without it.
+//! The ablation: the same cases with one part of the pipeline left out.
 
 use veronese::Part;
 
@@ -6,46 +6,46 @@ use crate::cases::{Case, Set};
 use crate::measure::{Measured, Variant};
 use crate::summary::Summary;
 
-/// The forms of the pipeline, in the order of the table.
+/// The variants of the pipeline, in the order of the table.
 const VARIANTS: [(Variant, &str); 15] = [
     (Variant::Whole, "**everything**"),
     (Variant::Without(Part::Brightness), "gain and bias"),
-    (Variant::Without(Part::StaticHypothesis), "the hypothesis of a static background"),
-    (Variant::Without(Part::Algebra), "the algebraic start"),
-    (Variant::Without(Part::Windows), "proposals from windows"),
-    (Variant::Without(Part::FinerLevels), "proposals on finer levels"),
-    (Variant::Without(Part::Refinement), "refinement on the images after selection"),
-    (Variant::Without(Part::Coherence), "spatial coherence"),
-    (Variant::Without(Part::Edges), "coherence that respects edges"),
-    (Variant::Without(Part::Visibility), "visibility"),
-    (Variant::Without(Part::Splitting), "splitting"),
-    (Variant::Without(Part::ModelSelection), "the last model selection"),
+    (Variant::Without(Part::StaticHypothesis), "static background hypothesis"),
+    (Variant::Without(Part::Algebra), "algebraic candidates"),
+    (Variant::Without(Part::Windows), "candidates from windows"),
+    (Variant::Without(Part::FinerLevels), "candidates on finer levels"),
+    (Variant::Without(Part::Refinement), "refinement on the images"),
+    (Variant::Without(Part::Coherence), "smoothness"),
+    (Variant::Without(Part::Edges), "smoothness lower at edges"),
+    (Variant::Without(Part::Visibility), "occlusion handling"),
+    (Variant::Without(Part::Splitting), "region splitting"),
+    (Variant::Without(Part::ModelSelection), "label cost"),
     (Variant::Without(Part::Colour), "colour"),
-    (Variant::Without(Part::GuidedEnlarging), "guided enlarging"),
+    (Variant::Without(Part::GuidedEnlarging), "guided upsampling"),
     (Variant::ThreeFrames, "*with the frame before*"),
 ];
 
-/// One row: the figures of generated scenes, of those with a bare ground, and of real pairs.
+/// One row: the scores of generated scenes, of scenes with a bare ground, and of real pairs.
 pub(crate) struct Worth {
     pub(crate) title: &'static str,
     pub(crate) scenes: Summary,
-    /// The scenes of a bare ground, which need the hypothesis of a static background.
+    /// The scenes with a bare ground, which need the static background hypothesis.
     pub(crate) bare: Summary,
-    /// None where there are no real pairs.
+    /// `None` if there are no real pairs.
     pub(crate) pairs: Option<Summary>,
 }
 
-/// The forms of the pipeline.
+/// The variants of the pipeline.
 pub(crate) fn variants() -> Vec<Variant> {
     VARIANTS.map(|(variant, _)| variant).to_vec()
 }
 
-/// Whether a case takes part: generated ones of one to four objects, those with a bare ground, and the real pairs.
+/// Whether the ablation includes a case: generated scenes of one to four objects, those with a bare ground, and the real pairs.
 pub(crate) fn takes_part(case: &Case) -> bool {
     matches!(case.set, Set::Generated | Set::Colour | Set::Bare | Set::Pairs)
 }
 
-/// The rows of the table; none where nothing took part.
+/// The rows of the table; empty if no case is included.
 pub(crate) fn worths(measured: &[Measured]) -> Vec<Worth> {
     let mut rows = Vec::new();
     for (k, (variant, title)) in VARIANTS.into_iter().enumerate() {

@@ -32,7 +32,7 @@ pub(crate) enum Set {
     Large,
     /// The paper's leader and follower.
     Robots,
-    /// Cars on a bare ground that stands still.
+    /// Cars on static bare ground.
     Bare,
     /// One object that moves 0.3 pixels.
     Slow,
@@ -81,10 +81,10 @@ impl Set {
             Set::Colour => "generated, colour, 200 × 150 and 320 × 240",
             Set::Large => "generated, colour, 1280 × 720",
             Set::Robots => "leader and follower (200 × 150)",
-            Set::Bare => "cars on a bare ground (384 × 216)",
-            Set::Slow => "one object that moves 0.3 pixels",
-            Set::Still => "nothing moves, noise only",
-            Set::SharedScenes => "generated beside the project, photographic textures",
+            Set::Bare => "cars on bare ground (384 × 216)",
+            Set::Slow => "one object moving 0.3 pixels",
+            Set::Still => "static scene, noise only",
+            Set::SharedScenes => "generated outside the project, photographic textures",
             Set::Pairs => "real pairs with masks",
             Set::Flow => "pairs with true flow",
         }
@@ -232,7 +232,7 @@ impl Case {
                 format!("{} × {}, {objects}, {speed}, {background} background", options.width, options.height)
             }
             Source::Robots(_) => "200 × 150, leader and follower".into(),
-            Source::Bare(_) => "384 × 216, cars on a bare ground".into(),
+            Source::Bare(_) => "384 × 216, cars on bare ground".into(),
             Source::Folder(_) => String::new(),
         }
     }

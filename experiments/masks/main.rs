@@ -20,17 +20,17 @@ use honesty::Honesty;
 use measure::Method;
 
 const HELP: &str = "\
-Masks of generated scenes and real pairs beside what OpenCV gives. Two steps, between which the baseline runs:
+Scores masks of generated scenes and real pairs against an OpenCV baseline, in two steps. The baseline runs between them.
 
-  frames       writes the frames of the generated cases and prints a line for each case: its name, a tab, its folder
+  frames       writes the frames of the generated cases and prints a line per case: its name, a tab, its folder
   measure      measures and writes table.csv, masks.json, masks.md and a picture of every case
 
-  --quick            a part of the generated cases, no large ones, no ablation
+  --quick            a subset of the generated cases, no large frames, no ablation
   --only A,B         only cases whose name or set contains one of these
-  --no-ablation      does not leave out parts of the pipeline
-  --out DIR          where the results go; default out/masks
-  --shared DIR       where more pairs are, if there; default ../shared
-  --write-docs       writes docs/masks.md and docs/images/masks-*.png as well
+  --no-ablation      skip the ablation
+  --out DIR          output folder; default out/masks
+  --shared DIR       folder with further pairs, if it exists; default ../shared
+  --write-docs       also write docs/masks.md and docs/images/masks-*.png
 ";
 
 struct Options {

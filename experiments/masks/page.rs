@@ -1,5 +1,5 @@
-//! docs/masks.md: the figures for people, with the best and the worst cases. Pictures are shown of generated cases only: the licences
-//! of the real pairs do not let the project ship them.
+//! Writes docs/masks.md: the scores as a readable page, with the best and the worst cases. Only generated cases have pictures, because
+//! the licences of the real pairs do not allow redistribution.
 
 use std::fmt::Write;
 
@@ -11,54 +11,55 @@ use crate::honesty::{Honesty, RANGES};
 use crate::measure::{Measured, Method, Outcome};
 use crate::summary::Summary;
 
-/// Cases shown at either end.
+/// How many of the best and of the worst cases are shown.
 const SHOWN: usize = 5;
-/// Sets whose pictures are the project's own and whose truth is one label for each thing.
+/// Sets whose pictures belong to the project and whose truth has one label per object.
 const OWN: [Set; 4] = [Set::Generated, Set::Colour, Set::Large, Set::Robots];
 
 pub(crate) struct Page<'a> {
     pub(crate) measured: &'a [Measured],
     pub(crate) worths: &'a [Worth],
     pub(crate) honesty: &'a Honesty,
-    /// Why a case comes out as it does, by its name.
+    /// Explanations of the results, by case name.
     pub(crate) reasons: Map<String, Value>,
 }
 
 const HEAD: &str = "\
 # Masks
 
-How good the masks of `segment_pair` are, beside what can be put together with OpenCV. Everything on this page is written by
+This page measures the masks of `segment_pair` and compares them with a baseline built on OpenCV. All of it is written by
 
 ```sh
 npm run bench:masks -- --write-docs
 ```
 
-which measures all cases anew. The seeds are fixed and the figures the same on every machine, but for the times. The figures
-are those of motion segmentation; experiments/masks/scores.rs defines each and tests/scores.rs checks them:
+which measures every case again. The seeds are fixed, so all figures except the times are the same on every machine. The scores
+are the usual ones for motion segmentation; experiments/masks/scores.rs defines them and tests/scores.rs checks them:
 
-- **mean IoU**: over all true labels, with the found label that is assigned to each one to one;
-- **n right**: share of the cases with the right number of motions (labels of less than 0.2 % of the frame do not count);
-- **sub-pixel**: mean IoU where things move by less than a pixel and a half relative to the background;
-- **J**: intersection over union of the foreground, everything but the label with most background pixels, on *groups*;
-- **J by hand**: the same on single motions, each called foreground or background by the truth, as a user would join them;
-- **F**: F measure of the foreground's border, within 0.8 % of the diagonal; on single motions for scenes, on groups for real pairs.
+- **mean IoU**: the mean over all true labels, each matched one to one with a found label;
+- **n right**: the share of cases with the right number of motions (labels below 0.2 % of the frame do not count);
+- **sub-pixel**: mean IoU of the cases in which objects move by less than a pixel and a half relative to the background;
+- **J**: intersection over union of the foreground, computed on *groups*; the foreground is everything except the label with most
+  background pixels;
+- **J by hand**: the same on single motions, each assigned to foreground or background by the truth, as a user would join them;
+- **F**: F measure of the foreground's border within 0.8 % of the diagonal; on single motions for scenes, on groups for real pairs.
 
-*best* and *fast* are the two qualities. The *baseline* is dense optical flow (OpenCV's DIS, medium preset), affine motions by
-sequential RANSAC on it with an inlier threshold from the flow's noise, a label for each pixel by the nearest motion, a median
-filter and the removal of small regions: the best of several such chains, tuned on generated scenes.
+*best* and *fast* are the two qualities. The *baseline* computes dense optical flow (OpenCV's DIS, medium preset), fits affine motions
+by sequential RANSAC with an inlier threshold from the flow's noise, assigns each pixel to the nearest motion, applies a median
+filter and removes small regions. It is the best of several such pipelines, tuned on generated scenes.
 
 ";
 
 const LICENCE: &str = "\
 The real pairs are frames of [DAVIS 2016](https://davischallenge.org) (taken as CC BY-NC 4.0), [CDnet 2014](http://changedetection.net),
-Wallflower, Middlebury, FlyingChairs and Yosemite, whose licences allow research but not shipping them here; this page shows
-no picture of them. `npm run bench:masks` draws all of them into `out/masks/` where they lie beside the checkout, in
-`../shared/data`. The one real pair that may be shipped is [in the README](../README.md), without a truth to score it against.
+Wallflower, Middlebury, FlyingChairs and Yosemite. Their licences allow research but not redistribution here, so this page shows no
+pictures of them. If they are in `../shared/data` next to the checkout, `npm run bench:masks` draws all of them into `out/masks/`. The
+one real pair that may be redistributed is [in the README](../README.md); it has no ground truth to score against.
 
 ";
 
 impl Page<'_> {
-    /// The page; pictures are named `prefix` and the case.
+    /// The page's text. A picture's file name is `prefix` followed by the case's name.
     pub(crate) fn text(&self, prefix: &str) -> String {
         let mut text = String::from(HEAD);
         self.scenes(&mut text);
@@ -94,8 +95,8 @@ impl Page<'_> {
         let own = [Set::Generated, Set::Colour, Set::Large];
         self.scene_rows(text, "**generated, grey and colour, all sizes**", &|one| own.contains(&one.case.set));
         text.push_str(
-            "\nTimes are milliseconds in native code on one core of a machine that was not quiet, with another case on the \
-             other core; the baseline's are its own measurement.\n\n",
+            "\nTimes are milliseconds of native code on one core of a machine in use, with another case running on the \
+             other core. The baseline reports its own times.\n\n",
         );
     }
 
@@ -121,15 +122,15 @@ impl Page<'_> {
             text,
             "| pairs | cases | method | J | J by hand | F | adjusted Rand | ms |\n|---|---|---|---|---|---|---|---|"
         );
-        // In the order of their names, by turns: one half to look at and tune on, the other to confirm.
+        // Pairs alternate in the order of their names: one half for development and tuning, the other held out.
         let half = |one: &Measured, rest: usize| {
             names.iter().position(|name| *name == one.case.name).is_some_and(|k| k % 2 == rest)
         };
         type Belongs<'b> = &'b dyn Fn(&Measured) -> bool;
         let halves: [(&str, Belongs<'_>); 3] = [
             ("all", &|one| one.case.set == Set::Pairs),
-            ("looked at while developing", &|one| one.case.set == Set::Pairs && half(one, 0)),
-            ("only measured", &|one| one.case.set == Set::Pairs && half(one, 1)),
+            ("used in development", &|one| one.case.set == Set::Pairs && half(one, 0)),
+            ("held out", &|one| one.case.set == Set::Pairs && half(one, 1)),
         ];
         for (title, belongs) in halves {
             for method in Method::ALL {
@@ -144,7 +145,7 @@ impl Page<'_> {
         let odd: Vec<String> = names.iter().step_by(2).map(|name| format!("`{name}`")).collect();
         let _ = writeln!(
             text,
-            "\nOne main object each has a mask; whatever else moves counts as background. Looked at while developing were {}.\n",
+            "\nOnly the main object of each pair has a true mask; everything else that moves counts as background. The pairs used in development are {}.\n",
             odd.join(", ")
         );
     }
@@ -154,7 +155,7 @@ impl Page<'_> {
             return;
         }
         text.push_str(
-            "## Pairs with true flow\n\nMedian end point error, pixels, of the flow that labels and motions imply.\n\n",
+            "## Pairs with true flow\n\nMedian end point error, in pixels, of the optical flow that the labels and motions imply.\n\n",
         );
         let _ = writeln!(text, "| pair | best | fast | baseline |\n|---|---|---|---|");
         for one in self.of_set(Set::Flow) {
@@ -171,8 +172,8 @@ impl Page<'_> {
         let Some(whole) = self.worths.first() else { return };
         let _ = writeln!(
             text,
-            "## What each part is worth\n\nThe pipeline (best) without one part at a time, on {} generated scenes, the {} of a bare ground and the real \
-             pairs; in brackets the change.\n\n| without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | J, real | J by hand, real | F, real | ms, scenes |\n\
+            "## Ablation\n\nEach row leaves out one part of the pipeline (best). The scores are those of {} generated scenes, the {} scenes of \
+             cars on bare ground and the real pairs, with the change in brackets.\n\n| without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | J, real | J by hand, real | F, real | ms, scenes |\n\
              |---|---|---|---|---|---|---|---|---|---|",
             whole.scenes.cases, whole.bare.cases
         );
@@ -201,7 +202,7 @@ impl Page<'_> {
             let _ = writeln!(text, "| {} | {} | {:.0} |", worth.title, cells.join(" | "), s.milliseconds);
         }
         text.push_str(
-            "\nDifferences below about 0.01 on the scenes and 0.02 on the real pairs are one object in one case and mean nothing.\n\n",
+            "\nDifferences below about 0.01 on the scenes and 0.02 on the real pairs come from a single object in a single case and are not significant.\n\n",
         );
     }
 
@@ -211,8 +212,8 @@ impl Page<'_> {
             return;
         }
         text.push_str(
-            "## What it knows of itself\n\n`confidence` is the probability that a pixel's label is right. Over all generated scenes, \
-             where a label means the thing that most of its pixels show:\n\n| confidence | share of pixels | mean confidence | right |\n\
+            "## Calibration of the confidence\n\n`confidence` is the probability that a pixel's label is right. The table covers all \
+             generated scenes; each label stands for the object that most of its pixels belong to.\n\n| confidence | share of pixels | mean confidence | right |\n\
              |---|---|---|---|\n",
         );
         for (k, range) in self.honesty.ranges.iter().enumerate().filter(|(_, range)| range.pixels > 0) {
@@ -232,8 +233,8 @@ impl Page<'_> {
         let [visible, wrongly] = self.honesty.visible;
         let _ = writeln!(
             text,
-            "\n`markUnknown` marks {} of the pixels that are hidden or outside in the second frame, and {} of the others; the label \
-             of {} of these would have been wrong.\n",
+            "\n`markUnknown` marks {} of the pixels that are occluded or outside the frame in the second image, and {} of the \
+             others. Of the latter, {} would have had a wrong label.\n",
             per_cent_1(hit as f64 / occluded as f64),
             per_cent_1(wrongly as f64 / visible as f64),
             per_cent_1(self.honesty.saved as f64 / wrongly as f64)
@@ -249,13 +250,13 @@ impl Page<'_> {
             }
             let _ = writeln!(
                 text,
-                "## {title}\n\nFrom left to right: first frame, ours (best), baseline where it ran, truth.\n"
+                "## {title}\n\nFrom left to right: the first frame, our labels (best), the baseline's labels if it ran, the true labels.\n"
             );
             for (one, miou) in list {
                 let name = &one.case.name;
                 let description = one.case.description();
                 let _ = writeln!(text, "**{name}** ({description}): mean IoU {miou:.3}. {}\n", self.reason(name));
-                let _ = writeln!(text, "![First frame, labels found, truth of {name}]({prefix}{name}.png)\n");
+                let _ = writeln!(text, "![First frame, labels found and true labels of {name}]({prefix}{name}.png)\n");
             }
         }
     }
@@ -281,7 +282,7 @@ impl Page<'_> {
     }
 
     fn reason(&self, name: &str) -> &str {
-        self.reasons.get(name).and_then(Value::as_str).unwrap_or("Not looked into yet.")
+        self.reasons.get(name).and_then(Value::as_str).unwrap_or("Not analysed yet.")
     }
 
     fn of_set(&self, set: Set) -> impl Iterator<Item = &Measured> {
@@ -293,7 +294,7 @@ impl Page<'_> {
         Summary::of(own.filter_map(|one| one.of(method).map(|outcome| (&one.case, outcome))))
     }
 
-    /// Some of the cases by a figure of the best quality, the largest first.
+    /// The cases that `belongs` accepts, sorted by a score of the best quality, largest first.
     fn ranked(
         &self,
         belongs: impl Fn(&Measured) -> bool,
@@ -307,7 +308,7 @@ impl Page<'_> {
     }
 }
 
-/// The first few and, the last first, the last few; nothing is in both.
+/// The first few and the last few, the latter in reverse; no case is in both.
 fn ends<T>(mut list: Vec<T>) -> [Vec<T>; 2] {
     let many = SHOWN.min(list.len() / 2);
     let mut worst = list.split_off(list.len() - many);

@@ -14,11 +14,11 @@ use std::fs;
 use std::path::PathBuf;
 
 const HELP: &str = "\
-The paper's experiments beside ours.
+Repeats the paper's experiments with its method and with ours.
 
-  --trials N   trials at every noise level of Figure 1, 1 to 100000; default 1000
+  --trials N   trials per noise level of Figure 1, 1 to 100000; default 1000
   --seed N     seed of the trials and of the generated scene, a whole number below 2^32; default 1
-  --out DIR    where the results go; default out/paper
+  --out DIR    output folder; default out/paper
 ";
 
 struct Options {

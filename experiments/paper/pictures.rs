@@ -116,7 +116,7 @@ fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> String {
         (1..=ours.iter().copied().max().unwrap_or(0)).map(of_label).fold(0.0, f64::max)
     };
     format!(
-        "the paper's pipeline labels {:.1} % of the {kept} pixels it keeps on the robots rightly, and keeps {beside} of the \
+        "the paper's pipeline labels {:.1} % of the {kept} pixels it keeps on the robots correctly, and keeps {beside} of the \
          background; intersection over union of our masks {:.3} and {:.3}",
         100.0 * right / kept,
         overlap(1),

@@ -1,5 +1,5 @@
-// Image files under Node: the second WebAssembly build, which is loaded only when this module is used. Bytes that are given to a call
-// are copied when it is made. What is not of the right type, or no size, is refused with code `invalid-input`.
+// Image files under Node. This module uses a second WebAssembly build, which is loaded on first use. Calls copy their bytes before they
+// return. Arguments of the wrong type, and invalid sizes, are rejected with code `invalid-input`.
 
 /** A decoded image: RGBA bytes, row by row. */
 export interface Picture {

@@ -1,4 +1,4 @@
-// Types of `veronese/element`: importing it registers `<veronese-segmenter>` where elements can be registered.
+// Types of `veronese/element`: importing it registers `<veronese-segmenter>` if the environment has custom elements.
 
 import type { VeroneseSegmenterElement } from './element-class.js';
 

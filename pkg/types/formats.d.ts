@@ -1,8 +1,8 @@
-// The types of `veronese/formats`: masks in the forms that annotation tools read. See docs/formats.md for each format.
+// Types of `veronese/formats`: masks in the formats of annotation tools. docs/formats.md describes each format.
 
 import type { Matrix } from './index.js';
 
-/** A motion as it travels with the masks; the motions of a `Segmentation` fit. */
+/** A motion stored with the masks. The motions of a `Segmentation` fit. */
 export interface FormatMotion {
   label: number;
   matrix: Matrix;
@@ -13,7 +13,7 @@ export interface FormatMotion {
   group?: number;
 }
 
-/** What is known beside the labels. Everything is optional. */
+/** Optional information about the labels. */
 export interface FormatMeta {
   /** Name of the image that the masks lie on; default `first.png`. */
   image?: string;
@@ -21,11 +21,11 @@ export interface FormatMeta {
   names?: Readonly<Record<number, string>>;
   /** The motions of the masks. */
   motions?: readonly FormatMotion[];
-  /** Only these labels are written; default all but 255, which is never a mask. `encodeDavis` and `encodeVeronese` write all. */
+  /** The labels to write; default all but 255, which never becomes a mask. `encodeDavis` and `encodeVeronese` write all labels. */
   labels?: readonly number[];
 }
 
-/** One frame of a video: one label per pixel, row by row; the same label is the same object in all frames. */
+/** One frame of a video: one label per pixel, row by row. A label stands for the same object in all frames. */
 export interface LabelFrame {
   labels: Uint8Array;
   width: number;
@@ -37,8 +37,8 @@ export interface LabelFrame {
 export interface FormatOptions<Shape extends string> {
   shape?: Shape;
   /**
-   * Polygons may leave the border by so many pixels to have fewer vertices; default 0: exact. More than 4 million vertices in one
-   * document, which take masks of noise, are `invalid-input`.
+   * Distance in pixels by which polygons may deviate from the border, to have fewer vertices; default 0: exact. More than 4 million
+   * vertices in one document, which only masks of noise need, throw `invalid-input`.
    */
   tolerance?: number;
 }
@@ -88,7 +88,7 @@ export interface CocoVideoDocument {
 
 export interface CvatShape {
   type: 'mask';
-  /** The label's name: CVAT's requests want its `label_id` instead, which the project knows. */
+  /** The label's name. Requests to CVAT need the project's `label_id` instead. */
   label: string;
   frame: number;
   occluded: boolean;
@@ -137,7 +137,7 @@ export interface LabelMeDocument {
 export interface YoloFiles {
   /** The annotation file: one line per label. */
   text: string;
-  /** Names of the classes: the number at the beginning of a line counts them from 0. */
+  /** Names of the classes; the number at the beginning of a line is an index into this list. */
   names: string[];
 }
 
@@ -176,15 +176,15 @@ export interface VeroneseDocument {
 }
 
 /**
- * COCO's compressed run lengths of one mask: everything but 0 is set. Throws `invalid-input`, as every call here; `invalid-option` for
- * options. Documents are copies: they share nothing with what they were made of.
+ * COCO's compressed run lengths of one mask; every non-zero pixel is set. Like every call here it throws `invalid-input`, or
+ * `invalid-option` for options. Documents are copies and share no memory with their input.
  */
 export function encodeCocoRle(mask: Uint8Array, width: number, height: number): CocoRle;
 
-/** The same as plain counts. */
+/** The same mask as plain counts. */
 export function encodeCocoRleCounts(mask: Uint8Array, width: number, height: number): CocoRleCounts;
 
-/** A COCO instances file, of run lengths or of polygons whose holes hang on bridges. */
+/** A COCO instances file with run lengths, or with polygons whose holes are connected by bridges. */
 export function encodeCoco(
   labels: Uint8Array,
   width: number,
@@ -193,10 +193,10 @@ export function encodeCoco(
   options?: FormatOptions<'rle' | 'polygon'>,
 ): CocoDocument;
 
-/** A YouTube-VIS file; `frame-size-mismatch` where the frames differ in size. */
+/** A YouTube-VIS file. Throws `frame-size-mismatch` if the frames differ in size. */
 export function encodeCocoVideo(frames: readonly LabelFrame[], meta?: FormatMeta): CocoVideoDocument;
 
-/** CVAT for images 1.1. */
+/** A CVAT for images 1.1 file. */
 export function encodeCvatXml(
   labels: Uint8Array,
   width: number,
@@ -205,16 +205,16 @@ export function encodeCvatXml(
   options?: FormatOptions<'mask' | 'polygon'>,
 ): string;
 
-/** Shapes for CVAT's REST interface and SDK. */
+/** Shapes for CVAT's REST API and SDK. */
 export function encodeCvatPoints(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): CvatShape[];
 
 /**
- * A zip archive in CVAT's MOTS PNG layout, without the frames; 64 labels at most. Names of frames are paths in the archive: one that
- * would lead out of it, or that some system cannot have, is `invalid-input`.
+ * A zip archive in CVAT's MOTS PNG layout, without the frames, with at most 64 labels. Frame names are paths in the archive; a name
+ * that would escape it, or that some operating system does not allow, throws `invalid-input`.
  */
 export function encodeCvatMots(frames: readonly LabelFrame[], meta?: FormatMeta): Uint8Array;
 
-/** A Label Studio task with its predictions. Names must be those of the project's labelling configuration. */
+/** A Label Studio task with its predictions. Names must match the project's labelling configuration. */
 export function encodeLabelStudio(
   labels: Uint8Array,
   width: number,
@@ -232,7 +232,7 @@ export function encodeLabelMe(
   options?: FormatOptions<'mask' | 'polygon'>,
 ): LabelMeDocument;
 
-/** YOLO segmentation: one line per label, parts and holes joined by bridges. */
+/** YOLO segmentation: one line per label; bridges join parts and holes. */
 export function encodeYolo(
   labels: Uint8Array,
   width: number,
@@ -244,7 +244,7 @@ export function encodeYolo(
 /** An 8-bit indexed PNG whose index is the label, in the DAVIS palette. */
 export function encodeDavis(labels: Uint8Array, width: number, height: number): Uint8Array;
 
-/** A Supervisely annotation of bitmaps. */
+/** A Supervisely annotation with bitmaps. */
 export function encodeSupervisely(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): SuperviselyAnnotation;
 
 /** W3C Web Annotations, one per label, with an SVG selector. */
@@ -256,8 +256,8 @@ export function encodeWebAnnotation(
   options?: { tolerance?: number },
 ): WebAnnotation[];
 
-/** Labels, names and motions without loss. */
+/** Stores labels, names and motions without loss. */
 export function encodeVeronese(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): VeroneseDocument;
 
-/** What {@link encodeVeronese} wrote. Throws `invalid-input` for anything else. */
+/** Reads a document of {@link encodeVeronese}. Throws `invalid-input` for anything else. */
 export function decodeVeronese(document: unknown): LabelFrame & { meta: FormatMeta };

@@ -1,10 +1,10 @@
-// The public types, written by hand: what stands here is what a caller may rely on.
+// The public types, written by hand. Callers may rely on everything in this file.
 
 /**
  * RGBA bytes, row by row. An `ImageData` fits. Sides from 16 to 4096 pixels.
  *
- * The bytes stay the caller's: a call copies them before it returns, so that they may be written to as soon as it has. They may be a
- * view of a larger buffer, of which nothing else is copied, and shared or resizable memory, as it is at that moment.
+ * The bytes stay the caller's: a call copies them before it returns, so you may overwrite them afterwards. They may be a view of a
+ * larger buffer (only the view is copied), or shared or resizable memory (copied in its state at that moment).
  */
 export interface Pixels {
   data: Uint8ClampedArray | Uint8Array;
@@ -12,49 +12,49 @@ export interface Pixels {
   height: number;
 }
 
-/** Where the work is: a stage has just begun. */
+/** Progress of a call: a stage has just begun. */
 export interface Progress {
-  /** A stable camelCase name, the key of the stage in `milliseconds`. */
+  /** The stage's stable camelCase name, also its key in `milliseconds`. */
   stage: string;
-  /** Position of the stage among all of this call, from 0. */
+  /** Index of the stage in this call, from 0. */
   index: number;
   /** Number of stages of this call. */
   of: number;
 }
 
-/** What every call takes. */
+/** Options of every call. */
 export interface CallOptions {
   /**
-   * Cancels the call, which then rejects with code `cancelled`. A {@link Segmenter} stops at once; a direct call, which
-   * occupies its thread, looks at the signal between stages.
+   * Cancels the call, which then rejects with code `cancelled`. A {@link Segmenter} stops at once. A direct call occupies its thread
+   * and checks the signal between stages.
    */
   signal?: AbortSignal | undefined;
-  /** Called when a stage begins. What it throws ends the call and is thrown on. */
+  /** Called when a stage begins. If it throws, the call ends with that exception. */
   onProgress?: ((progress: Progress) => void) | undefined;
   /**
-   * Gives the arrays away instead of having them copied; default `false`. When the call returns, the whole `ArrayBuffer`s of its
-   * frames, of the measurements and of the evidence are detached, their arrays empty, whatever becomes of the call; only one that is
-   * refused for its arguments or cancelled by then leaves them alone. A segmentation is never given away. What cannot be given away is
-   * copied: shared memory, that of a WebAssembly module, the pools of Node's `Buffer`.
+   * Transfers the arrays instead of copying them; default `false`. When the call returns, the whole `ArrayBuffer`s of the frames,
+   * the measurements and the evidence are detached and their arrays are empty, whatever the outcome. A call leaves them alone only if
+   * it rejects its arguments or is already cancelled. Segmentations are never transferred. Memory that cannot be transferred is copied:
+   * shared memory, the memory of a WebAssembly module, and the pools of Node's `Buffer`.
    */
   transfer?: boolean | undefined;
 }
 
 export interface SegmentOptions extends CallOptions {
-  /** Number of motions, 1 to 10; default `'auto'`: find it. */
+  /** Number of motions, 1 to 10; `'auto'` (the default) estimates it. */
   motions?: 'auto' | number | undefined;
-  /** Work to spend: `'fast'` for live use, `'best'` (the default) for keeping. */
+  /** `'best'` (the default) for accuracy, `'fast'` for live use. */
   quality?: 'fast' | 'best' | undefined;
   /**
-   * Label 255 where a pixel is hidden or outside in the second frame, where there is no texture around it, and where its label
-   * would more likely be wrong than right; default `false`.
+   * Uses label 255 for a pixel that is hidden or outside in the second frame, has no texture around it, or whose label would more
+   * likely be wrong than right; default `false`.
    */
   markUnknown?: boolean | undefined;
-  /** Say for every pixel how sure its label is, in `confidence` of the result; default `false`. */
+  /** Adds `confidence` to the result: how sure the label of every pixel is; default `false`. */
   confidence?: boolean | undefined;
-  /** Seed of every random choice, a whole number from 0; default 1. */
+  /** Random seed, a whole number from 0; default 1. */
   seed?: number | undefined;
-  /** The frame before the first: a third view that helps where something is hidden in the second. */
+  /** The frame before the first: a third view that helps at occlusions. */
   before?: Pixels | undefined;
 }
 
@@ -64,11 +64,11 @@ export interface RelabelOptions extends CallOptions {
 }
 
 export interface FitOptions extends CallOptions {
-  /** Number of motions, 1 to 10; default `'auto'`: find it. */
+  /** Number of motions, 1 to 10; `'auto'` (the default) estimates it. */
   motions?: 'auto' | number | undefined;
   /** `'paper'`: the algorithm of the paper; `'best'` (the default): ours. */
   method?: 'paper' | 'best' | undefined;
-  /** Seed of every random choice, a whole number from 0; default 1. */
+  /** Random seed, a whole number from 0; default 1. */
   seed?: number | undefined;
 }
 
@@ -84,7 +84,7 @@ export interface Milliseconds {
   [stage: string]: number;
 }
 
-/** One number of motions that was tried; a smaller score is better. */
+/** A candidate number of motions; a smaller score is better. */
 export interface Candidate {
   motions: number;
   score: number;
@@ -106,7 +106,7 @@ export interface SegmentedMotion {
   group: number;
 }
 
-/** What {@link segmentPair} found: plain data, nothing to free. */
+/** The result of {@link segmentPair}: plain data, nothing to free. */
 export interface Segmentation {
   version: 1;
   width: number;
@@ -116,8 +116,8 @@ export interface Segmentation {
   /** By decreasing number of pixels: `motions[i].label === i`. */
   motions: SegmentedMotion[];
   /**
-   * Description lengths of both frames in nats, of one motion up to one more than were found, each with labels of its own. The
-   * number found need not have the smallest: the stages decide one after another, not by this list alone.
+   * Description lengths of both frames in nats, from one motion to one more than were found, each with its own labels. The number
+   * found need not have the smallest score, because the stages decide in sequence and not by this list alone.
    */
   evidence: { candidates: Candidate[] };
   /** Number of pixels with label 255. */
@@ -135,9 +135,9 @@ export interface Segmentation {
   /** One label per pixel, row by row; 255 is unlabelled. */
   labels: Uint8Array;
   /**
-   * Only with `confidence: true`: how sure the label of every pixel is, row by row. 255 times the probability that its motion
-   * is the right one, given how well all motions explain the pixel and its surroundings: of the pixels with probability P about
-   * the share P is right. 0 where the pixel is unlabelled.
+   * Only with `confidence: true`: the confidence of every pixel's label, row by row. It is 255 times the probability that its motion
+   * is the right one, given how well all motions explain the pixel and its surroundings. The probabilities are calibrated: of the
+   * pixels with probability P, a share of about P is right. 0 for unlabelled pixels.
    */
   confidence?: Uint8Array;
 }
@@ -148,11 +148,11 @@ export interface FittedMotion {
   matrix: Matrix;
   /** Number of measurements that belong to it. */
   measurements: number;
-  /** How many of the six entries its measurements determine: below 6 the rest is a choice. */
+  /** How many of the six parameters the measurements determine; below 6, the others are arbitrary. */
   determined: number;
 }
 
-/** What {@link fitMotions} found. */
+/** The result of {@link fitMotions}. */
 export interface MotionFit {
   version: 1;
   /** Number of motions. */
@@ -160,7 +160,7 @@ export interface MotionFit {
   /** By decreasing number of measurements: `motions[i].label === i`. */
   motions: FittedMotion[];
   evidence: { singularValues: number[]; candidates: Candidate[] };
-  /** What the paper's steps gave; only with `method: 'paper'`. */
+  /** Results of the paper's steps; only with `method: 'paper'`. */
   stages?: { factorisation: Matrix[]; refined: Matrix[] };
   milliseconds: Milliseconds;
   settings: { motions: 'auto' | number; method: 'paper' | 'best'; seed: number; software: string };
@@ -168,29 +168,32 @@ export interface MotionFit {
   labels: Uint8Array;
 }
 
-/** Image measurements: x, y of each in `positions`, I_x, I_y, I_t of each in `derivatives`. Copied when the call is made, as {@link Pixels}. */
+/**
+ * Image measurements: x, y of each in `positions`, I_x, I_y, I_t of each in `derivatives`. Copied before a call returns, like {@link
+ * Pixels}.
+ */
 export interface PointMeasurements {
   positions: Float64Array;
   derivatives: Float64Array;
 }
 
-/** Where the WebAssembly module comes from. */
+/** The source of the WebAssembly module. */
 export type WasmSource = URL | string | Response | BufferSource | WebAssembly.Module;
 
-/** Red, green, blue and, where given, alpha: 0 to 255. */
+/** Red, green, blue and optional alpha, 0 to 255. */
 export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
 
 export interface PaintOptions {
   /**
-   * One colour per label; labels beyond are transparent, and alpha 0 hides one. Default: the DAVIS palette with label 0 and
-   * 255 transparent.
+   * One colour per label; labels without a colour are transparent, and alpha 0 hides a label. Default: the DAVIS palette, with labels
+   * 0 and 255 transparent.
    */
   palette?: readonly Colour[] | undefined;
-  /** 0 to 1, scales every alpha; default 0.5. */
+  /** Scales every alpha, 0 to 1; default 0.5. */
   opacity?: number | undefined;
 }
 
-/** Stable codes of every error, the same on the command line. */
+/** The stable error codes, the same as on the command line. */
 export type ErrorCode =
   // the input
   | 'frame-size-mismatch'
@@ -202,12 +205,12 @@ export type ErrorCode =
   | 'invalid-option'
   | 'invalid-input'
   | 'unreadable-image'
-  // the surroundings
+  // the environment
   | 'wasm-load-failed'
   | 'worker-failed'
   | 'cancelled'
   | 'internal'
-  // the command line alone
+  // the command line only
   | 'usage'
   | 'file-not-found'
   | 'unreadable-file'
@@ -219,8 +222,8 @@ export type ErrorCode =
   | 'unreadable-video';
 
 /**
- * Every error that this package throws or rejects with. What the caller's own listeners and sources of pairs throw is passed on as it
- * is.
+ * Every error that this package throws or rejects with. Exceptions from the caller's own listeners and sources of pairs are passed on
+ * unchanged.
  */
 export class VeroneseError extends Error {
   constructor(code: ErrorCode, message: string, options?: ErrorOptions);
@@ -231,28 +234,29 @@ export class VeroneseError extends Error {
 export const version: string;
 
 /**
- * Loads the WebAssembly module of all calls but {@link fitMotions}. Optional, since every call does so by itself: call it to load
- * early or from a place of your own. May be called again: the first source that loaded stays.
+ * Loads the WebAssembly module of all calls except {@link fitMotions}. Every call does so itself; call this to load early or from your
+ * own source. Further calls have no effect: the first source that loaded stays.
  *
  * Rejects with code `wasm-load-failed`; a later call tries again.
  */
 export function init(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 
-/** {@link init} for the module of {@link fitMotions}, `veronese/veronese_points_bg.wasm`, which nobody else needs. */
+/** {@link init} for the module of {@link fitMotions}, `veronese/veronese_points_bg.wasm`, which no other call needs. */
 export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<void>;
 
-/** Finds how many things move between two frames, how each moves, and which pixels belong to it. */
+/** Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. */
 export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
 
 /**
- * Solves the labels of a segmentation again under what a person says about single pixels, with its motions as they are.
+ * Solves the labels of a segmentation again, given a person's evidence about single pixels. The motions do not change.
  *
- * `evidence` holds a set of labels for each pixel, row by row: bit k is set where label k is possible, 0 says nothing. "This is
- * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. What is said
- * holds on its pixels and spreads from there as far as the picture looks alike; far from it every label stays. Numbering and groups
- * stay too, so a label may be left without pixels; `confidence` is left out. The same arguments give the same answer: to undo, ask without.
+ * `evidence` holds a set of possible labels for each pixel, row by row: bit k is set if label k is possible; 0 means no evidence. "This is
+ * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. Evidence is binding on
+ * its own pixels and spreads from there to similar parts of the image; labels far away do not change. Numbering and groups do not change
+ * either, so a label may have no pixels left. The result has no `confidence`. The same arguments give the same result: to undo, call
+ * again without the evidence.
  *
- * Everything is copied when the call is made, and the result shares nothing with the segmentation given.
+ * All arguments are copied before the call returns, and the result shares no memory with the segmentation passed in.
  */
 export function relabel(
   first: Pixels,
@@ -262,12 +266,12 @@ export function relabel(
   options?: RelabelOptions,
 ): Promise<Segmentation>;
 
-/** Solves the paper's Problem 1 on measurements of your own. */
+/** Solves the paper's Problem 1 on your own measurements. */
 export function fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
 
 /**
- * Replaces the top-left width × height pixels of a canvas by the colours of the labels, with transparency: lay the canvas
- * over the frame.
+ * Replaces the top-left width × height pixels of a canvas with the labels' colours, with transparency, for a canvas that overlays the
+ * frame.
  */
 export function paintLabels(
   context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
@@ -275,15 +279,15 @@ export function paintLabels(
   options?: PaintOptions,
 ): Promise<void>;
 
-/** One group number per pixel instead of its motion; 255 stays. Throws code `invalid-input`. */
+/** Replaces each pixel's label with its group number; 255 stays. Throws code `invalid-input`. */
 export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions'>): Uint8Array;
 
 /** The 256 colours of the DAVIS benchmark's masks; label 0 is black. */
 export function davisPalette(): [number, number, number][];
 
 /**
- * Two frames and, if there is one, the frame before the first; whatever else the object has comes back with its outcome. The frames are
- * copied (or taken, with `transfer`) before the next input is asked for: a source may use one set of buffers for all of its pairs.
+ * Two frames and optionally the frame before the first. Other properties of the object come back with its outcome. The frames are copied
+ * (or transferred, with `transfer`) before the next input is requested, so a source may reuse one set of buffers for all pairs.
  */
 export interface PairInput {
   first: Pixels;
@@ -291,18 +295,18 @@ export interface PairInput {
   before?: Pixels | undefined;
 }
 
-/** Options for all pairs of a {@link segmentPairs}. */
+/** Options of {@link segmentPairs} for all pairs. */
 export interface PairsOptions extends Omit<SegmentOptions, 'before' | 'onProgress'> {
-  /** Called when a stage of a pair begins; `pair` counts from 0. What it throws ends that pair and is the `cause` of its error. */
+  /** Called when a stage of a pair begins; `pair` counts from 0. If it throws, that pair fails with the exception as `cause`. */
   onProgress?: ((progress: Progress & { pair: number }) => void) | undefined;
 }
 
-/** What became of one pair: a segmentation, or the error that prevented it. The other pairs go on. */
+/** The outcome of one pair: a segmentation or an error. An error does not affect the other pairs. */
 export type PairOutcome<Input extends PairInput = PairInput> =
   | { index: number; input: Input; segmentation: Segmentation; error?: undefined }
   | { index: number; input: Input; error: VeroneseError; segmentation?: undefined };
 
-/** As much of a `Worker`, of the browser or of Node, as types that know neither can say. */
+/** The common part of the browser's and Node's `Worker`, without depending on either's types. */
 export interface WorkerLike {
   postMessage(message: unknown): void;
   terminate(): unknown;
@@ -310,27 +314,27 @@ export interface WorkerLike {
 
 export interface SegmenterOptions {
   /**
-   * Makes the worker, where the bundler or the page needs that done by hand: a module worker (in Node a worker thread) whose file is
-   * `veronese/worker`. By default the file beside the package's code.
+   * Creates the worker, if the bundler or the page requires it: a module worker (in Node a worker thread) that runs `veronese/worker`.
+   * By default the package uses the file next to its code.
    */
   worker?: (() => WorkerLike) | undefined;
-  /** As in {@link initPoints}: asked for when there are measurements. */
+  /** As in {@link initPoints}; used on the first call of `fitMotions`. */
   points?: WasmSource | Promise<WasmSource> | undefined;
 }
 
 export interface PoolOptions extends SegmenterOptions {
-  /** Number of workers, 1 to 256; by default as many as the machine runs at a time. */
+  /** Number of workers, 1 to 256; default: the number of processors. */
   jobs?: number | undefined;
-  /** As in {@link init}: compiled once for all workers. */
+  /** As in {@link init}; compiled once for all workers. */
   source?: WasmSource | Promise<WasmSource> | undefined;
 }
 
 /**
- * The same calls in a Web Worker, or in a worker thread under Node: the page stays responsive, and a cancelled call stops at
- * once. Calls are done one after another.
+ * Makes the same calls in a Web Worker, or in a worker thread under Node. The page stays responsive, and a cancelled call stops at
+ * once. Calls run one after another.
  */
 export class Segmenter {
-  /** `source` as in {@link init}; by default the file beside the package's code. Throws code `invalid-option`. */
+  /** `source` as in {@link init}; default: the file next to the package's code. Throws code `invalid-option`. */
   constructor(source?: WasmSource | Promise<WasmSource>, options?: SegmenterOptions);
   segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
   relabel(
@@ -342,28 +346,28 @@ export class Segmenter {
   ): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
   /**
-   * Starts the worker and has it segment a small pair of its own for half a second or more, beside the page, so that the engine has compiled to
-   * the end what calls spend their time in: a first call otherwise takes two to three times as long as later ones. One worker warms
-   * up for all instances of the module on the page. Other calls to the same worker wait meanwhile; `close()` ends it.
+   * Starts the worker and segments a small built-in pair in it for half a second or more, so that the engine fully compiles the hot code.
+   * Without it, a first call takes two to three times as long as later ones. One worker warms up for all instances of the module on the
+   * page. Other calls to the same worker wait meanwhile; `close()` ends it.
    */
   warmUp(): Promise<void>;
-  /** Ends the worker; calls under way reject with code `cancelled`. The next call starts a fresh one. */
+  /** Ends the worker; running calls reject with code `cancelled`. The next call starts a new worker. */
   close(): void;
 }
 
 /**
- * Several workers, each with instances of its own of modules that are compiled once. Calls begin in their order and are
- * cancelled one by one; workers are started when there is work for them.
+ * Several workers. Modules are compiled once and instantiated in each worker. Calls start in order and can be cancelled individually;
+ * workers are started on demand.
  */
 export class SegmenterPool extends Segmenter {
   /** Throws code `invalid-option`. */
   constructor(options?: PoolOptions);
   readonly jobs: number;
   /**
-   * Segments many pairs, as an async iterator in the order of the pairs. A pair is taken from `pairs` only when there is room for it:
-   * at most 2·`jobs` are under way or wait to be fetched, so an async generator that reads frames reads no faster than the workers
-   * work. A pair that fails is an outcome with `error`, not the end; `signal` ends everything with code `cancelled`, and
-   * so does leaving the loop. What `pairs` throws is thrown after the outcomes of the pairs that it gave.
+   * Segments many pairs and yields their outcomes in order. At most 2·`jobs` pairs are running or waiting to be fetched, so an async
+   * generator that reads frames runs no faster than the workers. A failed pair yields an outcome with `error`, and the iteration
+   * continues. `signal` ends everything with code `cancelled`, and so does leaving the loop. If `pairs` throws, the exception follows
+   * the outcomes of the pairs it had yielded.
    */
   segmentPairs<Input extends PairInput>(
     pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
@@ -371,7 +375,7 @@ export class SegmenterPool extends Segmenter {
   ): AsyncGenerator<PairOutcome<Input>, void, undefined>;
 }
 
-/** {@link SegmenterPool.segmentPairs} on a pool of its own, which ends with the iterator. */
+/** {@link SegmenterPool.segmentPairs} with its own pool, which ends with the iterator. */
 export function segmentPairs<Input extends PairInput>(
   pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
   options?: PairsOptions & PoolOptions,

@@ -1,8 +1,8 @@
-// veronese/slim and veronese/inline: everything of veronese, but nothing is looked for beside the code.
+// veronese/slim and veronese/inline: all of veronese, without loading files next to the code.
 //
-// In `veronese/slim` the module comes from `init(source)`, `new Segmenter(source, …)` or `source` of a pool, that of `fitMotions` from
-// `initPoints(source)` or the option `points`; `veronese/inline` holds both.
-// Workers are the caller's to make in both.
+// With `veronese/slim` the caller provides the module through `init(source)`, `new Segmenter(source, …)` or `source` of a pool, and the
+// module of `fitMotions` through `initPoints(source)` or the option `points`. `veronese/inline` embeds both.
+// With either, the caller creates the workers.
 
 import {
   type PairInput,
@@ -17,7 +17,7 @@ import {
 
 export * from './index.js';
 
-/** {@link SegmenterOptions} with a worker that must be made by hand. */
+/** {@link SegmenterOptions} with a worker that the caller must create. */
 export type WithWorker<Options extends SegmenterOptions> = Options & { worker: NonNullable<SegmenterOptions['worker']> };
 
 /** As in `veronese`. */

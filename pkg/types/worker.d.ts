@@ -1,3 +1,3 @@
-// The file of the workers: to be started by `new Worker`, not imported for anything.
+// The worker file. Start it with `new Worker`; it has no exports.
 
 export {};

@@ -1,4 +1,4 @@
-// What `npm run bench:browser` found, as tables in Markdown: for the terminal and for docs/performance.md.
+// Formats the results of `npm run bench:browser` as Markdown tables, for the terminal and for docs/performance.md.
 
 const QUALITIES = ['fast', 'best'];
 const TITLES = {
@@ -9,7 +9,7 @@ const TITLES = {
   jsfeat: 'jsfeat, corners tracked',
 };
 
-/** The parts of a report by name; those of what was not measured are left out. */
+/** The parts of a report by name, without those that were not measured. */
 export function partsOf(report) {
   return {
     browser: [origin(report), downloads(report), calls(report), workers(report)].join('\n\n'),
@@ -20,7 +20,7 @@ export function partsOf(report) {
 
 function origin({ machine, rounds, date }) {
   const { processor, cores, chromium } = machine;
-  return `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: calls by turns, ${rounds} of each, on one thread; milliseconds.`;
+  return `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: ${rounds} alternating calls of each kind on one thread; times in milliseconds.`;
 }
 
 function downloads({ wasmGzip, jsGzip, readyMs, peers, peersReadyMs }) {
@@ -32,7 +32,7 @@ function downloads({ wasmGzip, jsGzip, readyMs, peers, peersReadyMs }) {
   return table(['', 'download, gzip', 'ready after'], rows);
 }
 
-/** `first`: on a fresh page, `firstWarmedUp`: there after `warmUp()`; `overlap`: mean intersection over union of the true labels with those found. */
+/** `first`: on a fresh page; `firstWarmedUp`: on a fresh page after `warmUp()`; `overlap`: mean IoU of the true labels and the labels found. */
 function calls({ sizes }) {
   const rows = Object.entries(sizes).flatMap(([size, cases]) =>
     Object.entries(cases).map(([name, { median, best, first, firstWarmedUp, overlap, memoryBytes }]) => [
@@ -51,11 +51,11 @@ function calls({ sizes }) {
 }
 
 function workers({ workers: { size, onePairsPerSecond, twoPairsPerSecond, ratio } }) {
-  const rates = `${onePairsPerSecond.toFixed(1)} in one worker, ${twoPairsPerSecond.toFixed(1)} in two`;
-  return `Pairs of ${times(size)} pixels per second, fast: ${rates} (${ratio.toFixed(2)} times as many).`;
+  const rates = `${onePairsPerSecond.toFixed(1)} with one worker, ${twoPairsPerSecond.toFixed(1)} with two`;
+  return `Throughput at ${times(size)} pixels, fast, in pairs per second: ${rates} (${ratio.toFixed(2)} times as many).`;
 }
 
-/** Medians of the same source natively and in the browser, on the same frames and by turns. */
+/** Medians of the same source in native code and in the browser, alternating on the same frames. */
 function stages({ sizes }) {
   const names = Object.keys(Object.values(sizes)[0].fast.stages);
   const rows = Object.entries(sizes).flatMap(([size, cases]) =>
@@ -70,7 +70,7 @@ function stages({ sizes }) {
       ];
     }),
   );
-  return table(['frames', 'quality', '', 'in all', ...names], rows);
+  return table(['frames', 'quality', '', 'total', ...names], rows);
 }
 
 function pixels({ pixels, exponents }) {
@@ -90,7 +90,7 @@ function pixels({ pixels, exponents }) {
 function motions({ size, motions, exponents }) {
   const rows = motions.map(({ motions: n, fast, best }) => [String(n), ms(fast), ms(best)]);
   rows.push(['exponent', power(exponents.motions.fast), power(exponents.motions.best)]);
-  return `The number of motions given, ${times(size)} pixels:\n\n${table(['motions', 'fast', 'best'], rows)}`;
+  return `With a given number of motions, ${times(size)} pixels:\n\n${table(['motions', 'fast', 'best'], rows)}`;
 }
 
 function table(head, rows) {
@@ -101,7 +101,7 @@ function ms(value) {
   return value.toFixed(value < 1000 ? 1 : 0);
 }
 
-/** A time and how many times another it is. */
+/** A time, and its ratio to another time. */
 function beside(value, other) {
   return `${ms(value)} (${(value / other).toFixed(1)} ×)`;
 }
@@ -118,7 +118,7 @@ function power(value) {
   return value.toFixed(2);
 }
 
-/** "640x480" as it is printed. */
+/** Formats "640x480" as "640 × 480". */
 function times(size) {
   return size.replace('x', ' × ');
 }

@@ -1,4 +1,4 @@
-// The three things that are built: WebAssembly modules, npm package, page. Each is skipped when nothing changed.
+// Builds the WebAssembly modules, the npm package and the page. Each is skipped if nothing changed.
 
 import { existsSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -11,8 +11,8 @@ const TARGET = 'wasm32-unknown-unknown';
 const RUST_SOURCES = ['src', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 
 /**
- * The modules that wasm-pack builds. The core, for frames, runs everywhere, and so does that of measurements, which few who segment
- * frames need; the one with codecs has everything and reads image files in Node.
+ * The modules that wasm-pack builds. The core (frames) and the measurements module run everywhere; segmenting frames needs only the core.
+ * The module with codecs has everything and reads image files in Node.
  */
 export const MODULES = [
   { name: 'veronese', folder: 'pkg/wasm', title: 'the core module', features: ['frames'] },
@@ -27,14 +27,14 @@ export async function buildAll() {
   await buildPage();
 }
 
-/** Rust to WebAssembly, a module after the other. */
+/** Compiles Rust to WebAssembly, one module after another. */
 export async function buildModules() {
   const versions = await Promise.all(
     [['rustc', '-vV'], ['wasm-pack', '--version'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
       async ([program, flag]) => (await run(program, [flag], { output: 'collect' })).text,
     ),
   );
-  // wasm-pack leaves the step out without an error where there is no wasm-opt, and takes any it meets on the path.
+  // wasm-pack skips this step without an error if there is no wasm-opt, and takes any wasm-opt on the path.
   if (!which('wasm-opt')?.startsWith(join(root, 'node_modules'))) {
     throw new Stop('wasm-opt of the npm package binaryen is missing: delete node_modules and run the command again.');
   }
@@ -46,9 +46,9 @@ export async function buildModules() {
   }
 }
 
-/** The npm package: the JavaScript beside the modules, TypeScript to JavaScript, and all of it joined into few files. */
+/** Builds the npm package: the modules' JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
 export async function buildPackage() {
-  // The modules too: one entry of the package holds them.
+  // Includes the modules, because one entry of the package embeds them.
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
   const inputs = [...sources, ...glue, 'package-lock.json'];
@@ -57,7 +57,7 @@ export async function buildPackage() {
   );
 }
 
-/** The page, with what it takes from the package. */
+/** Builds the page with the parts of the package that it uses. */
 export async function buildPage() {
   const inputs = ['www', 'scripts/lib/policy.mjs', 'pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm', 'package-lock.json'];
   await step('the page', 'www/dist', ['www/dist/index.html'], inputs, [], () =>
@@ -74,9 +74,9 @@ async function step(title, folder, outputs, inputs, versions, build) {
 }
 
 async function wasmPack(name, folder, features) {
-  // The sources of dependencies must be there before their folders can be named in the flags below.
+  // The dependencies' sources must be downloaded before the flags below can name their folders.
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET]);
-  // --out-dir is never pkg itself: wasm-pack deletes the package.json it finds there. One folder for each module,
+  // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
   // because wasm-pack optimises every module in the folder.
   const pack = ['build', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
   const cargo = ['--locked', '--config', `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`];
@@ -85,7 +85,7 @@ async function wasmPack(name, folder, features) {
     'The WebAssembly module could not be built.',
     'wasm-pack',
     [...pack, '--out-dir', folder, '--out-name', name, '--', ...cargo],
-    // These variables would replace the flags of .cargo/config.toml, and SIMD with them.
+    // These variables would override the flags of .cargo/config.toml, which enable SIMD.
     { env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined } },
   );
 }

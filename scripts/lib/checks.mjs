@@ -1,4 +1,4 @@
-// What must hold beside the tests: formatting, lints, documentation, types, versions. A warning is a failure.
+// Checks besides the tests: formatting, lints, documentation, types, versions. A warning is a failure.
 
 import { buildModules, buildPackage } from './builds.mjs';
 import { importsAgree } from './imports.mjs';
@@ -7,7 +7,7 @@ import { run } from './run.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
-// The benchmark of masks alone has the other feature.
+// Only the benchmark of masks uses the other feature.
 const ALL = ['--features', 'codecs,ablation'];
 const only = (feature) => ['--no-default-features', '--features', feature];
 const DENY = ['--', '-D', 'warnings'];
@@ -29,7 +29,7 @@ const CHECKS = [
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
 ];
 
-/** Runs every check, also after one failed, and returns `{ passed, failed, skipped }`. */
+/** Runs every check, even after a failure, and returns `{ passed, failed, skipped }`. */
 export async function runChecks() {
   const results = [
     ['one version everywhere', versionsAgree()],
@@ -48,7 +48,7 @@ export async function runChecks() {
   return { passed: results.length - failed, failed, skipped: 0 };
 }
 
-/** Crate, package and project are released together under one number. */
+/** Whether crate, package and project have the same version; they are released together. */
 function versionsAgree() {
   const versions = {
     'Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('Cargo.toml'))?.[1],

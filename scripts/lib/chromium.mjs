@@ -13,7 +13,7 @@ const MAC = [
   '/Applications/Chromium.app/Contents/MacOS/Chromium',
 ];
 
-/** Finds or installs Chromium. Returns `{ path }`, or `{ problem }`: a sentence that says what to do. */
+/** Finds or installs Chromium. Returns `{ path }`, or `{ problem }` with a sentence that says what to do. */
 export async function prepareChromium() {
   const named = process.env.VERONESE_CHROMIUM;
   if (named) {
@@ -39,13 +39,13 @@ async function findChromium() {
   return own && (await works(own)) ? own : undefined;
 }
 
-/** A name is not enough: Ubuntu's `chromium-browser` outside snap only prints how to install snap. */
+/** Whether it runs. Existence is not enough: Ubuntu's `chromium-browser` outside snap only prints how to install snap. */
 async function works(path) {
   const { code, text } = await run(path, ['--version'], { output: 'collect' });
   return code === 0 && /Chrom(e|ium)/.test(text);
 }
 
-/** The browser that `npx playwright install` put into the user's cache. */
+/** The browser that `npx playwright install` put in the user's cache. */
 function playwrightsOwn() {
   try {
     const { chromium } = createRequire(`${root}/www/package.json`)('@playwright/test');

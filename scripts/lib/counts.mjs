@@ -1,4 +1,4 @@
-// Reading from a test program's output how many tests passed and failed.
+// Reads the numbers of passed and failed tests from a test program's output.
 
 const ESCAPES = /\u001b\[[0-9;]*m/g;
 
@@ -14,13 +14,13 @@ export function cargoCounts(output) {
   return counts;
 }
 
-/** The same for Node's test runner, whose summary begins with # or ℹ as the reporter likes. */
+/** The same for Node's test runner, whose summary begins with # or ℹ, depending on the reporter. */
 export function nodeCounts(output) {
   const kinds = { pass: 'passed', fail: 'failed', cancelled: 'failed', skipped: 'skipped', todo: 'skipped' };
   return sum(output, /^(?:#|ℹ) (pass|fail|cancelled|skipped|todo) (\d+)$/gm, kinds, ([, kind, count]) => [kind, count]);
 }
 
-/** The same for Playwright. A test that passed only when repeated counts as failed: it cannot be relied on. */
+/** The same for Playwright. A test that passes only on a retry counts as failed, because it is unreliable. */
 export function playwrightCounts(output) {
   const kinds = { passed: 'passed', failed: 'failed', flaky: 'failed', skipped: 'skipped', 'did not run': 'failed' };
   const line = /^\s+(\d+) (passed|failed|flaky|skipped|did not run)\b/gm;

@@ -1,6 +1,6 @@
-// The result of `veronese pair` in words.
+// Describes the result of `veronese pair` in words.
 
-/** A table of the motions of a result: one line each, where it is, how its middle moves, how well it fits. */
+/** One line per motion of a result: its position, the motion of its centre, and its residual. */
 export function describe({ width, height, count, motions, unlabelled, milliseconds }) {
   const noun = count === 1 ? 'motion' : 'motions';
   const lines = [`${count} ${noun} in ${width} × ${height} pixels, ${milliseconds.total.toFixed(0)} ms:`];
@@ -10,7 +10,7 @@ export function describe({ width, height, count, motions, unlabelled, millisecon
 }
 
 function describeMotion({ label, matrix: [a11, a12, a13, a21, a22, a23], share, residual, bbox: [x, y, w, h] }) {
-  // The middle of the box: pixel centres are at whole numbers.
+  // The centre of the box; pixel centres are at whole numbers.
   const cx = x + (w - 1) / 2;
   const cy = y + (h - 1) / 2;
   const u = a11 * cx + a12 * cy + a13;

@@ -1,4 +1,4 @@
-// Skipping a build whose inputs have not changed.
+// Skips builds whose inputs have not changed.
 
 import { createHash } from 'node:crypto';
 import { existsSync, mkdirSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -10,7 +10,7 @@ const NOT_INPUTS = new Set(['node_modules', 'dist', 'test-results', 'playwright-
 
 /**
  * Runs `build` unless `outputs` exist and the contents of `inputs` (files and folders of the project) and `versions`
- * (of the programs that build) are those of the last build that succeeded. Returns whether it was run.
+ * (of the build programs) are those of the last successful build. Returns whether it ran.
  */
 export async function buildIfChanged(name, { inputs, outputs, versions = [] }, build) {
   const record = join(toolsFolder, 'built', name);
@@ -34,7 +34,7 @@ function fingerprint(inputs, versions) {
   return `${hash.digest('hex')}\n`;
 }
 
-/** The files at or below a path of the project, sorted; none where there is nothing. */
+/** The files at or below a path of the project, sorted; empty if the path does not exist. */
 function filesIn(path) {
   if (!inProject(path)) return [];
   if (!statSync(join(root, path)).isDirectory()) return [path];

@@ -1,4 +1,4 @@
-// Label Studio from PyPI in an environment of its own, and what we prove with it.
+// Installs Label Studio from PyPI in its own environment and drives it for the proof.
 
 import { spawn } from 'node:child_process';
 import { createWriteStream, existsSync, mkdirSync, readFileSync } from 'node:fs';
@@ -13,10 +13,10 @@ import { Stop, longStep, run } from './run.mjs';
 const VERSION = '1.23.2';
 const VENV = join(toolsFolder, 'label-studio');
 const USER = { email: 'proof@example.com', password: 'only-for-the-proof', token: '0123456789abcdef0123456789abcdef01234567' };
-/** The database is made at the first start: minutes on a slow machine. */
+/** The first start creates the database, which takes minutes on a slow machine. */
 const PATIENCE = 600_000;
 
-/** Installs Label Studio unless it is there. */
+/** Installs Label Studio unless it is installed. */
 export async function prepareLabelStudio() {
   const pip = join(VENV, 'bin', 'pip');
   if (existsSync(pip) && (await run(pip, ['show', 'label-studio'], { output: 'collect' })).stdout.includes(`Version: ${VERSION}`)) return;
@@ -33,9 +33,9 @@ export async function startLabelStudio(folder, port) {
     ...process.env,
     LABEL_STUDIO_BASE_DATA_DIR: folder,
     LABEL_STUDIO_ENABLE_LEGACY_API_TOKEN: 'true',
-    // What it calls itself at set-up.
+    // The address that it reports at set-up.
     LABEL_STUDIO_HOST: address,
-    // The backend and the frames are on this computer, which a studio on the open net has to refuse.
+    // The backend and the frames are on this computer. A public instance must refuse such addresses.
     ML_BLOCK_LOCAL_IP: 'false',
     SSRF_PROTECTION_ENABLED: 'false',
     COLLECT_ANALYTICS: 'false',
@@ -60,7 +60,7 @@ export async function startLabelStudio(folder, port) {
   return studio;
 }
 
-/** Serves two frames to the studio's page, which paints on them and therefore wants to be allowed to. */
+/** Serves two frames to Label Studio's page, with the CORS header it needs to read them from a canvas. */
 export async function serveFrames(paths) {
   const server = createServer((request, response) => {
     const path = paths[/^\/(\d)\.png$/.exec(request.url)?.[1]];
@@ -83,8 +83,8 @@ const CONFIG = `<View>
 </View>`;
 
 /**
- * By the studio's interface: a project, our backend, a task with two linked frames and one with two uploaded files, predictions.
- * Returns what it then holds for each task.
+ * Uses the REST API to create a project, our backend, a task with two linked frames and one with two uploaded files, and predictions.
+ * Returns the stored predictions of each task.
  */
 export async function predictions(studio, backend, linked, files) {
   const api = async (method, path, body) => {
@@ -103,7 +103,7 @@ export async function predictions(studio, backend, linked, files) {
     const { file_upload_ids: [id] } = await api('POST', `projects/${project.id}/import?commit_to_project=false`, form);
     uploaded.push(`/data/${(await api('GET', `import/file-upload/${id}`)).file}`);
   }
-  // Only now: files are not taken where the configuration has two images.
+  // Only now, because a configuration with two images does not accept uploads.
   await api('PATCH', `projects/${project.id}`, { label_config: CONFIG });
   const connection = await api('POST', 'ml', { url: backend, project: project.id, title: 'Veronese' });
   for (const [first, second] of [linked, uploaded]) await api('POST', `projects/${project.id}/import?return_task_ids=true`, [{ data: { first, second } }]);
@@ -115,7 +115,7 @@ export async function predictions(studio, backend, linked, files) {
   return { project: project.id, task: tasks[0].id, state: connection.state ?? connection.readable_state, found };
 }
 
-/** Pixels of a stored brush as the studio's own library decodes them: one byte for each, 0 or 255. */
+/** Pixels of a stored brush, decoded by Label Studio's own library: one byte each, 0 or 255. */
 export async function decodedByStudio(rle) {
   const program = 'import json,sys; from label_studio_sdk.converter.brush import decode_rle; print(json.dumps(decode_rle(json.loads(sys.argv[1])).tolist()[3::4]))';
   const { code, stdout, text } = await run(join(VENV, 'bin', 'python'), ['-c', program, JSON.stringify(rle)], { output: 'collect' });
@@ -123,7 +123,7 @@ export async function decodedByStudio(rle) {
   return JSON.parse(stdout);
 }
 
-/** Signs in as a person would and takes a picture of the task with its masks. */
+/** Signs in through the page and takes a screenshot of the task with its masks. */
 export async function picture(studio, { project, task }, chromiumPath, file) {
   const { chromium } = createRequire(join(root, 'www', 'package.json'))('@playwright/test');
   const browser = await chromium.launch({ executablePath: chromiumPath, args: ['--no-sandbox', '--disable-background-networking'] });
@@ -135,7 +135,7 @@ export async function picture(studio, { project, task }, chromiumPath, file) {
     await Promise.all([page.waitForURL((url) => !url.pathname.includes('login')), page.click('button[type=submit]')]);
     await page.goto(`${studio.address}/projects/${project}/data?task=${task}`);
     await page.waitForSelector('.konvajs-content canvas', { timeout: 120_000 });
-    // The masks are decoded and painted after the frames.
+    // The masks are painted after the frames.
     await page.waitForLoadState('networkidle').catch(() => undefined);
     await sleep(3000);
     mkdirSync(dirname(file), { recursive: true });

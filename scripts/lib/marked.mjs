@@ -1,4 +1,4 @@
-// Parts of a page that a command writes, between markers that say which command.
+// Writes the parts of a page that a command generates, between markers that name the command.
 
 import { readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { root } from './project.mjs';
 import { Stop } from './run.mjs';
 
-/** Replaces what stands between `<!-- begin NAME … -->` and `<!-- end NAME -->`, for each name of `parts`. */
+/** Replaces the text between `<!-- begin NAME … -->` and `<!-- end NAME -->`, for each name of `parts`. */
 export function writeMarked(path, parts) {
   let page = readFileSync(join(root, path), 'utf8');
   for (const [name, text] of Object.entries(parts)) {

@@ -1,16 +1,16 @@
-// The packages from npm.
+// Installs packages from npm.
 
 import { join } from 'node:path';
 
 import { inProject, projectText, root } from './project.mjs';
 import { Stop, longStep } from './run.mjs';
 
-/** Tools that only some tests and commands need; no workspace, so that nobody else has to install them. */
+/** Tools that only some tests and commands need. They are not a workspace, so nobody else has to install them. */
 export const HOSTS = 'pkg/test/hosts';
 export const SERVERS = 'examples/hosts';
 export const SCALE_OUT = 'examples/scale-out';
 
-/** Installs what the package-lock.json of a folder names, unless it is there already. */
+/** Installs the packages of a folder's package-lock.json unless they are already installed. */
 export async function prepareNpmPackages(folder = '.') {
   const at = (path) => join(folder, path);
   if (!inProject(at('package-lock.json'))) {
@@ -22,7 +22,7 @@ export async function prepareNpmPackages(folder = '.') {
     `Installing ${what} (about half a minute)`,
     `${what[0].toUpperCase()}${what.slice(1)} could not be installed. See above; if it is the network, run the command again.`,
     'npm',
-    // `ci` wants every optional package of every system in the lock file; BullMQ has some that are not to be had everywhere.
+    // `ci` requires every optional package of every system in the lock file, and some of BullMQ's are not available everywhere.
     [...(folder === SCALE_OUT ? ['install', '--no-save'] : ['ci']), '--no-audit', '--no-fund'],
     { cwd: join(root, folder) },
   );

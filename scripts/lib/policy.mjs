@@ -1,4 +1,4 @@
-// What the page may do, in one place: the built page says it of itself, and the servers say it of every file.
+// The page's permissions, in one place: the built page declares them, and the servers send them with every file.
 
 /** The content security policy: files of the same host only, no inline script or style, no eval but that of WebAssembly. */
 export const CONTENT_SECURITY_POLICY = [
@@ -14,7 +14,7 @@ export const CONTENT_SECURITY_POLICY = [
   "form-action 'none'",
 ].join('; ');
 
-/** Headers of every answer. */
+/** Headers of every response. */
 export const HEADERS = {
   'Content-Security-Policy': CONTENT_SECURITY_POLICY,
   'Referrer-Policy': 'no-referrer',

@@ -1,5 +1,5 @@
-// Set-up: everything the other commands need, from git, Node and rustup's cargo. What is there already is left alone,
-// and nothing is recorded: each piece is looked at anew, which takes less than a second.
+// Set-up: installs everything the other commands need, given git, Node and rustup's cargo. Pieces that are installed are left alone.
+// Nothing is recorded: each piece is checked every time, which takes less than a second.
 
 import { prepareChromium } from './chromium.mjs';
 import { HOSTS, SCALE_OUT, SERVERS, prepareNpmPackages } from './npm-packages.mjs';
@@ -9,11 +9,10 @@ import { Stop } from './run.mjs';
 import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
- * Prepares compiler, wasm tools and npm packages; with `checks` formatter and clippy too, with `browser` Chromium, with
- * `hosts` the bundlers and checkers that the packed package is tried in and what the examples need, with
- * `python` the decoders of annotation tools.
- * Throws `Stop` with a sentence for every missing piece. Only a missing browser or Python is returned instead,
- * as `{ chromium: { problem } }` or `{ python: { problem } }`, because everything but their tests works without.
+ * Prepares the compiler, wasm tools and npm packages. `checks` adds the formatter and clippy, `browser` adds Chromium, `hosts` adds the
+ * bundlers and checkers for the packed package and what the examples need, and `python` adds the decoders of annotation tools.
+ * Throws `Stop` with a sentence for every missing piece. A missing browser or Python is returned instead, as
+ * `{ chromium: { problem } }` or `{ python: { problem } }`, because only their tests need them.
  */
 export async function prepare({ checks = false, browser = false, hosts = false, python = false } = {}) {
   checkNode();

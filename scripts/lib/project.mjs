@@ -1,4 +1,4 @@
-// Where things are, and the environment every program is started with.
+// Paths of the project, and the environment of the programs it starts.
 
 import { accessSync, constants, existsSync, readFileSync, statSync } from 'node:fs';
 import { homedir } from 'node:os';
@@ -8,14 +8,14 @@ import { fileURLToPath } from 'node:url';
 /** The checkout, without a slash at the end. */
 export const root = fileURLToPath(new URL('../..', import.meta.url)).replace(/[\\/]$/, '');
 
-/** Programs and records that belong to this checkout alone; ignored by git, safe to delete. */
+/** Programs and records of this checkout; ignored by git, safe to delete. */
 export const toolsFolder = join(root, '.tools');
 
 /** Cargo's own folder, where it keeps the sources of packages. */
 export const cargoHome = process.env.CARGO_HOME || join(homedir(), '.cargo');
 
 /**
- * The environment of every program started here. npm's programs come first: wasm-pack takes any `wasm-opt` it meets,
+ * The environment of every program started here. npm's programs come first: wasm-pack takes any `wasm-opt` on the path,
  * and those of Linux distributions may be too old for the instructions the compiler writes. Cargo's folder comes last,
  * for a shell that was opened before rustup was installed.
  */
@@ -30,7 +30,7 @@ export const environment = {
   ].join(delimiter),
 };
 
-/** The full path of a program on the path, or undefined. */
+/** The full path of a program found on PATH, or undefined. */
 export function which(program) {
   for (const folder of environment.PATH.split(delimiter)) {
     if (folder === '') continue;
@@ -40,7 +40,7 @@ export function which(program) {
   return undefined;
 }
 
-/** Whether a path names a file that may be run. */
+/** Whether a path is an executable file. */
 export function isProgram(path) {
   try {
     accessSync(path, constants.X_OK);

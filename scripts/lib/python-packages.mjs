@@ -1,4 +1,4 @@
-// The annotation tools' own decoders, which are Python, in an environment of their own under .tools. Only tests of formats use it.
+// Installs the annotation tools' own decoders (Python) in a separate environment under .tools. Only the tests of formats use it.
 
 import { rmSync } from 'node:fs';
 import { join } from 'node:path';
@@ -9,10 +9,10 @@ import { longStep, must, run } from './run.mjs';
 const LIST = 'pkg/test/support/requirements.txt';
 const FOLDER = join(toolsFolder, 'python');
 const PYTHON = join(FOLDER, ...(process.platform === 'win32' ? ['Scripts', 'python.exe'] : ['bin', 'python']));
-/** What the pinned versions run on. */
+/** The Python versions that the pinned packages support. */
 const SUITS = 'import sys, venv, ensurepip; sys.exit(0 if (3, 10) <= sys.version_info < (3, 14) else 1)';
 
-/** Returns `{ problem }` where there is no suitable Python: the tests that need it are then skipped. */
+/** Returns `{ problem }` if there is no suitable Python; the tests that need it are then skipped. */
 export async function preparePython() {
   if (inProject('.tools/python') && (await isInstalled())) return {};
   const program = await suitable(process.platform === 'win32' ? ['python', 'python3'] : ['python3', 'python']);
@@ -37,7 +37,7 @@ async function suitable(programs) {
   return undefined;
 }
 
-/** Whether every version of the list is there; Python's own record says so, which takes no time. */
+/** Whether every version of the list is installed, according to Python's own records, which are quick to read. */
 async function isInstalled() {
   const wanted = projectText(LIST).split('\n').filter((line) => line.includes('=='));
   const check = `import importlib.metadata as m; [exit(1) for p in ${JSON.stringify(wanted)} if m.version(p.split('==')[0]) != p.split('==')[1]]`;

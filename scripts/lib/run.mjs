@@ -1,10 +1,10 @@
-// Starting other programs.
+// Starts other programs.
 
 import { spawn } from 'node:child_process';
 
 import { environment, root } from './project.mjs';
 
-/** Something a sentence explains to the user; the commands print it without a stack. */
+/** A failure that one sentence explains to the user; commands print it without a stack trace. */
 export class Stop extends Error {}
 
 const running = new Set();
@@ -13,7 +13,7 @@ const running = new Set();
  * Runs a program to its end and never throws.
  *
  * `output`: `inherit` shows what it writes, `collect` keeps it, `both` does both.
- * Returns `{ code, text }`: the exit code (127 where the program could not be started, 128 for a signal) and what it
+ * Returns `{ code, text }`: the exit code (127 if the program could not be started, 128 for a signal) and what it
  * wrote, with standard output in `stdout` alone as well.
  */
 export function run(program, args, { output = 'inherit', env = {}, cwd = root } = {}) {
@@ -41,7 +41,7 @@ export function run(program, args, { output = 'inherit', env = {}, cwd = root } 
   });
 }
 
-/** Like `run`, but a failure stops the command with `sentence`, after what the program wrote if that was not shown. */
+/** Like `run`, but a failure stops the command with `sentence`, after printing the program's output if it was not shown. */
 export async function must(sentence, program, args, options = {}) {
   const result = await run(program, args, options);
   if (result.code === 0) return result;
@@ -50,8 +50,8 @@ export async function must(sentence, program, args, options = {}) {
 }
 
 /**
- * Announces a long step, runs it quietly and says every minute that it is still at work. Where the user watches a
- * terminal and nothing else runs beside it, pass `output: 'inherit'` to show the program's own progress instead.
+ * Announces a long step, runs it quietly and reports every minute that it is still running. If the user watches a terminal and
+ * nothing else runs at the same time, pass `output: 'inherit'` to show the program's own progress instead.
  */
 export async function longStep(announcement, sentence, program, args, options = {}) {
   console.log(`${announcement} …`);
@@ -67,7 +67,7 @@ export async function longStep(announcement, sentence, program, args, options = 
   }
 }
 
-/** Runs a command's main function: a `Stop` becomes one line and exit code 1, anything else keeps its stack. */
+/** Runs a command's main function: a `Stop` becomes one line and exit code 1; any other error keeps its stack trace. */
 export async function command(main) {
   try {
     process.exitCode = (await main(process.argv.slice(2))) ?? 0;
@@ -78,7 +78,7 @@ export async function command(main) {
   }
 }
 
-// An interruption ends what was started and this program with it.
+// An interruption ends the programs started here and this program.
 const INTERRUPTIONS = { SIGINT: 130, SIGTERM: 143 };
 const handlers = Object.entries(INTERRUPTIONS).map(([signal, code]) => {
   const handler = () => {
@@ -89,7 +89,7 @@ const handlers = Object.entries(INTERRUPTIONS).map(([signal, code]) => {
   return [signal, handler];
 });
 
-/** Waits for an interruption, which from now on is the ordinary way to end; a second one changes nothing. */
+/** Waits for an interruption, which is the normal way to end from now on; a second one has no effect. */
 export function interruption() {
   for (const [signal, handler] of handlers) process.off(signal, handler);
   return new Promise((resolve) => {

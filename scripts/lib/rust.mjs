@@ -10,17 +10,17 @@ import { Stop, longStep, run } from './run.mjs';
 const TARGET = 'wasm32-unknown-unknown';
 const WASM_PACK = '0.15.1';
 const RUSTUP = 'https://rustup.rs';
-// One for both tools, which share packages; removed at the end, so that an interrupted installation goes on where it stopped.
+// Shared by both tools, which have packages in common. Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
-/** The version of wasm-bindgen in Cargo.lock: the program that writes the glue must be the same. */
+/** The version of wasm-bindgen in Cargo.lock; the program that generates the JavaScript must have the same version. */
 export function wasmBindgenVersion() {
   const found = /name = "wasm-bindgen"\r?\nversion = "([^"]+)"/.exec(projectText('Cargo.lock'));
   if (!found) throw new Stop('Cargo.lock names no version of wasm-bindgen; restore it with `git checkout Cargo.lock`.');
   return found[1];
 }
 
-/** Compiler and linker: what nothing can be built without. Throws one sentence for all that is missing. */
+/** Checks the compiler and linker, which every build needs. Throws one sentence that names everything missing. */
 export async function checkRust() {
   const problems = [];
   const needed = /^rust-version = "([^"]+)"/m.exec(projectText('Cargo.toml'))[1];
@@ -39,7 +39,7 @@ export async function checkRust() {
   if (problems.length > 0) throw new Stop(problems.join('\n'));
 }
 
-/** The wasm target and, for checks, the formatter and clippy. */
+/** Installs the wasm target and, for checks, the formatter and clippy. */
 export async function prepareCompiler({ checks }) {
   const { text } = await run('rustc', ['--print', 'target-libdir', '--target', TARGET], { output: 'collect' });
   if (!existsSync(text.trim())) {
@@ -55,7 +55,7 @@ export async function prepareCompiler({ checks }) {
   }
 }
 
-/** wasm-pack and wasm-bindgen, each in exactly the version this project is built with. */
+/** Installs wasm-pack and wasm-bindgen, each in exactly the version this project requires. */
 export async function prepareWasmTools() {
   await cargoInstall('wasm-bindgen', 'wasm-bindgen-cli', wasmBindgenVersion(), ['wasm-bindgen-test-runner']);
   await cargoInstall('wasm-pack', 'wasm-pack', WASM_PACK);
@@ -66,7 +66,7 @@ async function cargoInstall(program, crate, version, companions = []) {
   const { code, text } = await run(program, ['--version'], { output: 'collect' });
   const present = code === 0 && text.trim().split(' ')[1] === version;
   if (present && companions.every(which)) return;
-  // The tools run for seconds: quick compilation matters more than fast code.
+  // The tools run for seconds, so quick compilation matters more than fast code.
   await longStep(
     `Installing ${crate} ${version} into .tools (some minutes; once)`,
     `${crate} ${version} could not be installed. See above; if it is the network, run the command again.`,
@@ -91,7 +91,7 @@ async function rustup(args, lack) {
   await longStep(`rustup ${args.join(' ')}`, `${lack}, and adding it failed: ${advice} and see why.`, 'rustup', args);
 }
 
-/** Build scripts are native programs and need a linker, which rustup does not bring. */
+/** Build scripts are native programs and need a linker, which rustup does not install. */
 async function linkerProblem() {
   if (process.platform === 'win32' || which('cc')) return [];
   if (await installDebianPackages(['gcc', 'libc6-dev'], 'a C compiler')) return [];

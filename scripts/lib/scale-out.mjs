@@ -1,4 +1,4 @@
-// examples/scale-out under bad luck: two workers, one killed in the middle of a job, the Redis server restarted.
+// Tests examples/scale-out under failures: two workers, one killed in the middle of a job, and a restart of the Redis server.
 
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
@@ -12,18 +12,18 @@ import { installDebianPackages } from './debian.mjs';
 import { SCALE_OUT } from './npm-packages.mjs';
 import { root, which } from './project.mjs';
 
-/** A worker's lock, milliseconds: how long a killed one's jobs wait. */
+/** Lifetime of a worker's lock, milliseconds: how long the jobs of a killed worker wait. */
 const LOCK = '3000';
 const PATIENCE = 300_000;
 
-/** Whether there is a Redis or Valkey server; installed where that can be done without asking and `install` says so. */
+/** Whether there is a Redis or Valkey server; with `install` it is installed where that needs no confirmation. */
 export async function redisServer({ install = false } = {}) {
   const found = () => which('redis-server') ?? which('valkey-server');
   if (!found() && install) await installDebianPackages(['redis-server'], 'Redis');
   return found();
 }
 
-/** Runs it all; throws where a pair is missing, doubled or different from a direct call. Returns what was measured. */
+/** Runs everything and returns the measurements. Throws if a pair is missing, duplicated or different from a direct call. */
 export async function prove(program, { pairs, size, say = () => undefined }) {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-scale-out-'));
   const running = new Set();
@@ -45,7 +45,7 @@ export async function prove(program, { pairs, size, say = () => undefined }) {
       assert.equal(code, 0, state.errors);
       return JSON.parse(state.text);
     };
-    // Jobs have to outlive the server: it appends each change to a file.
+    // Jobs must survive the server, so it appends each change to a file.
     const redis = () => start(program, ['--port', String(port), '--bind', '127.0.0.1', '--dir', folder, '--save', '', '--appendonly', 'yes', '--appendfsync', 'always']);
     const worker = () => node('work.mjs', '--jobs', '1', '--lock', LOCK);
     const doneBy = ({ text }) => text.split('\n').filter(Boolean).map((line) => JSON.parse(line));
@@ -85,7 +85,7 @@ export async function prove(program, { pairs, size, say = () => undefined }) {
     assert.equal(new Set(results(out)).size, pairs, 'one result for each');
     await compare(lines, frames);
 
-    // Everything again changes nothing.
+    // A second run changes nothing.
     assert.deepEqual(await finished(node('produce.mjs', join(folder, 'frames'), '--out', out, '--quality', 'fast')), { pairs, added: 0, done: pairs });
     const survivors = workers.slice(1);
     for (const { child } of survivors) child.kill('SIGTERM');
@@ -110,7 +110,7 @@ async function makeFrames(folder, count, size) {
   return frames;
 }
 
-/** Some of the results beside direct calls. */
+/** Compares some of the results with direct calls. */
 async function compare(lines, frames) {
   const { segmentPair } = await import('../../pkg/dist/node.js');
   for (let index = 0; index < lines.length; index += 23) {

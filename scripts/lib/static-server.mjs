@@ -1,4 +1,4 @@
-// A small web server for the built page: files of one folder, on this computer only unless told otherwise.
+// A small web server for the built page. It serves one folder, and only to this computer unless told otherwise.
 
 import { open, realpath, stat } from 'node:fs/promises';
 import { createServer } from 'node:http';
@@ -28,8 +28,7 @@ const TYPES = {
 const ATTEMPTS = 20;
 
 /**
- * Serves `folder` and returns the server once it listens; without a wish for a port the next free one is taken. `headers` go with
- * every answer.
+ * Serves `folder` and returns the server once it listens, on the next free port if none is given. Every response has `headers`.
  */
 export async function serve(folder, { port, host, headers = HEADERS }) {
   const home = await realpath(folder);
@@ -74,7 +73,7 @@ async function answer({ home, headers }, request, response) {
   }
 }
 
-/** The name in an address; undefined where a part of it is no name: malformed, or with a separator or NUL in disguise. */
+/** The file name in a URL; undefined if a part of it is malformed or hides a separator or NUL. */
 function fileName(url) {
   try {
     const parts = new URL(url, 'http://localhost').pathname.split('/').map(decodeURIComponent);
@@ -84,7 +83,7 @@ function fileName(url) {
   }
 }
 
-/** The file of that name, or undefined; never one outside the folder, whatever links say. */
+/** The file of that name, or undefined; never a file outside the folder, even through links. */
 async function fileFor(home, name) {
   try {
     let path = await realpath(join(home, name));

@@ -1,6 +1,6 @@
-// The few statistics of the benchmarks.
+// Statistics for the benchmarks.
 
-/** The quantile of a share from 0 to 1, between neighbours in proportion. */
+/** The quantile at a share from 0 to 1, interpolated linearly. */
 export function quantile(values, share) {
   const sorted = [...values].sort((a, b) => a - b);
   const place = share * (sorted.length - 1);
@@ -12,7 +12,7 @@ export function median(values) {
   return quantile(values, 0.5);
 }
 
-/** Of the power law through points: the slope of the straight line through their logarithms. */
+/** The exponent of the power law through points: the slope of the line through their logarithms. */
 export function exponent(points) {
   const logs = points.map(([x, y]) => [Math.log(x), Math.log(y)]);
   const mean = (k) => logs.reduce((sum, log) => sum + log[k], 0) / logs.length;

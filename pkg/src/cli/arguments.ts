@@ -1,4 +1,4 @@
-// The command line: what it means, and what is wrong with it.
+// Parses the command line and reports what is wrong with it.
 
 import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
@@ -6,56 +6,57 @@ import { VeroneseError } from '../common/errors.js';
 import { FORMATS, type FormatName, isFormatName } from './formats.js';
 import type { PairSettings } from './pair.js';
 
-/** Names of the formats in lines that fit a terminal. */
+/** Names of the formats, wrapped to fit a terminal. */
 const FORMAT_NAMES = wrapped(Object.keys(FORMATS), 80, '\n' + ' '.repeat(41));
 
-export const HELP = `veronese finds how many things move between two frames, how each moves, and which pixels belong to it.
+export const HELP = `veronese segments two video frames by motion: how many motions there are, what each one is, and which pixels follow it.
 
-  veronese pair FIRST SECOND [options]   two frames: PNG, JPEG, WebP, BMP or PNM
-      --before FILE          the frame before FIRST, a third view that helps where something is hidden
-      --motions auto|1..10   how many motions (default: auto)
-      --quality fast|best    how much work (default: best)
-      --grouped              labels.png and mask-K.png show groups: what belongs to one rigid background counts as one
-      --mark-unknown         label 255 where a pixel is hidden or outside in SECOND, or where the data cannot tell
-      --seed N               seed of every random choice (default: 1)
-      --out DIR              write labels.png, result.json and mask-K.png into DIR
-      --confidence           and confidence.png: how sure every pixel's label is, 255 times its probability
-      --overlay              and overlay.png: the first frame with every motion in its colour
+  veronese pair FIRST SECOND [options]   segment two frames: PNG, JPEG, WebP, BMP or PNM
+      --before FILE          the frame before FIRST, a third view that helps at occlusions
+      --motions auto|1..10   number of motions (default: auto)
+      --quality fast|best    speed or accuracy (default: best)
+      --grouped              write groups instead of motions to labels.png and mask-K.png; one rigid background is one group
+      --mark-unknown         use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous
+      --seed N               random seed (default: 1)
+      --out DIR              write labels.png, result.json and mask-K.png to DIR
+      --confidence           also write confidence.png: 255 times the probability that each pixel's label is right
+      --overlay              also write overlay.png: the first frame with each motion in its colour
 
-  veronese batch FRAMES... [options]     every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
-      --list FILE            frames, one path in each line (- reads standard input)
-      --every K              use every K-th frame only (default: 1)
-      --with-before          each pair also gets the frame before its first, like --before of pair
-      --out DIR              a folder for each pair in DIR, with the files of pair; pairs finished before are skipped
-      --jobs N               pairs at the same time (default: as many as the machine has processors)
-      --shard I/N            only the I-th of N parts of the pairs, for N machines
+  veronese batch FRAMES... [options]     segment every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
+      --list FILE            read frames from FILE, one path per line (- reads standard input)
+      --every K              use only every K-th frame (default: 1)
+      --with-before          give each pair the frame before its first, like --before of pair
+      --out DIR              write a folder for each pair to DIR, with the files of pair; skip finished pairs
+      --jobs N               number of pairs processed at once (default: the number of processors)
+      --shard I/N            process only part I of N, to share the pairs between N machines
       --motions, --quality, --grouped, --mark-unknown, --confidence, --seed, --overlay as for pair
 
-  veronese video FILE [options]          the same on the frames of a video, which the program ffmpeg reads
+  veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
 
-  veronese convert DIR --to FORMATS      what pair wrote into DIR, as annotation tools read it; FORMATS are separated by commas:
+  veronese convert DIR --to FORMATS      convert the output of pair in DIR for annotation tools; FORMATS are separated by commas:
                                          ${FORMAT_NAMES}
       --grouped              groups instead of motions
-      --image NAME           the name of the image that the masks lie on (default: first.png)
-      --out DIR              where to write (default: beside the result)
+      --image NAME           file name of the image that the masks belong to (default: first.png)
+      --out DIR              output folder (default: the input folder)
 
-  veronese points FILE.json [options]    {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
-      --motions auto|1..10   how many motions (default: auto)
+  veronese points FILE.json [options]    fit motions to {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
+      --motions auto|1..10   number of motions (default: auto)
       --method paper|best    the paper's own algorithm, or ours (default: best)
-      --seed N               seed of every random choice (default: 1)
+      --seed N               random seed (default: 1)
 
   veronese --help | --version
 
-One line of JSON on stdout, of batch and video one for each pair. Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
+Prints one line of JSON on stdout; batch and video print one line per pair.
+Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
 `;
 
-/** What both commands for sequences of frames take. */
+/** Settings of the two commands for sequences of frames. */
 export interface SequenceSettings extends PairSettings {
   every: number;
   withBefore: boolean;
   jobs: number;
-  /** This part of all pairs; `index` from 0. */
+  /** The part of all pairs to process; `index` counts from 0. */
   shard: { index: number; of: number };
   out?: string;
 }
@@ -85,13 +86,13 @@ export type ConvertCommand = Extract<Command, { name: 'convert' }>;
 export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
 export type WorkCommand = PairCommand | PointsCommand;
 
-/** The files that a command reads, in the order in which their contents are handed over. */
+/** The files that a command reads, in the order in which their contents are passed on. */
 export function filesOf(command: WorkCommand): string[] {
   if (command.name === 'points') return [command.file];
   return [command.first, command.second, ...(command.before === undefined ? [] : [command.before])];
 }
 
-/** Most pairs at the same time. */
+/** Maximum number of pairs processed at once. */
 const MOST_JOBS = 256;
 
 const OPTIONS = {
@@ -127,7 +128,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   points: ['motions', 'method', 'seed'],
 };
 
-/** Throws a {@link VeroneseError} of code `usage`, or `invalid-option` for a value that an option cannot have. */
+/** Throws a {@link VeroneseError} with code `usage`, or `invalid-option` if an option's value is invalid. */
 export function parseCommand(args: string[]): Command {
   const { values, positionals, tokens } = parsed(args);
   if (values.help) return { name: 'help' };
@@ -193,7 +194,7 @@ function parsed(args: string[]) {
     return parseArgs({ args, options: OPTIONS, allowPositionals: true, tokens: true });
   } catch (thrown) {
     const text = thrown instanceof Error ? thrown.message : String(thrown);
-    // The first sentence names the mistake; what follows explains how to quote.
+    // The first sentence names the mistake; the rest explains quoting.
     const sentence = text.split(/[.\n]\s/)[0]?.replace(/\.$/, '') ?? text;
     throw usage(sentence.charAt(0).toLowerCase() + sentence.slice(1));
   }
