@@ -85,16 +85,16 @@ fn segment_with(
     let mut random = Random::from_seed(options.seed);
 
     stages.begin("frames");
-    let mut work = Work::new(first, second, before, &settings);
+    let mut pyramid = PairPyramid::new(first, second, before, &settings);
     stages.begin("dominant");
-    let dominant = work.find_dominant(settings.has(Part::Brightness));
-    let found = hypothesis::best(&work, dominant, &settings, &mut random, &mut stages);
+    let dominant = pyramid.find_dominant(settings.has(Part::Brightness));
+    let found = hypothesis::best(&pyramid, dominant, &settings, &mut random, &mut stages);
     stages.begin("refinement");
-    let found = hypothesis::refine(&work, found, &settings);
+    let found = hypothesis::refine(&pyramid, found, &settings);
     stages.begin("labels");
-    let labelled = masks::label(&work, found, &settings);
+    let labelled = masks::label(&pyramid, found, &settings);
     stages.begin("masks");
-    Ok(report::report(&work, labelled, &settings, first, second, options))
+    Ok(report::report(&pyramid, labelled, &settings, first, second, options))
 }
 
 fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<()> {
@@ -147,7 +147,7 @@ fn half_colours(frame: &Frame) -> [Plane; 3] {
 }
 
 /// The frames at working size and below.
-pub(crate) struct Work {
+pub(crate) struct PairPyramid {
     /// Level 0 is the working size.
     levels: Vec<Level>,
     /// Index of the level on which the dominant motion is found and others are proposed.
@@ -164,8 +164,8 @@ pub(crate) struct Work {
     reduction: f64,
 }
 
-impl Work {
-    fn new(first: &Frame, second: &Frame, before: Option<&Frame>, settings: &Settings) -> Work {
+impl PairPyramid {
+    fn new(first: &Frame, second: &Frame, before: Option<&Frame>, settings: &Settings) -> PairPyramid {
         let mut reduction = 1.0;
         let mut planes: Vec<Plane> =
             [Some(first), Some(second), before].into_iter().flatten().map(|f| f.luminance().clone()).collect();
@@ -190,7 +190,7 @@ impl Work {
             let last = &pictures[pictures.len() - 1];
             pictures.push(Picture { luminance: halve(&last.luminance), colours: last.colours.each_ref().map(halve) });
         }
-        Work { levels, base, selection, draft, pictures, palette, reduction }
+        PairPyramid { levels, base, selection, draft, pictures, palette, reduction }
     }
 
     /// Finds the dominant motion, takes each view's change of brightness (if there may be one) out of it, measures the noise.

@@ -25,14 +25,14 @@ pub(crate) struct CostModel {
     /// T: the cost of a pixel that the motion does not explain.
     pub(crate) truncation: f32,
     /// κ: standard deviation of the position that a right motion predicts, pixels.
-    pub(crate) looseness: f32,
+    pub(crate) position_sigma: f32,
 }
 
 impl CostModel {
     /// For estimating motions.
-    pub(crate) const ESTIMATION: CostModel = CostModel { truncation: 4.0, looseness: 0.15 };
+    pub(crate) const ESTIMATION: CostModel = CostModel { truncation: 4.0, position_sigma: 0.15 };
     /// For labelling pixels.
-    pub(crate) const LABELS: CostModel = CostModel { truncation: 2.0, looseness: 0.15 };
+    pub(crate) const LABELS: CostModel = CostModel { truncation: 2.0, position_sigma: 0.15 };
 
     #[inline(always)]
     fn of(self, residual: f32, variance: f32) -> f32 {
@@ -145,7 +145,8 @@ impl<'a> Comparison<'a> {
     /// Costs of row y from column `left` on, as many as there are places.
     pub(crate) fn row(&self, y: usize, left: usize, costs: &mut [f32]) {
         let level = self.level;
-        let (noise, looseness) = (level.noise * level.noise, self.model.looseness * self.model.looseness);
+        let (noise, position_sigma) =
+            (level.noise * level.noise, self.model.position_sigma * self.model.position_sigma);
         let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / 128.0) as f32);
         let correlation = level.noise_correlation();
         let path = level.path(&self.scaled, left, y);
@@ -153,7 +154,7 @@ impl<'a> Comparison<'a> {
         let mut at = Footprints::new();
         let cost = |sample: f32, first: f32, energy: f32, [fx, fy]: [f32; 2]| {
             let residual = sample - first * (1.0 + gain) - bias;
-            let variance = noise * interpolation_variance(fx, fy, correlation) + looseness * energy;
+            let variance = noise * interpolation_variance(fx, fy, correlation) + position_sigma * energy;
             self.model.of(residual, variance)
         };
         let columns = left..left + costs.len();

@@ -220,7 +220,7 @@ impl RowBuffers {
     ) {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
-        let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
+        let position_sigma = CostModel::ESTIMATION.position_sigma * CostModel::ESTIMATION.position_sigma;
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
         // The mean of both gradients, per pixel of this level.
         let half = 0.5 * level.stride as f32;
@@ -256,7 +256,7 @@ impl RowBuffers {
             let [weights_of, residuals_of, gx_of, gy_of] = &mut row;
             for k in 0..CHUNK {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
-                let information = 1.0 / (noise + looseness * energy[k]);
+                let information = 1.0 / (noise + position_sigma * energy[k]);
                 let robust = how.robustness / (how.robustness + residual * residual * information);
                 let counts = at.inside(k) & if given[k] > 1e-3 { u32::MAX } else { 0 };
                 let counted = |value: f32| f32::from_bits(value.to_bits() & counts);

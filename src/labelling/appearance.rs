@@ -12,13 +12,13 @@ use crate::workspace::Buffer;
 const STEPS: usize = 8;
 const COLOURS: usize = STEPS * STEPS * STEPS;
 /// Probability that every label gives every colour beforehand.
-const DOUBT: f32 = 1e-3;
+const PRIOR: f32 = 1e-3;
 /// Price of a colour per nat of its improbability, where colours can be trusted entirely.
-const STRENGTH: f32 = 1.0;
+const PRICE_PER_NAT: f32 = 1.0;
 /// Largest price of a colour.
-const LARGEST: f32 = 2.0;
+const LARGEST_PRICE: f32 = 2.0;
 /// Evidence, in costs, from which on a label has colours.
-const LEAST_EVIDENCE: f32 = 20.0;
+const SMALLEST_SUPPORT: f32 = 20.0;
 /// Side of the blocks that form the two halves, working pixels.
 const BLOCK: usize = 12;
 
@@ -79,10 +79,10 @@ impl ColourPrices {
     /// Learned from the pixels that the motions place.
     pub(crate) fn learned(palette: &Palette, costs: &[Plane], labels: &[u8]) -> ColourPrices {
         let n = costs.len();
-        let weights = evidence(costs, labels);
+        let weights = margins(costs, labels);
         let trust = trust(palette, labels, &weights, n);
         let mut table = posterior(palette, labels, &weights, n, |_| true);
-        table.iter_mut().for_each(|p| *p = (-STRENGTH * trust * trust * libm::logf(*p)).min(LARGEST));
+        table.iter_mut().for_each(|p| *p = (-PRICE_PER_NAT * trust * trust * libm::logf(*p)).min(LARGEST_PRICE));
         ColourPrices { table, labels: n }
     }
 
@@ -120,7 +120,7 @@ fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
 }
 
 /// By how much each pixel's own motion is cheaper than the next.
-fn evidence(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
+fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
     let next = |p: usize, own: usize| {
         (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min)
     };
@@ -142,16 +142,16 @@ fn posterior(
         table[usize::from(palette.indices[p]) * n + usize::from(label)] += weight;
         totals[usize::from(label)] += weight;
     }
-    let known = totals.iter().filter(|&&total| total >= LEAST_EVIDENCE).count().max(1) as f32;
+    let known = totals.iter().filter(|&&total| total >= SMALLEST_SUPPORT).count().max(1) as f32;
     for of_colour in table.chunks_exact_mut(n) {
         let mut sum = 0.0;
-        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= LEAST_EVIDENCE) {
-            *share = *share / total + DOUBT;
+        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= SMALLEST_SUPPORT) {
+            *share = *share / total + PRIOR;
             sum += *share;
         }
         // Nothing is known against a label that has given no evidence: any colour is as likely there as elsewhere on average.
         let average = if sum > 0.0 { sum / known } else { 1.0 };
-        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < LEAST_EVIDENCE) {
+        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < SMALLEST_SUPPORT) {
             *share = average;
             sum += average;
         }

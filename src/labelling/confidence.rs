@@ -17,20 +17,20 @@ use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 
 /// β: weight of a gathered cost.
-const EVIDENCE: f32 = 3.5;
+const COST_WEIGHT: f32 = 3.5;
 /// γ: weight of the labels around.
-const NEIGHBOURS: f32 = 2.25;
+const NEIGHBOUR_WEIGHT: f32 = 2.25;
 /// δ: weight of the pixel's own label.
-const OWN: f32 = 1.4;
+const OWN_LABEL_WEIGHT: f32 = 1.4;
 /// u: gathered cost above which a motion does not explain a pixel; 2 is the largest cost there is.
-const UNEXPLAINED: f32 = 1.4;
+const UNEXPLAINED_COST: f32 = 1.4;
 /// Standard deviations of the windows of evidence and of labels, working pixels.
 const WINDOWS: [f32; 2] = [8.0, 3.0];
 
 /// Probability, 0…1, of every motion at every pixel; `costs[k]` is what motion k costs as labels see it.
 pub(crate) fn probabilities(costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
     let Some((width, height)) = costs.first().map(|plane| (plane.width(), plane.height())) else { return Vec::new() };
-    let mut total = Plane::filled(width, height, libm::expf(-EVIDENCE * UNEXPLAINED));
+    let mut total = Plane::filled(width, height, libm::expf(-COST_WEIGHT * UNEXPLAINED_COST));
     let mut weights: Vec<Plane> = Vec::with_capacity(costs.len());
     for (k, cost) in costs.iter().enumerate() {
         let mut weight = gaussian(cost, WINDOWS[0]);
@@ -38,8 +38,8 @@ pub(crate) fn probabilities(costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
         for (((w, near), label), t) in
             weight.values_mut().iter_mut().zip(around.values()).zip(labels).zip(total.values_mut())
         {
-            let own = if usize::from(*label) == k { OWN } else { 0.0 };
-            *w = libm::expf(NEIGHBOURS * near + own - EVIDENCE * *w);
+            let own = if usize::from(*label) == k { OWN_LABEL_WEIGHT } else { 0.0 };
+            *w = libm::expf(NEIGHBOUR_WEIGHT * near + own - COST_WEIGHT * *w);
             *t += *w;
         }
         weights.push(weight);

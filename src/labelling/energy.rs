@@ -3,8 +3,8 @@
 
 use std::ops::Range;
 
-use super::misfit::{Misfit, allow_for_misfit};
 use super::potts::{Potts, Solver, minimise};
+use super::variance_inflation::{VarianceInflation, inflate_variance};
 use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
@@ -21,7 +21,7 @@ pub(crate) struct Coherence {
     /// λ: price of a border between two pixels that look alike, in costs.
     pub(crate) smoothness: f32,
     /// Price of a pixel that does not go with the dominant motion: decides where the data cannot tell.
-    pub(crate) departure: f32,
+    pub(crate) object_bias: f32,
     /// Who minimises while motions still come and go.
     pub(crate) draft_solver: Solver,
     /// Who minimises at the end.
@@ -161,62 +161,64 @@ fn fading(z: f32) -> f32 {
 /// that keep the pixel inside. An object costs at least what says nothing by itself, and the dominant motion at most that: an object
 /// does not win pixels by leaving the frame with them.
 pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
-    surveyed(level, motions, coherence).costs
+    LabelCosts::new(level, motions, coherence).costs
 }
 
-/// [`label_costs`] with what was found on the way.
-pub(crate) struct Survey {
+/// The labels' costs, and what they were computed with.
+pub(crate) struct LabelCosts {
+    /// As of [`label_costs`].
     pub(crate) costs: Vec<Plane>,
     /// Share of the second frame in the costs, where there is a frame before.
     pub(crate) shares: Option<Plane>,
-    pub(crate) misfit: Plane,
+    pub(crate) variance_inflation: Plane,
 }
 
-/// The misfit is smoothed and used row by row: between the costs of the motions and those of the labels there is no plane but that of
-/// the smallest.
-pub(crate) fn surveyed(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Survey {
-    let (mut costs, shares) = costs_in_views(level, motions);
-    let mut misfits = Misfit::new(cheapest(&costs, f32::INFINITY));
-    let mut misfit = Plane::unwritten(level.width(), level.height());
-    let mut seen = Buffer::unwritten(level.width());
-    for y in 0..level.height() {
-        misfits.write(y, misfit.row_mut(y));
-        seen.fill(f32::INFINITY);
-        for cost in &mut costs {
-            allow_for_misfit(cost.row_mut(y), misfit.row(y));
-            lower(&mut seen, cost.row(y));
+impl LabelCosts {
+    /// The variance inflation is smoothed and used row by row, so that no plane but that of the smallest costs is needed in between.
+    pub(crate) fn new(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> LabelCosts {
+        let (mut costs, shares) = costs_in_views(level, motions);
+        let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY));
+        let mut inflation = Plane::unwritten(level.width(), level.height());
+        let mut seen = Buffer::unwritten(level.width());
+        for y in 0..level.height() {
+            inflation_rows.write(y, inflation.row_mut(y));
+            seen.fill(f32::INFINITY);
+            for cost in &mut costs {
+                inflate_variance(cost.row_mut(y), inflation.row(y));
+                lower(&mut seen, cost.row(y));
+            }
+            for (label, cost) in costs.iter_mut().enumerate() {
+                to_label_costs(label, cost.row_mut(y), &seen, coherence);
+            }
         }
-        for (label, cost) in costs.iter_mut().enumerate() {
-            as_label(label, cost.row_mut(y), &seen, coherence);
-        }
+        costs.iter_mut().skip(1).for_each(|cost| add_frame_border_price(cost, coherence));
+        LabelCosts { costs, shares, variance_inflation: inflation }
     }
-    costs.iter_mut().skip(1).for_each(|cost| pay_at_the_border(cost, coherence));
-    Survey { costs, shares, misfit }
 }
 
 /// Makes costs of a motion at some pixels those of its label, where `seen` is the smallest cost of any motion that keeps a pixel
 /// inside, infinite where none does.
 #[inline(never)]
-pub(crate) fn as_label(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
+pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
     let neutral = CostModel::LABELS.outside();
-    let (least, most, departure) = match label {
+    let (least, most, object_bias) = match label {
         0 => (f32::NEG_INFINITY, neutral, 0.0),
-        _ => (neutral, f32::INFINITY, coherence.departure),
+        _ => (neutral, f32::INFINITY, coherence.object_bias),
     };
     each_with(costs, [seen], |cost, [seen]| {
         let unseen = if seen < most { seen } else { neutral };
         let unseen = if unseen > least { unseen } else { neutral };
-        departure + if cost.is_finite() { cost } else { unseen }
+        object_bias + if cost.is_finite() { cost } else { unseen }
     });
 }
 
 /// What an object pays for a pixel on the frame's border, for each border that it lies on.
-pub(crate) fn border_price(coherence: Coherence) -> f32 {
+pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
     FRAME_BORDER * coherence.smoothness
 }
 
-fn pay_at_the_border(cost: &mut Plane, coherence: Coherence) {
-    let price = border_price(coherence);
+fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
+    let price = frame_border_price(coherence);
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
         cost.row_mut(y).iter_mut().for_each(|c| *c += price);
@@ -235,7 +237,7 @@ pub(crate) mod tests {
 
     pub(crate) const COHERENCE: Coherence = Coherence {
         smoothness: 8.0,
-        departure: 0.05,
+        object_bias: 0.05,
         draft_solver: Solver::FAST,
         solver: Solver::BEST,
         sharpening: Solver::FAST,
@@ -256,7 +258,7 @@ pub(crate) mod tests {
             let dominant = label_costs(level, &[leaving, still], COHERENCE);
             for y in 1..47 {
                 for x in 45..63 {
-                    assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.departure, "({x}, {y})");
+                    assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.object_bias, "({x}, {y})");
                     assert!(dominant[0].at(x, y) <= dominant[1].at(x, y), "({x}, {y})");
                 }
             }
@@ -264,7 +266,7 @@ pub(crate) mod tests {
         let nowhere = AffineMotion::translation(100.0, 0.0);
         let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
         assert_eq!(unseen[0].at(30, 30), CostModel::LABELS.outside());
-        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.departure).abs() < 1e-6);
+        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.object_bias).abs() < 1e-6);
     }
 
     #[test]

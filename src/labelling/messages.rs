@@ -70,7 +70,7 @@ where
         pyramid.push(coarser);
     }
     if let Some(coarsest) = pyramid.last_mut() {
-        coarsest.be_silent();
+        coarsest.clear_messages();
     }
     for level in (1..pyramid.len()).rev() {
         for _ in 0..iterations.min(COARSE_ITERATIONS) {
@@ -78,7 +78,7 @@ where
             pyramid[level].backward();
         }
         let (finer, coarser) = pyramid.split_at_mut(level);
-        finer[level - 1].inherit(&coarser[0]);
+        finer[level - 1].take_messages_from(&coarser[0]);
     }
 
     let grid = &mut pyramid[0];
@@ -200,13 +200,13 @@ where
     }
 
     /// No messages at all.
-    fn be_silent(&mut self) {
+    fn clear_messages(&mut self) {
         self.right = Buffer::filled(self.costs.len(), [0.0; L]);
         self.down = self.right.clone();
     }
 
     /// Messages from the level above. They are a start and nothing more: any messages keep the bound valid.
-    fn inherit(&mut self, coarser: &Self) {
+    fn take_messages_from(&mut self, coarser: &Self) {
         let none = [0.0; L];
         let half = |m: &[f32; L]| m.map(|m| 0.5 * m);
         for (messages, of_coarser) in [(&mut self.right, &coarser.right), (&mut self.down, &coarser.down)] {
@@ -238,10 +238,10 @@ where
             let both = y + 1 < self.height;
             for x in 0..=self.width {
                 if x < self.width {
-                    self.send_on(&mut upper, x, labels.as_deref_mut());
+                    self.forward_pixel(&mut upper, x, labels.as_deref_mut());
                 }
                 if both && x > 0 {
-                    self.send_on(&mut lower, x - 1, labels.as_deref_mut());
+                    self.forward_pixel(&mut lower, x - 1, labels.as_deref_mut());
                 }
             }
             energy += upper.sum;
@@ -258,10 +258,10 @@ where
             let both = y < self.height;
             for x in (0..=self.width).rev() {
                 if both && x > 0 {
-                    self.send_back(&mut lower, x - 1);
+                    self.backward_pixel(&mut lower, x - 1);
                 }
                 if x < self.width {
-                    self.send_back(&mut upper, x);
+                    self.backward_pixel(&mut upper, x);
                 }
             }
             bound += lower.sum;
@@ -272,7 +272,7 @@ where
 
     /// A pixel's part of [`forward`](Self::forward). What comes from the left is in `row`.
     #[inline(always)]
-    fn send_on(&mut self, row: &mut Row<L>, x: usize, labels: Option<&mut [u8]>) {
+    fn forward_pixel(&mut self, row: &mut Row<L>, x: usize, labels: Option<&mut [u8]>) {
         let p = row.start + x;
         let (costs, right, down) = (&self.costs[p], self.right[p], self.down[p]);
         let [to_right, to_below] = self.weights[p];
@@ -298,7 +298,7 @@ where
 
     /// A pixel's part of [`backward`](Self::backward). What comes from the right is in `row`.
     #[inline(always)]
-    fn send_back(&mut self, row: &mut Row<L>, x: usize) {
+    fn backward_pixel(&mut self, row: &mut Row<L>, x: usize) {
         let p = row.start + x;
         let left = if x > 0 { self.right[p - 1] } else { [0.0; L] };
         let up = if row.start > 0 { self.down[p - self.width] } else { [0.0; L] };

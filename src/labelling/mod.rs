@@ -9,11 +9,11 @@ pub(crate) mod groups;
 mod max_flow;
 pub(crate) mod merging;
 mod messages;
-mod misfit;
 pub(crate) mod potts;
 pub(crate) mod sharpening;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;
+mod variance_inflation;
 pub(crate) mod views;
 pub(crate) mod visibility;
 

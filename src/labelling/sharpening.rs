@@ -5,10 +5,10 @@
 //! coarser level.
 
 use super::appearance::{ColourPrices, Palette};
-use super::energy::{Borders, Coherence, Picture, as_label, border_price};
-use super::misfit::allow_for_misfit;
+use super::energy::{Borders, Coherence, Picture, frame_border_price, to_label_costs};
 use super::potts::Solver;
-use super::views::mixed;
+use super::variance_inflation::inflate_variance;
+use super::views::blend_views;
 use super::visibility::most_where_hidden;
 use crate::alignment::cost::{Comparison, CostModel, View};
 use crate::frame::Plane;
@@ -26,24 +26,24 @@ const MARGIN: usize = 4;
 const FAR: f32 = 1e3;
 
 /// A labelling of a coarser level and what it was decided by.
-pub(crate) struct Coarse<'a> {
+pub(crate) struct CoarseLabelling<'a> {
     pub(crate) width: usize,
     pub(crate) labels: &'a [u8],
     /// Working pixels per pixel.
     pub(crate) step: usize,
     /// How much larger the variance is than the noise's.
-    pub(crate) misfit: &'a Plane,
+    pub(crate) variance_inflation: &'a Plane,
     /// Share of the second frame, where there is a frame before.
     pub(crate) shares: Option<&'a Plane>,
     /// For every label the pixels that it may be hidden at.
     pub(crate) hidden: &'a [Buffer<bool>],
     /// For every label the pixels that it cannot have, if any.
-    pub(crate) barred: &'a [Buffer<bool>],
+    pub(crate) excluded: &'a [Buffer<bool>],
     pub(crate) colours: Option<&'a ColourPrices>,
 }
 
 /// What the working size adds.
-pub(crate) struct Fine<'a> {
+pub(crate) struct WorkingLevel<'a> {
     pub(crate) level: &'a Level,
     pub(crate) picture: Option<&'a Picture>,
     pub(crate) palette: &'a Palette,
@@ -64,7 +64,7 @@ struct Region {
 }
 
 /// The labels of the working size.
-pub(crate) fn sharpened(coarse: &Coarse<'_>, fine: &Fine<'_>, solver: Solver) -> Buffer<u8> {
+pub(crate) fn sharpened(coarse: &CoarseLabelling<'_>, fine: &WorkingLevel<'_>, solver: Solver) -> Buffer<u8> {
     let (width, height) = (fine.level.width(), fine.level.height());
     let mut labels: Buffer<u8> =
         (0..width * height).map(|p| coarse.labels[coarse.pixel(p % width, p / width)]).collect();
@@ -97,8 +97,8 @@ fn regions(tiles: Vec<Tile>) -> Vec<Region> {
 impl Region {
     fn solve(
         &self,
-        coarse: &Coarse<'_>,
-        fine: &Fine<'_>,
+        coarse: &CoarseLabelling<'_>,
+        fine: &WorkingLevel<'_>,
         comparisons: &Comparisons<'_>,
         solver: Solver,
         labels: &mut [u8],
@@ -140,7 +140,7 @@ impl Region {
     }
 }
 
-impl Coarse<'_> {
+impl CoarseLabelling<'_> {
     /// The coarse pixel of a working pixel.
     #[inline(always)]
     fn pixel(&self, x: usize, y: usize) -> usize {
@@ -179,7 +179,7 @@ struct Comparisons<'a> {
 }
 
 impl<'a> Comparisons<'a> {
-    fn new(fine: &Fine<'a>) -> Comparisons<'a> {
+    fn new(fine: &WorkingLevel<'a>) -> Comparisons<'a> {
         let all = |view| {
             let one = |motion| Comparison::new(fine.level, view, motion, CostModel::LABELS);
             fine.motions.iter().map(one).collect()
@@ -190,8 +190,8 @@ impl<'a> Comparisons<'a> {
     /// The costs of the labels that compete in a tile, on planes that begin at `corner`; `number` says which is whose.
     fn fill(
         &self,
-        coarse: &Coarse<'_>,
-        fine: &Fine<'_>,
+        coarse: &CoarseLabelling<'_>,
+        fine: &WorkingLevel<'_>,
         tile: &Tile,
         corner: [usize; 2],
         number: &[u8; 256],
@@ -201,13 +201,16 @@ impl<'a> Comparisons<'a> {
         let Area { columns, rows: tile_rows } = &tile.area;
         let (count, left) = (columns.len(), columns.start);
         let mut rows = vec![[0.0; TILE[0]]; tile.labels.len()];
-        let (mut earlier, mut misfit, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]], [0.0; TILE[0]]);
+        let (mut earlier, mut inflation, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]], [0.0; TILE[0]]);
         let mut places = [0; TILE[0]];
-        let at_border = border_price(fine.coherence);
+        let border = frame_border_price(fine.coherence);
         for y in tile_rows.clone() {
             places.iter_mut().zip(columns.clone()).for_each(|(place, x)| *place = coarse.pixel(x, y));
             let places = &places[..count];
-            misfit.iter_mut().zip(places).for_each(|(misfit, &p)| *misfit = coarse.misfit.values()[p]);
+            inflation
+                .iter_mut()
+                .zip(places)
+                .for_each(|(inflation, &p)| *inflation = coarse.variance_inflation.values()[p]);
             seen.fill(f32::INFINITY);
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
@@ -219,28 +222,28 @@ impl<'a> Comparisons<'a> {
                 if let (Some(before), Some(shares)) = (&self.before[label], coarse.shares) {
                     before.row(y, left, &mut earlier[..count]);
                     for ((c, b), &p) in row.iter_mut().zip(&earlier).zip(places) {
-                        *c = mixed(*c, *b, shares.values()[p]);
+                        *c = blend_views(*c, *b, shares.values()[p]);
                     }
                 }
-                allow_for_misfit(row, &misfit);
+                inflate_variance(row, &inflation);
                 lower(&mut seen, row);
             }
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
                 let row = &mut row[..count];
-                as_label(label, row, &seen, fine.coherence);
+                to_label_costs(label, row, &seen, fine.coherence);
                 if label > 0 {
-                    let across = if y == 0 || y + 1 == height { at_border } else { 0.0 };
+                    let across = if y == 0 || y + 1 == height { border } else { 0.0 };
                     for (c, x) in row.iter_mut().zip(columns.clone()) {
-                        *c += across + if x == 0 || x + 1 == width { at_border } else { 0.0 };
+                        *c += across + if x == 0 || x + 1 == width { border } else { 0.0 };
                     }
                 }
-                if let Some(barred) = coarse.barred.get(label) {
-                    let barred = row.iter_mut().zip(places).filter(|(_, p)| barred[**p]);
-                    barred.for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+                if let Some(excluded) = coarse.excluded.get(label) {
+                    let excluded = row.iter_mut().zip(places).filter(|(_, p)| excluded[**p]);
+                    excluded.for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
                 }
                 if let Some(hidden) = coarse.hidden.get(label) {
-                    let most = most_where_hidden(label, fine.coherence.departure);
+                    let most = most_where_hidden(label, fine.coherence.object_bias);
                     row.iter_mut().zip(places).filter(|(_, p)| hidden[**p]).for_each(|(c, _)| *c = c.min(most));
                 }
                 if let Some(colours) = coarse.colours {
@@ -259,7 +262,7 @@ mod tests {
     use super::*;
     use crate::frame::filter::gaussian;
     use crate::frame::pyramid::build;
-    use crate::labelling::energy::surveyed;
+    use crate::labelling::energy::LabelCosts;
     use crate::labelling::energy::tests::COHERENCE;
     use crate::labelling::visibility::hidden_under;
     use crate::random::Random;
@@ -301,23 +304,23 @@ mod tests {
         let motions = [(0.0, 0.0), (2.0, 0.0), (0.0, -2.0)].map(|(u, v)| AffineMotion::translation(u, v));
         let labels: Vec<u8> =
             (0..SIZE[0] * SIZE[1] / 4).map(|p| owner(p % (SIZE[0] / 2) * 2, p / (SIZE[0] / 2) * 2)).collect();
-        let survey = surveyed(&levels[1], &motions, COHERENCE);
+        let uncorrected = LabelCosts::new(&levels[1], &motions, COHERENCE);
         let hidden = hidden_under(&levels[1], &motions, &labels);
-        let coarse = Coarse {
+        let coarse = CoarseLabelling {
             width: SIZE[0] / 2,
             labels: &labels,
             step: 2,
-            misfit: &survey.misfit,
+            variance_inflation: &uncorrected.variance_inflation,
             shares: None,
             hidden: &hidden,
-            barred: &[],
+            excluded: &[],
             colours: None,
         };
         let picture = Picture { luminance: first.clone(), colours: [0; 3].map(|_| first.clone()) };
         let colours = vec![[128u8; 4]; SIZE[0] * SIZE[1]];
         let frame = crate::frame::Frame::from_rgba(SIZE[0], SIZE[1], colours.as_flattened()).unwrap();
         let palette = Palette::new(&frame, SIZE[0], SIZE[1]);
-        let fine = Fine {
+        let fine = WorkingLevel {
             level: &levels[0],
             picture: Some(&picture),
             palette: &palette,

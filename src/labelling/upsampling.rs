@@ -23,16 +23,16 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
         return labels.to_vec();
     }
     let scale = factor(width, full_width).max(factor(height, full_height));
-    let coarse = Coarse { labels, width, height, scale };
+    let grid = LabelGrid { labels, width, height, scale };
     let mut winner = vec![0u8; full_width * full_height];
     for top in (0..full_height).step_by(TILE) {
         for left in (0..full_width).step_by(TILE) {
             let (right, bottom) = ((left + TILE).min(full_width), (top + TILE).min(full_height));
             let tile = Area { columns: left..right, rows: top..bottom };
-            let present = coarse.present(&tile.grown(2 * RADIUS, full_width, full_height), of);
+            let present = grid.present(&tile.grown(2 * RADIUS, full_width, full_height), of);
             match present[..] {
                 [only] => tile.rows.for_each(|y| winner[y * full_width..][tile.columns.clone()].fill(only)),
-                _ => decide(&coarse, &present, guide, &tile, &mut winner),
+                _ => decide(&grid, &present, guide, &tile, &mut winner),
             }
         }
     }
@@ -40,7 +40,7 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
 }
 
 /// Gives every pixel of a tile to the strongest of the labels, the first of equals.
-fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8]) {
+fn decide(grid: &LabelGrid<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8]) {
     let full = (guide.width(), guide.height());
     let guide = Patch::from_fn(tile.grown(2 * RADIUS, full.0, full.1), |x, y| guide.at(x, y));
     let filter = GuidedFilter::new(&guide, tile, full);
@@ -49,7 +49,7 @@ fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner
     let mut rest = Patch::from_fn(tile.clone(), |_, _| 1.0);
     for (k, &label) in labels.iter().enumerate() {
         let strength = if k + 1 < labels.len() {
-            let strength = filter.apply(&guide, &coarse.mask(label, guide.area.clone()), tile);
+            let strength = filter.apply(&guide, &grid.mask(label, guide.area.clone()), tile);
             rest.values.iter_mut().zip(&strength.values).for_each(|(r, s)| *r -= s);
             strength
         } else {
@@ -84,14 +84,14 @@ fn factor(small: usize, large: usize) -> usize {
 }
 
 /// Labels at a fraction of the full size.
-struct Coarse<'a> {
+struct LabelGrid<'a> {
     labels: &'a [u8],
     width: usize,
     height: usize,
     scale: usize,
 }
 
-impl Coarse<'_> {
+impl LabelGrid<'_> {
     /// The labels, below `of`, that have any weight in an area of the full size, in order.
     fn present(&self, area: &Area, of: usize) -> Vec<u8> {
         let mut found = vec![false; of];

@@ -32,7 +32,7 @@ pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Pl
     }
     for (cost, before) in costs.iter_mut().zip(&before) {
         let both = cost.values_mut().iter_mut().zip(before.values());
-        both.zip(shares.values()).for_each(|((c, b), share)| *c = mixed(*c, *b, *share));
+        both.zip(shares.values()).for_each(|((c, b), share)| *c = blend_views(*c, *b, *share));
     }
     (costs, Some(shares))
 }
@@ -47,7 +47,7 @@ pub(crate) fn costs_where_seen(level: &Level, motions: &[AffineMotion]) -> Vec<P
 
 /// The cost of a pixel from its costs in both views, where the later one has a share.
 #[inline(always)]
-pub(crate) fn mixed(later: f32, earlier: f32, share: f32) -> f32 {
+pub(crate) fn blend_views(later: f32, earlier: f32, share: f32) -> f32 {
     match (later.is_finite(), earlier.is_finite()) {
         (true, true) => share * later + (1.0 - share) * earlier,
         (true, false) => later,

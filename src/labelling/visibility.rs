@@ -22,10 +22,10 @@ pub(crate) fn with_visibility(
     motions: &[AffineMotion],
     costs: &[Plane],
     labels: &[u8],
-    departure: f32,
+    object_bias: f32,
 ) -> Vec<Plane> {
     let hide = |(k, hidden): (usize, Buffer<bool>)| {
-        let most = most_where_hidden(k, departure);
+        let most = most_where_hidden(k, object_bias);
         let mut out = costs[k].clone();
         for (c, _) in out.values_mut().iter_mut().zip(&hidden).filter(|(_, hidden)| **hidden) {
             *c = c.min(most);
@@ -36,8 +36,8 @@ pub(crate) fn with_visibility(
 }
 
 /// What a motion costs at most where it moves a pixel behind another object.
-pub(crate) fn most_where_hidden(label: usize, departure: f32) -> f32 {
-    HIDDEN + if label == 0 { 0.0 } else { departure }
+pub(crate) fn most_where_hidden(label: usize, object_bias: f32) -> f32 {
+    HIDDEN + if label == 0 { 0.0 } else { object_bias }
 }
 
 /// For every motion the pixels at which it need not pay, as [`with_visibility`] has it.

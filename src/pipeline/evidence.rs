@@ -1,7 +1,7 @@
 //! What the number of motions rests on: description lengths with fewer and with more motions than were found.
 
-use super::Work;
-use super::masks::{Labelled, borders, left_over};
+use super::PairPyramid;
+use super::masks::{Labelled, borders, estimation_costs};
 use super::settings::Settings;
 use crate::answer::Candidate;
 use crate::frame::Plane;
@@ -13,15 +13,15 @@ use crate::options::MAX_MOTIONS;
 
 /// Description lengths: of what was found, of what remains as the least worthy motions are taken away, and of one more. Labels are
 /// solved for each at the base level, by costs without occlusion and colour.
-pub(super) fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
-    let level = &work.levels[work.base];
+pub(super) fn evidence(pyramid: &PairPyramid, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
+    let level = &pyramid.levels[pyramid.base];
     let width = level.width();
     let n = labelled.motions.len();
     let motions: Vec<AffineMotion> =
-        labelled.motions.iter().chain(&labelled.left_out).copied().take(MAX_MOTIONS).collect();
-    let mut raw = left_over(level, &motions);
+        labelled.motions.iter().chain(&labelled.runner_up).copied().take(MAX_MOTIONS).collect();
+    let mut raw = estimation_costs(level, &motions);
     let mut costs = label_costs(level, &motions, settings.coherence);
-    let borders = borders(work, work.base, settings);
+    let borders = borders(pyramid, pyramid.base, settings);
     let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
     let one_more = (motions.len() > n).then(|| length(&raw, &solve(&costs), width));
     raw.truncate(n);

@@ -1,7 +1,7 @@
 //! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion, merged
 //! and split; sharpened at the working size; cleaned.
 
-use super::Work;
+use super::PairPyramid;
 use super::hypothesis::Found;
 use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost};
@@ -10,19 +10,19 @@ use crate::frame::Plane;
 use crate::frame::pyramid::Level;
 use crate::labelling::appearance::{ColourPrices, add_colours};
 use crate::labelling::description::{SMALLEST_SHARE, counts, price_of_motion, worth};
-use crate::labelling::energy::{Borders, Survey, surveyed};
+use crate::labelling::energy::{Borders, LabelCosts};
 use crate::labelling::merging::best_merger;
 use crate::labelling::potts::Solver;
-use crate::labelling::sharpening::{Coarse, Fine, sharpened};
+use crate::labelling::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
 use crate::labelling::splitting::{split_bodies, split_components};
 use crate::labelling::visibility::{hidden_under, with_visibility};
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 
 /// A label that came from a split competes only this far around its region, as a share of the root of its pixels …
-const REACH_SHARE: f64 = 0.25;
+const COMPETITION_SHARE: f64 = 0.25;
 /// … and at least this many pixels of the working size.
-const SMALLEST_REACH: usize = 12;
+const SMALLEST_COMPETITION: usize = 12;
 /// Nats of a pixel of a coarser level beside those of a working pixel: it stands for four, whose noise is not independent.
 const COARSE_PIXEL: f32 = 2.0;
 /// Smoothness on a coarser level as a share of that of the working size: half as many pixels lie along a border.
@@ -33,11 +33,11 @@ pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Buffer<u8>,
     /// The best motion that is not among them: it did not pay for itself, here or when motions were selected.
-    pub(super) left_out: Option<AffineMotion>,
+    pub(super) runner_up: Option<AffineMotion>,
 }
 
 /// A labelling in the making: motions, what each costs, who has which pixel.
-struct Draft<'a> {
+struct LabelState<'a> {
     level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
@@ -45,53 +45,53 @@ struct Draft<'a> {
     /// Label costs.
     costs: Vec<Plane>,
     /// The same before occlusion, with what they were made of.
-    survey: Survey,
+    uncorrected: LabelCosts,
     /// Estimation costs, for the description length.
     raw: Vec<Plane>,
     labels: Buffer<u8>,
     /// For every label the pixels that it cannot have; none where all labels compete everywhere.
-    barred: Vec<Buffer<bool>>,
+    excluded: Vec<Buffer<bool>>,
     /// What was taken away last, else what the selection left out.
-    left_out: Option<AffineMotion>,
+    runner_up: Option<AffineMotion>,
 }
 
-pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled {
-    let mut draft = Draft::new(work, found, settings);
-    draft.solve();
-    draft.thin_out();
-    draft.rest();
-    draft.see();
-    draft.merge();
-    if draft.split() {
-        draft.thin_out();
-        draft.merge();
+pub(super) fn label(pyramid: &PairPyramid, found: Found, settings: &Settings) -> Labelled {
+    let mut state = LabelState::new(pyramid, found, settings);
+    state.solve();
+    state.prune();
+    state.try_static_background();
+    state.correct_occlusion();
+    state.merge();
+    if state.split() {
+        state.prune();
+        state.merge();
     }
-    if work.draft == 0 {
-        draft.look(work);
-        draft.finish();
+    if pyramid.draft == 0 {
+        state.add_colour_costs(pyramid);
+        state.solve_final();
     } else {
-        draft.sharpen(work);
+        state.sharpen(pyramid);
     }
-    let width = work.finest().width();
-    draft.clean(width);
-    let Draft { motions, labels, left_out, .. } = draft;
-    Labelled { motions, labels, left_out }
+    let width = pyramid.finest().width();
+    state.clean(width);
+    let LabelState { motions, labels, runner_up, .. } = state;
+    Labelled { motions, labels, runner_up }
 }
 
 /// Prices of borders on a level.
-pub(super) fn borders(work: &Work, index: usize, settings: &Settings) -> Borders {
-    let level = &work.levels[index];
+pub(super) fn borders(pyramid: &PairPyramid, index: usize, settings: &Settings) -> Borders {
+    let level = &pyramid.levels[index];
     let mut coherence = settings.coherence;
     coherence.smoothness *= if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
     if settings.has(Part::Edges) {
-        Borders::new(&work.pictures[index], level.noise, coherence)
+        Borders::new(&pyramid.pictures[index], level.noise, coherence)
     } else {
         Borders::uniform(level.width(), level.height(), coherence)
     }
 }
 
 /// What every motion leaves unexplained on a level, in the costs of working pixels.
-pub(super) fn left_over(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
     if level.index > 0 {
         raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= nats_of_pixel(level));
@@ -104,25 +104,25 @@ fn nats_of_pixel(level: &Level) -> f32 {
     if level.index > 0 { COARSE_PIXEL } else { 1.0 }
 }
 
-impl<'a> Draft<'a> {
-    fn new(work: &'a Work, found: Found, settings: &'a Settings) -> Draft<'a> {
-        let level = &work.levels[work.draft];
-        let borders = borders(work, work.draft, settings);
-        let motions: Vec<AffineMotion> = found.layers.into_iter().map(|layer| layer.motion).collect();
-        let mut draft = Draft {
+impl<'a> LabelState<'a> {
+    fn new(pyramid: &'a PairPyramid, found: Found, settings: &'a Settings) -> LabelState<'a> {
+        let level = &pyramid.levels[pyramid.draft];
+        let borders = borders(pyramid, pyramid.draft, settings);
+        let motions: Vec<AffineMotion> = found.selected.into_iter().map(|scored| scored.motion).collect();
+        let mut state = LabelState {
             level,
             settings,
             borders,
             costs: Vec::new(),
-            survey: surveyed(level, &motions, settings.coherence),
+            uncorrected: LabelCosts::new(level, &motions, settings.coherence),
             raw: Vec::new(),
             labels: Buffer::filled(level.width() * level.height(), 0),
-            barred: Vec::new(),
+            excluded: Vec::new(),
             motions,
-            left_out: found.left_out,
+            runner_up: found.runner_up,
         };
-        draft.weigh();
-        draft
+        state.reset_costs();
+        state
     }
 
     fn size(&self) -> (usize, usize) {
@@ -130,33 +130,33 @@ impl<'a> Draft<'a> {
     }
 
     /// Costs of all motions.
-    fn measure(&mut self) {
-        self.survey = surveyed(self.level, &self.motions, self.settings.coherence);
-        self.weigh();
+    fn recompute_costs(&mut self) {
+        self.uncorrected = LabelCosts::new(self.level, &self.motions, self.settings.coherence);
+        self.reset_costs();
     }
 
-    fn weigh(&mut self) {
-        self.raw = left_over(self.level, &self.motions);
-        self.costs = self.survey.costs.clone();
+    fn reset_costs(&mut self) {
+        self.raw = estimation_costs(self.level, &self.motions);
+        self.costs = self.uncorrected.costs.clone();
     }
 
     fn solve(&mut self) {
         self.labels = self.borders.solve(&self.costs, self.settings.coherence.draft_solver);
     }
 
-    fn hears_colours(&self) -> bool {
+    fn uses_colour(&self) -> bool {
         self.motions.len() > 1 && self.settings.has(Part::Colour)
     }
 
     /// Adds what the colours say.
-    fn look(&mut self, work: &Work) {
-        if self.hears_colours() {
-            add_colours(&mut self.costs, &work.palette, &self.labels);
+    fn add_colour_costs(&mut self, pyramid: &PairPyramid) {
+        if self.uses_colour() {
+            add_colours(&mut self.costs, &pyramid.palette, &self.labels);
         }
     }
 
     /// Solves with care: exactly where there are two labels, close to it otherwise.
-    fn finish(&mut self) {
+    fn solve_final(&mut self) {
         let solver = match self.motions.len() {
             2 => Solver::Expansion { sweeps: 1 },
             _ => self.settings.coherence.solver,
@@ -165,26 +165,27 @@ impl<'a> Draft<'a> {
     }
 
     /// Labels of the working size from those of the draft.
-    fn sharpen(&mut self, work: &Work) {
-        let step = 1 << work.draft;
-        let colours =
-            self.hears_colours().then(|| ColourPrices::learned(&work.palette.thinned(step), &self.costs, &self.labels));
+    fn sharpen(&mut self, pyramid: &PairPyramid) {
+        let step = 1 << pyramid.draft;
+        let colours = self
+            .uses_colour()
+            .then(|| ColourPrices::learned(&pyramid.palette.thinned(step), &self.costs, &self.labels));
         let visible = self.motions.len() < 2 || !self.settings.has(Part::Visibility);
         let hidden = if visible { Vec::new() } else { hidden_under(self.level, &self.motions, &self.labels) };
-        let coarse = Coarse {
+        let coarse = CoarseLabelling {
             width: self.level.width(),
             labels: &self.labels,
             step,
-            misfit: &self.survey.misfit,
-            shares: self.survey.shares.as_ref(),
+            variance_inflation: &self.uncorrected.variance_inflation,
+            shares: self.uncorrected.shares.as_ref(),
             hidden: &hidden,
-            barred: &self.barred,
+            excluded: &self.excluded,
             colours: colours.as_ref(),
         };
-        let fine = Fine {
-            level: work.finest(),
-            picture: self.settings.has(Part::Edges).then(|| &work.pictures[0]),
-            palette: &work.palette,
+        let fine = WorkingLevel {
+            level: pyramid.finest(),
+            picture: self.settings.has(Part::Edges).then(|| &pyramid.pictures[0]),
+            palette: &pyramid.palette,
             motions: &self.motions,
             coherence: self.settings.coherence,
         };
@@ -192,7 +193,7 @@ impl<'a> Draft<'a> {
     }
 
     /// Takes away the motion that is worth least, while that is less than nothing, and solves again.
-    fn thin_out(&mut self) {
+    fn prune(&mut self) {
         let most = self.settings.most;
         while self.motions.len() > self.settings.least
             && (self.settings.has(Part::ModelSelection) || self.motions.len() > most)
@@ -202,7 +203,7 @@ impl<'a> Draft<'a> {
             if *value > 0.0 && self.motions.len() <= most {
                 break;
             }
-            self.left_out = Some(self.motions[weakest]);
+            self.runner_up = Some(self.motions[weakest]);
             self.remove(weakest);
             // Only the pixels of the motion that went are open.
             self.labels = self.borders.solve(&self.costs, Solver::LIGHT);
@@ -212,34 +213,34 @@ impl<'a> Draft<'a> {
     fn remove(&mut self, k: usize) {
         self.motions.remove(k);
         self.costs.remove(k);
-        self.survey.costs.remove(k);
+        self.uncorrected.costs.remove(k);
         self.raw.remove(k);
-        if k < self.barred.len() {
-            self.barred.remove(k);
+        if k < self.excluded.len() {
+            self.excluded.remove(k);
         }
     }
 
     /// Corrects for occlusion, more than once: what is hidden depends on the masks.
-    fn see(&mut self) {
+    fn correct_occlusion(&mut self) {
         if self.motions.len() < 2 || !self.settings.has(Part::Visibility) {
             return;
         }
         for _ in 0..self.settings.visibility_rounds {
-            self.uncover();
+            self.update_occlusion();
             self.solve();
         }
-        self.thin_out();
+        self.prune();
     }
 
     /// Costs in which no motion pays for what it hides.
-    fn uncover(&mut self) {
-        let departure = self.settings.coherence.departure;
-        self.costs = with_visibility(self.level, &self.motions, &self.survey.costs, &self.labels, departure);
+    fn update_occlusion(&mut self) {
+        let object_bias = self.settings.coherence.object_bias;
+        self.costs = with_visibility(self.level, &self.motions, &self.uncorrected.costs, &self.labels, object_bias);
     }
 
     /// Leaves the background at rest where that takes less to describe: a motion bent over objects on a bare ground is found out once
     /// the objects have motions of their own, and no motion has no numbers to describe.
-    fn rest(&mut self) {
+    fn try_static_background(&mut self) {
         if self.motions[0] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
             return;
         }
@@ -247,12 +248,12 @@ impl<'a> Draft<'a> {
             let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| **label == 0);
             pixels.map(|(cost, _)| f64::from(*cost)).sum()
         };
-        let still: f64 = left_over(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
-        if 0.5 * (still - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
+        let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
+        if 0.5 * (at_rest - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
             self.motions[0] = AffineMotion::STATIC;
-            self.measure();
+            self.recompute_costs();
             self.solve();
-            self.thin_out();
+            self.prune();
         }
     }
 
@@ -271,13 +272,13 @@ impl<'a> Draft<'a> {
                     _ => *label,
                 };
             }
-            if gone < self.barred.len() {
-                let other = self.barred.remove(gone);
-                self.barred[kept].iter_mut().zip(&other).for_each(|(barred, other)| *barred &= other);
+            if gone < self.excluded.len() {
+                let other = self.excluded.remove(gone);
+                self.excluded[kept].iter_mut().zip(&other).for_each(|(excluded, other)| *excluded &= other);
             }
-            self.measure();
-            self.bar();
-            self.uncover();
+            self.recompute_costs();
+            self.add_exclusion_costs();
+            self.update_occlusion();
             self.solve();
         }
     }
@@ -295,32 +296,32 @@ impl<'a> Draft<'a> {
         if !(parts || bodies) {
             return false;
         }
-        self.measure();
-        self.restrict();
-        self.uncover();
+        self.recompute_costs();
+        self.restrict_to_surroundings();
+        self.update_occlusion();
         self.solve();
         true
     }
 
     /// Objects compete only near where they are, so that two bodies with like motions do not share their pixels.
-    fn restrict(&mut self) {
+    fn restrict_to_surroundings(&mut self) {
         let (width, height) = self.size();
         let sizes = counts(&self.labels, self.motions.len());
-        self.barred = vec![Buffer::filled(self.labels.len(), false)];
+        self.excluded = vec![Buffer::filled(self.labels.len(), false)];
         for k in 1..self.motions.len() {
-            let smallest = SMALLEST_REACH >> self.level.index;
-            let reach = smallest.max((REACH_SHARE * (sizes[k] as f64).sqrt()) as usize);
+            let smallest = SMALLEST_COMPETITION >> self.level.index;
+            let reach = smallest.max((COMPETITION_SHARE * (sizes[k] as f64).sqrt()) as usize);
             let near = near_label(&self.labels, k as u8, width, height, reach);
-            self.barred.push(near.iter().map(|near| !near).collect());
+            self.excluded.push(near.iter().map(|near| !near).collect());
         }
-        self.bar();
+        self.add_exclusion_costs();
     }
 
     /// Makes labels dear where they cannot be.
-    fn bar(&mut self) {
-        for (cost, barred) in self.survey.costs.iter_mut().zip(&self.barred) {
-            let pixels = cost.values_mut().iter_mut().zip(barred);
-            pixels.filter(|(_, barred)| **barred).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+    fn add_exclusion_costs(&mut self) {
+        for (cost, excluded) in self.uncorrected.costs.iter_mut().zip(&self.excluded) {
+            let pixels = cost.values_mut().iter_mut().zip(excluded);
+            pixels.filter(|(_, excluded)| **excluded).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
         }
     }
 

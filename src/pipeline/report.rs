@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::Work;
+use super::PairPyramid;
 use super::evidence::evidence;
 use super::masks::Labelled;
 use super::settings::{Part, Settings};
@@ -92,25 +92,25 @@ const TEXTURE_WINDOW: f32 = 3.0;
 const NO_TEXTURE: f32 = 0.2;
 
 pub(super) fn report(
-    work: &Work,
+    pyramid: &PairPyramid,
     labelled: Labelled,
     settings: &Settings,
     first: &Frame,
     second: &Frame,
     options: &SegmentOptions,
 ) -> Segmentation {
-    let level = work.finest();
+    let level = pyramid.finest();
     let size = [level.width(), level.height()];
-    let candidates = evidence(work, &labelled, settings);
+    let candidates = evidence(pyramid, &labelled, settings);
     let sure = (options.mark_unknown || options.confidence)
         .then(|| probabilities(&costs_where_seen(level, &labelled.motions), &labelled.labels));
-    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(work, &labelled, sure));
-    let grouping = groups(&labelled.motions, &labelled.labels, size[0], work.reduction);
+    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(pyramid, &labelled, sure));
+    let grouping = groups(&labelled.motions, &labelled.labels, size[0], pyramid.reduction);
 
     let full = if settings.has(Part::GuidedEnlarging) {
         upsample(&labelled.labels, size, labelled.motions.len(), first.luminance())
     } else {
-        nearest(&labelled.labels, size, first, work.reduction)
+        nearest(&labelled.labels, size, first, pyramid.reduction)
     };
     let mut confidence = sure.filter(|_| options.confidence).map(|sure| confidence(&sure, &full, first.width()));
     let order = by_size(&full, labelled.motions.len());
@@ -119,13 +119,13 @@ pub(super) fn report(
     let mut labels = full;
     labels.iter_mut().for_each(|l| *l = rank[usize::from(*l)]);
     if let Some(unknown) = unknown {
-        mark(&mut labels, first.width(), &unknown, size, work.reduction);
+        mark_unlabelled(&mut labels, first.width(), &unknown, size, pyramid.reduction);
     }
     for (sure, _) in confidence.iter_mut().flatten().zip(&labels).filter(|(_, label)| **label == UNLABELLED) {
         *sure = 0;
     }
     let matrices: Vec<AffineMotion> =
-        order.iter().map(|&k| at_full_size(&labelled.motions[k], work.reduction)).collect();
+        order.iter().map(|&k| at_full_size(&labelled.motions[k], pyramid.reduction)).collect();
     let groups: Vec<usize> = order.iter().map(|&k| grouping[k]).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
@@ -171,7 +171,7 @@ fn at_full_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
 }
 
 /// A motion of the full size in pixels of the working size.
-pub(super) fn reduced(motion: &AffineMotion, reduction: f64) -> AffineMotion {
+pub(super) fn at_working_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
     let mut a = motion.matrix;
     a[2] /= reduction;
     a[5] /= reduction;
@@ -180,8 +180,8 @@ pub(super) fn reduced(motion: &AffineMotion, reduction: f64) -> AffineMotion {
 
 /// Working pixels that leave the frame, are hidden behind an object or are not explained by their own motion, those without
 /// texture around them, and those whose label is more likely wrong than right.
-fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
-    let level = work.finest();
+fn unknown(pyramid: &PairPyramid, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
+    let level = pyramid.finest();
     let limit = UNKNOWN_COST * CostModel::LABELS.truncation;
     let texture = gaussian(&level.energy, TEXTURE_WINDOW);
     let no_texture = NO_TEXTURE * level.noise * level.noise;
@@ -196,8 +196,8 @@ fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<
                 if usize::from(labelled.labels[p]) == k {
                     let (px, py) = path.at(x);
                     let inside = Footprint::new(px, py, level.width(), level.height()).inside;
-                    let telling = texture.values()[p] > no_texture && probabilities[k].values()[p] >= 0.5;
-                    unknown[p] |= !inside || !telling || own.values()[p] > limit;
+                    let decided = texture.values()[p] > no_texture && probabilities[k].values()[p] >= 0.5;
+                    unknown[p] |= !inside || !decided || own.values()[p] > limit;
                 }
             }
         }
@@ -216,7 +216,7 @@ fn working_pixel(p: usize, width: usize, size: [usize; 2], reduction: f64) -> us
     (p / width / step).min(size[1] - 1) * size[0] + (p % width / step).min(size[0] - 1)
 }
 
-fn mark(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], reduction: f64) {
+fn mark_unlabelled(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], reduction: f64) {
     for (p, label) in labels.iter_mut().enumerate() {
         if unknown[working_pixel(p, width, size, reduction)] {
             *label = UNLABELLED;

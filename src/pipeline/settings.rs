@@ -96,7 +96,7 @@ impl Settings {
             visibility_rounds: 2,
             coherence: Coherence {
                 smoothness: 8.0,
-                departure: 0.05,
+                object_bias: 0.05,
                 draft_solver: Solver::FAST,
                 solver: Solver::BEST,
                 sharpening: Solver::BEST,

@@ -72,7 +72,7 @@ fn unexplained(
     random: &mut Random,
 ) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
-    let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
+    let position_sigma = CostModel::ESTIMATION.position_sigma * CostModel::ESTIMATION.position_sigma;
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut places = Buffer::with_capacity(width * height);
@@ -90,7 +90,7 @@ fn unexplained(
                     continue;
                 }
                 let r = seen - level.first.at(x, y);
-                let e = r * r / (level.noise * level.noise + looseness * level.energy.at(x, y));
+                let e = r * r / (level.noise * level.noise + position_sigma * level.energy.at(x, y));
                 let weight = e / (e + HALF_WEIGHT);
                 if weight > SMALLEST_WEIGHT {
                     places.push(y * width + x);

@@ -20,28 +20,31 @@ const WINDOW: f32 = 2.0;
 
 /// A motion and what it costs at every pixel of a level, gathered over windows.
 #[derive(Clone, Debug)]
-pub(crate) struct Layer {
+pub(crate) struct ScoredMotion {
     pub(crate) motion: AffineMotion,
     pub(crate) cost: Plane,
 }
 
-impl Layer {
+impl ScoredMotion {
     /// A motion looked at on a level.
     #[inline(never)]
-    pub(crate) fn new(level: &Level, motion: AffineMotion) -> Layer {
-        Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32) }
+    pub(crate) fn new(level: &Level, motion: AffineMotion) -> ScoredMotion {
+        ScoredMotion {
+            motion,
+            cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32),
+        }
     }
 
-    /// Lowers a cost to the layer's wherever that is smaller.
+    /// Lowers a cost to the scored's wherever that is smaller.
     #[inline(never)]
     pub(crate) fn lower(&self, cost: &mut Plane) {
         lower(cost.values_mut(), self.cost.values());
     }
 }
 
-/// The smallest cost of any layer at every pixel.
-pub(crate) fn smallest_cost(layers: &[Layer]) -> Plane {
-    let mut smallest = layers[0].cost.clone();
-    layers[1..].iter().for_each(|layer| layer.lower(&mut smallest));
+/// The smallest cost of any scored at every pixel.
+pub(crate) fn smallest_cost(selected: &[ScoredMotion]) -> Plane {
+    let mut smallest = selected[0].cost.clone();
+    selected[1..].iter().for_each(|scored| scored.lower(&mut smallest));
     smallest
 }

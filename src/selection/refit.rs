@@ -1,6 +1,6 @@
 //! Every motion refined on the pixels where it wins.
 
-use super::Layer;
+use super::ScoredMotion;
 use crate::alignment::brightness::Photometric;
 use crate::alignment::cost::total;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
@@ -19,10 +19,10 @@ const SOFTNESS: f32 = 0.7;
 const SMALLEST_REGION: usize = 20;
 
 /// `rounds` rounds; a refined motion is kept only where it lowers the cost of its own region.
-pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
+pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
     for _ in 0..rounds {
-        let regions: Vec<Option<Plane>> = (0..layers.len()).map(|k| region_of(layers, k)).collect();
-        for (k, (layer, region)) in layers.iter_mut().zip(regions).enumerate() {
+        let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
+        for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
             let how = Alignment {
                 freedom: Freedom::Affine,
@@ -31,10 +31,10 @@ pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
                 ridge: if k == 0 { RIDGE.0 } else { RIDGE.1 },
                 photometric: false,
             };
-            let motion = align(level, &layer.motion, &Support::weighted(&region), &mut Photometric::default(), how);
-            let refined = Layer::new(level, motion);
-            if weighted_sum(&refined.cost, &region) < weighted_sum(&layer.cost, &region) {
-                *layer = refined;
+            let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
+            let refined = ScoredMotion::new(level, motion);
+            if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
+                *scored = refined;
             }
         }
     }
@@ -46,12 +46,12 @@ fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
     total(&weighted)
 }
 
-/// Weights of the pixels where layer `k` is cheapest, its border taken off and softened.
-fn region_of(layers: &[Layer], k: usize) -> Option<Plane> {
-    let cost = &layers[k].cost;
+/// Weights of the pixels where scored `k` is cheapest, its border taken off and softened.
+fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
+    let cost = &selected[k].cost;
     let mut region = Plane::filled(cost.width(), cost.height(), 1.0);
-    for (other, layer) in layers.iter().enumerate().filter(|&(other, _)| other != k) {
-        each_with(region.values_mut(), [cost.values(), layer.cost.values()], |r, [own, value]| {
+    for (other, scored) in selected.iter().enumerate().filter(|&(other, _)| other != k) {
+        each_with(region.values_mut(), [cost.values(), scored.cost.values()], |r, [own, value]| {
             let wins = if k < other { own <= value } else { own < value };
             if wins { r } else { 0.0 }
         });

@@ -20,17 +20,17 @@ const LARGEST: f32 = 3.0;
 /// By how much larger than the noise's the variance of each pixel is, a row at a time, from the smallest of the labels' costs.
 ///
 /// The mean of the saturated costs grows about as the standard deviation of the residuals.
-pub(crate) struct Misfit {
+pub(crate) struct VarianceInflation {
     smallest: Plane,
     window: RowFilter,
 }
 
-impl Misfit {
+impl VarianceInflation {
     /// Where all motions move a pixel out of every view, the smallest cost is infinite.
-    pub(crate) fn new(mut smallest: Plane) -> Misfit {
+    pub(crate) fn new(mut smallest: Plane) -> VarianceInflation {
         each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::LABELS.outside() });
         let window = RowFilter::gaussian(smallest.width(), WINDOW);
-        Misfit { smallest, window }
+        VarianceInflation { smallest, window }
     }
 
     /// That of row y.
@@ -45,10 +45,10 @@ impl Misfit {
 
 /// Costs with the variance that the surroundings ask for: e / (1 + e/T) with e / misfit in place of e. What is infinite stays.
 #[inline(never)]
-pub(crate) fn allow_for_misfit(costs: &mut [f32], misfit: &[f32]) {
-    each_with(costs, [misfit], |cost, [misfit]| {
+pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32]) {
+    each_with(costs, [inflation], |cost, [inflation]| {
         let share = cost / CostModel::LABELS.truncation;
-        let allowed = cost / (misfit * (1.0 - share) + share);
+        let allowed = cost / (inflation * (1.0 - share) + share);
         if cost.is_finite() { allowed } else { cost }
     });
 }
@@ -59,11 +59,11 @@ mod tests {
     use crate::labelling::views::cheapest;
 
     fn allow(costs: &mut [Plane]) {
-        let mut misfit = Misfit::new(cheapest(costs, f32::INFINITY));
+        let mut inflation = VarianceInflation::new(cheapest(costs, f32::INFINITY));
         let mut row = vec![0.0; costs[0].width()];
         for y in 0..costs[0].height() {
-            misfit.write(y, &mut row);
-            costs.iter_mut().for_each(|cost| allow_for_misfit(cost.row_mut(y), &row));
+            inflation.write(y, &mut row);
+            costs.iter_mut().for_each(|cost| inflate_variance(cost.row_mut(y), &row));
         }
     }
 
