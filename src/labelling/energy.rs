@@ -3,7 +3,8 @@
 
 use std::ops::Range;
 
-use super::potts::{Potts, Solver, minimise};
+use super::potts::Potts;
+use super::solver::{Solver, minimise};
 use super::variance_inflation::{VarianceInflation, inflate_variance};
 use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;

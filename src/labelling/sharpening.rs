@@ -6,7 +6,7 @@
 
 use super::appearance::{ColourPrices, Palette};
 use super::energy::{Borders, Coherence, Picture, frame_border_price, to_label_costs};
-use super::potts::Solver;
+use super::solver::Solver;
 use super::variance_inflation::inflate_variance;
 use super::views::blend_views;
 use super::visibility::most_where_hidden;

@@ -7,7 +7,7 @@ use crate::answer::Candidate;
 use crate::frame::Plane;
 use crate::labelling::description::{length, price_of_motion, worth};
 use crate::labelling::energy::label_costs;
-use crate::labelling::potts::Solver;
+use crate::labelling::solver::Solver;
 use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
 

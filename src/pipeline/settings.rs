@@ -2,7 +2,7 @@
 //! that docs describe; those that no option touches stand as constants beside the code that uses them.
 
 use crate::labelling::energy::Coherence;
-use crate::labelling::potts::Solver;
+use crate::labelling::solver::Solver;
 use crate::options::{MotionCount, Quality, SegmentOptions};
 
 /// Parts of the pipeline that can be left out one at a time, to measure what each is worth. Only for that: without the feature

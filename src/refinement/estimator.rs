@@ -18,7 +18,7 @@
 
 use super::mixture::{EmBuffers, Mixture, Normal, Stop, nearest_distances, own_distances};
 use super::samples::Samples;
-use super::selection::score;
+use super::score::score;
 use super::subset;
 use crate::order::{median_f64, sort_few};
 use crate::random::Random;
@@ -90,6 +90,11 @@ impl<'a> Search<'a> {
         self.buffers.evaluate(self.all, fit)
     }
 
+    /// The score of a fit on all measurements, smaller is better.
+    pub(crate) fn score(&mut self, fit: &Mixture) -> f64 {
+        score(self.all, self.scale, &mut self.buffers, fit)
+    }
+
     /// All measurements of the search.
     pub(super) fn all(&self) -> &'a Samples {
         self.all
@@ -108,7 +113,7 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        if rival == f64::INFINITY || score(self, &best) < rival + HOPELESS {
+        if rival == f64::INFINITY || self.score(&best) < rival + HOPELESS {
             for _ in 0..UNTANGLINGS {
                 if !self.untangle(&mut best) {
                     break;
