@@ -1,5 +1,5 @@
-//! Which pixel goes with which motion: cost of each motion at each pixel, plus a price for every border between labels that is
-//! lower where the image has an edge.
+//! The labelling energy: the cost of each motion at each pixel, plus a smoothness weight for every border between labels that is lower
+//! along image edges.
 
 use std::ops::Range;
 
@@ -16,18 +16,18 @@ use crate::lanes::{each_with, lower, whole};
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 
-/// How strongly labels hold together.
+/// The smoothness of labels, and how they are solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coherence {
-    /// λ: price of a border between two pixels that look alike, in costs.
+    /// λ: price of a border between two pixels of equal intensity, in costs.
     pub(crate) smoothness: f32,
-    /// Price of a pixel that does not go with the dominant motion: decides where the data cannot tell.
+    /// Price of every object pixel: it favours the dominant motion where the data cannot tell.
     pub(crate) object_bias: f32,
-    /// Who minimises while motions still come and go.
+    /// Solver while motions are still added and removed.
     pub(crate) draft_solver: Solver,
-    /// Who minimises at the end.
+    /// Solver of the final labels.
     pub(crate) solver: Solver,
-    /// Who minimises where the labels of a coarser level are the start.
+    /// Solver that starts from the labels of a coarser level.
     pub(crate) sharpening: Solver,
 }
 
@@ -37,11 +37,11 @@ const EDGE_SHARE: f32 = 0.02;
 const SMALLEST_STEP: f32 = 5.0;
 /// … and at least this many noise deviations.
 const NOISE_STEPS: f32 = 4.0;
-/// Share of λ that an object pays for every pixel on the frame's border: without it a border between labels that leaves the
-/// frame costs nothing, and flat regions leak through.
+/// Share of λ that an object pays for every pixel on the frame's border. Without it the part of an object's outline along the frame's
+/// border would be free, and labels would leak into flat regions there.
 const FRAME_BORDER: f32 = 0.375;
 
-/// What a step in colour counts beside one in luminance, as a share of its length in RGB.
+/// Weight of a step in RGB relative to one in luminance.
 const COLOUR_SHARE: f32 = 0.6;
 
 /// The unblurred first frame at working size: labels may change along its edges.
@@ -81,7 +81,7 @@ impl Borders {
         Borders { horizontal: everywhere.clone(), vertical: everywhere }
     }
 
-    /// Takes the prices of an area of the picture from it. The grid begins at the picture's pixel `corner`.
+    /// Sets the prices of an area from the edges of the picture. The grid begins at the picture's pixel `corner`.
     pub(crate) fn follow(
         &mut self,
         picture: &Picture,
@@ -104,26 +104,26 @@ impl Borders {
         }
     }
 
-    /// The labels of least energy, at most that of those given.
+    /// The labels of least energy found, never worse than those given.
     pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Buffer<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, Some(labels))
     }
 
-    /// The labels of least energy.
+    /// The labels of least energy found.
     pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Buffer<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, None)
     }
 }
 
-/// The price of a border by the step between the two pixels beside it.
+/// The price of a border as a function of the step across it.
 struct Price {
     smoothness: f32,
-    /// One over the grey levels at which all but a 1/e of what an edge takes off is off.
+    /// Reciprocal of the step, grey levels, at which 1 − 1/e of the discount of an edge is reached.
     per_step: f32,
 }
 
 impl Price {
-    /// Prices between the pixels of two runs, as far as both go.
+    /// Prices between the pixels of two runs; ends with the shorter one.
     fn write<'a>(&self, one: [&'a [f32]; 4], other: [&'a [f32]; 4], prices: &mut [f32]) {
         for (k, prices) in prices.chunks_mut(CHUNK).enumerate() {
             let mut space = [[0.0; CHUNK]; 8];
@@ -145,7 +145,7 @@ impl Price {
     }
 }
 
-/// exp(−z) for z ≥ 0 to within 0.3 % up to z = 4 and a thousandth beyond, by products alone: the sixteenth power of 1/exp(z/16).
+/// exp(−z) for z ≥ 0, as the sixteenth power of an approximate 1/exp(z/16): within 0.3 % up to z = 4, within 0.001 beyond.
 #[inline(always)]
 fn fading(z: f32) -> f32 {
     let t = z / 16.0;
@@ -156,26 +156,26 @@ fn fading(z: f32) -> f32 {
     f * f
 }
 
-/// What every motion costs at every pixel, as labels see it; the first is the dominant one.
+/// Label cost of every motion at every pixel; the first is the dominant motion.
 ///
-/// A pixel that a motion moves out of the frame says nothing about it, so there the motion costs what the cheapest of those costs
-/// that keep the pixel inside. An object costs at least what says nothing by itself, and the dominant motion at most that: an object
-/// does not win pixels by leaving the frame with them.
+/// A pixel that a motion moves out of the frame cannot be compared, so the motion costs there as much as the cheapest one that keeps
+/// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
+/// objects do not win pixels by moving them out of the frame.
 pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
     LabelCosts::new(level, motions, coherence).costs
 }
 
-/// The labels' costs, and what they were computed with.
+/// Label costs, and the intermediate results that sharpening uses again.
 pub(crate) struct LabelCosts {
-    /// As of [`label_costs`].
+    /// See [`label_costs`].
     pub(crate) costs: Vec<Plane>,
-    /// Share of the second frame in the costs, where there is a frame before.
+    /// Weight of the second frame in the costs, if there is a frame before.
     pub(crate) shares: Option<Plane>,
     pub(crate) variance_inflation: Plane,
 }
 
 impl LabelCosts {
-    /// The variance inflation is smoothed and used row by row, so that no plane but that of the smallest costs is needed in between.
+    /// Computes them row by row, so that the only intermediate plane is that of the smallest costs.
     pub(crate) fn new(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> LabelCosts {
         let (mut costs, shares) = costs_in_views(level, motions);
         let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY));
@@ -197,8 +197,8 @@ impl LabelCosts {
     }
 }
 
-/// Makes costs of a motion at some pixels those of its label, where `seen` is the smallest cost of any motion that keeps a pixel
-/// inside, infinite where none does.
+/// Turns costs of a motion into those of its label: fills in pixels moved out of the frame and adds the object bias. `seen` is the
+/// smallest cost of any motion that keeps the pixel inside, infinite if there is none.
 #[inline(never)]
 pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
     let neutral = CostModel::LABELS.outside();
@@ -213,7 +213,7 @@ pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], cohe
     });
 }
 
-/// What an object pays for a pixel on the frame's border, for each border that it lies on.
+/// Price of an object's pixel on the frame's border, for each of the borders it lies on.
 pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
     FRAME_BORDER * coherence.smoothness
 }
@@ -271,7 +271,7 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn borders_are_cheap_along_edges_and_dear_where_nothing_changes() {
+    fn borders_are_cheap_along_edges_and_expensive_elsewhere() {
         let grey = Plane::filled(64, 48, 100.0);
         let step = |small: f32, large: f32| Plane::from_fn(64, 48, |x, _| if x < 32 { small } else { large });
         let bright = Picture { luminance: step(60.0, 160.0), colours: [0; 3].map(|_| step(60.0, 160.0)) };
@@ -282,7 +282,7 @@ pub(crate) mod tests {
             assert_eq!(borders.horizontal.at(10, 10), COHERENCE.smoothness);
             assert!(borders.horizontal.at(31, 10) < 0.03 * COHERENCE.smoothness);
         }
-        // Evidence says where the labels change only to within four pixels; the edge says the rest.
+        // The costs locate the border only to within four pixels; the edge decides where exactly.
         let costs = [
             Plane::from_fn(64, 48, |x, _| if x >= 34 { 1.0 } else { 0.0 }),
             Plane::from_fn(64, 48, |x, _| if x < 30 { 1.0 } else { 0.0 }),

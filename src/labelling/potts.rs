@@ -3,7 +3,7 @@
 use crate::frame::Plane;
 use crate::workspace::Buffer;
 
-/// Largest absolute cost of a pixel under a label: what is above (or NaN) means "forbidden" and is cut to this.
+/// Largest absolute cost of a pixel under a label. Larger costs and NaN mean "forbidden" and are cut to this.
 pub(super) const FORBIDDEN: f32 = 1e7;
 
 /// A labelling problem: costs and weights of one grid.
@@ -70,7 +70,7 @@ impl Potts<'_> {
                     {
                         continue;
                     }
-                    // Where there is no neighbour, one like the pixel itself that counts for nothing.
+                    // A missing neighbour has the pixel's own label and weight 0.
                     let beside = [
                         if x > 0 { (labels[p - 1], horizontal[p - 1]) } else { (own, 0.0) },
                         if x + 1 < width { (labels[p + 1], horizontal[p]) } else { (own, 0.0) },
@@ -98,7 +98,7 @@ impl Potts<'_> {
         }
     }
 
-    /// The cheapest label of every pixel by itself; the first of equals.
+    /// The label of least cost at every pixel, regardless of its neighbours; the first on ties.
     pub(crate) fn cheapest(&self) -> Buffer<u8> {
         (0..self.width() * self.height())
             .map(|p| {

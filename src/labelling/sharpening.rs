@@ -1,8 +1,7 @@
-//! Labels of a coarser level at the working size: coarse labels decide what is there, fine costs where exactly it ends.
+//! Refinement of coarse labels at the working size: coarse labels decide what is there, fine costs where exactly it ends.
 //!
-//! Only tiles in which two labels meet, or nearly, are looked at, and only the labels near each compete; those that touch are solved
-//! together, on their own. What is known of a neighbourhood rather than of a pixel (how well anything fits there, what is hidden, what the colours say) is taken from the
-//! coarser level.
+//! Only tiles near a border between labels are solved, each with the labels near it; tiles that touch are solved together. Properties
+//! of a neighbourhood rather than of a pixel (variance inflation, occlusion, colour costs) are taken from the coarser level.
 
 use super::appearance::{ColourPrices, Palette};
 use super::energy::{Borders, Coherence, Picture, frame_border_price, to_label_costs};
@@ -22,27 +21,27 @@ use crate::workspace::Buffer;
 const TILE: [usize; 2] = [32, 8];
 /// How far around a tile labels compete in it, coarse pixels.
 const MARGIN: usize = 4;
-/// What a label costs where it does not compete.
+/// Cost of a label that does not compete.
 const FAR: f32 = 1e3;
 
-/// A labelling of a coarser level and what it was decided by.
+/// Labels of a coarser level, with the neighbourhood properties they were solved with.
 pub(crate) struct CoarseLabelling<'a> {
     pub(crate) width: usize,
     pub(crate) labels: &'a [u8],
     /// Working pixels per pixel.
     pub(crate) step: usize,
-    /// How much larger the variance is than the noise's.
+    /// Factor of the noise variance.
     pub(crate) variance_inflation: &'a Plane,
-    /// Share of the second frame, where there is a frame before.
+    /// Weight of the second frame, if there is a frame before.
     pub(crate) shares: Option<&'a Plane>,
-    /// For every label the pixels that it may be hidden at.
+    /// For every label, the pixels at which it may be occluded.
     pub(crate) hidden: &'a [Buffer<bool>],
-    /// For every label the pixels that it cannot have, if any.
+    /// For every label, the pixels at which it may not compete; may be empty.
     pub(crate) excluded: &'a [Buffer<bool>],
     pub(crate) colours: Option<&'a ColourPrices>,
 }
 
-/// What the working size adds.
+/// Inputs at the working size.
 pub(crate) struct WorkingLevel<'a> {
     pub(crate) level: &'a Level,
     pub(crate) picture: Option<&'a Picture>,
@@ -57,7 +56,7 @@ struct Tile {
     labels: Vec<u8>,
 }
 
-/// Tiles that touch, and a rectangle around them. Its pixels that are in none of them keep their labels.
+/// Tiles that touch, and their bounding rectangle. Pixels of the rectangle outside the tiles keep their labels.
 struct Region {
     area: Area,
     tiles: Vec<Tile>,
@@ -75,7 +74,7 @@ pub(crate) fn sharpened(coarse: &CoarseLabelling<'_>, fine: &WorkingLevel<'_>, s
     labels
 }
 
-/// Tiles gathered into rectangles that do not touch.
+/// Groups tiles into rectangles that do not touch.
 fn regions(tiles: Vec<Tile>) -> Vec<Region> {
     let mut regions: Vec<Region> = Vec::new();
     for tile in tiles {
@@ -104,7 +103,7 @@ impl Region {
         labels: &mut [u8],
     ) {
         let (width, height) = (fine.level.width(), fine.level.height());
-        // What surrounds the tiles holds them with the labels that it keeps.
+        // The pixels around the tiles keep their labels and act as boundary conditions.
         let area = self.area.grown(1, width, height);
         let rows = || area.rows.clone().map(|y| y * width + area.columns.start..y * width + area.columns.end);
         let mut start = Buffer::with_capacity(area.width() * area.height());
@@ -125,7 +124,7 @@ impl Region {
         for tile in &self.tiles {
             comparisons.fill(coarse, fine, tile, corner, &number, &mut costs);
             if let Some(picture) = fine.picture {
-                // With the pixels to the left and above, whose borders lead into the tile.
+                // Includes the pixels to the left and above: their weights connect to the tile.
                 let mut around = tile.area.clone();
                 around.columns.start = around.columns.start.max(corner[0] + 1) - 1;
                 around.rows.start = around.rows.start.max(corner[1] + 1) - 1;
@@ -147,7 +146,7 @@ impl CoarseLabelling<'_> {
         (y / self.step) * self.width + x / self.step
     }
 
-    /// The tiles near which there is more than one label.
+    /// The tiles with more than one label nearby.
     fn contested(&self, width: usize, height: usize) -> Vec<Tile> {
         let rows = self.labels.len() / self.width;
         let near = |from: usize, to: usize, size: usize| {
@@ -172,7 +171,7 @@ impl CoarseLabelling<'_> {
     }
 }
 
-/// The frames compared along every motion.
+/// Comparisons of the frames along every motion.
 struct Comparisons<'a> {
     second: Vec<Option<Comparison<'a>>>,
     before: Vec<Option<Comparison<'a>>>,
@@ -187,7 +186,7 @@ impl<'a> Comparisons<'a> {
         Comparisons { second: all(View::Second), before: all(View::Before) }
     }
 
-    /// The costs of the labels that compete in a tile, on planes that begin at `corner`; `number` says which is whose.
+    /// Writes the costs of the labels that compete in a tile to planes that begin at `corner`; label l has the plane `number[l]`.
     fn fill(
         &self,
         coarse: &CoarseLabelling<'_>,
@@ -327,7 +326,7 @@ mod tests {
             motions: &motions,
             coherence: COHERENCE,
         };
-        // Each square by itself, and what lies between them is not looked at.
+        // Each square has a region of its own; what lies between them is not solved.
         let found = regions(coarse.contested(SIZE[0], SIZE[1]));
         assert_eq!(found.len(), 2);
         assert!(!found[0].area.touches(&found[1].area));

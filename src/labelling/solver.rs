@@ -5,8 +5,8 @@
 //! [`Solver::Expansion`] (α-expansion by minimum cuts) is exact for two labels and comes nearest with more.
 //!
 //! On generated scenes, 320×240 pixels, four labels (the ignored test `energies_and_times`): [`Solver::FAST`] is 0.1 % above
-//! the bound, twenty iterations 0.02 %, α-expansion 0.00 % in about twice their time, and all three err on the same number
-//! of pixels: what is wrong there is the costs. Two iterations without the pyramid are 1 % above and err more.
+//! the bound, twenty iterations 0.02 %, α-expansion 0.00 % in about twice their time, and all three mislabel the same number
+//! of pixels, because of the costs. Two iterations without the pyramid are 1 % above and mislabel more.
 
 use super::potts::Potts;
 use super::{expansion, messages};
@@ -16,23 +16,23 @@ use crate::workspace::Buffer;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Solver {
     /// Sequential tree-reweighted message passing, at most `iterations` on each of `levels` levels of a pyramid (1: the
-    /// grid alone). Few iterations on several levels are the cheap choice, many iterations come close to the optimum.
+    /// grid alone). A few iterations on several levels are cheap, many iterations come close to the optimum.
     Messages { levels: usize, iterations: usize },
     /// α-expansion, at most `sweeps` times over all labels.
     Expansion { sweeps: usize },
 }
 
 impl Solver {
-    /// For live use.
+    /// For interactive use.
     pub(crate) const FAST: Solver = Solver::Messages { levels: 4, iterations: 2 };
-    /// For what is nearly decided.
+    /// For problems that are nearly decided.
     pub(crate) const LIGHT: Solver = Solver::Messages { levels: 4, iterations: 1 };
-    /// For keeping.
+    /// For final results.
     pub(crate) const BEST: Solver = Solver::Messages { levels: 4, iterations: 10 };
 }
 
-/// Minimises the energy: one label per pixel, row by row. `init`, where given, is where [`Solver::Expansion`] starts and
-/// what the answer of either solver is never worse than. Up to 255 labels; more than 16 are always solved by expansion.
+/// Minimises the energy; returns one label per pixel, row by row. With `init`, [`Solver::Expansion`] starts there, and no solver
+/// returns labels of higher energy. Up to 255 labels; more than 16 are always solved by expansion.
 pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver, init: Option<&[u8]>) -> Buffer<u8> {
     let labels = problem.costs.len();
     let size = problem.width() * problem.height();

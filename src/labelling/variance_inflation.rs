@@ -1,9 +1,9 @@
-//! Where every motion fits badly, each is compared by a larger standard deviation.
+//! Larger variances where no motion fits well.
 //!
-//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only nearly right: limbs,
-//! cloth, water, parallax, blur. Costs there saturate for all motions, right and wrong, and what is left of their difference is
-//! chance. How well the best motion fits around a pixel says by how much the variance is too small; costs are taken again with the
-//! variance that fits. Where the model holds, as it does in most frames nearly everywhere, nothing changes.
+//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only approximate: limbs,
+//! cloth, water, parallax, blur. Costs there saturate for correct and wrong motions alike, and their difference is mostly chance. The
+//! cost of the best motion around a pixel tells by how much the variance is too small, and costs are computed again with the
+//! inflated variance. Where the model holds, nearly everywhere in most frames, nothing changes.
 
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
@@ -12,12 +12,12 @@ use crate::lanes::{each, each_with};
 
 /// Standard deviation of the window in which the fit is judged, pixels.
 const WINDOW: f32 = 4.0;
-/// Smallest cost, averaged over a window, that the noise alone does not explain.
+/// Largest windowed cost that noise alone explains.
 const EXPECTED: f32 = 0.8;
-/// Largest ratio of standard deviations.
+/// Largest factor of the standard deviation.
 const LARGEST: f32 = 3.0;
 
-/// By how much larger than the noise's the variance of each pixel is, a row at a time, from the smallest of the labels' costs.
+/// Factor of each pixel's variance, computed row by row from the smallest label cost.
 ///
 /// The mean of the saturated costs grows about as the standard deviation of the residuals.
 pub(crate) struct VarianceInflation {
@@ -26,14 +26,14 @@ pub(crate) struct VarianceInflation {
 }
 
 impl VarianceInflation {
-    /// Where all motions move a pixel out of every view, the smallest cost is infinite.
+    /// `smallest` is infinite where all motions move a pixel out of every view.
     pub(crate) fn new(mut smallest: Plane) -> VarianceInflation {
         each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::LABELS.outside() });
         let window = RowFilter::gaussian(smallest.width(), WINDOW);
         VarianceInflation { smallest, window }
     }
 
-    /// That of row y.
+    /// Writes the factors of row y.
     pub(crate) fn write(&mut self, y: usize, row: &mut [f32]) {
         self.window.row(&self.smallest, y, row);
         each(row, |m| {
@@ -43,7 +43,7 @@ impl VarianceInflation {
     }
 }
 
-/// Costs with the variance that the surroundings ask for: e / (1 + e/T) with e / misfit in place of e. What is infinite stays.
+/// Costs with inflated variance: e / (1 + e/T) with e / inflation in place of e. Infinite costs stay infinite.
 #[inline(never)]
 pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32]) {
     each_with(costs, [inflation], |cost, [inflation]| {

@@ -1,10 +1,9 @@
-//! Labels solved again under what a person says about single pixels: "this belongs to that motion", "this does not".
+//! Interactive correction: labels are solved again under strokes that say which motions are possible at a pixel.
 //!
-//! The motions stay as they are. A stroke is a hard rule on its own pixels and a price around them: a label that the nearest
-//! stroke excludes costs `STROKE_PRICE · exp(−d/STROKE_REACH)` more. The distance d is measured along the picture: where the frames agree with
-//! what is said it grows slowly, where they cannot tell it grows at every edge of the picture, and where they say the contrary it
-//! grows fast. So one stroke takes a whole region with it and ends where the region does. Where no stroke reaches, the labels that
-//! were there stay, bit for bit.
+//! The motions do not change. A stroke is a hard constraint on its own pixels and a soft one around them: a label that the nearest
+//! stroke excludes costs `STROKE_PRICE · exp(−d/STROKE_REACH)` more. The geodesic distance d grows slowly where the frames agree
+//! with the stroke, at image edges where they cannot tell, and fast where they contradict it. One stroke therefore takes a whole
+//! region with it and stops at its border. Labels that no stroke reaches are returned bit for bit.
 
 use super::PairPyramid;
 use super::report::{SegmentedMotion, at_working_size, describe};
@@ -24,54 +23,54 @@ use crate::workspace::{self, Buffer};
 
 const STAGES: &[&str] = &["frames", "dominant", "labels", "masks"];
 
-/// Largest number of motions a [`Correction`] can speak of: the bits of a set.
+/// Largest number of motions in a [`Correction`]: the bits of a set.
 pub const MAX_CORRECTED: usize = 16;
 
-/// Price of an excluded label beside the stroke: twice what a motion that does not fit costs there.
+/// Price of an excluded label next to the stroke: twice the cost of a motion that does not fit.
 const STROKE_PRICE: f32 = 4.0;
-/// Distance, working pixels of a flat picture without texture, at which it has fallen to 1/e.
+/// Geodesic distance at which it has fallen to 1/e.
 const STROKE_REACH: f32 = 24.0;
-/// A stroke with less than this share of its price left has no say.
+/// A stroke has no influence below this share of its price.
 const SMALLEST_INFLUENCE: f32 = 0.02;
-/// Length of a step where the frames agree with what is said …
+/// Length of a step between neighbours where the frames agree with the stroke …
 const AGREED_STEP: f32 = 0.25;
-/// … and by how much it is longer where they cannot tell.
+/// … added to it where the frames cannot tell …
 const UNDECIDED_STEP: f32 = 2.0;
-/// A step over a strong edge where they cannot tell, and one where they say the contrary, is longer by this.
+/// … and added at a strong edge where they cannot tell, and everywhere where they contradict the stroke.
 const BARRIER: f32 = 40.0;
-/// Intensity step, grey levels, at which an edge is strong (to 1 − 1/e).
+/// Intensity step, grey levels, at which an edge has 1 − 1/e of its full strength.
 const STRONG_EDGE: f32 = 24.0;
-/// Difference of two motions' costs from which on the frames tell them apart …
+/// Difference of two motions' costs at which the frames decide between them …
 const DECISIVE_GAP: f32 = 0.5;
 /// … averaged over this window, working pixels.
 const GAP_WINDOW: f32 = 1.5;
-/// Price of another label than the one that was there, where a stroke is about to lose its say.
+/// Price of changing a label where no stroke has influence.
 const CHANGE_PRICE: f32 = 2.0;
-/// Sweeps over the picture in which distances spread; one in each direction nearly always does.
+/// Double sweeps in which distances are propagated.
 const SWEEPS: usize = 2;
-/// What changes at working size is enlarged anew this many working pixels around.
+/// Full-size labels are computed anew within this many working pixels of a change.
 const MARGIN: usize = 3;
-/// Cost of what a stroke forbids.
+/// Price of an excluded label on the stroke itself.
 const EXCLUDED_PRICE: f32 = 1e6;
 
-/// What [`relabel`] starts from.
+/// Input of [`relabel`].
 #[derive(Clone, Copy, Debug)]
 pub struct Correction<'a> {
     /// The motions, pixels of the full frame; their order is that of the labels. At most [`MAX_CORRECTED`].
     pub motions: &'a [AffineMotion],
-    /// Group of each motion; goes into the answer as it is.
+    /// Group of each motion; copied to the result.
     pub groups: &'a [u8],
     /// The labels so far, one per pixel of the frame, row by row; [`UNLABELLED`] where there is none.
     pub labels: &'a [u8],
-    /// What is said, one set of labels per pixel of the frame: bit k is set where motion k is possible; 0 says nothing. "This is
-    /// motion 2 or 3" is `0b1100`, "this is not motion 0" of four is `0b1110`.
+    /// The possible motions, one set per pixel of the frame: bit k is set where motion k is possible; 0 means no constraint.
+    /// "This is motion 2 or 3" is `0b1100`, "this is not motion 0" of four is `0b1110`.
     pub allowed: &'a [u16],
 }
 
-/// What [`relabel`] gives.
+/// Result of [`relabel`].
 #[derive(Clone, Debug)]
 pub struct Relabelling {
-    /// The motions in the order given, also those that lost all their pixels.
+    /// The motions in the order given, including those without pixels.
     pub motions: Vec<SegmentedMotion>,
     /// One label per pixel of the frame.
     pub labels: Vec<u8>,
@@ -79,14 +78,14 @@ pub struct Relabelling {
     pub unlabelled: usize,
 }
 
-/// Solves the labels of `first` again under what the correction says, with the motions and the numbering as they are. The answer
-/// depends on the arguments alone: corrections are undone by asking again without them.
+/// Solves the labels of `first` again under a correction. The motions and their numbering stay the same, and the result depends on
+/// the arguments alone: to undo a correction, call again without it.
 ///
-/// `options.quality` is that of the labels so far; the other options have no effect.
+/// `options.quality` should be that of the labels so far; the other options have no effect.
 ///
 /// # Errors
-/// [`Error::FrameSizeMismatch`]; [`Error::InvalidOption`] `motions`, `groups`, `labels` or `evidence` for arrays that do not belong
-/// together or speak of motions that are not there.
+/// [`Error::FrameSizeMismatch`]; [`Error::InvalidOption`] `motions`, `groups`, `labels` or `evidence` for arrays that do not match
+/// each other or refer to motions that do not exist.
 pub fn relabel(
     first: &Frame,
     second: &Frame,
@@ -176,7 +175,7 @@ impl WorkingCorrection {
         for (p, &set) in correction.allowed.iter().enumerate().filter(|&(_, &set)| set != 0) {
             let (x, y) = ((p % full_width / step).min(width - 1), (p / full_width / step).min(height - 1));
             let slot = &mut allowed[y * width + x];
-            // Two strokes through one working pixel: what both admit, or, where that is nothing, what either does.
+            // Two strokes through one working pixel: the intersection of their sets or, if it is empty, the union.
             *slot = match (*slot, *slot & set) {
                 (0, _) => set,
                 (old, 0) => old | set,
@@ -192,7 +191,7 @@ impl WorkingCorrection {
         let level = pyramid.finest();
         let coherence = settings.coherence;
         let mut costs = label_costs(level, &self.motions, coherence);
-        // Where nothing was said yet, the dominant motion stands in: it is what the masks were corrected for occlusion with.
+        // Unlabelled pixels count as the dominant motion's here, as when the masks were corrected for occlusion.
         let known: Buffer<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
         if self.motions.len() > 1 {
             costs = with_visibility(level, &self.motions, &costs, &known, coherence.object_bias);
@@ -208,8 +207,8 @@ impl WorkingCorrection {
         solved
     }
 
-    /// Adds to the costs what the strokes say, and how dear a change is where they hardly say anything. Returns how much of its
-    /// strength the nearest stroke has at every pixel, 0…1.
+    /// Adds the prices of labels that strokes exclude, and the price of a change where strokes have little influence. Returns the
+    /// influence of the nearest stroke at every pixel, 0…1.
     fn add_stroke_costs(&self, costs: &mut [Plane], edges: &Plane) -> Buffer<f32> {
         let mut influence: Buffer<f32> = self.allowed.iter().map(|&set| if set == 0 { 0.0 } else { 1.0 }).collect();
         let smooth: Vec<Plane> = costs.iter().map(|c| gaussian(c, GAP_WINDOW)).collect();
@@ -235,12 +234,12 @@ impl WorkingCorrection {
         influence
     }
 
-    /// Full-size labels: enlarged along the edges of the frame near what has changed, as they were elsewhere; strokes hold to the
-    /// pixel.
+    /// Full-size labels: enlarged along the edges of the frame near changes, unchanged elsewhere. Strokes hold at every pixel of
+    /// the frame.
     fn enlarge(&self, solved: &[u8], correction: &Correction<'_>, guide: &Plane) -> Vec<u8> {
         let [width, height] = self.size;
         let near = self.near_changes(solved);
-        // An unlabelled pixel that no stroke reached stays one: it has a label of its own while labels are enlarged.
+        // Unlabelled pixels that no stroke reached stay unlabelled: they have a label of their own while labels are enlarged.
         let unlabelled = self.motions.len() as u8;
         let current: Vec<u8> = solved.iter().map(|&l| l.min(unlabelled)).collect();
         let full = upsample(&current, self.size, self.motions.len() + 1, guide);
@@ -274,7 +273,7 @@ impl WorkingCorrection {
     }
 }
 
-/// How clearly the frames speak against label k: the cost it has above the cheapest other, in units of [`DECISIVE_GAP`], −1…1.
+/// By how much label k is more expensive than the cheapest other, in units of [`DECISIVE_GAP`], cut to −1…1.
 fn cost_gap(costs: &[Plane], k: usize) -> Vec<f32> {
     let other =
         |p: usize| (0..costs.len()).filter(|&l| l != k).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min);
@@ -282,8 +281,8 @@ fn cost_gap(costs: &[Plane], k: usize) -> Vec<f32> {
     own.map(|(p, &own)| ((own - other(p)) / DECISIVE_GAP).clamp(-1.0, 1.0)).collect()
 }
 
-/// Distance of every pixel from the nearest that `starts`. `agreement` says how far the frames agree, −1…1. Distances spread along
-/// rows and columns in [`SWEEPS`] double sweeps, which leaves those behind many corners too large.
+/// Geodesic distance of every pixel from the nearest one that `starts`. `agreement`, −1…1, is how far the frames agree with the
+/// stroke. Distances are propagated along rows and columns in [`SWEEPS`] double sweeps; behind many corners they come out too large.
 fn distances(edges: &Plane, agreement: &[f32], starts: impl Fn(usize) -> bool) -> Vec<f32> {
     let (width, height) = (edges.width(), edges.height());
     let values = edges.values();
@@ -322,7 +321,7 @@ mod tests {
 
     const WIDTH: usize = 9;
 
-    /// Flat ground; between the left and the right half a column of white with a gap in the last row.
+    /// A flat image with a white column in the middle that has a gap in the last row.
     fn walled() -> Plane {
         Plane::from_fn(WIDTH, 5, |x, y| if x == 4 && y < 4 { 255.0 } else { 0.0 })
     }

@@ -1,4 +1,4 @@
-//! What the number of motions rests on: description lengths with fewer and with more motions than were found.
+//! Evidence for the number of motions: description lengths with fewer and with more motions than were found.
 
 use super::PairPyramid;
 use super::masks::{Labelled, borders, estimation_costs};
@@ -11,8 +11,8 @@ use crate::labelling::solver::Solver;
 use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
 
-/// Description lengths: of what was found, of what remains as the least worthy motions are taken away, and of one more. Labels are
-/// solved for each at the base level, by costs without occlusion and colour.
+/// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
+/// solved for each number at the base level, without costs of occlusion and colour.
 pub(super) fn evidence(pyramid: &PairPyramid, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
     let level = &pyramid.levels[pyramid.base];
     let width = level.width();
@@ -29,7 +29,7 @@ pub(super) fn evidence(pyramid: &PairPyramid, labelled: &Labelled, settings: &Se
     let mut labels = solve(&costs);
     let mut candidates = vec![Candidate { motions: n, score: length(&raw, &labels, width) }];
     if n < MAX_MOTIONS {
-        // A motion that no pixel takes costs its six numbers.
+        // A motion without pixels costs its six parameters.
         let unused = candidates[0].score + price_of_motion(labels.len());
         candidates.insert(0, Candidate { motions: n + 1, score: one_more.map_or(unused, |score| score.min(unused)) });
     }

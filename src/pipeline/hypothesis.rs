@@ -1,4 +1,4 @@
-//! The motions of a pair: proposals, their selection for each hypothesis about the dominant motion, and refinement level by level.
+//! The motions of a pair: they are proposed and selected under each hypothesis about the dominant motion, then refined level by level.
 
 use super::PairPyramid;
 use super::settings::{Part, Settings};
@@ -12,16 +12,16 @@ use crate::proposal::tiles::from_tiles;
 use crate::random::Random;
 use crate::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
 
-/// "Nothing but objects moves" is a hypothesis of its own only where standing still, added to the motions found beside the dominant one,
-/// brings the cost below this share: where much of the frame is flat, one motion bent over several objects can explain more than the
-/// background that stands still, and then much of the background is explained by nothing else.
+/// The hypothesis of a static background is tried only if adding the zero motion to those found lowers the cost below this share.
+/// In frames with large flat areas, one affine motion fitted across several objects can explain more than the static background does;
+/// much of the background is then left unexplained.
 const STATIC_GAIN_SHARE: f64 = 0.95;
-/// It wins only where all motions together then cost less than this share of what they cost beside the dominant motion: a background
-/// that moves by less than a pixel costs about as much at rest, with a motion more.
+/// The hypothesis wins only if its motions together cost less than this share of those found with the dominant motion. A background
+/// that moves by less than a pixel costs about the same as a static one plus one more motion.
 const CLEARLY_CHEAPER: f64 = 0.9;
 
 impl Settings {
-    /// How motions are added at the level of the selection (0) and at finer ones (1).
+    /// How motions are added at the selection level (0) and at finer levels (1).
     fn deflation(&self, stage: usize) -> Deflation {
         Deflation { price: self.price[stage], most: self.most, tries: self.tries, window: self.gain_window }
     }
@@ -31,13 +31,13 @@ impl Settings {
     }
 }
 
-/// Motions, and the best one that was proposed and is not among them.
+/// The selected motions, and the best proposal that was rejected.
 pub(super) struct Found {
     pub(super) selected: Vec<ScoredMotion>,
     pub(super) runner_up: Option<AffineMotion>,
 }
 
-/// The motions beside the dominant one as found, or those beside "nothing but objects moves" where these are clearly cheaper.
+/// The motions selected with the dominant motion as found or, where those are clearly cheaper, with a static background.
 pub(super) fn best(
     pyramid: &PairPyramid,
     dominant: AffineMotion,
@@ -56,7 +56,7 @@ pub(super) fn best(
     winner
 }
 
-/// Whether standing still explains much that no layer does.
+/// Whether the zero motion explains much that no selected motion does.
 fn static_is_missing(level: &Level, selected: &[ScoredMotion]) -> bool {
     let found = smallest_cost(selected);
     let mut with_static = found.clone();
@@ -64,7 +64,7 @@ fn static_is_missing(level: &Level, selected: &[ScoredMotion]) -> bool {
     total(&with_static) < STATIC_GAIN_SHARE * total(&found)
 }
 
-/// Motions under one hypothesis, and what they cost.
+/// The motions selected under one hypothesis, and their cost.
 fn with_dominant(
     pyramid: &PairPyramid,
     dominant: AffineMotion,
@@ -94,7 +94,7 @@ fn with_dominant(
     (Found { selected, runner_up }, cost)
 }
 
-/// Refines motions from the level of the selection to the working size, adding what only shows there.
+/// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels.
 pub(super) fn refine(pyramid: &PairPyramid, found: Found, settings: &Settings) -> Found {
     let Found { mut selected, mut runner_up } = found;
     settings.refit(&pyramid.levels[pyramid.selection], &mut selected, 2);

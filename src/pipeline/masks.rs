@@ -1,5 +1,7 @@
-//! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion, merged
-//! and split; sharpened at the working size; cleaned.
+//! The label of every working pixel.
+//!
+//! Draft labels are solved on a coarser level. There, motions that do not pay for themselves are pruned, costs are corrected for
+//! occlusion, and regions are merged and split. The labels are then sharpened at the working size, and small components removed.
 
 use super::PairPyramid;
 use super::hypothesis::Found;
@@ -19,39 +21,39 @@ use crate::labelling::visibility::{hidden_under, with_visibility};
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 
-/// A label that came from a split competes only this far around its region, as a share of the root of its pixels …
+/// After a split, an object competes only this far around its region, as a share of the square root of its pixel count …
 const COMPETITION_SHARE: f64 = 0.25;
 /// … and at least this many pixels of the working size.
 const SMALLEST_COMPETITION: usize = 12;
-/// Nats of a pixel of a coarser level beside those of a working pixel: it stands for four, whose noise is not independent.
+/// Weight of a pixel of a coarser level, in working pixels. It stands for four, but their noise is not independent.
 const COARSE_PIXEL: f32 = 2.0;
-/// Smoothness on a coarser level as a share of that of the working size: half as many pixels lie along a border.
+/// Smoothness on a coarser level, as a share of that at the working size: borders have half as many pixels.
 const COARSE_SMOOTHNESS: f32 = 0.7;
 
 /// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Buffer<u8>,
-    /// The best motion that is not among them: it did not pay for itself, here or when motions were selected.
+    /// The best motion that was rejected, here or during selection, because it did not pay for itself.
     pub(super) runner_up: Option<AffineMotion>,
 }
 
-/// A labelling in the making: motions, what each costs, who has which pixel.
+/// A labelling in progress: the motions, their costs and the current labels.
 struct LabelState<'a> {
     level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
     motions: Vec<AffineMotion>,
-    /// Label costs.
+    /// Label costs, corrected for occlusion.
     costs: Vec<Plane>,
-    /// The same before occlusion, with what they were made of.
+    /// Label costs before the correction for occlusion.
     uncorrected: LabelCosts,
-    /// Estimation costs, for the description length.
+    /// Estimation costs, from which description lengths are computed.
     raw: Vec<Plane>,
     labels: Buffer<u8>,
-    /// For every label the pixels that it cannot have; none where all labels compete everywhere.
+    /// For every label, the pixels at which it may not compete; empty if all labels compete everywhere.
     excluded: Vec<Buffer<bool>>,
-    /// What was taken away last, else what the selection left out.
+    /// The motion pruned last, or the best one rejected by the selection.
     runner_up: Option<AffineMotion>,
 }
 
@@ -78,7 +80,7 @@ pub(super) fn label(pyramid: &PairPyramid, found: Found, settings: &Settings) ->
     Labelled { motions, labels, runner_up }
 }
 
-/// Prices of borders on a level.
+/// Smoothness weights on a level.
 pub(super) fn borders(pyramid: &PairPyramid, index: usize, settings: &Settings) -> Borders {
     let level = &pyramid.levels[index];
     let mut coherence = settings.coherence;
@@ -90,7 +92,7 @@ pub(super) fn borders(pyramid: &PairPyramid, index: usize, settings: &Settings) 
     }
 }
 
-/// What every motion leaves unexplained on a level, in the costs of working pixels.
+/// Estimation costs of every motion on a level, in units of working pixels.
 pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
     if level.index > 0 {
@@ -99,7 +101,7 @@ pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<P
     raw
 }
 
-/// Nats of a pixel beside those of a working pixel.
+/// Weight of a pixel of a level, in working pixels.
 fn nats_of_pixel(level: &Level) -> f32 {
     if level.index > 0 { COARSE_PIXEL } else { 1.0 }
 }
@@ -129,7 +131,7 @@ impl<'a> LabelState<'a> {
         (self.level.width(), self.level.height())
     }
 
-    /// Costs of all motions.
+    /// Computes the costs of all motions anew.
     fn recompute_costs(&mut self) {
         self.uncorrected = LabelCosts::new(self.level, &self.motions, self.settings.coherence);
         self.reset_costs();
@@ -148,14 +150,14 @@ impl<'a> LabelState<'a> {
         self.motions.len() > 1 && self.settings.has(Part::Colour)
     }
 
-    /// Adds what the colours say.
+    /// Adds the costs of the colours.
     fn add_colour_costs(&mut self, pyramid: &PairPyramid) {
         if self.uses_colour() {
             add_colours(&mut self.costs, &pyramid.palette, &self.labels);
         }
     }
 
-    /// Solves with care: exactly where there are two labels, close to it otherwise.
+    /// Solves for the final labels: exactly if there are two, nearly so otherwise.
     fn solve_final(&mut self) {
         let solver = match self.motions.len() {
             2 => Solver::Expansion { sweeps: 1 },
@@ -164,7 +166,7 @@ impl<'a> LabelState<'a> {
         self.labels = self.borders.solve(&self.costs, solver);
     }
 
-    /// Labels of the working size from those of the draft.
+    /// Turns draft labels into labels of the working size.
     fn sharpen(&mut self, pyramid: &PairPyramid) {
         let step = 1 << pyramid.draft;
         let colours = self
@@ -192,7 +194,7 @@ impl<'a> LabelState<'a> {
         self.labels = sharpened(&coarse, &fine, self.settings.coherence.sharpening);
     }
 
-    /// Takes away the motion that is worth least, while that is less than nothing, and solves again.
+    /// Removes the least worthy motion and solves again, as long as there is one that does not pay for itself.
     fn prune(&mut self) {
         let most = self.settings.most;
         while self.motions.len() > self.settings.least
@@ -205,7 +207,7 @@ impl<'a> LabelState<'a> {
             }
             self.runner_up = Some(self.motions[weakest]);
             self.remove(weakest);
-            // Only the pixels of the motion that went are open.
+            // Only the pixels of the removed motion are undecided.
             self.labels = self.borders.solve(&self.costs, Solver::LIGHT);
         }
     }
@@ -220,7 +222,7 @@ impl<'a> LabelState<'a> {
         }
     }
 
-    /// Corrects for occlusion, more than once: what is hidden depends on the masks.
+    /// Corrects for occlusion. Takes several rounds, since what is occluded depends on the masks.
     fn correct_occlusion(&mut self) {
         if self.motions.len() < 2 || !self.settings.has(Part::Visibility) {
             return;
@@ -232,14 +234,14 @@ impl<'a> LabelState<'a> {
         self.prune();
     }
 
-    /// Costs in which no motion pays for what it hides.
+    /// Updates the costs: no motion pays for pixels that are occluded in the second frame.
     fn update_occlusion(&mut self) {
         let object_bias = self.settings.coherence.object_bias;
         self.costs = with_visibility(self.level, &self.motions, &self.uncorrected.costs, &self.labels, object_bias);
     }
 
-    /// Leaves the background at rest where that takes less to describe: a motion bent over objects on a bare ground is found out once
-    /// the objects have motions of their own, and no motion has no numbers to describe.
+    /// Makes the background static if that shortens the description: the zero motion costs no parameters. A dominant motion that was
+    /// fitted across objects on a flat background is recognised here, once the objects have motions of their own.
     fn try_static_background(&mut self) {
         if self.motions[0] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
             return;
@@ -257,7 +259,7 @@ impl<'a> LabelState<'a> {
         }
     }
 
-    /// Joins regions that one motion explains better than two do.
+    /// Merges regions that one motion explains better than two.
     fn merge(&mut self) {
         while self.motions.len() > self.settings.least && self.settings.has(Part::ModelSelection) {
             let pixel = nats_of_pixel(self.level);
@@ -283,7 +285,7 @@ impl<'a> LabelState<'a> {
         }
     }
 
-    /// Splits regions that are several bodies. Returns whether there were any.
+    /// Splits regions that contain several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
         if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
             return false;
@@ -303,7 +305,7 @@ impl<'a> LabelState<'a> {
         true
     }
 
-    /// Objects compete only near where they are, so that two bodies with like motions do not share their pixels.
+    /// Lets objects compete only near their own regions, so that two bodies with similar motions do not take each other's pixels.
     fn restrict_to_surroundings(&mut self) {
         let (width, height) = self.size();
         let sizes = counts(&self.labels, self.motions.len());
@@ -317,7 +319,7 @@ impl<'a> LabelState<'a> {
         self.add_exclusion_costs();
     }
 
-    /// Makes labels dear where they cannot be.
+    /// Makes labels expensive where they may not compete.
     fn add_exclusion_costs(&mut self) {
         for (cost, excluded) in self.uncorrected.costs.iter_mut().zip(&self.excluded) {
             let pixels = cost.values_mut().iter_mut().zip(excluded);
@@ -325,7 +327,7 @@ impl<'a> LabelState<'a> {
         }
     }
 
-    /// Gives small components to what surrounds them, and drops motions without pixels. Rows of labels are `width` long.
+    /// Gives small components to the labels around them and removes motions without pixels. Rows of labels are `width` long.
     fn clean(&mut self, width: usize) {
         let smallest = (SMALLEST_SHARE * self.labels.len() as f64) as usize;
         absorb_small(&mut self.labels, width, smallest);
@@ -349,7 +351,7 @@ impl<'a> LabelState<'a> {
     }
 }
 
-/// Which pixels lie within `reach` (in the larger of both coordinate differences) of a label.
+/// Which pixels lie within `reach` of a label in Chebyshev distance.
 fn near_label(labels: &[u8], label: u8, width: usize, height: usize, reach: usize) -> Buffer<bool> {
     let spread = |line: &mut dyn FnMut(usize) -> (bool, usize), length: usize, out: &mut [bool]| {
         let mut last: Option<usize> = None;

@@ -95,11 +95,6 @@ impl<'a> Search<'a> {
         score(self.all, self.scale, &mut self.buffers, fit)
     }
 
-    /// All measurements of the search.
-    pub(super) fn all(&self) -> &'a Samples {
-        self.all
-    }
-
     /// The most likely n motions found, on all measurements. `hypotheses` are motions worth trying; there may be none. Where the
     /// score is far above `rival`, that of another n, the last effort is saved.
     pub(crate) fn fit(&mut self, n: usize, hypotheses: &[[f64; 6]], rival: f64) -> Mixture {

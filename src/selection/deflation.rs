@@ -1,5 +1,5 @@
-//! Greedy deflation: the motion that explains most of what is left is refined on its own region and added, until what is left
-//! would not pay for another.
+//! Greedy deflation: the motion that explains most of what is still unexplained is refined on its own region and added, until no
+//! further motion would pay for itself.
 
 use super::{ScoredMotion, smallest_cost};
 use crate::alignment::brightness::Photometric;
@@ -14,33 +14,33 @@ use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::workspace::Buffer;
 
-/// When to add a motion, and how hard to look.
+/// When to add a motion, and how many proposals to try.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deflation {
     /// Gain (cost summed over pixels) that pays for a motion.
     pub(crate) price: f64,
     /// Largest number of motions.
     pub(crate) most: usize,
-    /// Proposals tried in earnest per round.
+    /// Proposals refined per round.
     pub(crate) tries: usize,
-    /// Standard deviation of the window over which a gain is gathered, pixels of the level or, where it is thinned, of the sample.
+    /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
     pub(crate) window: f32,
 }
 
-/// Gain per pixel that is no gain: windows at borders, chance.
+/// Gain per pixel that does not count: windows across borders and chance produce as much.
 const MARGIN: f32 = 0.35;
 /// Proposals are tried on every second pixel of every second row …
 const THINNING: usize = 2;
-/// … and chosen for that by their means over blocks of this side.
+/// … and ranked beforehand by block means; side of a block, pixels.
 const BLOCK: usize = 4;
-/// A region of fewer pixels is no region.
+/// Regions with at most this many pixels are ignored.
 const SMALLEST_REGION: usize = 6;
-/// Prior against linear terms of a motion seen in a small region.
+/// Ridge prior on the linear terms: small regions determine them badly.
 const RIDGE: f64 = 2e-2;
-/// A gain below this share of the price is not worth a try.
+/// Proposals whose estimated gain is below this share of the price are not tried.
 const SMALLEST_TRIED_GAIN: f64 = 0.25;
 
-/// Where, and by how much, a cost plane is below another: the difference gathered over windows.
+/// By how much a cost is below the current one at every pixel, averaged over windows.
 fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
     let mut difference = current.clone();
     each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
@@ -83,11 +83,11 @@ fn rough_gain(current: &Plane, cost: &Plane, window: f32) -> f64 {
     gain_of(&gaussian(&difference, window / BLOCK as f32)) * (BLOCK * BLOCK) as f64
 }
 
-/// Adds proposed motions to `selected` while each gain more than its price. Returns the best motion that was not added: there is
-/// none where nothing was proposed.
+/// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
+/// none if nothing was proposed.
 ///
-/// In every round all proposals are looked at roughly, the most promising are tried on a sample of the pixels, and the best of those
-/// is refined on all.
+/// Every round ranks all proposals by block means, refines the most promising on a sample of the pixels, and the best of those on
+/// all pixels.
 pub(crate) fn add_motions(
     level: &Level,
     selected: &mut Vec<ScoredMotion>,
@@ -125,7 +125,7 @@ pub(crate) fn add_motions(
     }
 }
 
-/// A proposal refined on the region where it beats what is there, twice; and what it gain.
+/// Refines a proposal twice on the region where it beats the current motions. Returns its gain and the motion.
 fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, ScoredMotion) {
     let mut scored = ScoredMotion::new(level, proposal);
     let mut improved = improvement(current, &scored.cost, window);
@@ -151,7 +151,7 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) 
     (gain, scored)
 }
 
-/// The connected region in which a cost improves most on what is there, as weights 0 and 1.
+/// The connected region in which a cost improves most on the current one, as weights 0 and 1.
 fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Plane> {
     let (width, height) = (improved.width(), improved.height());
     let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
@@ -172,7 +172,7 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Pl
     Some(Plane::from_buffer(width, height, values))
 }
 
-/// Takes out every motion but the first whose absence would cost less than its price, the cheapest first.
+/// Removes motions whose absence costs less than their price, the cheapest first. The first motion always stays.
 pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
     while selected.len() > 1 {
         let with_all = total(&smallest_cost(selected));

@@ -1,6 +1,5 @@
-//! Proposals at a finer level: one local step (the constraint with n = 1 in a window) around the motion that wins at each pixel.
-//! It finds what moves too little for the level on which motions were selected first. Pixels are those of a level of which every
-//! second in every second row is looked at.
+//! Proposals at a finer level: one step of local flow (the constraint with n = 1 in a window) from the cheapest motion of each pixel.
+//! It finds displacements too small for the level of the first selection. Pixels are those of a thinned level.
 
 use super::ScoredMotion;
 use crate::frame::Plane;
@@ -16,18 +15,18 @@ use crate::workspace::Buffer;
 const WINDOW: f32 = 1.33;
 /// Distance of the windows, pixels.
 const STRIDE: usize = 5;
-/// Windows looked at, the most promising first.
+/// Number of windows considered, the most promising first.
 const WINDOWS: usize = 200;
 /// Proposals kept.
 const MOST: usize = 16;
-/// Steps shorter or longer than this are left out, pixels.
+/// Shortest and longest step that makes a proposal, pixels.
 const STEPS: (f64, f64) = (0.05, 2.0);
 /// Proposals closer than this are the same, pixels.
 const TOLERANCE: f64 = 0.1;
-/// Information added to every window.
+/// Information added to every window, so that flat ones yield no step.
 const FLAT: f32 = 0.02;
 
-/// The most promising local corrections of the selected' motions.
+/// The most promising local corrections of the selected motions.
 pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<AffineMotion> {
     let (width, height) = (level.width(), level.height());
     let winners = winners(selected);
@@ -61,7 +60,7 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<Af
     distinct(&mut proposals, TOLERANCE * pixel, [width as f64 * pixel, height as f64 * pixel], MOST)
 }
 
-/// The cheapest scored of every pixel.
+/// Index of the cheapest motion at every pixel.
 fn winners(selected: &[ScoredMotion]) -> Buffer<usize> {
     let mut winners = Buffer::filled(selected[0].cost.values().len(), 0);
     for (p, winner) in winners.iter_mut().enumerate() {
@@ -74,7 +73,7 @@ fn winners(selected: &[ScoredMotion]) -> Buffer<usize> {
     winners
 }
 
-/// Products of gradients and residual along each pixel's own motion, in units of variance, summed over windows.
+/// Products of gradients and residual along each pixel's cheapest motion, divided by the variance and averaged over windows.
 fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [Plane; 5] {
     let (width, height) = (level.width(), level.height());
     let scaled: Vec<AffineMotion> = selected.iter().map(|l| level.scaled(&l.motion)).collect();

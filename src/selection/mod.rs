@@ -1,4 +1,5 @@
-//! Which of the proposed motions are there: greedy deflation, refinement of each on its own pixels, a second look one level finer.
+//! Selection of motions from the proposals: greedy deflation, refinement of each motion on its own pixels, new proposals at finer
+//! levels.
 
 mod deflation;
 mod fine;
@@ -15,10 +16,10 @@ use crate::frame::pyramid::Level;
 use crate::lanes::lower;
 use crate::motion::AffineMotion;
 
-/// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the second frame.
+/// Standard deviation of the window over which costs are averaged during selection, pixels of the second frame.
 const WINDOW: f32 = 2.0;
 
-/// A motion and what it costs at every pixel of a level, gathered over windows.
+/// A motion and its cost at every pixel of a level, averaged over windows.
 #[derive(Clone, Debug)]
 pub(crate) struct ScoredMotion {
     pub(crate) motion: AffineMotion,
@@ -26,7 +27,7 @@ pub(crate) struct ScoredMotion {
 }
 
 impl ScoredMotion {
-    /// A motion looked at on a level.
+    /// Computes the cost of a motion on a level.
     #[inline(never)]
     pub(crate) fn new(level: &Level, motion: AffineMotion) -> ScoredMotion {
         ScoredMotion {
@@ -35,14 +36,14 @@ impl ScoredMotion {
         }
     }
 
-    /// Lowers a cost to the scored's wherever that is smaller.
+    /// Lowers a cost plane to this motion's cost wherever that is smaller.
     #[inline(never)]
     pub(crate) fn lower(&self, cost: &mut Plane) {
         lower(cost.values_mut(), self.cost.values());
     }
 }
 
-/// The smallest cost of any scored at every pixel.
+/// The smallest cost of any motion at every pixel.
 pub(crate) fn smallest_cost(selected: &[ScoredMotion]) -> Plane {
     let mut smallest = selected[0].cost.clone();
     selected[1..].iter().for_each(|scored| scored.lower(&mut smallest));

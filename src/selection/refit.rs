@@ -9,16 +9,16 @@ use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 use crate::lanes::each_with;
 
-/// Priors against linear terms: of the dominant motion (it has most of the frame) and of the others.
+/// Ridge priors on the linear terms: of the dominant motion, which has most of the frame, and of the others.
 const RIDGE: (f64, f64) = (1e-4, 1e-2);
-/// Regions larger than this many pixels lose their border before they vote.
+/// Regions with more pixels than this are eroded before their motion is refined.
 const LARGE: usize = 200;
 /// Softening of a region's border, pixels.
 const SOFTNESS: f32 = 0.7;
-/// Regions smaller than this do not vote.
+/// Motions of regions with fewer pixels than this are not refined.
 const SMALLEST_REGION: usize = 20;
 
-/// `rounds` rounds; a refined motion is kept only where it lowers the cost of its own region.
+/// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
 pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
     for _ in 0..rounds {
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
@@ -46,7 +46,7 @@ fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
     total(&weighted)
 }
 
-/// Weights of the pixels where scored `k` is cheapest, its border taken off and softened.
+/// Weights of the pixels where motion `k` is cheapest, eroded and softened.
 fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
     let cost = &selected[k].cost;
     let mut region = Plane::filled(cost.width(), cost.height(), 1.0);
