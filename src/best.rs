@@ -9,7 +9,7 @@ use crate::options::{FitOptions, MAX_MOTIONS, MotionCount};
 use crate::order::sort_few;
 use crate::progress::{Progress, Stages};
 use crate::random::Random;
-use crate::refinement::{Matrix6, Mixture, Samples, Search, covariance, determined, score, select};
+use crate::refinement::{Matrix6, Mixture, Samples, Search, covariance, determined, select};
 
 const STAGES: &[&str] = &["search", "labels"];
 
@@ -45,7 +45,7 @@ pub(crate) fn best_fit(measurements: &Measurements, options: &FitOptions, progre
     let (fit, tried) = match options.motions {
         MotionCount::Given(n) => {
             let fit = search.fit(n, &hypotheses(n), f64::INFINITY);
-            let score = score(&mut search, &fit);
+            let score = search.score(&fit);
             (fit, vec![(n, score)])
         }
         MotionCount::Auto => {

@@ -1,4 +1,4 @@
-//! Two frames in, masks out: the image pipeline as its stages in order, and nothing else.
+//! The image pipeline: the stages that turn two frames into masks, in order.
 
 mod correction;
 mod evidence;
@@ -34,9 +34,9 @@ use settings::Settings;
 const STAGES: &[&str] =
     &["frames", "dominant", "measurements", "algebra", "selection", "refinement", "labels", "masks"];
 
-/// Segments two frames: how many things move, how each moves, which pixels belong to it.
+/// Segments two frames: how many things move, how each one moves and which pixels belong to it.
 ///
-/// `before` is the frame before the first: a third view that helps where something is hidden in the second.
+/// `before` is the frame before the first. It helps to label pixels that are occluded in the second.
 ///
 /// # Errors
 /// [`Error::InvalidOption`], [`Error::FrameSizeMismatch`].
@@ -50,7 +50,7 @@ pub fn segment_pair(
     segment_with(first, second, before, options, Settings::new(options, size(first)), progress)
 }
 
-/// [`segment_pair`] without one part of the pipeline, for measuring what it is worth.
+/// [`segment_pair`] without one part of the pipeline, for ablation studies.
 ///
 /// # Errors
 /// As [`segment_pair`].
@@ -85,16 +85,16 @@ fn segment_with(
     let mut random = Random::from_seed(options.seed);
 
     stages.begin("frames");
-    let mut work = Work::new(first, second, before, &settings);
+    let mut pyramid = PairPyramid::new(first, second, before, &settings);
     stages.begin("dominant");
-    let dominant = work.find_dominant(settings.has(Part::Brightness));
-    let found = hypothesis::best(&work, dominant, &settings, &mut random, &mut stages);
+    let dominant = pyramid.find_dominant(settings.has(Part::Brightness));
+    let found = hypothesis::best(&pyramid, dominant, &settings, &mut random, &mut stages);
     stages.begin("refinement");
-    let found = hypothesis::refine(&work, found, &settings);
+    let found = hypothesis::refine(&pyramid, found, &settings);
     stages.begin("labels");
-    let labelled = masks::label(&work, found, &settings);
+    let labelled = masks::label(&pyramid, found, &settings);
     stages.begin("masks");
-    Ok(report::report(&work, labelled, &settings, first, second, options))
+    Ok(report::report(&pyramid, labelled, &settings, first, second, options))
 }
 
 fn size(frame: &Frame) -> [usize; 2] {
@@ -111,7 +111,7 @@ fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<
     Ok(())
 }
 
-/// Red, green, blue of a frame, halved to a width.
+/// Red, green and blue of a frame, halved until they are at most `width` wide.
 fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
     let mut planes = if frame.width() > width {
         half_colours(frame)
@@ -125,13 +125,13 @@ fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
     planes
 }
 
-/// Red, green, blue of a frame at half its size, smoothed by [1 2 1]/4: whole numbers until the end.
+/// Red, green and blue of a frame at half its size, smoothed by [1 2 1]/4 in integer arithmetic.
 fn half_colours(frame: &Frame) -> [Plane; 3] {
     let (width, height) = (frame.width(), frame.height());
     let row = |y: usize| frame.colours()[y * width..(y + 1) * width].as_flattened();
     let [half_width, half_height] = [width, height].map(|size| size.div_ceil(2));
     let mut planes = [0; 3].map(|_| Plane::unwritten(half_width, half_height));
-    // A row summed over three, with a pixel more on both sides.
+    // Vertical sums over three rows, padded by a pixel on both sides.
     let mut sums = Buffer::unwritten(4 * (width + 2));
     let sums: &mut [[u16; 4]] = sums.as_chunks_mut().0;
     for y in 0..half_height {
@@ -150,26 +150,26 @@ fn half_colours(frame: &Frame) -> [Plane; 3] {
     planes
 }
 
-/// The frames at working size and below.
-pub(crate) struct Work {
+/// Image pyramid of the pair, from the working size down.
+pub(crate) struct PairPyramid {
     /// Level 0 is the working size.
     levels: Vec<Level>,
     /// Index of the level on which the dominant motion is found and others are proposed.
     base: usize,
     /// Index of the level on which motions are first selected, the base level or a finer one.
     selection: usize,
-    /// Index of the level on which labels are drafted.
+    /// Index of the level on which the draft labels are solved.
     draft: usize,
-    /// The first frame unblurred, at the sizes of the levels down to the base level.
+    /// The first frame without blur, at the sizes of the levels down to the base or the draft level.
     pictures: Vec<Picture>,
-    /// Coarse colour of every working pixel.
+    /// Quantised colour of every working pixel.
     palette: Palette,
     /// Full-size pixels per working pixel.
     reduction: f64,
 }
 
-impl Work {
-    fn new(first: &Frame, second: &Frame, before: Option<&Frame>, settings: &Settings) -> Work {
+impl PairPyramid {
+    fn new(first: &Frame, second: &Frame, before: Option<&Frame>, settings: &Settings) -> PairPyramid {
         let mut reduction = 1.0;
         let mut planes: Vec<Plane> =
             [Some(first), Some(second), before].into_iter().flatten().map(|f| f.luminance().clone()).collect();
@@ -192,10 +192,10 @@ impl Work {
             let last = &pictures[pictures.len() - 1];
             pictures.push(Picture { luminance: halve(&last.luminance), colours: last.colours.each_ref().map(halve) });
         }
-        Work { levels, base, selection, draft, pictures, palette, reduction }
+        PairPyramid { levels, base, selection, draft, pictures, palette, reduction }
     }
 
-    /// Finds the dominant motion, takes each view's change of brightness (if there may be one) out of it, measures the noise.
+    /// Finds the dominant motion, measures the noise and, with `brightness`, removes the change of brightness from every view.
     fn find_dominant(&mut self, brightness: bool) -> AffineMotion {
         let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
         for level in &mut self.levels {

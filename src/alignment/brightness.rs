@@ -1,4 +1,4 @@
-//! The change of brightness between the first frame and another view of the scene: exposure, clouds, a lamp.
+//! Photometric change (gain and bias) between the first frame and another view of the scene.
 
 use std::rc::Rc;
 
@@ -17,7 +17,7 @@ pub(crate) struct Photometric {
     pub(crate) gain: f64,
 }
 
-/// Gain between the frames is looked for between these factors.
+/// Smallest and largest factor of the gain.
 const GAINS: (f64, f64) = (0.7, 1.4);
 /// Reweighted least squares steps with a known motion; three settle to a tenth of a grey level.
 const STEPS: usize = 3;
@@ -33,7 +33,7 @@ impl Photometric {
         Photometric { bias: view_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
     }
 
-    /// Refined between the first frame and the second, where nothing moves.
+    /// Refined between the first frame and the second under the zero motion.
     pub(crate) fn refined_at_rest(mut self, level: &Level) -> Photometric {
         for _ in 0..STEPS {
             self = self.step(level, |x, y| Some(level.second.at(x * level.stride, y * level.stride)));
@@ -41,8 +41,8 @@ impl Photometric {
         self
     }
 
-    /// That of the frame before the first, given the motion (of the working frame) from the first frame to the second. None where
-    /// the motion folds the plane or where there is no frame before.
+    /// That of the frame before the first, given the motion (of the working frame) from the first frame to the second. None if the
+    /// motion is singular or there is no frame before.
     pub(crate) fn of_frame_before(level: &Level, motion: &AffineMotion) -> Option<Photometric> {
         let view = level.before.as_deref()?;
         let scaled = level.scaled(&inverse(motion)?);
@@ -55,7 +55,7 @@ impl Photometric {
         Some((0..STEPS).fold(start, |photometric, _| photometric.step(level, sample)))
     }
 
-    /// One reweighted least squares step between the pixels of the first frame and what `sample` says of them.
+    /// One reweighted least squares step between the pixels of the first frame and the samples of the view that belong to them.
     fn step(self, level: &Level, sample: impl Fn(usize, usize) -> Option<f32>) -> Photometric {
         let variance = f64::from(level.noise * level.noise);
         let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
@@ -83,7 +83,7 @@ impl Photometric {
         }
     }
 
-    /// Takes the change out of a view of a level: `(I − bias) / (1 + gain/128)`, and the gain out of its gradients.
+    /// Removes the change from a view of a level, `(I − bias) / (1 + gain/128)`, and the gain from its gradients.
     pub(crate) fn remove_from(self, level: &mut Level, view: View) {
         let (scale, bias) = ((1.0 / (1.0 + self.gain / 128.0)) as f32, self.bias as f32);
         let remove = |plane: &mut Rc<Plane>, bias: f32| {

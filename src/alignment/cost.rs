@@ -1,13 +1,13 @@
-//! What a motion costs at a pixel: the intensity difference along it, in units of its standard deviation, saturated.
+//! The cost of a motion at a pixel: a robust function of the intensity difference along it, in units of its standard deviation.
 //!
 //! ```text
 //! r  = I2(x + A x) − I1(x)                           intensity difference along the motion
-//! v  = s² q(A, x) + κ² |∇I1|²                         its variance if A is right: noise, plus a position error of κ pixels
+//! v  = s² q(A, x) + κ² |∇I1|²                         its variance if A is correct: noise, plus a position error of κ pixels
 //! ρ  = e / (1 + e/T),  e = r²/v                       Geman-McClure, saturating at T
 //! ```
 //! `q` corrects for the averaging that bilinear interpolation does to noise: `q = (1 + k(fx) k(fy)) / 2` with
 //! `k(f) = 1 − 2 (1 − c) f (1 − f)`, f the fractional shift and c the correlation of neighbouring noise. Without it a
-//! half-pixel shift beats the truth in flat areas.
+//! half-pixel shift beats the true motion in flat areas.
 
 use super::brightness::Photometric;
 use crate::frame::Plane;
@@ -22,17 +22,17 @@ use crate::workspace::Buffer;
 /// The two constants of the cost.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CostModel {
-    /// T: the cost of a pixel that the motion does not explain.
+    /// T: the largest cost, of a pixel that the motion does not explain.
     pub(crate) truncation: f32,
-    /// κ: standard deviation of the position that a right motion predicts, pixels.
-    pub(crate) looseness: f32,
+    /// κ: standard deviation of the position predicted by a correct motion, pixels.
+    pub(crate) position_sigma: f32,
 }
 
 impl CostModel {
     /// For estimating motions.
-    pub(crate) const ESTIMATION: CostModel = CostModel { truncation: 4.0, looseness: 0.15 };
+    pub(crate) const ESTIMATION: CostModel = CostModel { truncation: 4.0, position_sigma: 0.15 };
     /// For labelling pixels.
-    pub(crate) const LABELS: CostModel = CostModel { truncation: 2.0, looseness: 0.15 };
+    pub(crate) const LABELS: CostModel = CostModel { truncation: 2.0, position_sigma: 0.15 };
 
     #[inline(always)]
     fn of(self, residual: f32, variance: f32) -> f32 {
@@ -41,7 +41,7 @@ impl CostModel {
         square / (variance + square * (1.0 / self.truncation))
     }
 
-    /// Cost of a pixel whose displaced position lies outside: it says nothing.
+    /// Neutral cost of a pixel whose displaced position lies outside the view.
     pub(crate) fn outside(self) -> f32 {
         0.5 * self.truncation
     }
@@ -62,13 +62,14 @@ pub(crate) enum View {
 }
 
 /// Cost of a motion (of the working frame) at every pixel of a level, between the first frame and the second. A pixel that leaves the
-/// second frame says nothing, even where there is a frame before: a flat place looks alike in any two frames, so that a wrong motion
-/// would pay nothing for most of what it moves out of sight, and a motion bent over several objects passes for the background.
+/// second frame has the neutral cost, even if there is a frame before. Flat areas look alike in any two frames, so with the frame
+/// before a wrong motion would pay nothing for most pixels it moves out of view, and a motion fitted across several objects could
+/// pass for the background.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
     cost_within(level, &level.area(), motion, model)
 }
 
-/// [`cost`] of the pixels of an area alone, as a plane of its size.
+/// [`cost`] at the pixels of an area, as a plane of its size.
 #[inline(never)]
 pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
     let mut plane = cost_in(level, View::Second, area, motion, model);
@@ -86,7 +87,7 @@ pub(crate) fn cost_in(level: &Level, view: View, area: &Area, motion: &AffineMot
     }
 }
 
-/// Cost with a change of brightness that has not been taken out of the second frame yet.
+/// Cost under a change of brightness that has not yet been removed from the second frame.
 pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
     Comparison {
         level,
@@ -99,7 +100,7 @@ pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photo
     .plane(&level.area())
 }
 
-/// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none where a motion folds the plane.
+/// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none if the motion is singular.
 #[inline(never)]
 pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
     let a = &motion.matrix;
@@ -124,7 +125,7 @@ pub(crate) struct Comparison<'a> {
 }
 
 impl<'a> Comparison<'a> {
-    /// With one view; pixels that leave it cost infinitely much. None where there is no such view.
+    /// A comparison with one view; pixels that leave it have infinite cost. None if there is no such view.
     pub(crate) fn new(level: &'a Level, view: View, motion: &AffineMotion, model: CostModel) -> Option<Comparison<'a>> {
         let (view, moved) = match view {
             View::Second => (&*level.second, *motion),
@@ -142,10 +143,11 @@ impl<'a> Comparison<'a> {
         plane
     }
 
-    /// Costs of row y from column `left` on, as many as there are places.
+    /// Fills `costs` with those of row y from column `left` on.
     pub(crate) fn row(&self, y: usize, left: usize, costs: &mut [f32]) {
         let level = self.level;
-        let (noise, looseness) = (level.noise * level.noise, self.model.looseness * self.model.looseness);
+        let (noise, position_sigma) =
+            (level.noise * level.noise, self.model.position_sigma * self.model.position_sigma);
         let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / 128.0) as f32);
         let correlation = level.noise_correlation();
         let path = level.path(&self.scaled, left, y);
@@ -153,7 +155,7 @@ impl<'a> Comparison<'a> {
         let mut at = Footprints::new();
         let cost = |sample: f32, first: f32, energy: f32, [fx, fy]: [f32; 2]| {
             let residual = sample - first * (1.0 + gain) - bias;
-            let variance = noise * interpolation_variance(fx, fy, correlation) + looseness * energy;
+            let variance = noise * interpolation_variance(fx, fy, correlation) + position_sigma * energy;
             self.model.of(residual, variance)
         };
         let columns = left..left + costs.len();
@@ -189,7 +191,7 @@ pub(crate) fn total(plane: &Plane) -> f64 {
     (0..plane.height()).map(|y| f64::from(lane_sum(plane.row(y)))).sum()
 }
 
-/// Sum of a row, in eight lanes: an order that vectorises and is the same everywhere.
+/// Sum of a row in eight lanes, an order that vectorises and is the same on every platform.
 pub(crate) fn lane_sum(row: &[f32]) -> f32 {
     let mut lanes = [0.0f32; 8];
     let chunks = row.chunks_exact(8);
@@ -202,12 +204,12 @@ pub(crate) fn lane_sum(row: &[f32]) -> f32 {
     lanes.iter().sum::<f32>() + rest
 }
 
-/// Standard deviation of the intensity difference along a right motion, grey levels, from the flatter half of the pixels
+/// Standard deviation of the intensity difference along a correct motion, grey levels, from the flatter half of the pixels
 /// (1.4826 × median absolute deviation), between half a grey level and 8.
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     const SMALLEST: f32 = 0.5;
     const LARGEST: f32 = 8.0;
-    /// Pixels that are enough: of more a sample is looked at.
+    /// About this many pixels are enough; larger levels are sampled.
     const ENOUGH: f64 = 8192.0;
     let stride = (level.first.values().len() as f64 / ENOUGH).sqrt().ceil() as usize;
     let level = &level.thinned(stride.max(1));

@@ -1,4 +1,4 @@
-//! The dominant motion: the one affine motion that explains most of the frame, with the change of brightness between the frames.
+//! The dominant motion: the affine motion that explains most of the frame, and the change of brightness between the frames.
 
 use super::brightness::Photometric;
 use super::cost::{CostModel, cost_with, total};
@@ -8,8 +8,8 @@ use crate::motion::AffineMotion;
 
 /// Reach of the search for a start at the coarsest level, pixels of that level.
 const REACH: i32 = 3;
-/// How much cheaper (in costs summed over pixels) another motion must be than no motion at all: cameras that stand still are common,
-/// and a small wrong motion of the background costs more later than a small true one that is missed here.
+/// How much cheaper than the zero motion (in summed costs) another motion must be. Static cameras are common, and a small wrong
+/// motion of the background does more harm later than missing a small true one here.
 const STATIC_BONUS: f64 = 20.0;
 
 /// The dominant motion of the working frame and the change of brightness (none unless `brightness` allows it), from the levels
@@ -55,7 +55,7 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
     best.1
 }
 
-/// Coarse to fine from one start: translation first, then affine, the weights sharpened at the end.
+/// Coarse to fine from one start: translation first, then affine, with a stricter robust weight at the end.
 fn descend(
     levels: &[Level],
     base: usize,
@@ -81,7 +81,7 @@ fn descend(
     (motion, photometric)
 }
 
-/// No motion: only the brightness is fitted.
+/// The zero motion: only the change of brightness is fitted.
 fn static_candidate(level: &Level, mut photometric: Photometric, brightness: bool) -> (f64, AffineMotion, Photometric) {
     if brightness {
         photometric = photometric.refined_at_rest(level);

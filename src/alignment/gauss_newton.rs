@@ -1,4 +1,4 @@
-//! One motion refined on the intensities of its pixels: iteratively reweighted Gauss-Newton (the direct method).
+//! Refinement of one motion on the intensities of its pixels: iteratively reweighted Gauss-Newton (the direct method).
 //!
 //! Each iteration linearises `r(A + dA) ≈ r + gᵀ dA x` with the mean of both frames' gradients along the motion (it makes
 //! the step second-order accurate) and solves the weighted normal equations in coordinates centred on the support. The
@@ -39,8 +39,8 @@ pub(crate) struct Alignment {
 const SMALL_STEP: f64 = 0.003;
 /// Below this sum of support weights a motion is left as it is.
 const SMALLEST_SUPPORT: f64 = 12.0;
-/// Linear entries beyond this (a zoom by 40 %, a turn by 23°) are no motion between two frames: what runs there has lost its pixels,
-/// and would be rewarded for moving them out of the frame.
+/// Largest linear entry, a zoom by 40 % or a rotation by 23°. Estimates beyond it have diverged, and the cost would reward them for
+/// moving pixels out of the frame.
 const LARGEST_LINEAR: f64 = 0.4;
 
 /// Unknowns: the six entries of A (in centred coordinates), bias, gain.
@@ -48,7 +48,7 @@ const UNKNOWNS: usize = 8;
 type Normal = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 type Right = SVector<f64, UNKNOWNS>;
 
-/// Pixels that vote, with their weights and their extent.
+/// The pixels that a motion is fitted to, with their weights and extent.
 pub(crate) struct Support<'a> {
     weights: Option<&'a Plane>,
     columns: std::ops::Range<usize>,
@@ -93,7 +93,7 @@ impl<'a> Support<'a> {
     }
 }
 
-/// Aligns a motion (of the working frame) on a level. The motion comes back unchanged where its pixels do not determine it.
+/// Aligns a motion (of the working frame) on a level. Returns it unchanged if its pixels do not determine it.
 pub(crate) fn align(
     level: &Level,
     motion: &AffineMotion,
@@ -162,12 +162,12 @@ fn apply(motion: &mut AffineMotion, step: &Right, centre: [f64; 2], scale: f64) 
     }
 }
 
-/// A row's values in whole chunks. Those behind the row have no weight.
+/// A row's values in whole chunks. Values past the end of the row have no weight.
 type Row = Buffer<[f32; CHUNK]>;
 
 kept!([f32; CHUNK]);
 
-/// One row of everything, reused from row to row.
+/// Buffers for one row, reused for every row.
 struct RowBuffers {
     x: Row,
     gx: Row,
@@ -220,7 +220,7 @@ impl RowBuffers {
     ) {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
-        let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
+        let position_sigma = CostModel::ESTIMATION.position_sigma * CostModel::ESTIMATION.position_sigma;
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
         // The mean of both gradients, per pixel of this level.
         let half = 0.5 * level.stride as f32;
@@ -251,12 +251,12 @@ impl RowBuffers {
             let (first, energy) =
                 (whole(&first[chunk.clone()], space_first), whole(&energy[chunk.clone()], space_energy));
             let (dx, dy) = (whole(&dx[chunk.clone()], space_dx), whole(&dy[chunk], space_dy));
-            // Into arrays of its own: the compiler need not ask whether they overlap with what is read.
+            // Local arrays: the compiler knows that they do not alias the inputs.
             let mut row = [[0.0; CHUNK]; 4];
             let [weights_of, residuals_of, gx_of, gy_of] = &mut row;
             for k in 0..CHUNK {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
-                let information = 1.0 / (noise + looseness * energy[k]);
+                let information = 1.0 / (noise + position_sigma * energy[k]);
                 let robust = how.robustness / (how.robustness + residual * residual * information);
                 let counts = at.inside(k) & if given[k] > 1e-3 { u32::MAX } else { 0 };
                 let counted = |value: f32| f32::from_bits(value.to_bits() & counts);
@@ -289,7 +289,7 @@ impl RowBuffers {
         }
     }
 
-    /// Columns of bias and gain: derivative of the residual's model with respect to them is (1, I1/128).
+    /// Rows of bias and gain: the derivative of the modelled residual with respect to them is (1, I1/128).
     fn accumulate_photometric(&mut self, normal: &mut Normal, right: &mut Right, y: f64, first: &[f32]) {
         let mut sums = [[0.0f64; 2]; 4];
         let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0f64, 0.0, 0.0, 0.0, 0.0);
@@ -322,7 +322,7 @@ impl RowBuffers {
     }
 }
 
-/// Moments `Σ p, Σ p x, Σ p x²` of the products `p = weight · a · b`, with a sum for every place of a chunk.
+/// Moments `Σ p, Σ p x, Σ p x²` of the products `p = weight · a · b`, with one accumulator per lane of a chunk.
 fn moments(weight: &Row, a: &Row, b: &Row, x: &Row) -> [f64; 3] {
     let (mut s0, mut s1, mut s2) = ([0.0f32; CHUNK], [0.0f32; CHUNK], [0.0f32; CHUNK]);
     for ((weight, x), (a, b)) in weight.iter().zip(x).zip(a.iter().zip(b)) {

@@ -1,4 +1,4 @@
-//! Motions measured on the images themselves: residuals and their robust cost, Gauss-Newton alignment, the dominant motion.
+//! Direct estimation of motions from intensities: robust costs, Gauss-Newton alignment, the dominant motion.
 
 pub(crate) mod brightness;
 pub(crate) mod cost;

@@ -14,7 +14,7 @@ impl Area {
         Area { columns: 0..width, rows: 0..height }
     }
 
-    /// The smallest one with some pixels of a grid, given by their indices; empty where there are none.
+    /// Bounding rectangle of some pixels of a grid, given by their indices; empty if there are none.
     pub(crate) fn of(pixels: &[usize], width: usize) -> Area {
         let Some(&first) = pixels.first() else { return Area::whole(0, 0) };
         let one = |p: usize| Area { columns: p % width..p % width + 1, rows: p / width..p / width + 1 };
@@ -29,13 +29,13 @@ impl Area {
         self.rows.len()
     }
 
-    /// With a margin, as far as a grid goes.
+    /// Grown by a margin, clipped to a grid.
     pub(crate) fn grown(&self, by: usize, width: usize, height: usize) -> Area {
         let grown = |range: &Range<usize>, size: usize| range.start.saturating_sub(by)..(range.end + by).min(size);
         Area { columns: grown(&self.columns, width), rows: grown(&self.rows, height) }
     }
 
-    /// The smallest one around both.
+    /// Bounding rectangle of both.
     pub(crate) fn with(&self, other: &Area) -> Area {
         let both = |a: &Range<usize>, b: &Range<usize>| a.start.min(b.start)..a.end.max(b.end);
         Area { columns: both(&self.columns, &other.columns), rows: both(&self.rows, &other.rows) }

@@ -28,17 +28,17 @@ pub struct Derivatives {
 /// Derivatives of the frames' luminance scaled to [0, 1], the scale of the paper's threshold.
 ///
 /// With `before` they are those at the time of `first`, from three frames; without it they are those half-way between
-/// `first` and `second`, by averages and differences of the two. The image continues beyond its border as its border.
-/// Frames of the same size; what one has more than another is not read.
+/// `first` and `second`, by averages and differences of the two. Borders are replicated. The frames should have the
+/// same size; what one has more than another is not read.
 pub fn derivatives(first: &Frame, second: &Frame, before: Option<&Frame>) -> Derivatives {
     let (smoothed, changed) = match before {
         Some(before) => {
             let planes = [before.luminance(), first.luminance(), second.luminance()];
-            (mixed(&planes, &SMOOTH_IN_TIME), mixed(&planes, &DIFFERENCE_IN_TIME))
+            (weighted_sum(&planes, &SMOOTH_IN_TIME), weighted_sum(&planes, &DIFFERENCE_IN_TIME))
         }
         None => {
             let planes = [first.luminance(), second.luminance()];
-            (mixed(&planes, &[0.5, 0.5]), mixed(&planes, &[-1.0, 1.0]))
+            (weighted_sum(&planes, &[0.5, 0.5]), weighted_sum(&planes, &[-1.0, 1.0]))
         }
     };
     Derivatives {
@@ -49,7 +49,7 @@ pub fn derivatives(first: &Frame, second: &Frame, before: Option<&Frame>) -> Der
 }
 
 /// The weighted sum of planes of grey levels, scaled to [0, 1].
-fn mixed(planes: &[&Plane], weights: &[f32]) -> Plane {
+fn weighted_sum(planes: &[&Plane], weights: &[f32]) -> Plane {
     let (width, height) =
         planes.iter().fold((usize::MAX, usize::MAX), |(w, h), p| (w.min(p.width()), h.min(p.height())));
     Plane::from_fn(width, height, |x, y| planes.iter().zip(weights).map(|(p, w)| w * p.at(x, y)).sum::<f32>() / 255.0)

@@ -28,13 +28,13 @@ pub(crate) fn gaussian(plane: &Plane, sigma: f32) -> Plane {
     out
 }
 
-/// A separable symmetric filter, a row at a time: what needs its result only row by row needs no plane of it.
+/// A separable symmetric filter, a row at a time, for callers that need no plane of the result.
 pub(crate) struct RowFilter {
     /// `weights[k]` belongs to the two neighbours at distance k.
     weights: Vec<f32>,
-    /// Where the values at distance k on both sides begin.
+    /// Start of the values at distance k on both sides.
     places: Vec<[usize; 2]>,
-    /// A row after the vertical filter, continued on both sides.
+    /// A row after the vertical filter, padded on both sides.
     padded: Buffer<f32>,
 }
 
@@ -86,7 +86,7 @@ fn write_sums(values: &[f32], centre: usize, places: &[[usize; 2]], weights: &[f
     }
 }
 
-/// Values summed together: as many as fit the registers with room for their terms.
+/// Values summed together: as many as fit in registers along with their terms.
 const BLOCK: usize = 16;
 
 #[inline(always)]
@@ -177,9 +177,8 @@ pub(crate) fn median5(plane: &Plane) -> Plane {
     out
 }
 
-/// Puts pairs of variables in order, one pair after the other. The same comparison decides both places, so that nothing is lost,
-/// whatever the values. Networks are written with it instead of loops over arrays, whose values live in registers only where
-/// the compiler unrolls the loops.
+/// Sorts pairs of variables, one pair after the other. One comparison decides both places, so no value is lost, not even NaN. Sorting
+/// networks use it instead of loops over arrays, which stay in registers only if the compiler unrolls the loops.
 macro_rules! order {
     ($($a:ident $b:ident),*) => { $(let ($a, $b) = if $a < $b { ($a, $b) } else { ($b, $a) };)* };
 }
@@ -252,8 +251,8 @@ fn median_of_25([smallest, second, third, fourth, largest]: [[f32; 5]; 5]) -> f3
     largest_into!(y u v w x);
     largest_into!(x u v w);
     largest_into!(w u v);
-    // Thirteen are left. Of eight of them neither the smallest nor the largest is the median; what is left and one more is
-    // the same question with two values less.
+    // Thirteen are left. Of any eight, neither the smallest nor the largest is the median: drop both, add the next value and repeat
+    // with one value less.
     extremes_apart!(d, e h i j l m, n);
     extremes_apart!(e, h i j l m, p);
     extremes_apart!(h, i j l m, q);
@@ -263,7 +262,7 @@ fn median_of_25([smallest, second, third, fourth, largest]: [[f32; 5]; 5]) -> f3
     m
 }
 
-/// The smallest of each 3×3 neighbourhood; outside the plane counts as inside the region.
+/// Erosion: the minimum of each 3×3 neighbourhood. Pixels outside the plane count as inside the region.
 pub(crate) fn eroded(mask: &Plane) -> Plane {
     let (width, height) = (mask.width(), mask.height());
     let mut out = Plane::unwritten(width, height);

@@ -1,4 +1,4 @@
-//! Pixels in, planes and measurements out. Knows no algebra.
+//! Frames, planes, pyramids and derivatives.
 
 pub(crate) mod area;
 mod derivatives;
@@ -27,7 +27,7 @@ pub struct Frame {
     rgba: Vec<u8>,
 }
 
-/// Frames are equal where their pixels are, whatever their alpha.
+/// Frames are equal if their pixels are; alpha is ignored.
 impl PartialEq for Frame {
     fn eq(&self, other: &Frame) -> bool {
         let mut colours = self.colours().iter().zip(other.colours());
@@ -36,7 +36,7 @@ impl PartialEq for Frame {
 }
 
 impl Frame {
-    /// A frame from RGBA bytes, row by row, as `ImageData` has them. Alpha is ignored. Bytes that are given away are not copied.
+    /// A frame from RGBA bytes, row by row, as `ImageData` has them. Alpha is ignored. Owned bytes are not copied.
     ///
     /// Luminance is Rec. 601, `0.299 R + 0.587 G + 0.114 B`, in grey levels.
     ///

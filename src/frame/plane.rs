@@ -10,7 +10,7 @@ pub struct Plane {
     values: Buffer<f32>,
 }
 
-// Making a plane takes long enough for a call: inlined, it would be in the module at eighty places.
+// Not inlined: a plane takes long enough to make, and the module would contain eighty copies.
 impl Clone for Plane {
     #[inline(never)]
     fn clone(&self) -> Plane {
@@ -25,7 +25,7 @@ impl Plane {
         Plane { width, height, values: Buffer::filled(width * height, value) }
     }
 
-    /// A plane of whatever values: for those who write all of them.
+    /// A plane of unspecified values, for callers that overwrite all of them.
     #[inline(never)]
     pub(crate) fn unwritten(width: usize, height: usize) -> Plane {
         Plane { width, height, values: Buffer::unwritten(width * height) }

@@ -1,4 +1,4 @@
-//! The frames at several sizes, with their gradients: what alignment and labelling look at.
+//! Image pyramid of the frames, with gradients, for alignment and labelling.
 
 use std::rc::Rc;
 
@@ -8,8 +8,8 @@ use super::filter::{gradients, halve};
 use super::warp::RowPath;
 use crate::motion::AffineMotion;
 
-/// Standard deviation of the blur put on both frames before anything else, pixels: without it bilinear warping, which
-/// averages noise at half-pixel shifts, makes such shifts win in flat areas.
+/// Standard deviation of the blur applied to all frames first, pixels. Bilinear warping averages noise at half-pixel shifts; without
+/// the blur such shifts would win in flat areas.
 pub(crate) const PRE_BLUR: f32 = 0.5;
 
 /// Correlation of neighbouring pixels' noise after the pre-blur, exp(−1/(4σ²)).
@@ -17,7 +17,7 @@ const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
 /// The same on coarser levels, after the 5-tap filter and halving (measured).
 const NOISE_CORRELATION_HALVED: f32 = 0.4;
 
-/// A side of more pixels than this is halved even where the other one gets short …
+/// A side longer than this is halved even if the other one becomes short …
 const LONG: usize = 320;
 /// … but not below this.
 const NARROW: usize = 4;
@@ -40,7 +40,7 @@ pub(crate) struct Level {
     pub(crate) second_dy: Rc<Plane>,
     /// Squared gradient length of the first frame.
     pub(crate) energy: Plane,
-    /// Standard deviation of the residual of a right motion in flat areas, grey levels (set by `noise`).
+    /// Standard deviation of the residual of a correct motion in flat areas, grey levels (see `noise`).
     pub(crate) noise: f32,
     /// Distance of the first frame's pixels in pixels of the second: 1, or more where the level is [`thinned`](Level::thinned).
     pub(crate) stride: usize,
@@ -92,8 +92,8 @@ impl Level {
         stride.min(self.width().min(self.height()) / SMALLEST_SAMPLE).max(1)
     }
 
-    /// The level with every `stride`-th pixel of the first frame in every `stride`-th row, compared with the whole second frame: a
-    /// sample of the pixels, as sharp as they are. Of small levels more is kept ([`thinning`](Self::thinning)).
+    /// The level with every `stride`-th pixel of every `stride`-th row of the first frame and the whole second frame: a sample of the
+    /// pixels without blur. Small levels keep more pixels ([`thinning`](Self::thinning)).
     pub(crate) fn thinned(&self, stride: usize) -> Level {
         let stride = self.thinning(stride);
         Level {

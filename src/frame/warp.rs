@@ -1,13 +1,13 @@
-//! Looking at a plane along a motion: bilinear samples at x + A x, a row at a time.
+//! Warping: bilinear samples of a plane at x + A x, a row at a time.
 //!
-//! [`Footprints`] does for [`CHUNK`] pixels at once what [`Footprint`] does for one, with the same bits: all but the reading
-//! of the four neighbours is then done for several pixels by one instruction.
+//! [`Footprints`] does for [`CHUNK`] pixels what [`Footprint`] does for one, with the same bits. All but the reads of the four
+//! neighbours is vectorised.
 
 use super::Plane;
 use crate::lanes::LANES;
 use crate::motion::AffineMotion;
 
-/// A row's sampling positions: start and step per pixel, kept as `f64` up to every chunk of pixels so that no error grows along a row.
+/// Sampling positions of a row: start and step per pixel, in `f64` up to each chunk of pixels so that errors do not grow along a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct RowPath {
     start: [f64; 2],
@@ -70,7 +70,7 @@ impl Footprint {
     }
 }
 
-/// Pixels of a row that are looked at together: rows of most levels are a multiple of it.
+/// Pixels of a row that are processed together. Rows of most levels are a multiple of it.
 pub(crate) const CHUNK: usize = 32;
 
 /// [`Footprint`]s of neighbouring pixels, placed anew as often as needed: up to [`CHUNK`], in whole blocks.
@@ -84,11 +84,11 @@ pub(crate) struct Footprints {
     /// Weights of the right and lower neighbours.
     pub(crate) fx: [f32; CHUNK],
     pub(crate) fy: [f32; CHUNK],
-    /// All bits where a position lies within the plane, else none: as wide as the weights, so that both are handled together.
+    /// Mask of the positions within the plane, all bits or none. As wide as the weights, so that both vectorise together.
     inside: [u32; CHUNK],
 }
 
-/// Distance from each index of a block to the next: where it is the same all along, the values needed lie in two rows.
+/// Distance from each index of a block to the next. If it is constant, the values needed lie in two rows.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Step {
     One,
@@ -110,7 +110,7 @@ impl Footprints {
     }
 
     /// Puts them at `count` pixels from `from` on of a path in a plane of the given size.
-    #[inline(never)] // Used in many places; a call for so many pixels costs nothing, a copy in each place a kilobyte.
+    #[inline(never)] // A call costs little for so many pixels, a copy at each of the many call sites a kilobyte.
     pub(crate) fn follow(&mut self, path: &RowPath, from: usize, count: usize, width: usize, height: usize) {
         let (start_x, start_y) = path.at(from);
         let step = path.step.map(|s| s as f32);
@@ -132,7 +132,7 @@ impl Footprints {
         let (last_x, last_y) = (right_edge - 1.0, lower_edge - 1.0);
         self.width = width;
         self.placed = count.div_ceil(LANES).min(CHUNK / LANES);
-        // All of them, whatever the count: a number of turns that the compiler knows is worth more.
+        // All of them, whatever the count: a constant trip count vectorises.
         for k in 0..CHUNK {
             let (x, y) = position(k);
             let (cx, cy) = (clamped(x, right_edge), clamped(y, lower_edge));
@@ -156,7 +156,7 @@ impl Footprints {
         self.inside[..count].iter().filter(|&&inside| inside != 0).count()
     }
 
-    /// All bits where the k-th position lies within the plane, else none.
+    /// All bits if the k-th position lies within the plane, else none.
     #[inline(always)]
     pub(crate) fn inside(&self, k: usize) -> u32 {
         self.inside[k]
@@ -238,11 +238,11 @@ fn clamped(v: f32, edge: f32) -> f32 {
     if v < edge { v } else { edge }
 }
 
-/// 2²³: the distance of floats from here on is 1.
+/// 2²³: from here on floats are 1 apart.
 const SHIFT: f32 = 8_388_608.0;
 
-/// The largest whole number up to `v`, 0 ≤ v < 2²², and up to `last`. Adding 2²³ leaves no bits for a fraction: the sum is rounded. The
-/// language's own conversion has cases to tell apart and is done one by one.
+/// The largest whole number up to `v`, 0 ≤ v < 2²², and up to `last`. Adding 2²³ leaves no bits for a fraction, so the sum is rounded.
+/// The language's own conversion handles special cases and does not vectorise.
 #[inline(always)]
 fn floor(v: f32, last: f32) -> f32 {
     let rounded = (v + SHIFT) - SHIFT;
@@ -256,7 +256,7 @@ fn whole(v: f32) -> u32 {
     (v + SHIFT).to_bits() & 0x007f_ffff
 }
 
-/// The plane seen along the motion: value at (x, y) is the sample at (x, y) + A (x, y), replicated outside.
+/// Warps a plane by a motion: the value at (x, y) is the sample at (x, y) + A (x, y), replicated outside.
 pub(crate) fn warp(plane: &Plane, motion: &AffineMotion) -> Plane {
     let (width, height) = (plane.width(), plane.height());
     let mut out = Plane::unwritten(width, height);

@@ -1,9 +1,9 @@
-//! What the colours say: a pixel that motion alone cannot place goes with what looks like it.
+//! Colour model: pixels that motion alone cannot assign take the label of similar colours.
 //!
-//! Where the costs of two motions differ, that difference is evidence. A histogram of coarse colours, weighted by evidence, says
-//! how likely a colour belongs to each label. Whether that can be trusted is measured: blocks of the frame form two halves, and
-//! the histograms of one half are asked about the other. Where textures of several labels share their colours the halves say
-//! nothing about each other, and the colours have no say.
+//! A histogram of quantised colours per label, weighted by the margin by which each pixel's own motion is cheaper than the next, gives
+//! the probability of a label given a colour. How far it can be trusted is measured by cross-validation: blocks of the frame form
+//! two halves, and the histograms of one half predict the labels of the other. If labels share their colours the prediction fails,
+//! and colours are ignored.
 
 use crate::frame::{Frame, Plane};
 use crate::workspace::Buffer;
@@ -11,18 +11,18 @@ use crate::workspace::Buffer;
 /// Steps per colour channel.
 const STEPS: usize = 8;
 const COLOURS: usize = STEPS * STEPS * STEPS;
-/// Probability that every label gives every colour beforehand.
-const DOUBT: f32 = 1e-3;
-/// Price of a colour per nat of its improbability, where colours can be trusted entirely.
-const STRENGTH: f32 = 1.0;
-/// Largest price of a colour.
-const LARGEST: f32 = 2.0;
-/// Evidence, in costs, from which on a label has colours.
-const LEAST_EVIDENCE: f32 = 20.0;
+/// Prior probability of every colour under every label.
+const PRIOR: f32 = 1e-3;
+/// Cost per nat of improbability if colours can be trusted entirely.
+const PRICE_PER_NAT: f32 = 1.0;
+/// Largest cost of a colour.
+const LARGEST_PRICE: f32 = 2.0;
+/// Summed margins, in costs, below which the colours of a label are unknown.
+const SMALLEST_SUPPORT: f32 = 20.0;
 /// Side of the blocks that form the two halves, working pixels.
 const BLOCK: usize = 12;
 
-/// The coarse colour of every working pixel.
+/// The quantised colour of every working pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {
     size: [usize; 2],
@@ -30,7 +30,7 @@ pub(crate) struct Palette {
 }
 
 impl Palette {
-    /// Mean colours over the pixels that a working pixel stands for, in steps.
+    /// Quantises the mean colours over the full-size pixels of each working pixel.
     pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
         let step = frame.width().div_ceil(width).next_power_of_two();
         let mut indices = Buffer::with_capacity(width * height);
@@ -67,33 +67,33 @@ impl Palette {
     }
 }
 
-/// What each colour costs under each label.
+/// Cost of each colour under each label.
 #[derive(Clone, Debug)]
 pub(crate) struct ColourPrices {
-    /// Of all labels for the first colour, for the second, …
+    /// The costs of all labels for the first colour, for the second, …
     table: Buffer<f32>,
     labels: usize,
 }
 
 impl ColourPrices {
-    /// Learned from the pixels that the motions place.
+    /// Learned from pixels, weighted by how clearly their motion wins.
     pub(crate) fn learned(palette: &Palette, costs: &[Plane], labels: &[u8]) -> ColourPrices {
         let n = costs.len();
-        let weights = evidence(costs, labels);
+        let weights = margins(costs, labels);
         let trust = trust(palette, labels, &weights, n);
         let mut table = posterior(palette, labels, &weights, n, |_| true);
-        table.iter_mut().for_each(|p| *p = (-STRENGTH * trust * trust * libm::logf(*p)).min(LARGEST));
+        table.iter_mut().for_each(|p| *p = (-PRICE_PER_NAT * trust * trust * libm::logf(*p)).min(LARGEST_PRICE));
         ColourPrices { table, labels: n }
     }
 
-    /// The price of a label for the colour of a pixel.
+    /// The cost of a label for the colour of a pixel.
     #[inline(always)]
     pub(crate) fn of(&self, palette: &Palette, pixel: usize, label: usize) -> f32 {
         self.table[usize::from(palette.indices[pixel]) * self.labels + label]
     }
 }
 
-/// Adds to the costs what the colours say.
+/// Adds the costs of the colours.
 pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8]) {
     let prices = ColourPrices::learned(palette, costs, labels);
     for (label, cost) in costs.iter_mut().enumerate() {
@@ -101,8 +101,8 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8])
     }
 }
 
-/// How well the colours of one half of the blocks tell the labels of the other: information per pixel as a share of what the
-/// labels would need, averaged over the labels; 0…1.
+/// How well the colours of one half of the blocks predict the labels of the other: information per pixel as a share of the
+/// information needed, averaged over the labels; 0…1.
 fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
     let width = palette.size[0];
     let half = |p: usize| (p % width / BLOCK + p / width / BLOCK) % 2;
@@ -119,8 +119,8 @@ fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
     shares.sum::<f32>() / n as f32
 }
 
-/// By how much each pixel's own motion is cheaper than the next.
-fn evidence(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
+/// By how much each pixel's own motion is cheaper than the next one.
+fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
     let next = |p: usize, own: usize| {
         (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min)
     };
@@ -142,16 +142,16 @@ fn posterior(
         table[usize::from(palette.indices[p]) * n + usize::from(label)] += weight;
         totals[usize::from(label)] += weight;
     }
-    let known = totals.iter().filter(|&&total| total >= LEAST_EVIDENCE).count().max(1) as f32;
+    let known = totals.iter().filter(|&&total| total >= SMALLEST_SUPPORT).count().max(1) as f32;
     for of_colour in table.chunks_exact_mut(n) {
         let mut sum = 0.0;
-        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= LEAST_EVIDENCE) {
-            *share = *share / total + DOUBT;
+        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= SMALLEST_SUPPORT) {
+            *share = *share / total + PRIOR;
             sum += *share;
         }
-        // Nothing is known against a label that has given no evidence: any colour is as likely there as elsewhere on average.
+        // A label without enough pixels to learn from gets the average probability for every colour.
         let average = if sum > 0.0 { sum / known } else { 1.0 };
-        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < LEAST_EVIDENCE) {
+        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < SMALLEST_SUPPORT) {
             *share = average;
             sum += average;
         }
@@ -173,7 +173,7 @@ mod tests {
         ([cost(false), cost(true)], labels)
     }
 
-    /// What the colours add.
+    /// The costs that the colours add.
     fn said(palette: &Palette, costs: &[Plane; 2], labels: &[u8]) -> [Plane; 2] {
         let mut with = costs.clone();
         add_colours(&mut with, palette, labels);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_that_tell_the_labels_apart_are_heard_and_others_are_not() {
+    fn colours_that_separate_the_labels_are_used_and_others_are_not() {
         let (costs, labels) = costs(72, 48);
         let telling = frame(|x, _| if x < 36 { [200, 30, 30] } else { [30, 30, 200] });
         let said = said(&Palette::new(&telling, 72, 48), &costs, &labels);

@@ -1,36 +1,36 @@
-//! How sure a label is: the probability of every motion at every pixel, from what the motions cost there and around it.
+//! Confidence of labels: the probability of every motion at every pixel, from the costs of the motions there and around it.
 //!
 //! ```text
 //! e_k = β (G8 * ρ_k) − γ (G3 * [l = k]) − δ [l = k]        of motion k at a pixel with label l
 //! P_k = exp(−e_k) / (Σ_j exp(−e_j) + exp(−β u))
 //! ```
-//! G8 and G3 are Gaussian windows, ρ the labels' cost without aggregation: evidence from the surroundings, which one pixel seldom
-//! has, the labels around, and the label that coherence along edges chose. The last term stands for none of the motions: a pixel
-//! that all of them leave unexplained is not sure of any. Where nothing has texture the evidence is the same for all motions, and
-//! only the labels around speak.
+//! G8 and G3 are Gaussian windows, ρ is the label cost of a single pixel. The three terms are the costs of the surroundings (a single
+//! pixel seldom decides), the surrounding labels, and the label that the energy minimisation chose. The last term of the denominator
+//! stands for none of the motions: a pixel that no motion explains has low probabilities. Without texture all motions cost the
+//! same, and only the labels count.
 //!
-//! β, γ and δ are a maximum likelihood fit to generated scenes (30 of them, seeds 700 and 900 of the benchmark's series), so that
-//! of the pixels of probability P about the share P is right; docs/masks.md has the measurement on others.
+//! β, γ and δ are a maximum likelihood fit to 30 generated scenes (seeds 700 and 900 of the benchmark's series), so that about the
+//! share P of the pixels with probability P is right; docs/masks.md has the measurement on other scenes.
 
 use super::mask_of;
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 
-/// β: weight of a gathered cost.
-const EVIDENCE: f32 = 3.5;
-/// γ: weight of the labels around.
-const NEIGHBOURS: f32 = 2.25;
+/// β: weight of the windowed cost.
+const COST_WEIGHT: f32 = 3.5;
+/// γ: weight of the surrounding labels.
+const NEIGHBOUR_WEIGHT: f32 = 2.25;
 /// δ: weight of the pixel's own label.
-const OWN: f32 = 1.4;
-/// u: gathered cost above which a motion does not explain a pixel; 2 is the largest cost there is.
-const UNEXPLAINED: f32 = 1.4;
-/// Standard deviations of the windows of evidence and of labels, working pixels.
+const OWN_LABEL_WEIGHT: f32 = 1.4;
+/// u: windowed cost above which a motion does not explain a pixel; the largest cost is 2.
+const UNEXPLAINED_COST: f32 = 1.4;
+/// Standard deviations of the windows of costs and of labels, working pixels.
 const WINDOWS: [f32; 2] = [8.0, 3.0];
 
-/// Probability, 0…1, of every motion at every pixel; `costs[k]` is what motion k costs as labels see it.
+/// Probability, 0…1, of every motion at every pixel; `costs[k]` is the label cost of motion k.
 pub(crate) fn probabilities(costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
     let Some((width, height)) = costs.first().map(|plane| (plane.width(), plane.height())) else { return Vec::new() };
-    let mut total = Plane::filled(width, height, libm::expf(-EVIDENCE * UNEXPLAINED));
+    let mut total = Plane::filled(width, height, libm::expf(-COST_WEIGHT * UNEXPLAINED_COST));
     let mut weights: Vec<Plane> = Vec::with_capacity(costs.len());
     for (k, cost) in costs.iter().enumerate() {
         let mut weight = gaussian(cost, WINDOWS[0]);
@@ -38,8 +38,8 @@ pub(crate) fn probabilities(costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
         for (((w, near), label), t) in
             weight.values_mut().iter_mut().zip(around.values()).zip(labels).zip(total.values_mut())
         {
-            let own = if usize::from(*label) == k { OWN } else { 0.0 };
-            *w = libm::expf(NEIGHBOURS * near + own - EVIDENCE * *w);
+            let own = if usize::from(*label) == k { OWN_LABEL_WEIGHT } else { 0.0 };
+            *w = libm::expf(NEIGHBOUR_WEIGHT * near + own - COST_WEIGHT * *w);
             *t += *w;
         }
         weights.push(weight);

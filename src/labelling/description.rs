@@ -1,20 +1,20 @@
-//! Is a motion worth its description? An object stays when what it explains better than any other motion pays for six numbers
-//! and a border (minimum description length).
+//! Minimum description length: an object stays if it explains its pixels so much better than any other motion that this pays for its
+//! six parameters and its border.
 
 use super::neighbours;
 use crate::frame::Plane;
 
 /// Nats per pixel of border.
 const PER_BORDER_PIXEL: f64 = 0.5;
-/// A region smaller than this share of the frame is no object.
+/// Regions smaller than this share of the frame are not objects.
 pub(crate) const SMALLEST_SHARE: f64 = 0.004;
 
-/// Nats for the six entries of a motion seen on `pixels` pixels: (6/2) ln N.
+/// Nats for the six parameters of a motion in a frame of N = `pixels`: (6/2) ln N.
 pub(crate) fn price_of_motion(pixels: usize) -> f64 {
     3.0 * libm::log(pixels as f64)
 }
 
-/// Nats that describe both frames by n motions and labels: what the motions leave over, six numbers for each, the borders.
+/// Description length in nats of both frames by n motions and labels: residuals, six parameters per motion, borders.
 ///
 /// `raw` as in [`worth`].
 pub(crate) fn length(raw: &[Plane], labels: &[u8], width: usize) -> f64 {
@@ -24,9 +24,9 @@ pub(crate) fn length(raw: &[Plane], labels: &[u8], width: usize) -> f64 {
     0.5 * left_over + raw.len() as f64 * price_of_motion(labels.len()) + PER_BORDER_PIXEL * borders as f64
 }
 
-/// Nats that each object's mask is worth, beyond its price; element 0 (the dominant motion) is infinite.
+/// Nats that each object saves beyond its price; infinite for the dominant motion, element 0.
 ///
-/// `raw[k]` are the estimation costs of motion k, half of which are nats.
+/// `raw[k]` are the estimation costs of motion k; half a cost is a nat.
 pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
     let pixels = labels.len();
     let counts = counts(labels, raw.len());
@@ -46,7 +46,7 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
         .collect()
 }
 
-/// What every motion (second index) leaves over on the pixels of every label (first).
+/// Summed cost of every motion (second index) on the pixels of every label (first).
 pub(crate) fn sums(raw: &[Plane], labels: &[u8]) -> Vec<Vec<f64>> {
     let mut sums = vec![vec![0.0f64; raw.len()]; raw.len()];
     for (p, &label) in labels.iter().enumerate() {

@@ -1,10 +1,11 @@
-//! Which pixel goes with which motion: cost of each motion at each pixel, plus a price for every border between labels that is
-//! lower where the image has an edge.
+//! The labelling energy: the cost of each motion at each pixel, plus a smoothness weight for every border between labels that is lower
+//! along image edges.
 
 use std::ops::Range;
 
-use super::misfit::{Misfit, allow_for_misfit};
-use super::potts::{Potts, Solver, minimise};
+use super::potts::Potts;
+use super::solver::{Solver, minimise};
+use super::variance_inflation::{VarianceInflation, inflate_variance};
 use super::views::{cheapest, costs_in_views};
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
@@ -15,18 +16,18 @@ use crate::lanes::{each_with, lower, whole};
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 
-/// How strongly labels hold together.
+/// The smoothness of labels, and how they are solved.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coherence {
-    /// λ: price of a border between two pixels that look alike, in costs.
+    /// λ: price of a border between two pixels of equal intensity, in costs.
     pub(crate) smoothness: f32,
-    /// Price of a pixel that does not go with the dominant motion: decides where the data cannot tell.
-    pub(crate) departure: f32,
-    /// Who minimises while motions still come and go.
+    /// Price of every object pixel: it favours the dominant motion where the data cannot tell.
+    pub(crate) object_bias: f32,
+    /// Solver while motions are still added and removed.
     pub(crate) draft_solver: Solver,
-    /// Who minimises at the end.
+    /// Solver of the final labels.
     pub(crate) solver: Solver,
-    /// Who minimises where the labels of a coarser level are the start.
+    /// Solver that starts from the labels of a coarser level.
     pub(crate) sharpening: Solver,
 }
 
@@ -36,11 +37,11 @@ const EDGE_SHARE: f32 = 0.02;
 const SMALLEST_STEP: f32 = 5.0;
 /// … and at least this many noise deviations.
 const NOISE_STEPS: f32 = 4.0;
-/// Share of λ that an object pays for every pixel on the frame's border: without it a border between labels that leaves the
-/// frame costs nothing, and flat regions leak through.
+/// Share of λ that an object pays for every pixel on the frame's border. Without it the part of an object's outline along the frame's
+/// border would be free, and labels would leak into flat regions there.
 const FRAME_BORDER: f32 = 0.375;
 
-/// What a step in colour counts beside one in luminance, as a share of its length in RGB.
+/// Weight of a step in RGB relative to one in luminance.
 const COLOUR_SHARE: f32 = 0.6;
 
 /// The unblurred first frame at working size: labels may change along its edges.
@@ -80,7 +81,7 @@ impl Borders {
         Borders { horizontal: everywhere.clone(), vertical: everywhere }
     }
 
-    /// Takes the prices of an area of the picture from it. The grid begins at the picture's pixel `corner`.
+    /// Sets the prices of an area from the edges of the picture. The grid begins at the picture's pixel `corner`.
     pub(crate) fn follow(
         &mut self,
         picture: &Picture,
@@ -103,26 +104,26 @@ impl Borders {
         }
     }
 
-    /// The labels of least energy, at most that of those given.
+    /// The labels of least energy found, never worse than those given.
     pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Buffer<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, Some(labels))
     }
 
-    /// The labels of least energy.
+    /// The labels of least energy found.
     pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Buffer<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, None)
     }
 }
 
-/// The price of a border by the step between the two pixels beside it.
+/// The price of a border as a function of the step across it.
 struct Price {
     smoothness: f32,
-    /// One over the grey levels at which all but a 1/e of what an edge takes off is off.
+    /// Reciprocal of the step, grey levels, at which 1 − 1/e of the discount of an edge is reached.
     per_step: f32,
 }
 
 impl Price {
-    /// Prices between the pixels of two runs, as far as both go.
+    /// Prices between the pixels of two runs; ends with the shorter one.
     fn write<'a>(&self, one: [&'a [f32]; 4], other: [&'a [f32]; 4], prices: &mut [f32]) {
         for (k, prices) in prices.chunks_mut(CHUNK).enumerate() {
             let mut space = [[0.0; CHUNK]; 8];
@@ -144,7 +145,7 @@ impl Price {
     }
 }
 
-/// exp(−z) for z ≥ 0 to within 0.3 % up to z = 4 and a thousandth beyond, by products alone: the sixteenth power of 1/exp(z/16).
+/// exp(−z) for z ≥ 0, as the sixteenth power of an approximate 1/exp(z/16): within 0.3 % up to z = 4, within 0.001 beyond.
 #[inline(always)]
 fn fading(z: f32) -> f32 {
     let t = z / 16.0;
@@ -155,68 +156,70 @@ fn fading(z: f32) -> f32 {
     f * f
 }
 
-/// What every motion costs at every pixel, as labels see it; the first is the dominant one.
+/// Label cost of every motion at every pixel; the first is the dominant motion.
 ///
-/// A pixel that a motion moves out of the frame says nothing about it, so there the motion costs what the cheapest of those costs
-/// that keep the pixel inside. An object costs at least what says nothing by itself, and the dominant motion at most that: an object
-/// does not win pixels by leaving the frame with them.
+/// A pixel that a motion moves out of the frame cannot be compared, so the motion costs there as much as the cheapest one that keeps
+/// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
+/// objects do not win pixels by moving them out of the frame.
 pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
-    surveyed(level, motions, coherence).costs
+    LabelCosts::new(level, motions, coherence).costs
 }
 
-/// [`label_costs`] with what was found on the way.
-pub(crate) struct Survey {
+/// Label costs, and the intermediate results that sharpening uses again.
+pub(crate) struct LabelCosts {
+    /// See [`label_costs`].
     pub(crate) costs: Vec<Plane>,
-    /// Share of the second frame in the costs, where there is a frame before.
+    /// Weight of the second frame in the costs, if there is a frame before.
     pub(crate) shares: Option<Plane>,
-    pub(crate) misfit: Plane,
+    pub(crate) variance_inflation: Plane,
 }
 
-/// The misfit is smoothed and used row by row: between the costs of the motions and those of the labels there is no plane but that of
-/// the smallest.
-pub(crate) fn surveyed(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Survey {
-    let (mut costs, shares) = costs_in_views(level, motions);
-    let mut misfits = Misfit::new(cheapest(&costs, f32::INFINITY));
-    let mut misfit = Plane::unwritten(level.width(), level.height());
-    let mut seen = Buffer::unwritten(level.width());
-    for y in 0..level.height() {
-        misfits.write(y, misfit.row_mut(y));
-        seen.fill(f32::INFINITY);
-        for cost in &mut costs {
-            allow_for_misfit(cost.row_mut(y), misfit.row(y));
-            lower(&mut seen, cost.row(y));
+impl LabelCosts {
+    /// Computes them row by row, so that the only intermediate plane is that of the smallest costs.
+    pub(crate) fn new(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> LabelCosts {
+        let (mut costs, shares) = costs_in_views(level, motions);
+        let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY));
+        let mut inflation = Plane::unwritten(level.width(), level.height());
+        let mut seen = Buffer::unwritten(level.width());
+        for y in 0..level.height() {
+            inflation_rows.write(y, inflation.row_mut(y));
+            seen.fill(f32::INFINITY);
+            for cost in &mut costs {
+                inflate_variance(cost.row_mut(y), inflation.row(y));
+                lower(&mut seen, cost.row(y));
+            }
+            for (label, cost) in costs.iter_mut().enumerate() {
+                to_label_costs(label, cost.row_mut(y), &seen, coherence);
+            }
         }
-        for (label, cost) in costs.iter_mut().enumerate() {
-            as_label(label, cost.row_mut(y), &seen, coherence);
-        }
+        costs.iter_mut().skip(1).for_each(|cost| add_frame_border_price(cost, coherence));
+        LabelCosts { costs, shares, variance_inflation: inflation }
     }
-    costs.iter_mut().skip(1).for_each(|cost| pay_at_the_border(cost, coherence));
-    Survey { costs, shares, misfit }
 }
 
-/// Makes costs of a motion at some pixels those of its label, where `seen` is the smallest cost of any motion that keeps a pixel
-/// inside, infinite where none does.
+/// Turns costs of a motion into those of its label: fills in pixels moved out of the frame and adds the object bias. `seen` is the
+/// smallest cost of any motion that keeps the pixel inside, infinite if there is none.
 #[inline(never)]
-pub(crate) fn as_label(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
+pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
     let neutral = CostModel::LABELS.outside();
-    let (least, most, departure) = match label {
+    let (least, most, object_bias) = match label {
         0 => (f32::NEG_INFINITY, neutral, 0.0),
-        _ => (neutral, f32::INFINITY, coherence.departure),
+        _ => (neutral, f32::INFINITY, coherence.object_bias),
     };
     each_with(costs, [seen], |cost, [seen]| {
         let unseen = if seen < most { seen } else { neutral };
         let unseen = if unseen > least { unseen } else { neutral };
-        departure + if cost.is_finite() { cost } else { unseen }
+        object_bias + if cost.is_finite() { cost } else { unseen }
     });
 }
 
-/// What an object pays for a pixel on the frame's border, for each border that it lies on.
-pub(crate) fn border_price(coherence: Coherence) -> f32 {
+/// Price of an object's pixel on the frame's border, for each of the borders it lies on.
+pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
     FRAME_BORDER * coherence.smoothness
 }
 
-fn pay_at_the_border(cost: &mut Plane, coherence: Coherence) {
-    let price = border_price(coherence);
+fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
+    let price = frame_border_price(coherence);
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
         cost.row_mut(y).iter_mut().for_each(|c| *c += price);
@@ -235,7 +238,7 @@ pub(crate) mod tests {
 
     pub(crate) const COHERENCE: Coherence = Coherence {
         smoothness: 8.0,
-        departure: 0.05,
+        object_bias: 0.05,
         draft_solver: Solver::FAST,
         solver: Solver::BEST,
         sharpening: Solver::FAST,
@@ -256,7 +259,7 @@ pub(crate) mod tests {
             let dominant = label_costs(level, &[leaving, still], COHERENCE);
             for y in 1..47 {
                 for x in 45..63 {
-                    assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.departure, "({x}, {y})");
+                    assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.object_bias, "({x}, {y})");
                     assert!(dominant[0].at(x, y) <= dominant[1].at(x, y), "({x}, {y})");
                 }
             }
@@ -264,11 +267,11 @@ pub(crate) mod tests {
         let nowhere = AffineMotion::translation(100.0, 0.0);
         let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
         assert_eq!(unseen[0].at(30, 30), CostModel::LABELS.outside());
-        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.departure).abs() < 1e-6);
+        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.object_bias).abs() < 1e-6);
     }
 
     #[test]
-    fn borders_are_cheap_along_edges_and_dear_where_nothing_changes() {
+    fn borders_are_cheap_along_edges_and_expensive_elsewhere() {
         let grey = Plane::filled(64, 48, 100.0);
         let step = |small: f32, large: f32| Plane::from_fn(64, 48, |x, _| if x < 32 { small } else { large });
         let bright = Picture { luminance: step(60.0, 160.0), colours: [0; 3].map(|_| step(60.0, 160.0)) };
@@ -279,7 +282,7 @@ pub(crate) mod tests {
             assert_eq!(borders.horizontal.at(10, 10), COHERENCE.smoothness);
             assert!(borders.horizontal.at(31, 10) < 0.03 * COHERENCE.smoothness);
         }
-        // Evidence says where the labels change only to within four pixels; the edge says the rest.
+        // The costs locate the border only to within four pixels; the edge decides where exactly.
         let costs = [
             Plane::from_fn(64, 48, |x, _| if x >= 34 { 1.0 } else { 0.0 }),
             Plane::from_fn(64, 48, |x, _| if x < 30 { 1.0 } else { 0.0 }),

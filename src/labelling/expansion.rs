@@ -1,5 +1,5 @@
-//! α-expansion (Boykov, Veksler, Zabih, PAMI 23(11), 2001): for one label after another, the best of all changes in which
-//! any pixels take this label and the others keep theirs, by one minimum cut each.
+//! α-expansion (Boykov, Veksler, Zabih, PAMI 23(11), 2001): for one label after another, a minimum cut finds the best set of pixels
+//! to switch to it, while the others keep theirs.
 
 use super::max_flow::GridFlow;
 use super::potts::Potts;
@@ -10,12 +10,12 @@ pub(super) fn minimise(problem: &Potts<'_>, sweeps: usize, init: Option<&[u8]>) 
     let (width, height) = (problem.width(), problem.height());
     let mut flow = GridFlow::new(width, height);
     if problem.costs.len() == 2 {
-        // From label 0 everywhere, one expansion of label 1 reaches every labelling there is.
+        // From label 0 everywhere, one expansion of label 1 can reach any labelling.
         return expanded(problem, &mut flow, &Buffer::filled(width * height, 0), 1);
     }
     let mut labels = init.map_or_else(|| problem.cheapest(), Buffer::of);
     let mut energy = problem.energy(&labels);
-    // Labels expanded in a row without a change: after a whole round nothing can change any more.
+    // Consecutive expansions without a change: after a whole round the labels have converged.
     let mut idle = 0;
     for alpha in (0..problem.costs.len()).cycle().take(sweeps * problem.costs.len()) {
         let candidate = expanded(problem, &mut flow, &labels, alpha as u8);

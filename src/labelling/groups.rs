@@ -1,25 +1,25 @@
-//! Motions that belong together: a continuous surface has a continuous flow, so two neighbouring regions whose motions agree
-//! along their common border are one (a slanted plane, the layers of a rigid background).
+//! Groups of motions: a continuous surface has a continuous flow, so two neighbouring regions whose motions agree along their common
+//! border belong together (a slanted plane, the depth layers of a rigid background).
 //!
-//! Regions are joined one pair at a time, the pair with the smallest jump first, and jumps of the joined region are taken anew
-//! along the whole of its border. A chain of small jumps alone does not join two regions that differ where they really meet: a
-//! limb that moves a little would otherwise tie the whole animal to the ground.
+//! Regions are joined pair by pair, the smallest jump first, and the jumps of the joined region are measured again along its whole
+//! border. A chain of small jumps therefore does not join two regions that differ along their own border; otherwise a slowly moving
+//! limb would tie a whole animal to the ground.
 
 use super::neighbours;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
 
-/// A common border shorter than this many pixel pairs decides nothing.
+/// Common borders with fewer pixel pairs than this are ignored.
 const SHORTEST_BORDER: usize = 12;
 /// Flows that differ by less than this (median along the border, pixels) are continuous …
 const TOLERANCE: f64 = 0.3;
-/// … or by less than this share of the largest jump at which anything was joined …
+/// … or by less than this share of the largest jump of all joins …
 const RELATIVE_TOLERANCE: f64 = 0.3;
-/// … as long as that is less than this share of the frame's longer side: layers of one background differ by little.
+/// … as long as that is less than this share of the frame's longer side: layers of one background differ little.
 const LARGEST_TOLERANCE: f64 = 0.007;
 
-/// The group of every motion, as the smallest label in it. `motions` in pixels of the label grid, one of which has `reduction`
-/// pixels of the frame.
+/// The group of every motion, named by its smallest label. `motions` are in pixels of the labels, each of which is `reduction` pixels
+/// of the frame wide.
 pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, reduction: f64) -> Vec<usize> {
     let joined = joined(motions.len(), borders(motions, labels, width));
     let largest = joined.iter().fold(0.0f64, |m, j| m.max(j.jump));
@@ -32,15 +32,15 @@ pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, redu
     group
 }
 
-/// Two regions become one, which goes on as `keep`, the smaller of the two labels.
+/// The join of two regions, which keeps the smaller of the two labels.
 struct Join {
     keep: usize,
     drop: usize,
-    /// Median jump of the flow along their border at that moment, pixels.
+    /// Median jump of the flow along their border at the time of the join, pixels.
     jump: f64,
 }
 
-/// All regions joined one after another, always the two with the smallest jump, until no two are left that touch.
+/// Joins regions one after another, smallest jump first, until no two touch.
 fn joined(n: usize, mut borders: Vec<Vec<f64>>) -> Vec<Join> {
     let mut joined = Vec::new();
     while let Some(next) = closest(n, &mut borders) {
@@ -68,12 +68,12 @@ fn closest(n: usize, borders: &mut [Vec<f64>]) -> Option<Join> {
     best
 }
 
-/// Where the border of two labels stands in a list of n · n.
+/// Index of a pair of labels in a list of n · n.
 fn pair(n: usize, i: usize, j: usize) -> usize {
     i.min(j) * n + i.max(j)
 }
 
-/// For every [`pair`] of labels that touch: how far their flows differ at each border pixel.
+/// For every [`pair`] of labels, the difference of their flows at each pixel pair of the border.
 fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<Vec<f64>> {
     let n = motions.len();
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); n * n];

@@ -1,8 +1,8 @@
 //! Maximum flow on the 4-connected grid by the search trees of Boykov and Kolmogorov (PAMI 26(9), 2004).
 //!
 //! Neighbours are implicit: node p has edges to p ± 1 and p ± stride in a grid with one more node on each side, whose
-//! edges have no capacity, so that no border needs a test. Two trees grow from source and sink until they meet, the flow
-//! along the path is raised until an edge is full, the nodes cut off look for another parent.
+//! edges have no capacity, so that borders need no special case. Two trees grow from source and sink until they meet, the flow
+//! along the path is augmented until an edge is saturated, and the nodes cut off look for another parent.
 
 use std::collections::VecDeque;
 
@@ -11,15 +11,15 @@ use crate::workspace::Buffer;
 /// Directions right, left, down, up; `d ^ 1` is the opposite one.
 const RIGHT: usize = 0;
 const DOWN: usize = 2;
-/// What stands in `parent` besides a direction.
+/// Values of `parent` other than a direction.
 const TERMINAL: u8 = 4;
 const ORPHAN: u8 = 5;
 const FREE: u8 = 6;
-/// Paths raised per node before the work is given up; real problems stay below 2.
+/// Augmentations per node before the search is given up; real problems stay below 2.
 const PATHS_PER_NODE: usize = 64;
 
 /// A flow problem on a grid; build with [`reset`](Self::reset), [`add_terminal`](Self::add_terminal),
-/// [`set_edge`](Self::set_edge), then [`run`](Self::run).
+/// [`set_right`](Self::set_right), [`set_down`](Self::set_down), then [`run`](Self::run).
 pub(super) struct GridFlow {
     width: usize,
     height: usize,
@@ -70,7 +70,7 @@ impl GridFlow {
         (y + 1) * (self.width + 2) + x + 1
     }
 
-    /// Adds to what pixel (x, y) gets from the source (positive) or gives to the sink (negative).
+    /// Adds capacity from the source to pixel (x, y) (positive) or from it to the sink (negative).
     pub(super) fn add_terminal(&mut self, x: usize, y: usize, capacity: f32) {
         let p = self.node(x, y);
         self.terminal[p] += capacity;
@@ -137,7 +137,7 @@ impl GridFlow {
         while let Some(p) = self.active.pop_front() {
             let p = p as usize;
             self.queued[p] = false;
-            // The same node goes on until it finds no more: its neighbourhood is warm.
+            // Continues with the same node until it finds no more: its neighbourhood is in the cache.
             while self.parent[p] != FREE {
                 let Some((tail, direction)) = self.grow(p) else { break };
                 if budget == 0 {
@@ -180,7 +180,7 @@ impl GridFlow {
         None
     }
 
-    /// Raises the flow along the path through the edge that leaves `tail` in `direction`.
+    /// Augments the flow along the path through the edge that leaves `tail` in `direction`.
     fn augment(&mut self, tail: usize, direction: usize) {
         let head = self.towards(tail, direction);
         let mut bottleneck = self.residual[tail][direction];
@@ -274,7 +274,7 @@ impl GridFlow {
         self.parent[p] = FREE;
     }
 
-    /// Steps from q to its terminal, none if its way ends at an orphan. Stamps the way, so that it is walked once.
+    /// Steps from q to its terminal, none if the path ends at an orphan. Stamps the path, so that it is walked once.
     fn distance_to_terminal(&mut self, q: usize) -> Option<u32> {
         let mut steps = 0;
         let mut p = q;

@@ -1,9 +1,9 @@
-//! Regions that are one body, the contrary of splitting.
+//! Merging of regions that are one body.
 //!
-//! Motions are refined on the regions where they won when they were selected, not on those that they end up with. Two that share a
-//! body then explain a part of it each, and neither the whole. Two cases are common: an object that was found twice, and a dominant
-//! motion that is bent over an object, beside which the motion of the true background counts as one more object. Whether one motion
-//! would do is therefore asked of one that is refined on both regions together.
+//! Motions are refined on the regions they won during selection, not on their final regions. Two motions that share a body then
+//! explain one part of it each. Two cases are common: an object that was found twice, and a dominant motion fitted across an object,
+//! which leaves the true background motion to count as another object. To decide whether one motion is enough, one is refined on
+//! both regions together.
 
 use super::description::sums;
 use super::splitting::aligned_on;
@@ -14,21 +14,21 @@ use crate::frame::area::Area;
 use crate::frame::pyramid::Level;
 use crate::motion::AffineMotion;
 
-/// Iterations of the refinement on both regions.
+/// Iterations of the refinement on the joint region.
 const ITERATIONS: usize = 4;
-/// Priors against linear terms: of what becomes the dominant motion and of an object.
+/// Ridge priors on the linear terms: of a merged dominant motion and of a merged object.
 const RIDGE: (f64, f64) = (1e-4, 1e-2);
 
-/// Two labels that are one body, the first the smaller number, and its motion.
+/// Two labels that are one body, the smaller first, and its motion.
 pub(crate) struct Merger {
     pub(crate) labels: [usize; 2],
     pub(crate) motion: AffineMotion,
 }
 
-/// The two touching regions that one motion explains better than two do, by most; none where two are better everywhere.
+/// The two touching regions that gain most from a common motion; none if two motions are always better.
 ///
-/// That one motion takes less to describe than two does not count here: where bodies move nearly alike it would join them. `raw` as
-/// in [`worth`](super::description::worth), in units of `pixel` costs.
+/// The shorter description of one motion does not count: it would merge bodies that move nearly alike. `raw` as in
+/// [`worth`](super::description::worth); `pixel` is the weight of a pixel in it.
 pub(crate) fn best_merger(
     level: &Level,
     motions: &[AffineMotion],
@@ -43,7 +43,7 @@ pub(crate) fn best_merger(
     for (a, b) in (0..motions.len()).flat_map(|a| (a + 1..motions.len()).map(move |b| (a, b))) {
         let both = |k: usize| sums[a][k] + sums[b][k];
         let better = if both(a) <= both(b) { a } else { b };
-        // The dominant motion was refined on nearly the whole frame: an object more would not change it.
+        // The dominant motion was refined on nearly the whole frame; one more object would not change it.
         if !touching[a][b] || better == 0 {
             continue;
         }
@@ -63,7 +63,7 @@ pub(crate) fn best_merger(
     best.map(|(_, merger)| merger)
 }
 
-/// Which labels are neighbours somewhere, the smaller number first.
+/// Which labels are neighbours somewhere, indexed with the smaller label first.
 fn touching(labels: &[u8], of: usize, width: usize) -> Vec<Vec<bool>> {
     let mut touching = vec![vec![false; of]; of];
     neighbours(labels.len(), width, |p, q| {
@@ -119,7 +119,7 @@ mod tests {
     fn an_object_found_twice_is_one() {
         let (level, mut labels) = level([2.0, 1.0]);
         labels.iter_mut().enumerate().filter(|(p, l)| **l == 1 && p % SIZE[0] >= 48).for_each(|(_, l)| *l = 2);
-        // Each is off by a little, bent to the side that it has.
+        // Each is slightly off, fitted to its own half.
         let one = AffineMotion::new([0.01, 0.0, 1.6, 0.0, 0.0, 1.1]);
         let other = AffineMotion::new([-0.01, 0.0, 2.6, 0.0, 0.0, 0.9]);
         let found = merger(&level, &[AffineMotion::STATIC, one, other], &labels).unwrap();
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn the_true_background_replaces_a_dominant_motion_that_is_bent() {
+    fn the_true_background_replaces_a_dominant_motion_fitted_across_objects() {
         let (level, mut labels) = level([2.0, 1.0]);
         labels.iter_mut().enumerate().filter(|(p, _)| p % SIZE[0] >= 76).for_each(|(_, l)| *l = 2);
         let bent = AffineMotion::new([-0.004, 0.0, 0.6, 0.0, 0.002, 0.3]);

@@ -1,9 +1,9 @@
 //! Sequential tree-reweighted message passing (Kolmogorov, PAMI 28(10), 2006) on the 4-connected grid with Potts weights.
 //!
-//! The pixels in raster order; every edge keeps one message, which points to whichever of its ends is visited next. A
+//! Pixels are visited in raster order. Every edge keeps one message, towards the end that is visited next. A
 //! forward pass sends messages right and down, a backward pass left and up. With Potts weights a message costs O(labels):
 //! `m(l) = min(s(l) − min s, w)`. The backward pass also gives a lower bound of the energy, which never falls; where
-//! the energy of the labels read out on the way meets it, they are optimal and the work ends.
+//! the energy of the labels read out on the way meets it, they are optimal and the iteration ends.
 //!
 //! On a pyramid (costs and weights summed over 2×2 blocks, messages handed down at half their size) a handful of
 //! iterations carries information across the image that would otherwise need as many iterations as a region is wide.
@@ -13,18 +13,18 @@ use crate::workspace::{Buffer, Kept};
 
 /// Labels are handled in vectors of 4, 8 or 16.
 pub(super) const MAX_LABELS: usize = 16;
-/// Cost of the labels that only fill up a vector.
+/// Cost of the padding labels of a vector.
 const PADDING: f32 = 1e20;
 /// Smallest side of a level of the pyramid.
 const SMALLEST: usize = 8;
-/// So few iterations are all done before the labels are read out.
+/// Up to this many iterations are completed before labels are read out.
 const FEW: usize = 2;
 /// Relative gap between energy and bound at which the labels count as optimal.
 const CLOSED: f64 = 1e-6;
-/// Relative rise of the bound in one iteration below which no more is expected.
+/// Relative rise of the bound in one iteration below which the iteration stops.
 const STALLED: f64 = 2e-6;
 
-/// Labels, their energy, and a number no labelling's energy is below.
+/// Labels, and a lower bound of the energy.
 pub(super) struct Solution {
     pub(super) labels: Buffer<u8>,
     #[cfg_attr(not(test), allow(dead_code))]
@@ -70,7 +70,7 @@ where
         pyramid.push(coarser);
     }
     if let Some(coarsest) = pyramid.last_mut() {
-        coarsest.be_silent();
+        coarsest.clear_messages();
     }
     for level in (1..pyramid.len()).rev() {
         for _ in 0..iterations.min(COARSE_ITERATIONS) {
@@ -78,7 +78,7 @@ where
             pyramid[level].backward();
         }
         let (finer, coarser) = pyramid.split_at_mut(level);
-        finer[level - 1].inherit(&coarser[0]);
+        finer[level - 1].take_messages_from(&coarser[0]);
     }
 
     let grid = &mut pyramid[0];
@@ -91,7 +91,7 @@ where
         grid.backward();
     }
     for iteration in unread..=iterations {
-        // The first pass over messages that are all zero would read out the costs alone: still an answer.
+        // If all messages are still zero, this reads out the costs alone: a valid labelling.
         let energy = grid.forward(Some(&mut labels));
         if energy < lowest {
             lowest = energy;
@@ -111,11 +111,11 @@ where
     Solution { labels: best, bound }
 }
 
-/// On the coarse levels the messages only have to point the right way.
+/// Coarse levels only initialise the messages, so a few iterations are enough.
 const COARSE_ITERATIONS: usize = 3;
 
-/// A row on which messages are under way. Each pixel waits for its neighbour's message, so two rows are worked on by turns, the
-/// second one pixel behind.
+/// State of a row during a pass. Each pixel depends on its neighbour's message, so two rows are processed in turns, the second one
+/// pixel behind.
 struct Row<const L: usize> {
     /// Index of its first pixel.
     start: usize,
@@ -158,7 +158,7 @@ where
     fn new(problem: &Potts<'_>) -> Self {
         let (width, height) = (problem.width(), problem.height());
         let size = width * height;
-        // Labels that only fill up a vector keep their price.
+        // Padding labels keep their price.
         let mut costs = Buffer::filled(size, [PADDING; L]);
         for (l, plane) in problem.costs.iter().enumerate() {
             costs.iter_mut().zip(plane.values()).for_each(|(cost, &of_label)| cost[l] = allowed(of_label));
@@ -199,14 +199,14 @@ where
         Grid { width, height, costs, weights, right: Buffer::default(), down: Buffer::default() }
     }
 
-    /// No messages at all.
-    fn be_silent(&mut self) {
+    /// Sets all messages to zero.
+    fn clear_messages(&mut self) {
         self.right = Buffer::filled(self.costs.len(), [0.0; L]);
         self.down = self.right.clone();
     }
 
-    /// Messages from the level above. They are a start and nothing more: any messages keep the bound valid.
-    fn inherit(&mut self, coarser: &Self) {
+    /// Initialises the messages from the coarser level. The bound is valid for any messages.
+    fn take_messages_from(&mut self, coarser: &Self) {
         let none = [0.0; L];
         let half = |m: &[f32; L]| m.map(|m| 0.5 * m);
         for (messages, of_coarser) in [(&mut self.right, &coarser.right), (&mut self.down, &coarser.down)] {
@@ -217,20 +217,20 @@ where
                 messages.extend(both.take(self.width));
             }
         }
-        // None leads out of the grid.
+        // No message leaves the grid.
         self.right.chunks_exact_mut(self.width).for_each(|row| row[self.width - 1] = none);
         self.down[(self.height - 1) * self.width..].fill(none);
     }
 
-    /// Share of a pixel's costs that goes along with a message: one over the number of chains through the pixel.
+    /// Share of a pixel's costs in each message: one over the number of chains through the pixel.
     fn share(&self, x: usize, y: usize) -> f32 {
         let ahead = u8::from(x + 1 < self.width) + u8::from(y + 1 < self.height);
         let behind = u8::from(x > 0) + u8::from(y > 0);
         1.0 / f32::from(ahead.max(behind).max(1))
     }
 
-    /// Sends messages right and down. Where `labels` is given, reads them out on the way: each pixel takes what is cheapest
-    /// given the labels before it and the messages from after it. Returns the energy of the labels.
+    /// Sends messages right and down. With `labels`, reads them out on the way: each pixel takes the cheapest label given the labels
+    /// before it and the messages from after it. Returns the energy of the labels.
     fn forward(&mut self, mut labels: Option<&mut [u8]>) -> f64 {
         let mut energy = 0.0;
         for y in (0..self.height).step_by(2) {
@@ -238,10 +238,10 @@ where
             let both = y + 1 < self.height;
             for x in 0..=self.width {
                 if x < self.width {
-                    self.send_on(&mut upper, x, labels.as_deref_mut());
+                    self.forward_pixel(&mut upper, x, labels.as_deref_mut());
                 }
                 if both && x > 0 {
-                    self.send_on(&mut lower, x - 1, labels.as_deref_mut());
+                    self.forward_pixel(&mut lower, x - 1, labels.as_deref_mut());
                 }
             }
             energy += upper.sum;
@@ -258,10 +258,10 @@ where
             let both = y < self.height;
             for x in (0..=self.width).rev() {
                 if both && x > 0 {
-                    self.send_back(&mut lower, x - 1);
+                    self.backward_pixel(&mut lower, x - 1);
                 }
                 if x < self.width {
-                    self.send_back(&mut upper, x);
+                    self.backward_pixel(&mut upper, x);
                 }
             }
             bound += lower.sum;
@@ -272,7 +272,7 @@ where
 
     /// A pixel's part of [`forward`](Self::forward). What comes from the left is in `row`.
     #[inline(always)]
-    fn send_on(&mut self, row: &mut Row<L>, x: usize, labels: Option<&mut [u8]>) {
+    fn forward_pixel(&mut self, row: &mut Row<L>, x: usize, labels: Option<&mut [u8]>) {
         let p = row.start + x;
         let (costs, right, down) = (&self.costs[p], self.right[p], self.down[p]);
         let [to_right, to_below] = self.weights[p];
@@ -298,7 +298,7 @@ where
 
     /// A pixel's part of [`backward`](Self::backward). What comes from the right is in `row`.
     #[inline(always)]
-    fn send_back(&mut self, row: &mut Row<L>, x: usize) {
+    fn backward_pixel(&mut self, row: &mut Row<L>, x: usize) {
         let p = row.start + x;
         let left = if x > 0 { self.right[p - 1] } else { [0.0; L] };
         let up = if row.start > 0 { self.down[p - self.width] } else { [0.0; L] };
@@ -353,12 +353,12 @@ fn lowest<const L: usize>(values: &[f32; L]) -> f32 {
 fn first_lowest<const L: usize>(values: &[f32; L]) -> usize {
     let value = lowest(values);
     let places: [f32; L] = std::array::from_fn(|l| if values[l] == value { l as f32 } else { L as f32 });
-    // Whole numbers below L, unless nothing equals itself.
+    // An index below L, unless all values are NaN.
     (lowest(&places) as usize).min(L - 1)
 }
 
-/// The new message along an edge whose old one (against the direction) was `old`, and what was taken off to make its
-/// smallest entry zero.
+/// The new message along an edge whose message in the opposite direction was `old`, and what was subtracted to make its smallest
+/// entry zero.
 #[inline(always)]
 fn message<const L: usize>(total: &[f32; L], share: f32, old: &[f32; L], weight: f32) -> ([f32; L], f32) {
     let source: [f32; L] = std::array::from_fn(|l| share * total[l] - old[l]);

@@ -1,4 +1,5 @@
-//! From motions to masks: costs and coherence, visibility, splitting and describing regions, groups, full size.
+//! From motions to masks: the labelling energy and its solvers, occlusion, description length, merging and splitting of regions,
+//! groups of motions, upsampling.
 
 pub(crate) mod appearance;
 pub(crate) mod confidence;
@@ -9,18 +10,19 @@ pub(crate) mod groups;
 mod max_flow;
 pub(crate) mod merging;
 mod messages;
-mod misfit;
-pub(crate) mod potts;
+mod potts;
 pub(crate) mod sharpening;
+pub(crate) mod solver;
 pub(crate) mod splitting;
 pub(crate) mod upsampling;
+mod variance_inflation;
 pub(crate) mod views;
 pub(crate) mod visibility;
 
 use crate::frame::Plane;
 use crate::workspace::Buffer;
 
-/// Calls `pair` for every two of `count` pixels that lie beside or above each other on a grid `width` wide.
+/// Calls `pair` for every pair of 4-connected neighbours among `count` pixels of a grid `width` wide.
 #[inline(always)]
 pub(crate) fn neighbours(count: usize, width: usize, mut pair: impl FnMut(usize, usize)) {
     for p in 0..count {
@@ -33,12 +35,12 @@ pub(crate) fn neighbours(count: usize, width: usize, mut pair: impl FnMut(usize,
     }
 }
 
-/// The pixels that have certain labels, in order.
+/// Indices of the pixels whose label satisfies `which`, in order.
 pub(crate) fn pixels(labels: &[u8], which: impl Fn(usize) -> bool) -> Buffer<usize> {
     (0..labels.len()).filter(|&p| which(usize::from(labels[p]))).collect()
 }
 
-/// One label's pixels as a plane of ones on zeros.
+/// Indicator of a label: 1 on its pixels, 0 elsewhere.
 pub(crate) fn mask_of(labels: &[u8], label: u8, width: usize, height: usize) -> Plane {
     Plane::from_buffer(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())
 }

@@ -1,18 +1,9 @@
-//! The labelling energy `E(l) = Σ_p D_p(l_p) + Σ_pq w_pq [l_p ≠ l_q]` on the 4-connected grid, and who minimises it.
-//!
-//! Finding the minimum is NP-hard from three labels on, so there are two solvers with different strengths:
-//! [`Solver::Messages`] (tree-reweighted message passing) is the faster one and knows a lower bound of the energy;
-//! [`Solver::Expansion`] (α-expansion by minimum cuts) is exact for two labels and comes nearest with more.
-//!
-//! On generated scenes, 320×240 pixels, four labels (the ignored test `energies_and_times`): [`Solver::FAST`] is 0.1 % above
-//! the bound, twenty iterations 0.02 %, α-expansion 0.00 % in about twice their time, and all three err on the same number
-//! of pixels: what is wrong there is the costs. Two iterations without the pyramid are 1 % above and err more.
+//! The labelling energy `E(l) = Σ_p D_p(l_p) + Σ_pq w_pq [l_p ≠ l_q]` on the 4-connected grid.
 
-use super::{expansion, messages};
 use crate::frame::Plane;
 use crate::workspace::Buffer;
 
-/// Largest absolute cost of a pixel under a label: what is above (or NaN) means "forbidden" and is cut to this.
+/// Largest absolute cost of a pixel under a label. Larger costs and NaN mean "forbidden" and are cut to this.
 pub(super) const FORBIDDEN: f32 = 1e7;
 
 /// A labelling problem: costs and weights of one grid.
@@ -24,25 +15,6 @@ pub(crate) struct Potts<'a> {
     pub(crate) horizontal: &'a Plane,
     /// `vertical.at(x, y)` ≥ 0 is the price of different labels at (x, y) and (x, y + 1); the last row is not read.
     pub(crate) vertical: &'a Plane,
-}
-
-/// How to minimise the energy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Solver {
-    /// Sequential tree-reweighted message passing, at most `iterations` on each of `levels` levels of a pyramid (1: the
-    /// grid alone). Few iterations on several levels are the cheap choice, many iterations come close to the optimum.
-    Messages { levels: usize, iterations: usize },
-    /// α-expansion, at most `sweeps` times over all labels.
-    Expansion { sweeps: usize },
-}
-
-impl Solver {
-    /// For live use.
-    pub(crate) const FAST: Solver = Solver::Messages { levels: 4, iterations: 2 };
-    /// For what is nearly decided.
-    pub(crate) const LIGHT: Solver = Solver::Messages { levels: 4, iterations: 1 };
-    /// For keeping.
-    pub(crate) const BEST: Solver = Solver::Messages { levels: 4, iterations: 10 };
 }
 
 impl Potts<'_> {
@@ -98,7 +70,7 @@ impl Potts<'_> {
                     {
                         continue;
                     }
-                    // Where there is no neighbour, one like the pixel itself that counts for nothing.
+                    // A missing neighbour has the pixel's own label and weight 0.
                     let beside = [
                         if x > 0 { (labels[p - 1], horizontal[p - 1]) } else { (own, 0.0) },
                         if x + 1 < width { (labels[p + 1], horizontal[p]) } else { (own, 0.0) },
@@ -126,7 +98,7 @@ impl Potts<'_> {
         }
     }
 
-    /// The cheapest label of every pixel by itself; the first of equals.
+    /// The label of least cost at every pixel, regardless of its neighbours; the first on ties.
     pub(crate) fn cheapest(&self) -> Buffer<u8> {
         (0..self.width() * self.height())
             .map(|p| {
@@ -149,29 +121,3 @@ pub(super) fn allowed(cost: f32) -> f32 {
     let cost = if cost < FORBIDDEN { cost } else { FORBIDDEN };
     if cost > -FORBIDDEN { cost } else { -FORBIDDEN }
 }
-
-/// Minimises the energy: one label per pixel, row by row. `init`, where given, is where [`Solver::Expansion`] starts and
-/// what the answer of either solver is never worse than. Up to 255 labels; more than 16 are always solved by expansion.
-pub(crate) fn minimise(problem: &Potts<'_>, solver: Solver, init: Option<&[u8]>) -> Buffer<u8> {
-    let labels = problem.costs.len();
-    let size = problem.width() * problem.height();
-    if labels < 2 || size == 0 {
-        return Buffer::filled(size, 0);
-    }
-    let init = init.filter(|l| l.len() == size && l.iter().all(|&l| usize::from(l) < labels));
-    let found = match solver {
-        Solver::Messages { levels, iterations } if labels <= messages::MAX_LABELS => {
-            messages::minimise(problem, levels, iterations).labels
-        }
-        Solver::Messages { .. } => expansion::minimise(problem, 3, init),
-        Solver::Expansion { sweeps } => expansion::minimise(problem, sweeps, init),
-    };
-    match init {
-        Some(init) if problem.energy(init) < problem.energy(&found) => Buffer::of(init),
-        _ => found,
-    }
-}
-
-#[cfg(test)]
-#[path = "potts_tests.rs"]
-mod tests;

@@ -1,14 +1,13 @@
-//! Labels of a coarser level at the working size: coarse labels decide what is there, fine costs where exactly it ends.
+//! Refinement of coarse labels at the working size: coarse labels decide what is there, fine costs where exactly it ends.
 //!
-//! Only tiles in which two labels meet, or nearly, are looked at, and only the labels near each compete; those that touch are solved
-//! together, on their own. What is known of a neighbourhood rather than of a pixel (how well anything fits there, what is hidden, what the colours say) is taken from the
-//! coarser level.
+//! Only tiles near a border between labels are solved, each with the labels near it; tiles that touch are solved together. Properties
+//! of a neighbourhood rather than of a pixel (variance inflation, occlusion, colour costs) are taken from the coarser level.
 
 use super::appearance::{ColourPrices, Palette};
-use super::energy::{Borders, Coherence, Picture, as_label, border_price};
-use super::misfit::allow_for_misfit;
-use super::potts::Solver;
-use super::views::mixed;
+use super::energy::{Borders, Coherence, Picture, frame_border_price, to_label_costs};
+use super::solver::Solver;
+use super::variance_inflation::inflate_variance;
+use super::views::blend_views;
 use super::visibility::most_where_hidden;
 use crate::alignment::cost::{Comparison, CostModel, View};
 use crate::frame::Plane;
@@ -22,28 +21,28 @@ use crate::workspace::Buffer;
 const TILE: [usize; 2] = [32, 8];
 /// How far around a tile labels compete in it, coarse pixels.
 const MARGIN: usize = 4;
-/// What a label costs where it does not compete.
+/// Cost of a label that does not compete.
 const FAR: f32 = 1e3;
 
-/// A labelling of a coarser level and what it was decided by.
-pub(crate) struct Coarse<'a> {
+/// Labels of a coarser level, with the neighbourhood properties they were solved with.
+pub(crate) struct CoarseLabelling<'a> {
     pub(crate) width: usize,
     pub(crate) labels: &'a [u8],
     /// Working pixels per pixel.
     pub(crate) step: usize,
-    /// How much larger the variance is than the noise's.
-    pub(crate) misfit: &'a Plane,
-    /// Share of the second frame, where there is a frame before.
+    /// Factor of the noise variance.
+    pub(crate) variance_inflation: &'a Plane,
+    /// Weight of the second frame, if there is a frame before.
     pub(crate) shares: Option<&'a Plane>,
-    /// For every label the pixels that it may be hidden at.
+    /// For every label, the pixels at which it may be occluded.
     pub(crate) hidden: &'a [Buffer<bool>],
-    /// For every label the pixels that it cannot have, if any.
-    pub(crate) barred: &'a [Buffer<bool>],
+    /// For every label, the pixels at which it may not compete; may be empty.
+    pub(crate) excluded: &'a [Buffer<bool>],
     pub(crate) colours: Option<&'a ColourPrices>,
 }
 
-/// What the working size adds.
-pub(crate) struct Fine<'a> {
+/// Inputs at the working size.
+pub(crate) struct WorkingLevel<'a> {
     pub(crate) level: &'a Level,
     pub(crate) picture: Option<&'a Picture>,
     pub(crate) palette: &'a Palette,
@@ -57,14 +56,14 @@ struct Tile {
     labels: Vec<u8>,
 }
 
-/// Tiles that touch, and a rectangle around them. Its pixels that are in none of them keep their labels.
+/// Tiles that touch, and their bounding rectangle. Pixels of the rectangle outside the tiles keep their labels.
 struct Region {
     area: Area,
     tiles: Vec<Tile>,
 }
 
 /// The labels of the working size.
-pub(crate) fn sharpened(coarse: &Coarse<'_>, fine: &Fine<'_>, solver: Solver) -> Buffer<u8> {
+pub(crate) fn sharpened(coarse: &CoarseLabelling<'_>, fine: &WorkingLevel<'_>, solver: Solver) -> Buffer<u8> {
     let (width, height) = (fine.level.width(), fine.level.height());
     let mut labels: Buffer<u8> =
         (0..width * height).map(|p| coarse.labels[coarse.pixel(p % width, p / width)]).collect();
@@ -75,7 +74,7 @@ pub(crate) fn sharpened(coarse: &Coarse<'_>, fine: &Fine<'_>, solver: Solver) ->
     labels
 }
 
-/// Tiles gathered into rectangles that do not touch.
+/// Groups tiles into rectangles that do not touch.
 fn regions(tiles: Vec<Tile>) -> Vec<Region> {
     let mut regions: Vec<Region> = Vec::new();
     for tile in tiles {
@@ -97,14 +96,14 @@ fn regions(tiles: Vec<Tile>) -> Vec<Region> {
 impl Region {
     fn solve(
         &self,
-        coarse: &Coarse<'_>,
-        fine: &Fine<'_>,
+        coarse: &CoarseLabelling<'_>,
+        fine: &WorkingLevel<'_>,
         comparisons: &Comparisons<'_>,
         solver: Solver,
         labels: &mut [u8],
     ) {
         let (width, height) = (fine.level.width(), fine.level.height());
-        // What surrounds the tiles holds them with the labels that it keeps.
+        // The pixels around the tiles keep their labels and act as boundary conditions.
         let area = self.area.grown(1, width, height);
         let rows = || area.rows.clone().map(|y| y * width + area.columns.start..y * width + area.columns.end);
         let mut start = Buffer::with_capacity(area.width() * area.height());
@@ -125,7 +124,7 @@ impl Region {
         for tile in &self.tiles {
             comparisons.fill(coarse, fine, tile, corner, &number, &mut costs);
             if let Some(picture) = fine.picture {
-                // With the pixels to the left and above, whose borders lead into the tile.
+                // Includes the pixels to the left and above: their weights connect to the tile.
                 let mut around = tile.area.clone();
                 around.columns.start = around.columns.start.max(corner[0] + 1) - 1;
                 around.rows.start = around.rows.start.max(corner[1] + 1) - 1;
@@ -140,14 +139,14 @@ impl Region {
     }
 }
 
-impl Coarse<'_> {
+impl CoarseLabelling<'_> {
     /// The coarse pixel of a working pixel.
     #[inline(always)]
     fn pixel(&self, x: usize, y: usize) -> usize {
         (y / self.step) * self.width + x / self.step
     }
 
-    /// The tiles near which there is more than one label.
+    /// The tiles with more than one label nearby.
     fn contested(&self, width: usize, height: usize) -> Vec<Tile> {
         let rows = self.labels.len() / self.width;
         let near = |from: usize, to: usize, size: usize| {
@@ -172,14 +171,14 @@ impl Coarse<'_> {
     }
 }
 
-/// The frames compared along every motion.
+/// Comparisons of the frames along every motion.
 struct Comparisons<'a> {
     second: Vec<Option<Comparison<'a>>>,
     before: Vec<Option<Comparison<'a>>>,
 }
 
 impl<'a> Comparisons<'a> {
-    fn new(fine: &Fine<'a>) -> Comparisons<'a> {
+    fn new(fine: &WorkingLevel<'a>) -> Comparisons<'a> {
         let all = |view| {
             let one = |motion| Comparison::new(fine.level, view, motion, CostModel::LABELS);
             fine.motions.iter().map(one).collect()
@@ -187,11 +186,11 @@ impl<'a> Comparisons<'a> {
         Comparisons { second: all(View::Second), before: all(View::Before) }
     }
 
-    /// The costs of the labels that compete in a tile, on planes that begin at `corner`; `number` says which is whose.
+    /// Writes the costs of the labels that compete in a tile to planes that begin at `corner`; label l has the plane `number[l]`.
     fn fill(
         &self,
-        coarse: &Coarse<'_>,
-        fine: &Fine<'_>,
+        coarse: &CoarseLabelling<'_>,
+        fine: &WorkingLevel<'_>,
         tile: &Tile,
         corner: [usize; 2],
         number: &[u8; 256],
@@ -201,13 +200,16 @@ impl<'a> Comparisons<'a> {
         let Area { columns, rows: tile_rows } = &tile.area;
         let (count, left) = (columns.len(), columns.start);
         let mut rows = vec![[0.0; TILE[0]]; tile.labels.len()];
-        let (mut earlier, mut misfit, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]], [0.0; TILE[0]]);
+        let (mut earlier, mut inflation, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]], [0.0; TILE[0]]);
         let mut places = [0; TILE[0]];
-        let at_border = border_price(fine.coherence);
+        let border = frame_border_price(fine.coherence);
         for y in tile_rows.clone() {
             places.iter_mut().zip(columns.clone()).for_each(|(place, x)| *place = coarse.pixel(x, y));
             let places = &places[..count];
-            misfit.iter_mut().zip(places).for_each(|(misfit, &p)| *misfit = coarse.misfit.values()[p]);
+            inflation
+                .iter_mut()
+                .zip(places)
+                .for_each(|(inflation, &p)| *inflation = coarse.variance_inflation.values()[p]);
             seen.fill(f32::INFINITY);
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
@@ -219,28 +221,28 @@ impl<'a> Comparisons<'a> {
                 if let (Some(before), Some(shares)) = (&self.before[label], coarse.shares) {
                     before.row(y, left, &mut earlier[..count]);
                     for ((c, b), &p) in row.iter_mut().zip(&earlier).zip(places) {
-                        *c = mixed(*c, *b, shares.values()[p]);
+                        *c = blend_views(*c, *b, shares.values()[p]);
                     }
                 }
-                allow_for_misfit(row, &misfit);
+                inflate_variance(row, &inflation);
                 lower(&mut seen, row);
             }
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
                 let row = &mut row[..count];
-                as_label(label, row, &seen, fine.coherence);
+                to_label_costs(label, row, &seen, fine.coherence);
                 if label > 0 {
-                    let across = if y == 0 || y + 1 == height { at_border } else { 0.0 };
+                    let across = if y == 0 || y + 1 == height { border } else { 0.0 };
                     for (c, x) in row.iter_mut().zip(columns.clone()) {
-                        *c += across + if x == 0 || x + 1 == width { at_border } else { 0.0 };
+                        *c += across + if x == 0 || x + 1 == width { border } else { 0.0 };
                     }
                 }
-                if let Some(barred) = coarse.barred.get(label) {
-                    let barred = row.iter_mut().zip(places).filter(|(_, p)| barred[**p]);
-                    barred.for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+                if let Some(excluded) = coarse.excluded.get(label) {
+                    let excluded = row.iter_mut().zip(places).filter(|(_, p)| excluded[**p]);
+                    excluded.for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
                 }
                 if let Some(hidden) = coarse.hidden.get(label) {
-                    let most = most_where_hidden(label, fine.coherence.departure);
+                    let most = most_where_hidden(label, fine.coherence.object_bias);
                     row.iter_mut().zip(places).filter(|(_, p)| hidden[**p]).for_each(|(c, _)| *c = c.min(most));
                 }
                 if let Some(colours) = coarse.colours {
@@ -259,7 +261,7 @@ mod tests {
     use super::*;
     use crate::frame::filter::gaussian;
     use crate::frame::pyramid::build;
-    use crate::labelling::energy::surveyed;
+    use crate::labelling::energy::LabelCosts;
     use crate::labelling::energy::tests::COHERENCE;
     use crate::labelling::visibility::hidden_under;
     use crate::random::Random;
@@ -301,30 +303,30 @@ mod tests {
         let motions = [(0.0, 0.0), (2.0, 0.0), (0.0, -2.0)].map(|(u, v)| AffineMotion::translation(u, v));
         let labels: Vec<u8> =
             (0..SIZE[0] * SIZE[1] / 4).map(|p| owner(p % (SIZE[0] / 2) * 2, p / (SIZE[0] / 2) * 2)).collect();
-        let survey = surveyed(&levels[1], &motions, COHERENCE);
+        let uncorrected = LabelCosts::new(&levels[1], &motions, COHERENCE);
         let hidden = hidden_under(&levels[1], &motions, &labels);
-        let coarse = Coarse {
+        let coarse = CoarseLabelling {
             width: SIZE[0] / 2,
             labels: &labels,
             step: 2,
-            misfit: &survey.misfit,
+            variance_inflation: &uncorrected.variance_inflation,
             shares: None,
             hidden: &hidden,
-            barred: &[],
+            excluded: &[],
             colours: None,
         };
         let picture = Picture { luminance: first.clone(), colours: [0; 3].map(|_| first.clone()) };
         let colours = vec![[128u8; 4]; SIZE[0] * SIZE[1]];
         let frame = crate::frame::Frame::from_rgba(SIZE[0], SIZE[1], colours.as_flattened()).unwrap();
         let palette = Palette::new(&frame, SIZE[0], SIZE[1]);
-        let fine = Fine {
+        let fine = WorkingLevel {
             level: &levels[0],
             picture: Some(&picture),
             palette: &palette,
             motions: &motions,
             coherence: COHERENCE,
         };
-        // Each square by itself, and what lies between them is not looked at.
+        // Each square has a region of its own; what lies between them is not solved.
         let found = regions(coarse.contested(SIZE[0], SIZE[1]));
         assert_eq!(found.len(), 2);
         assert!(!found[0].area.touches(&found[1].area));

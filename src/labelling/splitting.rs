@@ -1,4 +1,4 @@
-//! Components that do not belong together: an affine motion bends to fit two bodies at once, so every region is tried in parts.
+//! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in parts.
 
 use super::description::{SMALLEST_SHARE, price_of_motion};
 use super::pixels;
@@ -18,13 +18,13 @@ use crate::workspace::Buffer;
 const SMALLEST_PART: usize = 30;
 /// Softening of a part's border, pixels.
 const SOFTNESS: f32 = 0.7;
-/// Window over which the two halves compete, pixels …
+/// Standard deviation of the window over which the two halves compete, pixels …
 const WINDOW: f32 = 2.5;
-/// … and how far it reaches.
+/// … and its radius.
 const REACH: usize = 8;
 /// Rounds of the two-body split.
 const ROUNDS: usize = 3;
-/// A half with a smaller share than this is none.
+/// Smallest share of the region that counts as a half.
 const SMALLEST_HALF: f64 = 0.1;
 /// Nats per pixel of the border between two halves.
 const PER_BORDER_PIXEL: f64 = 0.5;
@@ -45,7 +45,7 @@ pub(super) fn aligned_on(
     align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
 }
 
-/// Splits objects into their connected components where own motions pay for themselves. Returns whether anything changed.
+/// Splits objects into connected components where separate motions pay for themselves. Returns whether anything changed.
 pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let (width, height) = (level.width(), level.height());
     let found = components(labels, width, Connectivity::Eight);
@@ -100,7 +100,8 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
     changed
 }
 
-/// Splits objects into two bodies where that pays: from the halves along the long axis, each fitted, pixels going to the better.
+/// Splits objects into two bodies where that pays. Starts from the halves along the long axis; motions are fitted to the halves and
+/// pixels reassigned to the better one.
 pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let mut changed = false;
     for label in 1..motions.len() {
@@ -122,7 +123,7 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
     changed
 }
 
-/// Two motions that explain a region better than one, by more than their price, and which of its pixels go with the second.
+/// Two motions that explain a region better than one by more than their price, and which of its pixels belong to the second.
 fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Buffer<bool>)> {
     let (width, height) = (level.width(), level.height());
     let around = Area::of(region, width).grown(REACH, width, height);

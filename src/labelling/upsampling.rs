@@ -1,8 +1,7 @@
-//! Labels of the working size at full size: each label's mask, enlarged, follows the edges of the full-size frame by the guided
+//! Upsampling of labels to full size: each label's mask is enlarged and aligned with the edges of the full-size frame by the guided
 //! filter (He, Sun, Tang, PAMI 35(6), 2013); the strongest label wins.
 //!
-//! The work is done tile by tile: a label that is nowhere near a tile has no strength in it, and where only one label is near,
-//! there is nothing to decide. Most tiles are such.
+//! Tiles are processed one by one with the labels near them. Most tiles have one label nearby and need no filtering.
 
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -11,7 +10,7 @@ use crate::workspace::Buffer;
 
 /// Radius of the filter's windows, full-size pixels.
 const RADIUS: usize = 4;
-/// Variance (grey levels²) below which the frame has no edge to follow.
+/// Regularisation of the filter: variance, grey levels², below which a window counts as flat.
 const FLAT_VARIANCE: f32 = 40.0;
 /// Side of a tile, full-size pixels.
 const TILE: usize = 32;
@@ -23,33 +22,33 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
         return labels.to_vec();
     }
     let scale = factor(width, full_width).max(factor(height, full_height));
-    let coarse = Coarse { labels, width, height, scale };
+    let grid = LabelGrid { labels, width, height, scale };
     let mut winner = vec![0u8; full_width * full_height];
     for top in (0..full_height).step_by(TILE) {
         for left in (0..full_width).step_by(TILE) {
             let (right, bottom) = ((left + TILE).min(full_width), (top + TILE).min(full_height));
             let tile = Area { columns: left..right, rows: top..bottom };
-            let present = coarse.present(&tile.grown(2 * RADIUS, full_width, full_height), of);
+            let present = grid.present(&tile.grown(2 * RADIUS, full_width, full_height), of);
             match present[..] {
                 [only] => tile.rows.for_each(|y| winner[y * full_width..][tile.columns.clone()].fill(only)),
-                _ => decide(&coarse, &present, guide, &tile, &mut winner),
+                _ => decide(&grid, &present, guide, &tile, &mut winner),
             }
         }
     }
     winner
 }
 
-/// Gives every pixel of a tile to the strongest of the labels, the first of equals.
-fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8]) {
+/// Gives every pixel of a tile the strongest of the labels, the first on ties.
+fn decide(grid: &LabelGrid<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8]) {
     let full = (guide.width(), guide.height());
     let guide = Patch::from_fn(tile.grown(2 * RADIUS, full.0, full.1), |x, y| guide.at(x, y));
     let filter = GuidedFilter::new(&guide, tile, full);
     let mut best = Patch::from_fn(tile.clone(), |_, _| f32::NEG_INFINITY);
-    // The filter is linear and the masks sum to one everywhere: so do the strengths, and the last is what the others leave.
+    // The masks sum to one and the filter is linear, so the strengths sum to one: the last is the remainder.
     let mut rest = Patch::from_fn(tile.clone(), |_, _| 1.0);
     for (k, &label) in labels.iter().enumerate() {
         let strength = if k + 1 < labels.len() {
-            let strength = filter.apply(&guide, &coarse.mask(label, guide.area.clone()), tile);
+            let strength = filter.apply(&guide, &grid.mask(label, guide.area.clone()), tile);
             rest.values.iter_mut().zip(&strength.values).for_each(|(r, s)| *r -= s);
             strength
         } else {
@@ -66,7 +65,7 @@ fn decide(coarse: &Coarse<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner
     }
 }
 
-/// A plane of the working size at full size, enlarged bilinearly without looking at the frame.
+/// A plane of the working size enlarged bilinearly to full size.
 pub(crate) fn enlarged(small: &Plane, width: usize, height: usize) -> Plane {
     let size = [small.width(), small.height()];
     let scale = factor(size[0], width).max(factor(size[1], height));
@@ -84,14 +83,14 @@ fn factor(small: usize, large: usize) -> usize {
 }
 
 /// Labels at a fraction of the full size.
-struct Coarse<'a> {
+struct LabelGrid<'a> {
     labels: &'a [u8],
     width: usize,
     height: usize,
     scale: usize,
 }
 
-impl Coarse<'_> {
+impl LabelGrid<'_> {
     /// The labels, below `of`, that have any weight in an area of the full size, in order.
     fn present(&self, area: &Area, of: usize) -> Vec<u8> {
         let mut found = vec![false; of];
@@ -115,7 +114,8 @@ impl Coarse<'_> {
     }
 }
 
-/// Where a full-size coordinate lies in a grid of a `scale`-th of the size: the last place of the grid before it, and how far beyond.
+/// Position of a full-size coordinate in a grid `scale` times smaller: index of the grid point at or before it, and the fraction
+/// beyond.
 fn place(x: usize, scale: usize, size: usize) -> (usize, f32) {
     if x / scale + 1 >= size { (size - 1, 0.0) } else { (x / scale, (x % scale) as f32 / scale as f32) }
 }
@@ -135,7 +135,7 @@ impl Patch {
         Patch { area, values }
     }
 
-    /// An area at full size from values at a `scale`-th of it, between the four that are nearest: full-size pixel X lies at X / scale.
+    /// Bilinear enlargement of an area from values at a `scale`-th of the size: full-size pixel X lies at X / scale.
     fn enlarged(area: Area, [width, height]: [usize; 2], scale: usize, at: impl Fn(usize, usize) -> f32) -> Patch {
         // A row of the small grid at the columns of the area.
         let stretched = |y: usize, row: &mut Buffer<f32>| {
@@ -178,8 +178,8 @@ impl Patch {
         Patch { area: self.area.clone(), values }
     }
 
-    /// Means over (2·RADIUS + 1)² windows round the pixels of an area of a frame of the given size, which goes on beyond its
-    /// border as its border. The patch must reach RADIUS pixels beyond the area wherever the frame does.
+    /// Means over (2·RADIUS + 1)² windows around the pixels of an area of a frame of the given size, with replicated borders. The patch
+    /// must reach RADIUS pixels beyond the area wherever the frame does.
     fn box_mean(&self, area: Area, (width, height): (usize, usize)) -> Patch {
         const WEIGHT: f32 = 1.0 / (2 * RADIUS + 1) as f32;
         const { assert!(RADIUS == 4, "sums of nine are made below") };
@@ -198,7 +198,7 @@ impl Patch {
             if y == top {
                 (0..=2 * RADIUS).for_each(|k| each_with(&mut sums, [row(y + k)], |s, [v]| s + v));
             } else {
-                // Of the window of the row above one row goes and one comes.
+                // The window moves down: one row leaves, one enters.
                 each_with(&mut sums, [row(y + 2 * RADIUS), row(y - 1)], |s, [comes, goes]| s + (comes - goes));
             }
             let middle = &mut padded[left..left + touched.len()];
@@ -235,7 +235,7 @@ impl GuidedFilter {
         GuidedFilter { full, mean, variance }
     }
 
-    /// The input as the guide's edges have it, in a tile. Guide and input reach 2·RADIUS beyond the tile.
+    /// Filters the input in a tile. Guide and input reach 2·RADIUS pixels beyond the tile.
     fn apply(&self, guide: &Patch, input: &Patch, tile: &Area) -> Patch {
         let area = &self.mean.area;
         let mut offset = input.box_mean(area.clone(), self.full);
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_mask_follows_the_edge_of_the_full_frame() {
-        // The true edge lies at x = 33, which half size cannot say.
+        // The true edge lies at x = 33, which half the size cannot resolve.
         let guide = Plane::from_fn(64, 48, |x, _| if x < 33 { 40.0 } else { 200.0 });
         let labels: Vec<u8> = (0..32 * 24).map(|p| u8::from(p % 32 >= 17)).collect();
         let full = upsample(&labels, [32, 24], 2, &guide);

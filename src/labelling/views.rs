@@ -1,7 +1,7 @@
-//! Costs in two views: what the second frame hides, the frame before often shows.
+//! Costs in two views: pixels that are occluded in the second frame are often visible in the frame before.
 //!
-//! Which view a pixel is looked at in is decided for all motions together: each view counts by how well its best motion explains
-//! the surroundings. Taking the cheaper view of each motion by itself would give every motion two chances to fit by accident.
+//! The weight of each view is the same for all motions: it depends on how well the best motion explains the surroundings in that view.
+//! Taking the cheaper view for each motion separately would give every motion two chances to fit by accident.
 
 use crate::alignment::cost::{CostModel, View, cost_in};
 use crate::frame::Plane;
@@ -10,12 +10,12 @@ use crate::frame::pyramid::Level;
 use crate::lanes::{each, lower};
 use crate::motion::AffineMotion;
 
-/// Standard deviation of the window over which it is judged how well a view explains a pixel, pixels.
+/// Standard deviation of the window over which the views are compared, pixels.
 const WINDOW: f32 = 1.5;
-/// Difference of the smallest costs in both views at which only the better one counts is half of this.
+/// Twice the difference of the smallest costs from which on only the better view counts.
 const TRANSITION: f32 = 0.3;
 
-/// Cost of every motion at every pixel, infinite where it moves the pixel out of every view; and the share of the later view, where
+/// Cost of every motion at every pixel, infinite where it moves the pixel out of every view; and the weight of the later view, if
 /// there are two.
 pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Plane>, Option<Plane>) {
     let all = |view| {
@@ -32,12 +32,12 @@ pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Pl
     }
     for (cost, before) in costs.iter_mut().zip(&before) {
         let both = cost.values_mut().iter_mut().zip(before.values());
-        both.zip(shares.values()).for_each(|((c, b), share)| *c = mixed(*c, *b, *share));
+        both.zip(shares.values()).for_each(|((c, b), share)| *c = blend_views(*c, *b, *share));
     }
     (costs, Some(shares))
 }
 
-/// [`costs_in_views`] in which a motion neither gains nor loses by a pixel that it moves out of every view.
+/// [`costs_in_views`] with the neutral cost where a motion moves a pixel out of every view.
 pub(crate) fn costs_where_seen(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let (mut costs, _) = costs_in_views(level, motions);
     let neutral = CostModel::LABELS.outside();
@@ -45,9 +45,9 @@ pub(crate) fn costs_where_seen(level: &Level, motions: &[AffineMotion]) -> Vec<P
     costs
 }
 
-/// The cost of a pixel from its costs in both views, where the later one has a share.
+/// The cost of a pixel from its costs in both views; `share` is the weight of the later one.
 #[inline(always)]
-pub(crate) fn mixed(later: f32, earlier: f32, share: f32) -> f32 {
+pub(crate) fn blend_views(later: f32, earlier: f32, share: f32) -> f32 {
     match (later.is_finite(), earlier.is_finite()) {
         (true, true) => share * later + (1.0 - share) * earlier,
         (true, false) => later,
@@ -55,7 +55,7 @@ pub(crate) fn mixed(later: f32, earlier: f32, share: f32) -> f32 {
     }
 }
 
-/// The smallest cost of any motion, gathered over windows.
+/// The smallest cost of any motion, averaged over windows.
 fn unexplained(costs: &[Plane]) -> Plane {
     gaussian(&cheapest(costs, CostModel::LABELS.truncation), WINDOW)
 }

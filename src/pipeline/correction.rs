@@ -1,13 +1,12 @@
-//! Labels solved again under what a person says about single pixels: "this belongs to that motion", "this does not".
+//! Interactive correction: labels are solved again under strokes that say which motions are possible at a pixel.
 //!
-//! The motions stay as they are. A stroke is a hard rule on its own pixels and a price around them: a label that the nearest
-//! stroke excludes costs `STRENGTH · exp(−d/REACH)` more. The distance d is measured along the picture: where the frames agree with
-//! what is said it grows slowly, where they cannot tell it grows at every edge of the picture, and where they say the contrary it
-//! grows fast. So one stroke takes a whole region with it and ends where the region does. Where no stroke reaches, the labels that
-//! were there stay, bit for bit.
+//! The motions do not change. A stroke is a hard constraint on its own pixels and a soft one around them: a label that the nearest
+//! stroke excludes costs `STROKE_PRICE · exp(−d/STROKE_REACH)` more. The geodesic distance d grows slowly where the frames agree
+//! with the stroke, at image edges where they cannot tell, and fast where they contradict it. One stroke therefore takes a whole
+//! region with it and stops at its border. Labels that no stroke reaches are returned bit for bit.
 
-use super::Work;
-use super::report::{SegmentedMotion, describe, reduced};
+use super::PairPyramid;
+use super::report::{SegmentedMotion, at_working_size, describe};
 use super::settings::{Part, Settings};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
@@ -24,54 +23,54 @@ use crate::workspace::{self, Buffer};
 
 const STAGES: &[&str] = &["frames", "dominant", "labels", "masks"];
 
-/// Largest number of motions a [`Correction`] can speak of: the bits of a set.
+/// Largest number of motions in a [`Correction`]: the bits of a set.
 pub const MAX_CORRECTED: usize = 16;
 
-/// Price of an excluded label beside the stroke: twice what a motion that does not fit costs there.
-const STRENGTH: f32 = 4.0;
-/// Distance, working pixels of a flat picture without texture, at which it has fallen to 1/e.
-const REACH: f32 = 24.0;
-/// A stroke with less than this share of its price left has no say.
-const SMALLEST_SAY: f32 = 0.02;
-/// Length of a step where the frames agree with what is said …
-const FREE_STEP: f32 = 0.25;
-/// … and by how much it is longer where they cannot tell.
-const DOUBTFUL_STEP: f32 = 2.0;
-/// A step over a strong edge where they cannot tell, and one where they say the contrary, is longer by this.
-const WALL: f32 = 40.0;
-/// Intensity step, grey levels, at which an edge is strong (to 1 − 1/e).
-const EDGE: f32 = 24.0;
-/// Difference of two motions' costs from which on the frames tell them apart …
-const TELLING: f32 = 0.5;
+/// Price of an excluded label next to the stroke: twice the cost of a motion that does not fit.
+const STROKE_PRICE: f32 = 4.0;
+/// Geodesic distance at which it has fallen to 1/e.
+const STROKE_REACH: f32 = 24.0;
+/// A stroke has no influence below this share of its price.
+const SMALLEST_INFLUENCE: f32 = 0.02;
+/// Length of a step between neighbours where the frames agree with the stroke …
+const AGREED_STEP: f32 = 0.25;
+/// … added to it where the frames cannot tell …
+const UNDECIDED_STEP: f32 = 2.0;
+/// … and added at a strong edge where they cannot tell, and everywhere where they contradict the stroke.
+const BARRIER: f32 = 40.0;
+/// Intensity step, grey levels, at which an edge has 1 − 1/e of its full strength.
+const STRONG_EDGE: f32 = 24.0;
+/// Difference of two motions' costs at which the frames decide between them …
+const DECISIVE_GAP: f32 = 0.5;
 /// … averaged over this window, working pixels.
-const TELLING_WINDOW: f32 = 1.5;
-/// Price of another label than the one that was there, where a stroke is about to lose its say.
-const HABIT: f32 = 2.0;
-/// Sweeps over the picture in which distances spread; one in each direction nearly always does.
+const GAP_WINDOW: f32 = 1.5;
+/// Price of changing a label where no stroke has influence.
+const CHANGE_PRICE: f32 = 2.0;
+/// Double sweeps in which distances are propagated.
 const SWEEPS: usize = 2;
-/// What changes at working size is enlarged anew this many working pixels around.
+/// Full-size labels are computed anew within this many working pixels of a change.
 const MARGIN: usize = 3;
-/// Cost of what a stroke forbids.
-const FORBIDDEN: f32 = 1e6;
+/// Price of an excluded label on the stroke itself.
+const EXCLUDED_PRICE: f32 = 1e6;
 
-/// What [`relabel`] starts from.
+/// Input of [`relabel`].
 #[derive(Clone, Copy, Debug)]
 pub struct Correction<'a> {
     /// The motions, pixels of the full frame; their order is that of the labels. At most [`MAX_CORRECTED`].
     pub motions: &'a [AffineMotion],
-    /// Group of each motion; goes into the answer as it is.
+    /// Group of each motion; copied to the result.
     pub groups: &'a [u8],
     /// The labels so far, one per pixel of the frame, row by row; [`UNLABELLED`] where there is none.
     pub labels: &'a [u8],
-    /// What is said, one set of labels per pixel of the frame: bit k is set where motion k is possible; 0 says nothing. "This is
-    /// motion 2 or 3" is `0b1100`, "this is not motion 0" of four is `0b1110`.
+    /// The possible motions, one set per pixel of the frame: bit k is set where motion k is possible; 0 means no constraint.
+    /// "This is motion 2 or 3" is `0b1100`, "this is not motion 0" of four is `0b1110`.
     pub allowed: &'a [u16],
 }
 
-/// What [`relabel`] gives.
+/// Result of [`relabel`].
 #[derive(Clone, Debug)]
 pub struct Relabelling {
-    /// The motions in the order given, also those that lost all their pixels.
+    /// The motions in the order given, including those without pixels.
     pub motions: Vec<SegmentedMotion>,
     /// One label per pixel of the frame.
     pub labels: Vec<u8>,
@@ -79,14 +78,14 @@ pub struct Relabelling {
     pub unlabelled: usize,
 }
 
-/// Solves the labels of `first` again under what the correction says, with the motions and the numbering as they are. The answer
-/// depends on the arguments alone: corrections are undone by asking again without them.
+/// Solves the labels of `first` again under a correction. The motions and their numbering stay the same, and the result depends on
+/// the arguments alone: to undo a correction, call again without it.
 ///
-/// `options.quality` is that of the labels so far; the other options have no effect.
+/// `options.quality` should be that of the labels so far; the other options have no effect.
 ///
 /// # Errors
-/// [`Error::FrameSizeMismatch`]; [`Error::InvalidOption`] `motions`, `groups`, `labels` or `evidence` for arrays that do not belong
-/// together or speak of motions that are not there.
+/// [`Error::FrameSizeMismatch`]; [`Error::InvalidOption`] `motions`, `groups`, `labels` or `evidence` for arrays that do not match
+/// each other or refer to motions that do not exist.
 pub fn relabel(
     first: &Frame,
     second: &Frame,
@@ -104,14 +103,14 @@ pub fn relabel(
         correction.labels.to_vec()
     } else {
         stages.begin("frames");
-        let mut work = Work::new(first, second, before, &settings);
+        let mut pyramid = PairPyramid::new(first, second, before, &settings);
         stages.begin("dominant");
-        work.find_dominant(settings.has(Part::Brightness));
+        pyramid.find_dominant(settings.has(Part::Brightness));
         stages.begin("labels");
-        let draft = Draft::new(&work, correction, first.width());
-        let solved = draft.solve(&work, &settings);
+        let working = WorkingCorrection::new(&pyramid, correction, first.width());
+        let solved = working.solve(&pyramid, &settings);
         stages.begin("masks");
-        draft.enlarge(&solved, correction, first.luminance())
+        working.enlarge(&solved, correction, first.luminance())
     };
     let groups: Vec<usize> = correction.groups.iter().map(|&g| usize::from(g)).collect();
     let mut motions = describe(correction.motions, &groups, &labels, first.luminance(), second.luminance());
@@ -150,7 +149,7 @@ impl Correction<'_> {
 }
 
 /// The correction at working size.
-struct Draft {
+struct WorkingCorrection {
     motions: Vec<AffineMotion>,
     labels: Buffer<u8>,
     allowed: Buffer<u16>,
@@ -159,11 +158,11 @@ struct Draft {
     size: [usize; 2],
 }
 
-impl Draft {
-    fn new(work: &Work, correction: &Correction<'_>, full_width: usize) -> Draft {
-        let level = work.finest();
+impl WorkingCorrection {
+    fn new(pyramid: &PairPyramid, correction: &Correction<'_>, full_width: usize) -> WorkingCorrection {
+        let level = pyramid.finest();
         let (width, height) = (level.width(), level.height());
-        let step = work.reduction as usize;
+        let step = pyramid.reduction as usize;
         let full_height = correction.labels.len() / full_width;
         let mut labels = Buffer::with_capacity(width * height);
         let mut allowed = Buffer::filled(width * height, 0u16);
@@ -176,74 +175,74 @@ impl Draft {
         for (p, &set) in correction.allowed.iter().enumerate().filter(|&(_, &set)| set != 0) {
             let (x, y) = ((p % full_width / step).min(width - 1), (p / full_width / step).min(height - 1));
             let slot = &mut allowed[y * width + x];
-            // Two strokes through one working pixel: what both admit, or, where that is nothing, what either does.
+            // Two strokes through one working pixel: the intersection of their sets or, if it is empty, the union.
             *slot = match (*slot, *slot & set) {
                 (0, _) => set,
                 (old, 0) => old | set,
                 (_, both) => both,
             };
         }
-        let motions = correction.motions.iter().map(|m| reduced(m, work.reduction)).collect();
-        Draft { motions, labels, allowed, step, size: [width, height] }
+        let motions = correction.motions.iter().map(|m| at_working_size(m, pyramid.reduction)).collect();
+        WorkingCorrection { motions, labels, allowed, step, size: [width, height] }
     }
 
     /// The labels of working size.
-    fn solve(&self, work: &Work, settings: &Settings) -> Buffer<u8> {
-        let level = work.finest();
+    fn solve(&self, pyramid: &PairPyramid, settings: &Settings) -> Buffer<u8> {
+        let level = pyramid.finest();
         let coherence = settings.coherence;
         let mut costs = label_costs(level, &self.motions, coherence);
-        // Where nothing was said yet, the dominant motion stands in: it is what the masks were corrected for occlusion with.
+        // Unlabelled pixels count as the dominant motion's here, as when the masks were corrected for occlusion.
         let known: Buffer<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
         if self.motions.len() > 1 {
-            costs = with_visibility(level, &self.motions, &costs, &known, coherence.departure);
-            add_colours(&mut costs, &work.palette, &known);
+            costs = with_visibility(level, &self.motions, &costs, &known, coherence.object_bias);
+            add_colours(&mut costs, &pyramid.palette, &known);
         }
-        let say = self.add_evidence(&mut costs, &work.pictures[0].luminance);
-        let mut solved = Borders::new(&work.pictures[0], level.noise, coherence).solve(&costs, coherence.solver);
+        let influence = self.add_stroke_costs(&mut costs, &pyramid.pictures[0].luminance);
+        let mut solved = Borders::new(&pyramid.pictures[0], level.noise, coherence).solve(&costs, coherence.solver);
         for (p, label) in solved.iter_mut().enumerate() {
-            if say[p] < SMALLEST_SAY {
+            if influence[p] < SMALLEST_INFLUENCE {
                 *label = self.labels[p];
             }
         }
         solved
     }
 
-    /// Adds to the costs what the strokes say, and how dear a change is where they hardly say anything. Returns how much of its
-    /// strength the nearest stroke has at every pixel, 0…1.
-    fn add_evidence(&self, costs: &mut [Plane], edges: &Plane) -> Buffer<f32> {
-        let mut say: Buffer<f32> = self.allowed.iter().map(|&set| if set == 0 { 0.0 } else { 1.0 }).collect();
-        let smooth: Vec<Plane> = costs.iter().map(|c| gaussian(c, TELLING_WINDOW)).collect();
+    /// Adds the prices of labels that strokes exclude, and the price of a change where strokes have little influence. Returns the
+    /// influence of the nearest stroke at every pixel, 0…1.
+    fn add_stroke_costs(&self, costs: &mut [Plane], edges: &Plane) -> Buffer<f32> {
+        let mut influence: Buffer<f32> = self.allowed.iter().map(|&set| if set == 0 { 0.0 } else { 1.0 }).collect();
+        let smooth: Vec<Plane> = costs.iter().map(|c| gaussian(c, GAP_WINDOW)).collect();
         for k in 0..costs.len() {
             let excluded = |p: usize| self.allowed[p] != 0 && self.allowed[p] >> k & 1 == 0;
             if !(0..self.allowed.len()).any(excluded) {
                 continue;
             }
-            let distance = distances(edges, &against(&smooth, k), excluded);
+            let distance = distances(edges, &cost_gap(&smooth, k), excluded);
             for (p, c) in costs[k].values_mut().iter_mut().enumerate() {
-                let strength = libm::expf(-distance[p] / REACH);
-                *c += if excluded(p) { FORBIDDEN } else { STRENGTH * strength };
-                say[p] = say[p].max(strength);
+                let strength = libm::expf(-distance[p] / STROKE_REACH);
+                *c += if excluded(p) { EXCLUDED_PRICE } else { STROKE_PRICE * strength };
+                influence[p] = influence[p].max(strength);
             }
         }
         for (k, cost) in costs.iter_mut().enumerate() {
             for (p, c) in cost.values_mut().iter_mut().enumerate() {
                 if self.labels[p] != UNLABELLED && usize::from(self.labels[p]) != k {
-                    *c += HABIT * (1.0 - say[p]);
+                    *c += CHANGE_PRICE * (1.0 - influence[p]);
                 }
             }
         }
-        say
+        influence
     }
 
-    /// Full-size labels: enlarged along the edges of the frame near what has changed, as they were elsewhere; strokes hold to the
-    /// pixel.
+    /// Full-size labels: enlarged along the edges of the frame near changes, unchanged elsewhere. Strokes hold at every pixel of
+    /// the frame.
     fn enlarge(&self, solved: &[u8], correction: &Correction<'_>, guide: &Plane) -> Vec<u8> {
         let [width, height] = self.size;
         let near = self.near_changes(solved);
-        // An unlabelled pixel that no stroke reached stays one: it has a label of its own while labels are enlarged.
+        // Unlabelled pixels that no stroke reached stay unlabelled: they have a label of their own while labels are enlarged.
         let unlabelled = self.motions.len() as u8;
-        let work: Vec<u8> = solved.iter().map(|&l| l.min(unlabelled)).collect();
-        let full = upsample(&work, self.size, self.motions.len() + 1, guide);
+        let current: Vec<u8> = solved.iter().map(|&l| l.min(unlabelled)).collect();
+        let full = upsample(&current, self.size, self.motions.len() + 1, guide);
         let mut labels = correction.labels.to_vec();
         for (p, label) in labels.iter_mut().enumerate() {
             let (x, y) = (p % guide.width() / self.step, p / guide.width() / self.step);
@@ -274,23 +273,23 @@ impl Draft {
     }
 }
 
-/// How clearly the frames speak against label k: the cost it has above the cheapest other, in units of [`TELLING`], −1…1.
-fn against(costs: &[Plane], k: usize) -> Vec<f32> {
+/// By how much label k is more expensive than the cheapest other, in units of [`DECISIVE_GAP`], cut to −1…1.
+fn cost_gap(costs: &[Plane], k: usize) -> Vec<f32> {
     let other =
         |p: usize| (0..costs.len()).filter(|&l| l != k).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min);
     let own = costs[k].values().iter().enumerate();
-    own.map(|(p, &own)| ((own - other(p)) / TELLING).clamp(-1.0, 1.0)).collect()
+    own.map(|(p, &own)| ((own - other(p)) / DECISIVE_GAP).clamp(-1.0, 1.0)).collect()
 }
 
-/// Distance of every pixel from the nearest that `starts`. `agreement` says how far the frames agree, −1…1. Distances spread along
-/// rows and columns in [`SWEEPS`] double sweeps, which leaves those behind many corners too large.
+/// Geodesic distance of every pixel from the nearest one that `starts`. `agreement`, −1…1, is how far the frames agree with the
+/// stroke. Distances are propagated along rows and columns in [`SWEEPS`] double sweeps; behind many corners they come out too large.
 fn distances(edges: &Plane, agreement: &[f32], starts: impl Fn(usize) -> bool) -> Vec<f32> {
     let (width, height) = (edges.width(), edges.height());
     let values = edges.values();
     let step = |p: usize, q: usize| {
-        let agreed = agreement[p].min(agreement[q]);
-        let edge = 1.0 - libm::expf(-(values[p] - values[q]).abs() / EDGE);
-        FREE_STEP + (1.0 - agreed.abs()) * (DOUBTFUL_STEP + WALL * edge) + WALL * (-agreed).max(0.0)
+        let both_agree = agreement[p].min(agreement[q]);
+        let edge = 1.0 - libm::expf(-(values[p] - values[q]).abs() / STRONG_EDGE);
+        AGREED_STEP + (1.0 - both_agree.abs()) * (UNDECIDED_STEP + BARRIER * edge) + BARRIER * (-both_agree).max(0.0)
     };
     let right: Vec<f32> = (0..values.len()).map(|p| if (p + 1) % width == 0 { 0.0 } else { step(p, p + 1) }).collect();
     let down: Vec<f32> = (0..(height - 1) * width).map(|p| step(p, p + width)).collect();
@@ -322,7 +321,7 @@ mod tests {
 
     const WIDTH: usize = 9;
 
-    /// Flat ground; between the left and the right half a column of white with a gap in the last row.
+    /// A flat image with a white column in the middle that has a gap in the last row.
     fn walled() -> Plane {
         Plane::from_fn(WIDTH, 5, |x, y| if x == 4 && y < 4 { 255.0 } else { 0.0 })
     }
@@ -330,7 +329,7 @@ mod tests {
     #[test]
     fn where_the_frames_cannot_tell_distance_goes_around_an_edge() {
         let distance = distances(&walled(), &[0.0; 45], |p| p == 0);
-        let step = DOUBTFUL_STEP + FREE_STEP;
+        let step = UNDECIDED_STEP + AGREED_STEP;
         assert_eq!(distance[3], 3.0 * step);
         // Down, through the gap, up again.
         assert_eq!(distance[8], 16.0 * step);
@@ -338,9 +337,9 @@ mod tests {
 
     #[test]
     fn where_they_agree_it_crosses_edges_and_where_they_do_not_it_stops() {
-        assert_eq!(distances(&walled(), &[1.0; 45], |p| p == 0)[8], 8.0 * FREE_STEP);
+        assert_eq!(distances(&walled(), &[1.0; 45], |p| p == 0)[8], 8.0 * AGREED_STEP);
         let mut agreement = [1.0; 45];
         (0..45).filter(|p| p % WIDTH > 4).for_each(|p| agreement[p] = -1.0);
-        assert!(distances(&walled(), &agreement, |p| p == 0)[5] > WALL);
+        assert!(distances(&walled(), &agreement, |p| p == 0)[5] > BARRIER);
     }
 }

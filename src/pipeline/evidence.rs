@@ -1,27 +1,27 @@
-//! What the number of motions rests on: description lengths with fewer and with more motions than were found.
+//! Evidence for the number of motions: description lengths with fewer and with more motions than were found.
 
-use super::Work;
-use super::masks::{Labelled, borders, left_over};
+use super::PairPyramid;
+use super::masks::{Labelled, borders, estimation_costs};
 use super::settings::Settings;
 use crate::answer::Candidate;
 use crate::frame::Plane;
 use crate::labelling::description::{length, price_of_motion, worth};
 use crate::labelling::energy::label_costs;
-use crate::labelling::potts::Solver;
+use crate::labelling::solver::Solver;
 use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
 
-/// Description lengths: of what was found, of what remains as the least worthy motions are taken away, and of one more. Labels are
-/// solved for each at the base level, by costs without occlusion and colour.
-pub(super) fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
-    let level = &work.levels[work.base];
+/// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
+/// solved for each number at the base level, without costs of occlusion and colour.
+pub(super) fn evidence(pyramid: &PairPyramid, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
+    let level = &pyramid.levels[pyramid.base];
     let width = level.width();
     let n = labelled.motions.len();
     let motions: Vec<AffineMotion> =
-        labelled.motions.iter().chain(&labelled.left_out).copied().take(MAX_MOTIONS).collect();
-    let mut raw = left_over(level, &motions);
+        labelled.motions.iter().chain(&labelled.runner_up).copied().take(MAX_MOTIONS).collect();
+    let mut raw = estimation_costs(level, &motions);
     let mut costs = label_costs(level, &motions, settings.coherence);
-    let borders = borders(work, work.base, settings);
+    let borders = borders(pyramid, pyramid.base, settings);
     let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
     let one_more = (motions.len() > n).then(|| length(&raw, &solve(&costs), width));
     raw.truncate(n);
@@ -29,7 +29,7 @@ pub(super) fn evidence(work: &Work, labelled: &Labelled, settings: &Settings) ->
     let mut labels = solve(&costs);
     let mut candidates = vec![Candidate { motions: n, score: length(&raw, &labels, width) }];
     if n < MAX_MOTIONS {
-        // A motion that no pixel takes costs its six numbers.
+        // A motion without pixels costs its six parameters.
         let unused = candidates[0].score + price_of_motion(labels.len());
         candidates.insert(0, Candidate { motions: n + 1, score: one_more.map_or(unused, |score| score.min(unused)) });
     }

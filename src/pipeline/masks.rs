@@ -1,7 +1,9 @@
-//! Labels: drafted on a coarser level, where they are solved, thinned out to what pays for itself, corrected for occlusion, merged
-//! and split; sharpened at the working size; cleaned.
+//! The label of every working pixel.
+//!
+//! Draft labels are solved on a coarser level. There, motions that do not pay for themselves are pruned, costs are corrected for
+//! occlusion, and regions are merged and split. The labels are then sharpened at the working size, and small components removed.
 
-use super::Work;
+use super::PairPyramid;
 use super::hypothesis::Found;
 use super::settings::{Part, Settings};
 use crate::alignment::cost::{CostModel, cost};
@@ -10,88 +12,88 @@ use crate::frame::Plane;
 use crate::frame::pyramid::Level;
 use crate::labelling::appearance::{ColourPrices, add_colours};
 use crate::labelling::description::{SMALLEST_SHARE, counts, price_of_motion, worth};
-use crate::labelling::energy::{Borders, Survey, surveyed};
+use crate::labelling::energy::{Borders, LabelCosts};
 use crate::labelling::merging::best_merger;
-use crate::labelling::potts::Solver;
-use crate::labelling::sharpening::{Coarse, Fine, sharpened};
+use crate::labelling::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
+use crate::labelling::solver::Solver;
 use crate::labelling::splitting::{split_bodies, split_components};
 use crate::labelling::visibility::{hidden_under, with_visibility};
 use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 
-/// A label that came from a split competes only this far around its region, as a share of the root of its pixels …
-const REACH_SHARE: f64 = 0.6;
+/// After a split, an object competes only this far around its region, as a share of the square root of its pixel count …
+const COMPETITION_SHARE: f64 = 0.6;
 /// … and at least this many pixels of the working size.
-const SMALLEST_REACH: usize = 12;
-/// Nats of a pixel of a coarser level beside those of a working pixel: it stands for four, whose noise is not independent.
+const SMALLEST_COMPETITION: usize = 12;
+/// Weight of a pixel of a coarser level, in working pixels. It stands for four, but their noise is not independent.
 const COARSE_PIXEL: f32 = 2.0;
-/// Smoothness on a coarser level as a share of that of the working size: half as many pixels lie along a border.
+/// Smoothness on a coarser level, as a share of that at the working size: borders have half as many pixels.
 const COARSE_SMOOTHNESS: f32 = 0.7;
 
 /// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
     pub(super) labels: Buffer<u8>,
-    /// The best motion that is not among them: it did not pay for itself, here or when motions were selected.
-    pub(super) left_out: Option<AffineMotion>,
+    /// The best motion that was rejected, here or during selection, because it did not pay for itself.
+    pub(super) runner_up: Option<AffineMotion>,
 }
 
-/// A labelling in the making: motions, what each costs, who has which pixel.
-struct Draft<'a> {
+/// A labelling in progress: the motions, their costs and the current labels.
+struct LabelState<'a> {
     level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
     motions: Vec<AffineMotion>,
-    /// Label costs.
+    /// Label costs, corrected for occlusion.
     costs: Vec<Plane>,
-    /// The same before occlusion, with what they were made of.
-    survey: Survey,
-    /// Estimation costs, for the description length.
+    /// Label costs before the correction for occlusion.
+    uncorrected: LabelCosts,
+    /// Estimation costs, from which description lengths are computed.
     raw: Vec<Plane>,
     labels: Buffer<u8>,
-    /// For every label the pixels that it cannot have; none where all labels compete everywhere.
-    barred: Vec<Buffer<bool>>,
-    /// What was taken away last, else what the selection left out.
-    left_out: Option<AffineMotion>,
+    /// For every label, the pixels at which it may not compete; empty if all labels compete everywhere.
+    excluded: Vec<Buffer<bool>>,
+    /// The motion pruned last, or the best one rejected by the selection.
+    runner_up: Option<AffineMotion>,
 }
 
-pub(super) fn label(work: &Work, found: Found, settings: &Settings) -> Labelled {
-    let mut draft = Draft::new(work, found, settings);
-    draft.solve();
-    draft.thin_out();
-    draft.rest();
-    draft.see();
-    draft.merge();
-    if draft.split() {
-        draft.thin_out();
-        draft.merge();
+pub(super) fn label(pyramid: &PairPyramid, found: Found, settings: &Settings) -> Labelled {
+    let mut state = LabelState::new(pyramid, found, settings);
+    state.solve();
+    state.prune();
+    state.try_static_background();
+    state.correct_occlusion();
+    state.merge();
+    if state.split() {
+        state.prune();
+        state.merge();
     }
-    if work.draft == 0 {
-        draft.look(work);
-        draft.finish();
+    if pyramid.draft == 0 {
+        state.add_colour_costs(pyramid);
+        state.solve_final();
     } else {
-        draft.sharpen(work);
+        state.sharpen(pyramid);
     }
-    let width = work.finest().width();
-    draft.clean(width);
-    let Draft { motions, labels, left_out, .. } = draft;
-    Labelled { motions, labels, left_out }
+    let width = pyramid.finest().width();
+    state.clean(width);
+    let LabelState { motions, labels, runner_up, .. } = state;
+    Labelled { motions, labels, runner_up }
 }
 
-/// Prices of borders on a level.
-pub(super) fn borders(work: &Work, index: usize, settings: &Settings) -> Borders {
-    let level = &work.levels[index];
+/// Smoothness weights on a level.
+pub(super) fn borders(pyramid: &PairPyramid, index: usize, settings: &Settings) -> Borders {
+    let level = &pyramid.levels[index];
     let mut coherence = settings.coherence;
     coherence.smoothness *= if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
     if settings.has(Part::Edges) {
-        Borders::new(&work.pictures[index], level.noise, coherence)
+        Borders::new(&pyramid.pictures[index], level.noise, coherence)
     } else {
         Borders::uniform(level.width(), level.height(), coherence)
     }
 }
 
-/// What every motion leaves unexplained on a level, in the costs of working pixels.
-pub(super) fn left_over(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+/// Estimation costs of every motion on a level, in units of working pixels.
+pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
     if level.index > 0 {
         raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= nats_of_pixel(level));
@@ -99,64 +101,64 @@ pub(super) fn left_over(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     raw
 }
 
-/// Nats of a pixel beside those of a working pixel.
+/// Weight of a pixel of a level, in working pixels.
 fn nats_of_pixel(level: &Level) -> f32 {
     if level.index > 0 { COARSE_PIXEL } else { 1.0 }
 }
 
-impl<'a> Draft<'a> {
-    fn new(work: &'a Work, found: Found, settings: &'a Settings) -> Draft<'a> {
-        let level = &work.levels[work.draft];
-        let borders = borders(work, work.draft, settings);
-        let motions: Vec<AffineMotion> = found.layers.into_iter().map(|layer| layer.motion).collect();
-        let mut draft = Draft {
+impl<'a> LabelState<'a> {
+    fn new(pyramid: &'a PairPyramid, found: Found, settings: &'a Settings) -> LabelState<'a> {
+        let level = &pyramid.levels[pyramid.draft];
+        let borders = borders(pyramid, pyramid.draft, settings);
+        let motions: Vec<AffineMotion> = found.selected.into_iter().map(|scored| scored.motion).collect();
+        let mut state = LabelState {
             level,
             settings,
             borders,
             costs: Vec::new(),
-            survey: surveyed(level, &motions, settings.coherence),
+            uncorrected: LabelCosts::new(level, &motions, settings.coherence),
             raw: Vec::new(),
             labels: Buffer::filled(level.width() * level.height(), 0),
-            barred: Vec::new(),
+            excluded: Vec::new(),
             motions,
-            left_out: found.left_out,
+            runner_up: found.runner_up,
         };
-        draft.weigh();
-        draft
+        state.reset_costs();
+        state
     }
 
     fn size(&self) -> (usize, usize) {
         (self.level.width(), self.level.height())
     }
 
-    /// Costs of all motions.
-    fn measure(&mut self) {
-        self.survey = surveyed(self.level, &self.motions, self.settings.coherence);
-        self.weigh();
+    /// Computes the costs of all motions anew.
+    fn recompute_costs(&mut self) {
+        self.uncorrected = LabelCosts::new(self.level, &self.motions, self.settings.coherence);
+        self.reset_costs();
     }
 
-    fn weigh(&mut self) {
-        self.raw = left_over(self.level, &self.motions);
-        self.costs = self.survey.costs.clone();
+    fn reset_costs(&mut self) {
+        self.raw = estimation_costs(self.level, &self.motions);
+        self.costs = self.uncorrected.costs.clone();
     }
 
     fn solve(&mut self) {
         self.labels = self.borders.solve(&self.costs, self.settings.coherence.draft_solver);
     }
 
-    fn hears_colours(&self) -> bool {
+    fn uses_colour(&self) -> bool {
         self.motions.len() > 1 && self.settings.has(Part::Colour)
     }
 
-    /// Adds what the colours say.
-    fn look(&mut self, work: &Work) {
-        if self.hears_colours() {
-            add_colours(&mut self.costs, &work.palette, &self.labels);
+    /// Adds the costs of the colours.
+    fn add_colour_costs(&mut self, pyramid: &PairPyramid) {
+        if self.uses_colour() {
+            add_colours(&mut self.costs, &pyramid.palette, &self.labels);
         }
     }
 
-    /// Solves with care: exactly where there are two labels, close to it otherwise.
-    fn finish(&mut self) {
+    /// Solves for the final labels: exactly if there are two, nearly so otherwise.
+    fn solve_final(&mut self) {
         let solver = match self.motions.len() {
             2 => Solver::Expansion { sweeps: 1 },
             _ => self.settings.coherence.solver,
@@ -164,35 +166,36 @@ impl<'a> Draft<'a> {
         self.labels = self.borders.solve(&self.costs, solver);
     }
 
-    /// Labels of the working size from those of the draft.
-    fn sharpen(&mut self, work: &Work) {
-        let step = 1 << work.draft;
-        let colours =
-            self.hears_colours().then(|| ColourPrices::learned(&work.palette.thinned(step), &self.costs, &self.labels));
+    /// Turns draft labels into labels of the working size.
+    fn sharpen(&mut self, pyramid: &PairPyramid) {
+        let step = 1 << pyramid.draft;
+        let colours = self
+            .uses_colour()
+            .then(|| ColourPrices::learned(&pyramid.palette.thinned(step), &self.costs, &self.labels));
         let visible = self.motions.len() < 2 || !self.settings.has(Part::Visibility);
         let hidden = if visible { Vec::new() } else { hidden_under(self.level, &self.motions, &self.labels) };
-        let coarse = Coarse {
+        let coarse = CoarseLabelling {
             width: self.level.width(),
             labels: &self.labels,
             step,
-            misfit: &self.survey.misfit,
-            shares: self.survey.shares.as_ref(),
+            variance_inflation: &self.uncorrected.variance_inflation,
+            shares: self.uncorrected.shares.as_ref(),
             hidden: &hidden,
-            barred: &self.barred,
+            excluded: &self.excluded,
             colours: colours.as_ref(),
         };
-        let fine = Fine {
-            level: work.finest(),
-            picture: self.settings.has(Part::Edges).then(|| &work.pictures[0]),
-            palette: &work.palette,
+        let fine = WorkingLevel {
+            level: pyramid.finest(),
+            picture: self.settings.has(Part::Edges).then(|| &pyramid.pictures[0]),
+            palette: &pyramid.palette,
             motions: &self.motions,
             coherence: self.settings.coherence,
         };
         self.labels = sharpened(&coarse, &fine, self.settings.coherence.sharpening);
     }
 
-    /// Takes away the motion that is worth least, while that is less than nothing, and solves again.
-    fn thin_out(&mut self) {
+    /// Removes the least worthy motion and solves again, as long as there is one that does not pay for itself.
+    fn prune(&mut self) {
         let most = self.settings.most;
         while self.motions.len() > self.settings.least
             && (self.settings.has(Part::ModelSelection) || self.motions.len() > most)
@@ -202,9 +205,9 @@ impl<'a> Draft<'a> {
             if *value > 0.0 && self.motions.len() <= most {
                 break;
             }
-            self.left_out = Some(self.motions[weakest]);
+            self.runner_up = Some(self.motions[weakest]);
             self.remove(weakest);
-            // Only the pixels of the motion that went are open.
+            // Only the pixels of the removed motion are undecided.
             self.labels = self.borders.solve(&self.costs, Solver::LIGHT);
         }
     }
@@ -212,34 +215,34 @@ impl<'a> Draft<'a> {
     fn remove(&mut self, k: usize) {
         self.motions.remove(k);
         self.costs.remove(k);
-        self.survey.costs.remove(k);
+        self.uncorrected.costs.remove(k);
         self.raw.remove(k);
-        if k < self.barred.len() {
-            self.barred.remove(k);
+        if k < self.excluded.len() {
+            self.excluded.remove(k);
         }
     }
 
-    /// Corrects for occlusion, more than once: what is hidden depends on the masks.
-    fn see(&mut self) {
+    /// Corrects for occlusion. Takes several rounds, since what is occluded depends on the masks.
+    fn correct_occlusion(&mut self) {
         if self.motions.len() < 2 || !self.settings.has(Part::Visibility) {
             return;
         }
         for _ in 0..self.settings.visibility_rounds {
-            self.uncover();
+            self.update_occlusion();
             self.solve();
         }
-        self.thin_out();
+        self.prune();
     }
 
-    /// Costs in which no motion pays for what it hides.
-    fn uncover(&mut self) {
-        let departure = self.settings.coherence.departure;
-        self.costs = with_visibility(self.level, &self.motions, &self.survey.costs, &self.labels, departure);
+    /// Updates the costs: no motion pays for pixels that are occluded in the second frame.
+    fn update_occlusion(&mut self) {
+        let object_bias = self.settings.coherence.object_bias;
+        self.costs = with_visibility(self.level, &self.motions, &self.uncorrected.costs, &self.labels, object_bias);
     }
 
-    /// Leaves the background at rest where that takes less to describe: a motion bent over objects on a bare ground is found out once
-    /// the objects have motions of their own, and no motion has no numbers to describe.
-    fn rest(&mut self) {
+    /// Makes the background static if that shortens the description: the zero motion costs no parameters. A dominant motion that was
+    /// fitted across objects on a flat background is recognised here, once the objects have motions of their own.
+    fn try_static_background(&mut self) {
         if self.motions[0] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
             return;
         }
@@ -247,16 +250,16 @@ impl<'a> Draft<'a> {
             let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| **label == 0);
             pixels.map(|(cost, _)| f64::from(*cost)).sum()
         };
-        let still: f64 = left_over(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
-        if 0.5 * (still - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
+        let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
+        if 0.5 * (at_rest - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
             self.motions[0] = AffineMotion::STATIC;
-            self.measure();
+            self.recompute_costs();
             self.solve();
-            self.thin_out();
+            self.prune();
         }
     }
 
-    /// Joins regions that one motion explains better than two do.
+    /// Merges regions that one motion explains better than two.
     fn merge(&mut self) {
         while self.motions.len() > self.settings.least && self.settings.has(Part::ModelSelection) {
             let pixel = nats_of_pixel(self.level);
@@ -271,18 +274,18 @@ impl<'a> Draft<'a> {
                     _ => *label,
                 };
             }
-            if gone < self.barred.len() {
-                let other = self.barred.remove(gone);
-                self.barred[kept].iter_mut().zip(&other).for_each(|(barred, other)| *barred &= other);
+            if gone < self.excluded.len() {
+                let other = self.excluded.remove(gone);
+                self.excluded[kept].iter_mut().zip(&other).for_each(|(excluded, other)| *excluded &= other);
             }
-            self.measure();
-            self.bar();
-            self.uncover();
+            self.recompute_costs();
+            self.add_exclusion_costs();
+            self.update_occlusion();
             self.solve();
         }
     }
 
-    /// Splits regions that are several bodies. Returns whether there were any.
+    /// Splits regions that contain several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
         if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
             return false;
@@ -295,36 +298,36 @@ impl<'a> Draft<'a> {
         if !(parts || bodies) {
             return false;
         }
-        self.measure();
-        self.restrict();
-        self.uncover();
+        self.recompute_costs();
+        self.restrict_to_surroundings();
+        self.update_occlusion();
         self.solve();
         true
     }
 
-    /// Objects compete only near where they are, so that two bodies with like motions do not share their pixels.
-    fn restrict(&mut self) {
+    /// Lets objects compete only near their own regions, so that two bodies with similar motions do not take each other's pixels.
+    fn restrict_to_surroundings(&mut self) {
         let (width, height) = self.size();
         let sizes = counts(&self.labels, self.motions.len());
-        self.barred = vec![Buffer::filled(self.labels.len(), false)];
+        self.excluded = vec![Buffer::filled(self.labels.len(), false)];
         for k in 1..self.motions.len() {
-            let smallest = SMALLEST_REACH >> self.level.index;
-            let reach = smallest.max((REACH_SHARE * (sizes[k] as f64).sqrt()) as usize);
+            let smallest = SMALLEST_COMPETITION >> self.level.index;
+            let reach = smallest.max((COMPETITION_SHARE * (sizes[k] as f64).sqrt()) as usize);
             let near = near_label(&self.labels, k as u8, width, height, reach);
-            self.barred.push(near.iter().map(|near| !near).collect());
+            self.excluded.push(near.iter().map(|near| !near).collect());
         }
-        self.bar();
+        self.add_exclusion_costs();
     }
 
-    /// Makes labels dear where they cannot be.
-    fn bar(&mut self) {
-        for (cost, barred) in self.survey.costs.iter_mut().zip(&self.barred) {
-            let pixels = cost.values_mut().iter_mut().zip(barred);
-            pixels.filter(|(_, barred)| **barred).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+    /// Makes labels expensive where they may not compete.
+    fn add_exclusion_costs(&mut self) {
+        for (cost, excluded) in self.uncorrected.costs.iter_mut().zip(&self.excluded) {
+            let pixels = cost.values_mut().iter_mut().zip(excluded);
+            pixels.filter(|(_, excluded)| **excluded).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
         }
     }
 
-    /// Gives small components to what surrounds them, and drops motions without pixels. Rows of labels are `width` long.
+    /// Gives small components to the labels around them and removes motions without pixels. Rows of labels are `width` long.
     fn clean(&mut self, width: usize) {
         let smallest = (SMALLEST_SHARE * self.labels.len() as f64) as usize;
         absorb_small(&mut self.labels, width, smallest);
@@ -348,7 +351,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// Which pixels lie within `reach` (in the larger of both coordinate differences) of a label.
+/// Which pixels lie within `reach` of a label in Chebyshev distance.
 fn near_label(labels: &[u8], label: u8, width: usize, height: usize, reach: usize) -> Buffer<bool> {
     let spread = |line: &mut dyn FnMut(usize) -> (bool, usize), length: usize, out: &mut [bool]| {
         let mut last: Option<usize> = None;

@@ -1,8 +1,8 @@
-//! What the caller gets: labels at full size, numbered by size, each motion with its figures, the evidence.
+//! The result: labels at full size, numbered by pixel count, statistics of every motion, evidence for their number.
 
 use serde::Serialize;
 
-use super::Work;
+use super::PairPyramid;
 use super::evidence::evidence;
 use super::masks::Labelled;
 use super::settings::{Part, Settings};
@@ -35,16 +35,16 @@ pub struct Segmentation {
     pub count: usize,
     /// The motions by decreasing number of pixels; `motions[i].label == i`.
     pub motions: Vec<SegmentedMotion>,
-    /// One label per pixel, row by row; [`UNLABELLED`] where nothing can be said (only on request).
+    /// One label per pixel, row by row; [`UNLABELLED`] where the data cannot tell (only on request).
     #[serde(skip)]
     pub labels: Vec<u8>,
-    /// What the number of motions rests on.
+    /// Evidence for the number of motions.
     pub evidence: PairEvidence,
     /// Number of unlabelled pixels.
     pub unlabelled: usize,
-    /// How sure the label of every pixel is, row by row, where it was asked for: 255 times the probability of its motion, given
-    /// how well all motions explain the pixel and its surroundings and how the labels around are. 255 is certain, 0 unlabelled.
-    /// Of the pixels with probability P about the share P is right; what all motions leave unexplained is not sure.
+    /// Confidence of every label, row by row, if requested: 255 times the probability of the pixel's motion, given how well all
+    /// motions explain the pixel and its surroundings and which labels surround it. 255 is certain, 0 unlabelled. The probability
+    /// is calibrated: of the pixels with probability P, about the share P is right. It is low where no motion fits.
     #[serde(skip)]
     pub confidence: Option<Vec<u8>>,
 }
@@ -74,43 +74,42 @@ pub struct SegmentedMotion {
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PairEvidence {
-    /// Description lengths in nats of both frames, of one motion up to one more than were found; smaller is better. Every number
-    /// was tried: for fewer motions the least worthy are taken away one by one, for one more the best motion that was left out is
-    /// added, and labels are solved for those that there are, on a level whose longer side is at most 224 pixels
-    /// unless the frame is narrow, all by the same costs. The stages decide one after another, with more care and not by this
-    /// list alone, so that the number found need not be its least.
+    /// Description lengths of both frames in nats, from one motion up to one more than were found; smaller is better. For fewer
+    /// motions the least worthy are removed one by one; for one more the best rejected motion is added. Labels are solved for each
+    /// number with the same costs, on a level whose longer side is at most 224 pixels unless the frame is narrow. The stages of
+    /// the pipeline decide on more than this list, so the number found need not have the smallest score.
     pub candidates: Vec<Candidate>,
 }
 
-/// Window over which it is judged whether a motion explains a pixel, working pixels.
+/// Standard deviation of the window in which a motion must explain a pixel, working pixels.
 const UNKNOWN_WINDOW: f32 = 1.5;
-/// Share of the saturated cost above which it does not.
+/// Share of the saturated cost above which the motion does not explain the pixel.
 const UNKNOWN_COST: f32 = 0.7;
-/// Window over which texture is looked for, working pixels.
+/// Standard deviation of the window in which texture is measured, working pixels.
 const TEXTURE_WINDOW: f32 = 3.0;
 /// Mean squared gradient, in units of the noise variance, below which there is no texture: noise alone has 0.15 to 0.2.
 const NO_TEXTURE: f32 = 0.2;
 
 pub(super) fn report(
-    work: &Work,
+    pyramid: &PairPyramid,
     labelled: Labelled,
     settings: &Settings,
     first: &Frame,
     second: &Frame,
     options: &SegmentOptions,
 ) -> Segmentation {
-    let level = work.finest();
+    let level = pyramid.finest();
     let size = [level.width(), level.height()];
-    let candidates = evidence(work, &labelled, settings);
+    let candidates = evidence(pyramid, &labelled, settings);
     let sure = (options.mark_unknown || options.confidence)
         .then(|| probabilities(&costs_where_seen(level, &labelled.motions), &labelled.labels));
-    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(work, &labelled, sure));
-    let grouping = groups(&labelled.motions, &labelled.labels, size[0], work.reduction);
+    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(pyramid, &labelled, sure));
+    let grouping = groups(&labelled.motions, &labelled.labels, size[0], pyramid.reduction);
 
     let full = if settings.has(Part::GuidedEnlarging) {
         upsample(&labelled.labels, size, labelled.motions.len(), first.luminance())
     } else {
-        nearest(&labelled.labels, size, first, work.reduction)
+        nearest(&labelled.labels, size, first, pyramid.reduction)
     };
     let mut confidence = sure.filter(|_| options.confidence).map(|sure| confidence(&sure, &full, first.width()));
     let order = by_size(&full, labelled.motions.len());
@@ -119,13 +118,13 @@ pub(super) fn report(
     let mut labels = full;
     labels.iter_mut().for_each(|l| *l = rank[usize::from(*l)]);
     if let Some(unknown) = unknown {
-        mark(&mut labels, first.width(), &unknown, size, work.reduction);
+        mark_unlabelled(&mut labels, first.width(), &unknown, size, pyramid.reduction);
     }
     for (sure, _) in confidence.iter_mut().flatten().zip(&labels).filter(|(_, label)| **label == UNLABELLED) {
         *sure = 0;
     }
     let matrices: Vec<AffineMotion> =
-        order.iter().map(|&k| at_full_size(&labelled.motions[k], work.reduction)).collect();
+        order.iter().map(|&k| at_full_size(&labelled.motions[k], pyramid.reduction)).collect();
     let groups: Vec<usize> = order.iter().map(|&k| grouping[k]).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
@@ -154,7 +153,7 @@ fn confidence(probabilities: &[Plane], labels: &[u8], width: usize) -> Vec<u8> {
     confidence
 }
 
-/// Labels by decreasing number of pixels; those without pixels are left out, but the first stays.
+/// Labels by decreasing number of pixels, without those that have none.
 fn by_size(labels: &[u8], of: usize) -> Buffer<usize> {
     let sizes = counts(labels, of);
     let mut order = descending(sizes.iter().map(|&s| s as f64));
@@ -171,17 +170,17 @@ fn at_full_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
 }
 
 /// A motion of the full size in pixels of the working size.
-pub(super) fn reduced(motion: &AffineMotion, reduction: f64) -> AffineMotion {
+pub(super) fn at_working_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
     let mut a = motion.matrix;
     a[2] /= reduction;
     a[5] /= reduction;
     AffineMotion::new(a)
 }
 
-/// Working pixels that leave the frame, are hidden behind an object or are not explained by their own motion, those without
-/// texture around them, and those whose label is more likely wrong than right.
-fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
-    let level = work.finest();
+/// Working pixels that leave the frame, are occluded, are not explained by their own motion, have no texture around them, or
+/// whose label is more likely wrong than right.
+fn unknown(pyramid: &PairPyramid, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
+    let level = pyramid.finest();
     let limit = UNKNOWN_COST * CostModel::LABELS.truncation;
     let texture = gaussian(&level.energy, TEXTURE_WINDOW);
     let no_texture = NO_TEXTURE * level.noise * level.noise;
@@ -196,8 +195,8 @@ fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<
                 if usize::from(labelled.labels[p]) == k {
                     let (px, py) = path.at(x);
                     let inside = Footprint::new(px, py, level.width(), level.height()).inside;
-                    let telling = texture.values()[p] > no_texture && probabilities[k].values()[p] >= 0.5;
-                    unknown[p] |= !inside || !telling || own.values()[p] > limit;
+                    let decided = texture.values()[p] > no_texture && probabilities[k].values()[p] >= 0.5;
+                    unknown[p] |= !inside || !decided || own.values()[p] > limit;
                 }
             }
         }
@@ -205,7 +204,7 @@ fn unknown(work: &Work, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<
     unknown
 }
 
-/// Labels enlarged without looking at the frame.
+/// Labels enlarged by nearest neighbour.
 fn nearest(labels: &[u8], size: [usize; 2], frame: &Frame, reduction: f64) -> Vec<u8> {
     (0..frame.width() * frame.height()).map(|p| labels[working_pixel(p, frame.width(), size, reduction)]).collect()
 }
@@ -216,7 +215,7 @@ fn working_pixel(p: usize, width: usize, size: [usize; 2], reduction: f64) -> us
     (p / width / step).min(size[1] - 1) * size[0] + (p % width / step).min(size[0] - 1)
 }
 
-fn mark(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], reduction: f64) {
+fn mark_unlabelled(labels: &mut [u8], width: usize, unknown: &[bool], size: [usize; 2], reduction: f64) {
     for (p, label) in labels.iter_mut().enumerate() {
         if unknown[working_pixel(p, width, size, reduction)] {
             *label = UNLABELLED;
@@ -249,14 +248,14 @@ pub(super) fn describe(
         .collect()
 }
 
-/// What is gathered of a motion's pixels.
+/// Statistics of a motion's pixels.
 struct Tally {
     pixels: usize,
     /// First column and row, and one past the last.
     corners: [usize; 4],
     /// Sum of the squared intensity differences along the motion …
     squares: f64,
-    /// … over so many pixels: those that land inside the second frame.
+    /// … and the number of pixels it is taken over: those that land inside the second frame.
     compared: usize,
 }
 

@@ -3,7 +3,7 @@
 
 use crate::frame::MIN_SIDE;
 use crate::labelling::energy::Coherence;
-use crate::labelling::potts::Solver;
+use crate::labelling::solver::Solver;
 use crate::options::{MotionCount, Quality, SegmentOptions};
 
 /// Parts of the pipeline that can be left out one at a time, to measure what each is worth. Only for that: without the feature
@@ -96,8 +96,8 @@ impl Settings {
     /// The settings for a pair of frames of the given width and height.
     pub(crate) fn new(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let halvings = halvings_to(WORK_SIDE_BEST, size);
-        // Halving averages the noise, and what remains are errors of the model, which neighbours share: motions are told apart on the
-        // working size itself, and labels hold together more strongly. Of frames as they come, a coarser level averages the noise.
+        // Halving averages the noise; what remains is model error, which neighbours share. Motions are then best selected at the working
+        // size itself, with a higher smoothness. For frames at their original size, a coarser level averages the noise.
         let (fine_side, smoothness) = if halvings > 0 { (448, 12.0) } else { (320, 8.0) };
         let best = Settings {
             halvings,
@@ -117,7 +117,7 @@ impl Settings {
             visibility_rounds: 2,
             coherence: Coherence {
                 smoothness,
-                departure: 0.05,
+                object_bias: 0.05,
                 draft_solver: Solver::FAST,
                 solver: Solver::BEST,
                 sharpening: Solver::BEST,

@@ -20,23 +20,23 @@ use crate::order::median_f64;
 use crate::random::Random;
 use crate::workspace::{Buffer, kept};
 
-/// Gradients shorter than this (grey levels per pixel) say nothing.
+/// Pixels with shorter gradients (grey levels per pixel) are not used.
 const SMALLEST_GRADIENT: f32 = 1.0;
 /// A pixel takes part when its weight e/(e + [`HALF_WEIGHT`]) exceeds this; e is its squared residual in variances.
 const SMALLEST_WEIGHT: f32 = 0.45;
 const HALF_WEIGHT: f32 = 6.0;
-/// Flow, in pixels of the base level, that is 1 in the coordinates of the polynomial.
+/// Unit of flow in the coordinates of the polynomial, pixels of the base level.
 const FLOW_UNIT: f64 = 2.0;
-/// Flows beyond this are no answer, pixels of the base level.
+/// Longer flows are discarded, pixels of the base level.
 const LARGEST_FLOW: f64 = 8.0;
 /// Rounds of reweighting of the polynomial.
 const ROUNDS: usize = 5;
-/// Fewer pixels than this per unknown determine no polynomial.
+/// Pixels per unknown that it takes to fit a polynomial.
 const PER_UNKNOWN: usize = 2;
-/// Fewer pixels than this make no proposal.
+/// Pixels that it takes to make a proposal.
 const SMALLEST_GROUP: usize = 6;
 
-/// The measurements that the dominant motion leaves over, with their weights.
+/// The measurements that the dominant motion does not explain, with their weights.
 struct Unexplained {
     measurements: Measurements,
     weights: Buffer<f64>,
@@ -72,7 +72,7 @@ fn unexplained(
     random: &mut Random,
 ) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
-    let looseness = CostModel::ESTIMATION.looseness * CostModel::ESTIMATION.looseness;
+    let position_sigma = CostModel::ESTIMATION.position_sigma * CostModel::ESTIMATION.position_sigma;
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut places = Buffer::with_capacity(width * height);
@@ -90,7 +90,7 @@ fn unexplained(
                     continue;
                 }
                 let r = seen - level.first.at(x, y);
-                let e = r * r / (level.noise * level.noise + looseness * level.energy.at(x, y));
+                let e = r * r / (level.noise * level.noise + position_sigma * level.energy.at(x, y));
                 let weight = e / (e + HALF_WEIGHT);
                 if weight > SMALLEST_WEIGHT {
                     places.push(y * width + x);
@@ -145,7 +145,7 @@ fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
     group(&readings, data.measurements.positions(), close, 2 * degree + 1)
 }
 
-/// What differentiation says about a measurement.
+/// Flow of a measurement, read off the polynomial by differentiation.
 #[derive(Clone, Copy, Default)]
 struct Reading {
     /// Flow of the factor that vanishes there, in units of [`FLOW_UNIT`] pixels.
@@ -168,7 +168,7 @@ fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Buffer<Readi
         .collect()
 }
 
-/// Median flows of groups of pixels that are alike in flow and place.
+/// Median flows of clusters of pixels that are similar in flow and position.
 fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize) -> Vec<[f64; 2]> {
     let sensible = |(r, p): (&Reading, &[f64; 2])| {
         let [u, v] = r.flow.map(|f| f * FLOW_UNIT);

@@ -1,8 +1,8 @@
-//! Flows and places of many pixels, gathered into a few groups: Lloyd's k-means from a farthest-first start.
+//! Clustering of flows and positions: Lloyd's k-means with farthest-first initialisation.
 
 use crate::workspace::Buffer;
 
-/// A point to be grouped: flow and place, in comparable units.
+/// A point: flow and position, in comparable units.
 pub(super) type Point = [f64; 4];
 
 const MAX_ITERATIONS: usize = 30;

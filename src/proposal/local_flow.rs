@@ -1,7 +1,7 @@
-//! The paper's constraint with n = 1 in small windows, coarse to fine: a rough flow relative to the dominant motion.
+//! Rough optical flow relative to the dominant motion: the paper's constraint with n = 1 in small windows, coarse to fine.
 //!
-//! It serves two ends: to look at every measurement near where it lands (without this, motions of more than a pixel have no
-//! usable derivatives), and as a source of proposals.
+//! It serves two purposes: derivatives are taken near where each pixel lands (without this, motions of more than a pixel have no
+//! usable derivatives), and windows yield proposals.
 
 use crate::frame::Plane;
 use crate::frame::filter::{double, gaussian, median5};
@@ -16,18 +16,18 @@ const WINDOW: (f32, f32) = (3.0, 2.0);
 const ITERATIONS: usize = 3;
 /// Longest step of one iteration, pixels.
 const LONGEST_STEP: f32 = 1.5;
-/// Information added to every window, so that flat ones stay where they are.
+/// Information added to every window, so that flat ones do not move.
 const FLAT: f32 = 0.02;
 
-/// Flow relative to the dominant motion, pixels of the base level, and how well each window determines it.
+/// Flow relative to the dominant motion, pixels of the base level, with its certainty.
 pub(crate) struct LocalFlow {
     pub(crate) u: Plane,
     pub(crate) v: Plane,
-    /// Smaller eigenvalue of the window's information.
+    /// Smaller eigenvalue of the window's weighted structure tensor.
     pub(crate) certainty: Plane,
 }
 
-/// What a pixel sees along the dominant motion plus the local flow.
+/// Gradients and intensity difference of every pixel along the dominant motion plus the local flow.
 pub(crate) struct Samples {
     pub(crate) gx: Plane,
     pub(crate) gy: Plane,
@@ -103,7 +103,7 @@ fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     }
 }
 
-/// Local flow at level `base`, from the coarsest level down.
+/// Local flow at level `base`, estimated from the coarsest level down.
 pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize) -> LocalFlow {
     let coarsest = &levels[levels.len() - 1];
     let mut u = Plane::filled(coarsest.width(), coarsest.height(), 0.0);

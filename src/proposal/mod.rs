@@ -1,5 +1,5 @@
-//! Motions worth trying: from the multibody affine constraint on what the dominant motion does not explain, and from local
-//! motions of single windows.
+//! Candidate motions. Pixels that the dominant motion cannot explain yield them by the multibody affine constraint, single windows
+//! by their local flow.
 
 pub(crate) mod algebraic;
 mod clustering;
@@ -8,14 +8,14 @@ pub(crate) mod tiles;
 
 use crate::motion::AffineMotion;
 
-/// A motion to try, and where in the frame (pixels of the working frame) it was seen.
+/// A candidate motion, and where it was observed, pixels of the working frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     pub(crate) motion: AffineMotion,
     pub(crate) place: [f64; 2],
 }
 
-/// A motion with a translation added at every pixel.
+/// A motion plus a translation.
 pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion {
     let mut a = motion.matrix;
     a[2] += u;
@@ -23,8 +23,8 @@ pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion 
     AffineMotion::new(a)
 }
 
-/// Leaves out every proposal that moves the neighbourhood of its place (a tenth of the frame's width and height) like an
-/// earlier one, to within `tolerance` pixels; at most `most` remain.
+/// Drops every proposal that agrees with an earlier one to within `tolerance` pixels around its place (a tenth of the frame's width
+/// and height); keeps at most `most`.
 pub(crate) fn distinct(
     proposals: &mut dyn Iterator<Item = Proposal>,
     tolerance: f64,

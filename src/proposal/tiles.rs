@@ -1,4 +1,4 @@
-//! Proposals from single windows: the local flow on a grid, the best determined first.
+//! Proposals from single windows: the local flow on a grid, the most certain first.
 
 use super::local_flow::LocalFlow;
 use super::{Proposal, distinct, translated};
@@ -9,9 +9,9 @@ use crate::workspace::Buffer;
 
 /// Distance of the windows, pixels of the base level.
 const STRIDE: usize = 6;
-/// A window counts where the smaller eigenvalue of its information exceeds this.
+/// Windows are used if the smaller eigenvalue of their structure tensor exceeds this.
 const CERTAIN: f32 = 0.05;
-/// Flow below this is the dominant motion's, pixels of the base level.
+/// Shorter flow counts as the dominant motion, pixels of the base level.
 const MOVING: f32 = 0.15;
 /// Proposals closer than this are the same, pixels of the base level.
 const TOLERANCE: f64 = 0.35;

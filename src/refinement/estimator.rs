@@ -16,9 +16,9 @@
 //! wrong motion hides half of the measurements of a small one that is missing; the σ from which EM starts must be that of the *worst* chosen
 //! motion, or the exact motions of noise-free data freeze the others.
 
-use super::mixture::{Mixture, Normal, Stop, Workspace, nearest_distances, own_distances};
+use super::mixture::{EmBuffers, Mixture, Normal, Stop, nearest_distances, own_distances};
 use super::samples::Samples;
-use super::selection::score;
+use super::score::score;
 use super::subset;
 use crate::order::{median_f64, sort_few};
 use crate::random::Random;
@@ -71,7 +71,7 @@ pub(crate) struct Search<'a> {
     /// The deviation with which entries of random motions are drawn.
     pub(super) scale: f64,
     pool: Vec<[f64; 6]>,
-    pub(super) workspace: Workspace,
+    pub(super) buffers: EmBuffers,
 }
 
 impl<'a> Search<'a> {
@@ -82,17 +82,17 @@ impl<'a> Search<'a> {
             if all.len() > SEARCHED { all.subset(random.choose(all.len(), SEARCHED).into_iter()) } else { all.clone() };
         // The smallest scale only keeps the seeds of motionless data apart from zero.
         let scale = SEED_SCALE * sample.typical_flow() + 1e-12;
-        Search { all, sample, random, scale, pool: Vec::new(), workspace: Workspace::default() }
+        Search { all, sample, random, scale, pool: Vec::new(), buffers: EmBuffers::default() }
     }
 
     /// The likelihood of a fit on all measurements, and the normal equations of its motions.
     pub(crate) fn evaluate(&mut self, fit: &mut Mixture) -> Vec<Normal> {
-        self.workspace.evaluate(self.all, fit)
+        self.buffers.evaluate(self.all, fit)
     }
 
-    /// All measurements of the search.
-    pub(super) fn all(&self) -> &'a Samples {
-        self.all
+    /// The score of a fit on all measurements, smaller is better.
+    pub(crate) fn score(&mut self, fit: &Mixture) -> f64 {
+        score(self.all, self.scale, &mut self.buffers, fit)
     }
 
     /// The most likely n motions found, on all measurements. `hypotheses` are motions worth trying; there may be none. Where the
@@ -108,7 +108,7 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        if rival == f64::INFINITY || score(self, &best) < rival + HOPELESS {
+        if rival == f64::INFINITY || self.score(&best) < rival + HOPELESS {
             for _ in 0..UNTANGLINGS {
                 if !self.untangle(&mut best) {
                     break;
@@ -116,7 +116,7 @@ impl<'a> Search<'a> {
             }
         }
         let start = Mixture::new(best.motions, best.sigma);
-        self.workspace.maximise(self.all, start, POLISH)
+        self.buffers.maximise(self.all, start, POLISH)
     }
 
     /// The first fit: from the hypotheses where there are enough, else from random motions.
@@ -150,7 +150,7 @@ impl<'a> Search<'a> {
 
     fn search_everywhere(&mut self, n: usize) {
         let seeds = self.seeds(OVER_COMPLETE * n, &[0.0; 6], self.scale);
-        let found = self.workspace.maximise(&self.sample, Mixture::new(seeds, WIDE), SEARCH);
+        let found = self.buffers.maximise(&self.sample, Mixture::new(seeds, WIDE), SEARCH);
         self.pool.extend(found.motions);
     }
 
@@ -167,7 +167,7 @@ impl<'a> Search<'a> {
             let rest = self.sample.subset(rest.into_iter());
             let many = if best.outliers < CLEAN { UNEXPLAINED } else { UNEXPLAINED_AMONG_OUTLIERS };
             let seeds = self.seeds(many * n, &[0.0; 6], self.scale);
-            let found = self.workspace.maximise(&rest, Mixture::new(seeds, WIDE), SEARCH);
+            let found = self.buffers.maximise(&rest, Mixture::new(seeds, WIDE), SEARCH);
             self.pool.extend(found.motions);
         }
     }
@@ -178,7 +178,7 @@ impl<'a> Search<'a> {
         for (i, motion) in best.motions.iter().enumerate() {
             if let Some(own) = self.labelled(&labels, &[i]) {
                 let seeds = self.seeds(SPLIT, motion, 0.5 * self.scale);
-                let found = self.workspace.maximise(&own, Mixture::new(seeds, SPLIT_WIDE), SEARCH);
+                let found = self.buffers.maximise(&own, Mixture::new(seeds, SPLIT_WIDE), SEARCH);
                 self.pool.extend(found.motions);
             }
         }
@@ -198,7 +198,7 @@ impl<'a> Search<'a> {
             motions.resize(n, [0.0; 6]);
             last = chosen;
             let sigma = widest_sigma(&self.sample, &motions).min(CHOICE_WIDE);
-            let candidate = self.workspace.maximise(&self.sample, Mixture::new(motions, sigma), REFINE);
+            let candidate = self.buffers.maximise(&self.sample, Mixture::new(motions, sigma), REFINE);
             if candidate.log_likelihood > best.log_likelihood + GAIN {
                 *best = candidate;
                 gained = true;

@@ -4,7 +4,7 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
-use super::mixture::{Mixture, Stop, Workspace};
+use super::mixture::{EmBuffers, Mixture, Stop};
 use super::{Samples, Search};
 
 #[path = "../../tests/support/protocol.rs"]
@@ -22,7 +22,7 @@ fn losses(protocol: &Protocol, trials: u64) -> u64 {
         let (normalised, normalisation) = problem.measurements.normalised();
         let samples = Samples::new(&normalised);
         let truth = problem.motions.iter().map(|motion| normalisation.apply(motion).matrix).collect();
-        let limit = Workspace::default().maximise(&samples, Mixture::new(truth, 0.03), LONG);
+        let limit = EmBuffers::default().maximise(&samples, Mixture::new(truth, 0.03), LONG);
         let found = Search::new(&samples, 1).fit(protocol.motions, &[], f64::INFINITY);
         found.log_likelihood < limit.log_likelihood - 0.5
     };

@@ -163,13 +163,13 @@ pub(crate) struct Normal {
 
 /// The buffers of the iteration, kept between calls.
 #[derive(Default)]
-pub(crate) struct Workspace {
+pub(crate) struct EmBuffers {
     scratch: Scratch,
     factors: Factors,
     sums: Vec<Sums>,
 }
 
-impl Workspace {
+impl EmBuffers {
     /// Maximises the likelihood from `start` on. The returned likelihood is that of the last completed pass.
     pub(crate) fn maximise(&mut self, samples: &Samples, mut mixture: Mixture, stop: Stop) -> Mixture {
         let mut previous = f64::NEG_INFINITY;

@@ -34,7 +34,7 @@ impl Search<'_> {
                 }
                 let mut motions = best.motions.clone();
                 [motions[i], motions[k]] = self.restart(&own, pair, best.sigma);
-                let candidate = self.workspace.maximise(&self.sample, Mixture::new(motions, best.sigma), STOP);
+                let candidate = self.buffers.maximise(&self.sample, Mixture::new(motions, best.sigma), STOP);
                 if candidate.log_likelihood > best.log_likelihood + GAIN {
                     *best = candidate;
                     return true;
@@ -46,12 +46,12 @@ impl Search<'_> {
 
     /// The most likely two motions in the measurements of a pair.
     fn restart(&mut self, own: &Samples, pair: [[f64; 6]; 2], sigma: f64) -> [[f64; 6]; 2] {
-        let mut best = self.workspace.maximise(own, Mixture::new(pair.to_vec(), sigma), STOP);
+        let mut best = self.buffers.maximise(own, Mixture::new(pair.to_vec(), sigma), STOP);
         for spread in SPREADS.iter().cycle().take(TRIES) {
             let offset: [f64; 6] = std::array::from_fn(|_| spread * sigma * self.random.normal());
             let side = |sign: f64| std::array::from_fn(|e| 0.5 * (pair[0][e] + pair[1][e]) + sign * offset[e]);
             let start = Mixture::new(vec![side(1.0), side(-1.0)], WIDER * sigma);
-            let found = self.workspace.maximise(own, start, STOP);
+            let found = self.buffers.maximise(own, start, STOP);
             if found.log_likelihood > best.log_likelihood {
                 best = found;
             }

@@ -1,7 +1,7 @@
-//! Greedy deflation: the motion that explains most of what is left is refined on its own region and added, until what is left
-//! would not pay for another.
+//! Greedy deflation: the motion that explains most of what is still unexplained is refined on its own region and added, until no
+//! further motion would pay for itself.
 
-use super::{Layer, smallest_cost};
+use super::{ScoredMotion, smallest_cost};
 use crate::alignment::brightness::Photometric;
 use crate::alignment::cost::total;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
@@ -14,33 +14,33 @@ use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::workspace::Buffer;
 
-/// When to add a motion, and how hard to look.
+/// When to add a motion, and how many proposals to try.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deflation {
     /// Gain (cost summed over pixels) that pays for a motion.
     pub(crate) price: f64,
     /// Largest number of motions.
     pub(crate) most: usize,
-    /// Proposals tried in earnest per round.
+    /// Proposals refined per round.
     pub(crate) tries: usize,
-    /// Standard deviation of the window over which a gain is gathered, pixels of the level or, where it is thinned, of the sample.
+    /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
     pub(crate) window: f32,
 }
 
-/// Gain per pixel that is no gain: windows at borders, chance.
+/// Gain per pixel that does not count: windows across borders and chance produce as much.
 const MARGIN: f32 = 0.35;
 /// Proposals are tried on every second pixel of every second row …
 const THINNING: usize = 2;
-/// … and chosen for that by their means over blocks of this side.
+/// … and ranked beforehand by block means; side of a block, pixels.
 const BLOCK: usize = 4;
-/// A region of fewer pixels is no region.
+/// Regions with at most this many pixels are ignored.
 const SMALLEST_REGION: usize = 6;
-/// Prior against linear terms of a motion seen in a small region.
+/// Ridge prior on the linear terms: small regions determine them badly.
 const RIDGE: f64 = 2e-2;
-/// A gain below this share of the price is not worth a try.
-const WORTH_A_TRY: f64 = 0.25;
+/// Proposals whose estimated gain is below this share of the price are not tried.
+const SMALLEST_TRIED_GAIN: f64 = 0.25;
 
-/// Where, and by how much, a cost plane is below another: the difference gathered over windows.
+/// By how much a cost is below the current one at every pixel, averaged over windows.
 fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
     let mut difference = current.clone();
     each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
@@ -83,75 +83,75 @@ fn rough_gain(current: &Plane, cost: &Plane, window: f32) -> f64 {
     gain_of(&gaussian(&difference, window / BLOCK as f32)) * (BLOCK * BLOCK) as f64
 }
 
-/// Adds proposed motions to `layers` while each brings more than its price. Returns the best motion that was not added: there is
-/// none where nothing was proposed.
+/// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
+/// none if nothing was proposed.
 ///
-/// In every round all proposals are looked at roughly, the most promising are tried on a sample of the pixels, and the best of those
-/// is refined on all.
+/// Every round ranks all proposals by block means, refines the most promising on a sample of the pixels, and the best of those on
+/// all pixels.
 pub(crate) fn add_motions(
     level: &Level,
-    layers: &mut Vec<Layer>,
+    selected: &mut Vec<ScoredMotion>,
     proposals: &[AffineMotion],
     how: Deflation,
 ) -> Option<AffineMotion> {
     let thinning = level.thinning(THINNING);
     let thinned = level.thinned(thinning);
-    let rough_cost = |&motion: &AffineMotion| blocks(&Layer::new(&thinned, motion).cost, BLOCK / thinning);
+    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
     let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
     loop {
-        let current = smallest_cost(layers);
+        let current = smallest_cost(selected);
         let current_blocks = blocks(&current, BLOCK);
         let gains: Buffer<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
         let current_sample = current.thinned(thinning);
-        let mut best: Option<(f64, Layer)> = None;
+        let mut best: Option<(f64, ScoredMotion)> = None;
         let order = descending(gains.iter().copied());
         let next = order.first().map(|&k| proposals[k]);
-        if layers.len() >= how.most {
+        if selected.len() >= how.most {
             return next;
         }
         for &k in order.iter().take(how.tries) {
-            if gains[k] < WORTH_A_TRY * how.price {
+            if gains[k] < SMALLEST_TRIED_GAIN * how.price {
                 break;
             }
-            let (brings, layer) = refined(&thinned, &current_sample, proposals[k], how.window / thinning as f32);
-            if best.as_ref().is_none_or(|b| brings > b.0) {
-                best = Some((brings, layer));
+            let (gain, scored) = refined(&thinned, &current_sample, proposals[k], how.window / thinning as f32);
+            if best.as_ref().is_none_or(|b| gain > b.0) {
+                best = Some((gain, scored));
             }
         }
-        match best.map(|(_, layer)| refined(level, &current, layer.motion, how.window)) {
-            Some((brings, layer)) if brings >= how.price => layers.push(layer),
+        match best.map(|(_, scored)| refined(level, &current, scored.motion, how.window)) {
+            Some((gain, scored)) if gain >= how.price => selected.push(scored),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
     }
 }
 
-/// A proposal refined on the region where it beats what is there, twice; and what it brings.
-fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, Layer) {
-    let mut layer = Layer::new(level, proposal);
-    let mut improved = improvement(current, &layer.cost, window);
-    let mut brings = gain_of(&improved);
+/// Refines a proposal twice on the region where it beats the current motions. Returns its gain and the motion.
+fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, ScoredMotion) {
+    let mut scored = ScoredMotion::new(level, proposal);
+    let mut improved = improvement(current, &scored.cost, window);
+    let mut gain = gain_of(&improved);
     for round in 0..2 {
-        let Some(region) = heaviest_region(&improved, current, &layer.cost) else { break };
+        let Some(region) = heaviest_region(&improved, current, &scored.cost) else { break };
         let support = Support::weighted(&region);
         let affine =
             Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: RIDGE, photometric: false };
-        let mut motion = layer.motion;
+        let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {
             motion = align(level, &motion, &support, none, Alignment { freedom: Freedom::Translation, ..affine });
         }
         motion = align(level, &motion, &support, none, affine);
-        let refined = Layer::new(level, motion);
-        let by_refined = improvement(current, &refined.cost, window);
-        let better = gain_of(&by_refined);
-        if better > brings {
-            (layer, improved, brings) = (refined, by_refined, better);
+        let refined = ScoredMotion::new(level, motion);
+        let refined_improvement = improvement(current, &refined.cost, window);
+        let better = gain_of(&refined_improvement);
+        if better > gain {
+            (scored, improved, gain) = (refined, refined_improvement, better);
         }
     }
-    (brings, layer)
+    (gain, scored)
 }
 
-/// The connected region in which a cost improves most on what is there, as weights 0 and 1.
+/// The connected region in which a cost improves most on the current one, as weights 0 and 1.
 fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Plane> {
     let (width, height) = (improved.width(), improved.height());
     let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
@@ -172,13 +172,13 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Pl
     Some(Plane::from_buffer(width, height, values))
 }
 
-/// Takes out every motion but the first whose absence would cost less than its price, the cheapest first.
-pub(crate) fn prune(layers: &mut Vec<Layer>, price: f64) {
-    while layers.len() > 1 {
-        let with_all = total(&smallest_cost(layers));
+/// Removes motions whose absence costs less than their price, the cheapest first. The first motion always stays.
+pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
+    while selected.len() > 1 {
+        let with_all = total(&smallest_cost(selected));
         let mut cheapest = (f64::INFINITY, 0);
-        for k in 1..layers.len() {
-            let mut others: Vec<Layer> = layers.clone();
+        for k in 1..selected.len() {
+            let mut others: Vec<ScoredMotion> = selected.clone();
             others.remove(k);
             let absence = total(&smallest_cost(&others)) - with_all;
             if absence < cheapest.0 {
@@ -188,6 +188,6 @@ pub(crate) fn prune(layers: &mut Vec<Layer>, price: f64) {
         if cheapest.0 >= price {
             break;
         }
-        layers.remove(cheapest.1);
+        selected.remove(cheapest.1);
     }
 }

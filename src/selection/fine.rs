@@ -1,8 +1,7 @@
-//! Proposals at a finer level: one local step (the constraint with n = 1 in a window) around the motion that wins at each pixel.
-//! It finds what moves too little for the level on which motions were selected first. Pixels are those of a level of which every
-//! second in every second row is looked at.
+//! Proposals at a finer level: one step of local flow (the constraint with n = 1 in a window) from the cheapest motion of each pixel.
+//! It finds displacements too small for the level of the first selection. Pixels are those of a thinned level.
 
-use super::Layer;
+use super::ScoredMotion;
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::frame::pyramid::Level;
@@ -16,22 +15,22 @@ use crate::workspace::Buffer;
 const WINDOW: f32 = 1.33;
 /// Distance of the windows, pixels.
 const STRIDE: usize = 5;
-/// Windows looked at, the most promising first.
+/// Number of windows considered, the most promising first.
 const WINDOWS: usize = 200;
 /// Proposals kept.
 const MOST: usize = 16;
-/// Steps shorter or longer than this are left out, pixels.
+/// Shortest and longest step that makes a proposal, pixels.
 const STEPS: (f64, f64) = (0.05, 2.0);
 /// Proposals closer than this are the same, pixels.
 const TOLERANCE: f64 = 0.1;
-/// Information added to every window.
+/// Information added to every window, so that flat ones yield no step.
 const FLAT: f32 = 0.02;
 
-/// The most promising local corrections of the layers' motions.
-pub(crate) fn fine_proposals(level: &Level, layers: &[Layer]) -> Vec<AffineMotion> {
+/// The most promising local corrections of the selected motions.
+pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<AffineMotion> {
     let (width, height) = (level.width(), level.height());
-    let winners = winners(layers);
-    let [xx, xy, yy, xr, yr] = window_sums(level, layers, &winners);
+    let winners = winners(selected);
+    let [xx, xy, yy, xr, yr] = window_sums(level, selected, &winners);
     let [columns, rows] = [width, height].map(|size| size.div_ceil(STRIDE));
     let mut gains = Buffer::with_capacity(columns * rows);
     let mut places = Buffer::with_capacity(columns * rows);
@@ -54,19 +53,19 @@ pub(crate) fn fine_proposals(level: &Level, layers: &[Layer]) -> Vec<AffineMotio
         let length = (u * u + v * v).sqrt();
         let (x, y) = (places[k] % width, places[k] / width);
         (STEPS.0 < length && length < STEPS.1).then(|| Proposal {
-            motion: translated(&layers[winners[places[k]]].motion, u * pixel, v * pixel),
+            motion: translated(&selected[winners[places[k]]].motion, u * pixel, v * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         })
     });
     distinct(&mut proposals, TOLERANCE * pixel, [width as f64 * pixel, height as f64 * pixel], MOST)
 }
 
-/// The cheapest layer of every pixel.
-fn winners(layers: &[Layer]) -> Buffer<usize> {
-    let mut winners = Buffer::filled(layers[0].cost.values().len(), 0);
+/// Index of the cheapest motion at every pixel.
+fn winners(selected: &[ScoredMotion]) -> Buffer<usize> {
+    let mut winners = Buffer::filled(selected[0].cost.values().len(), 0);
     for (p, winner) in winners.iter_mut().enumerate() {
-        for k in 1..layers.len() {
-            if layers[k].cost.values()[p] < layers[*winner].cost.values()[p] {
+        for k in 1..selected.len() {
+            if selected[k].cost.values()[p] < selected[*winner].cost.values()[p] {
                 *winner = k;
             }
         }
@@ -74,10 +73,10 @@ fn winners(layers: &[Layer]) -> Buffer<usize> {
     winners
 }
 
-/// Products of gradients and residual along each pixel's own motion, in units of variance, summed over windows.
-fn window_sums(level: &Level, layers: &[Layer], winners: &[usize]) -> [Plane; 5] {
+/// Products of gradients and residual along each pixel's cheapest motion, divided by the variance and averaged over windows.
+fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [Plane; 5] {
     let (width, height) = (level.width(), level.height());
-    let scaled: Vec<AffineMotion> = layers.iter().map(|l| level.scaled(&l.motion)).collect();
+    let scaled: Vec<AffineMotion> = selected.iter().map(|l| level.scaled(&l.motion)).collect();
     let noise = level.noise * level.noise;
     let stride = level.stride as f64;
     let half = 0.5 * level.stride as f32;

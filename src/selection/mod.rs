@@ -1,4 +1,5 @@
-//! Which of the proposed motions are there: greedy deflation, refinement of each on its own pixels, a second look one level finer.
+//! Selection of motions from the proposals: greedy deflation, refinement of each motion on its own pixels, new proposals at finer
+//! levels.
 
 mod deflation;
 mod fine;
@@ -15,33 +16,36 @@ use crate::frame::pyramid::Level;
 use crate::lanes::lower;
 use crate::motion::AffineMotion;
 
-/// Standard deviation of the window over which costs are gathered while motions are selected, pixels of the second frame.
+/// Standard deviation of the window over which costs are averaged during selection, pixels of the second frame.
 const WINDOW: f32 = 2.0;
 
-/// A motion and what it costs at every pixel of a level, gathered over windows.
+/// A motion and its cost at every pixel of a level, averaged over windows.
 #[derive(Clone, Debug)]
-pub(crate) struct Layer {
+pub(crate) struct ScoredMotion {
     pub(crate) motion: AffineMotion,
     pub(crate) cost: Plane,
 }
 
-impl Layer {
-    /// A motion looked at on a level.
+impl ScoredMotion {
+    /// Computes the cost of a motion on a level.
     #[inline(never)]
-    pub(crate) fn new(level: &Level, motion: AffineMotion) -> Layer {
-        Layer { motion, cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32) }
+    pub(crate) fn new(level: &Level, motion: AffineMotion) -> ScoredMotion {
+        ScoredMotion {
+            motion,
+            cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32),
+        }
     }
 
-    /// Lowers a cost to the layer's wherever that is smaller.
+    /// Lowers a cost plane to this motion's cost wherever that is smaller.
     #[inline(never)]
     pub(crate) fn lower(&self, cost: &mut Plane) {
         lower(cost.values_mut(), self.cost.values());
     }
 }
 
-/// The smallest cost of any layer at every pixel.
-pub(crate) fn smallest_cost(layers: &[Layer]) -> Plane {
-    let mut smallest = layers[0].cost.clone();
-    layers[1..].iter().for_each(|layer| layer.lower(&mut smallest));
+/// The smallest cost of any motion at every pixel.
+pub(crate) fn smallest_cost(selected: &[ScoredMotion]) -> Plane {
+    let mut smallest = selected[0].cost.clone();
+    selected[1..].iter().for_each(|scored| scored.lower(&mut smallest));
     smallest
 }

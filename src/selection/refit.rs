@@ -1,6 +1,6 @@
 //! Every motion refined on the pixels where it wins.
 
-use super::Layer;
+use super::ScoredMotion;
 use crate::alignment::brightness::Photometric;
 use crate::alignment::cost::total;
 use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
@@ -9,20 +9,20 @@ use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 use crate::lanes::each_with;
 
-/// Priors against linear terms: of the dominant motion (it has most of the frame) and of the others.
+/// Ridge priors on the linear terms: of the dominant motion, which has most of the frame, and of the others.
 const RIDGE: (f64, f64) = (1e-4, 1e-2);
-/// Regions larger than this many pixels lose their border before they vote.
+/// Regions with more pixels than this are eroded before their motion is refined.
 const LARGE: usize = 200;
 /// Softening of a region's border, pixels.
 const SOFTNESS: f32 = 0.7;
-/// Regions smaller than this do not vote.
+/// Motions of regions with fewer pixels than this are not refined.
 const SMALLEST_REGION: usize = 20;
 
-/// `rounds` rounds; a refined motion is kept only where it lowers the cost of its own region.
-pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
+/// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
+pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
     for _ in 0..rounds {
-        let regions: Vec<Option<Plane>> = (0..layers.len()).map(|k| region_of(layers, k)).collect();
-        for (k, (layer, region)) in layers.iter_mut().zip(regions).enumerate() {
+        let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
+        for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
             let how = Alignment {
                 freedom: Freedom::Affine,
@@ -31,10 +31,10 @@ pub(crate) fn refit(level: &Level, layers: &mut [Layer], rounds: usize) {
                 ridge: if k == 0 { RIDGE.0 } else { RIDGE.1 },
                 photometric: false,
             };
-            let motion = align(level, &layer.motion, &Support::weighted(&region), &mut Photometric::default(), how);
-            let refined = Layer::new(level, motion);
-            if weighted_sum(&refined.cost, &region) < weighted_sum(&layer.cost, &region) {
-                *layer = refined;
+            let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
+            let refined = ScoredMotion::new(level, motion);
+            if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
+                *scored = refined;
             }
         }
     }
@@ -46,12 +46,12 @@ fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
     total(&weighted)
 }
 
-/// Weights of the pixels where layer `k` is cheapest, its border taken off and softened.
-fn region_of(layers: &[Layer], k: usize) -> Option<Plane> {
-    let cost = &layers[k].cost;
+/// Weights of the pixels where motion `k` is cheapest, eroded and softened.
+fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
+    let cost = &selected[k].cost;
     let mut region = Plane::filled(cost.width(), cost.height(), 1.0);
-    for (other, layer) in layers.iter().enumerate().filter(|&(other, _)| other != k) {
-        each_with(region.values_mut(), [cost.values(), layer.cost.values()], |r, [own, value]| {
+    for (other, scored) in selected.iter().enumerate().filter(|&(other, _)| other != k) {
+        each_with(region.values_mut(), [cost.values(), scored.cost.values()], |r, [own, value]| {
             let wins = if k < other { own <= value } else { own < value };
             if wins { r } else { 0.0 }
         });

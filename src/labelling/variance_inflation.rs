@@ -1,9 +1,9 @@
-//! Where every motion fits badly, each is compared by a larger standard deviation.
+//! Larger variances where no motion fits well.
 //!
-//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only nearly right: limbs,
-//! cloth, water, parallax, blur. Costs there saturate for all motions, right and wrong, and what is left of their difference is
-//! chance. How well the best motion fits around a pixel says by how much the variance is too small; costs are taken again with the
-//! variance that fits. Where the model holds, as it does in most frames nearly everywhere, nothing changes.
+//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only approximate: limbs,
+//! cloth, water, parallax, blur. Costs there saturate for correct and wrong motions alike, and their difference is mostly chance. The
+//! cost of the best motion around a pixel tells by how much the variance is too small, and costs are computed again with the
+//! inflated variance. Where the model holds, nearly everywhere in most frames, nothing changes.
 
 use crate::alignment::cost::CostModel;
 use crate::frame::Plane;
@@ -12,28 +12,28 @@ use crate::lanes::{each, each_with};
 
 /// Standard deviation of the window in which the fit is judged, pixels.
 const WINDOW: f32 = 4.0;
-/// Smallest cost, averaged over a window, that the noise alone does not explain.
+/// Largest windowed cost that noise alone explains.
 const EXPECTED: f32 = 0.5;
-/// Largest ratio of standard deviations.
+/// Largest factor of the standard deviation.
 const LARGEST: f32 = 3.0;
 
-/// By how much larger than the noise's the variance of each pixel is, a row at a time, from the smallest of the labels' costs.
+/// Factor of each pixel's variance, computed row by row from the smallest label cost.
 ///
 /// The mean of the saturated costs grows about as the standard deviation of the residuals.
-pub(crate) struct Misfit {
+pub(crate) struct VarianceInflation {
     smallest: Plane,
     window: RowFilter,
 }
 
-impl Misfit {
-    /// Where all motions move a pixel out of every view, the smallest cost is infinite.
-    pub(crate) fn new(mut smallest: Plane) -> Misfit {
+impl VarianceInflation {
+    /// `smallest` is infinite where all motions move a pixel out of every view.
+    pub(crate) fn new(mut smallest: Plane) -> VarianceInflation {
         each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::LABELS.outside() });
         let window = RowFilter::gaussian(smallest.width(), WINDOW);
-        Misfit { smallest, window }
+        VarianceInflation { smallest, window }
     }
 
-    /// That of row y.
+    /// Writes the factors of row y.
     pub(crate) fn write(&mut self, y: usize, row: &mut [f32]) {
         self.window.row(&self.smallest, y, row);
         each(row, |m| {
@@ -43,12 +43,12 @@ impl Misfit {
     }
 }
 
-/// Costs with the variance that the surroundings ask for: e / (1 + e/T) with e / misfit in place of e. What is infinite stays.
+/// Costs with inflated variance: e / (1 + e/T) with e / inflation in place of e. Infinite costs stay infinite.
 #[inline(never)]
-pub(crate) fn allow_for_misfit(costs: &mut [f32], misfit: &[f32]) {
-    each_with(costs, [misfit], |cost, [misfit]| {
+pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32]) {
+    each_with(costs, [inflation], |cost, [inflation]| {
         let share = cost / CostModel::LABELS.truncation;
-        let allowed = cost / (misfit * (1.0 - share) + share);
+        let allowed = cost / (inflation * (1.0 - share) + share);
         if cost.is_finite() { allowed } else { cost }
     });
 }
@@ -59,11 +59,11 @@ mod tests {
     use crate::labelling::views::cheapest;
 
     fn allow(costs: &mut [Plane]) {
-        let mut misfit = Misfit::new(cheapest(costs, f32::INFINITY));
+        let mut inflation = VarianceInflation::new(cheapest(costs, f32::INFINITY));
         let mut row = vec![0.0; costs[0].width()];
         for y in 0..costs[0].height() {
-            misfit.write(y, &mut row);
-            costs.iter_mut().for_each(|cost| allow_for_misfit(cost.row_mut(y), &row));
+            inflation.write(y, &mut row);
+            costs.iter_mut().for_each(|cost| inflate_variance(cost.row_mut(y), &row));
         }
     }
 

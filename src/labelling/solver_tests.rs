@@ -1,6 +1,7 @@
 //! The solvers against brute force on small grids, and against each other on problems like those of the pipeline.
 
 use super::*;
+use crate::frame::Plane;
 use crate::random::Random;
 
 const SOLVERS: [Solver; 4] =
