@@ -26,5 +26,5 @@ export function settingsFromHash(hash: string): Linked {
     }
   }
   const kind = values.get('masks');
-  return { settings: settings as Partial<Settings>, kind: kind === 'motions' || kind === 'groups' ? kind : null };
+  return { settings, kind: kind === 'motions' || kind === 'groups' ? kind : null };
 }

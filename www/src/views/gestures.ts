@@ -84,7 +84,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     presses.delete(event.pointerId);
     clearTimeout(holding);
     if (paints()) {
-      if (event.type === 'pointerup') void brush.end();
+      if (event.type === 'pointerup') brush.end();
       else brush.abandon();
       return;
     }
