@@ -1,8 +1,8 @@
 //! Labels of a coarser level at the working size: coarse labels decide what is there, fine costs where exactly it ends.
 //!
 //! Only tiles in which two labels meet, or nearly, are looked at, and only the labels near each compete; those that touch are solved
-//! together, on their own. What is known of a neighbourhood rather than of a pixel (how well anything fits there, what is hidden, what the colours say) is taken from the
-//! coarser level.
+//! together, on their own. What is known of a neighbourhood rather than of a pixel (how well anything fits there, what is hidden,
+//! what the colours say) is taken from the coarser level.
 
 use super::appearance::{ColourPrices, Palette};
 use super::energy::{Borders, Coherence, Picture, as_label, border_price};
