@@ -1,4 +1,4 @@
-// npm run check: formatting, lints, documentation, types.
+// npm run check: formatting, lints, documentation, types, spelling.
 
 import { runChecks } from './lib/checks.mjs';
 import { prepare } from './lib/prepare.mjs';

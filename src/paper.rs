@@ -21,7 +21,8 @@ pub struct PaperFit {
     /// Whether the rank rule (12) was fulfilled; `None` where the number was given. Where it was not, see
     /// [`number_of_motions`] for the number that is used.
     pub rank_rule_fired: Option<bool>,
-    /// Singular values of P̃_n on normalised measurements, columns scaled to unit length, decreasing; empty for n > 6, where they are too costly.
+    /// Singular values of P̃_n on normalised measurements, columns scaled to unit length, decreasing; empty for n > 6, where they
+    /// are too costly.
     pub singular_values: Vec<f64>,
     /// The multibody motion 𝒜 of (9), in normalised coordinates.
     pub multibody: MultibodyMotion,

@@ -93,4 +93,4 @@ export function end() {
   shared = undefined;
 }
 
-if (process.argv[1] === fileURLToPath(import.meta.url)) run('CVAT function', startFunction, { port: 8070 });
+if (process.argv[1] === fileURLToPath(import.meta.url)) await run('CVAT function', startFunction, { port: 8070 });

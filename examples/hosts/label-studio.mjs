@@ -87,4 +87,4 @@ function isToken(text) {
   return typeof text === 'string' && /^[\x21-\x7e]+$/.test(text);
 }
 
-if (process.argv[1] === fileURLToPath(import.meta.url)) run('ML backend', startBackend, { port: 9090, more: ['allow'] });
+if (process.argv[1] === fileURLToPath(import.meta.url)) await run('ML backend', startBackend, { port: 9090, more: ['allow'] });

@@ -72,8 +72,8 @@ impl Measured {
 
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
-/// All methods on all cases, and the `variants` of the pipeline on those of which `takes_part` is true; what the baseline found is read from
-/// `baselines`.
+/// All methods on all cases, and the `variants` of the pipeline on those of which `takes_part` is true; what the baseline found is
+/// read from `baselines`.
 pub(crate) fn all(
     cases: &[Case],
     baselines: &Path,

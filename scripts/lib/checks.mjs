@@ -1,4 +1,4 @@
-// Checks besides the tests: formatting, lints, documentation, types, versions. A warning is a failure.
+// Checks besides the tests: formatting, lints, documentation, types, spelling, versions. A warning is a failure.
 
 import { buildModules, buildPackage } from './builds.mjs';
 import { importsAgree } from './imports.mjs';
@@ -27,6 +27,9 @@ const CHECKS = [
   ['documentation for wasm', 'cargo', [...DOC, ...CODECS, ...WASM], DENY_IN_DOCS],
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
+  // After the builds: it asks the types of the package too.
+  ['lints of TypeScript and JavaScript', 'oxlint', ['--deny-warnings']],
+  ['spelling', 'cspell', ['lint', '--no-progress', '--cache', '--cache-strategy', 'content', '--cache-location', '.tools/spelling']],
 ];
 
 /** Runs every check, even after a failure, and returns `{ passed, failed, skipped }`. */

@@ -42,7 +42,7 @@ async function findChromium() {
 /** Whether it runs. Existence is not enough: Ubuntu's `chromium-browser` outside snap only prints how to install snap. */
 async function works(path) {
   const { code, text } = await run(path, ['--version'], { output: 'collect' });
-  return code === 0 && /Chrom(e|ium)/.test(text);
+  return code === 0 && /Chrome|Chromium/.test(text);
 }
 
 /** The browser that `npx playwright install` put in the user's cache. */

@@ -12,9 +12,9 @@
 //!
 //! Measured on the paper's experiment (general motions, n = 2…5, up to 30 % outliers, one motion with 5 % of the measurements),
 //! this ends at the maximum that EM reaches from the true motions. Pitfalls found by measurement: a start σ of 0.05 or 0.15
-//! freezes the random assignment; without taking the weakest motion away, a
-//! wrong motion hides half of the measurements of a small one that is missing; the σ from which EM starts must be that of the *worst* chosen
-//! motion, or the exact motions of noise-free data freeze the others.
+//! freezes the random assignment; without taking the weakest motion away, a wrong motion hides half of the
+//! measurements of a small one that is missing; the σ from which EM starts must be that of the *worst* chosen motion, or the
+//! exact motions of noise-free data freeze the others.
 
 use super::mixture::{EmBuffers, Mixture, Normal, Stop, nearest_distances, own_distances};
 use super::samples::Samples;

@@ -22,7 +22,7 @@ const VISIBLE = 0.1;
 
 /** Splits `x ↦ x + A x` into displacement of `centre`, rotation, growth and stretch (the polar decomposition of its linear part). */
 export function partsOf(matrix: Matrix, centre: readonly [number, number]): MotionParts {
-  const [a11 = 0, a12 = 0, a13 = 0, a21 = 0, a22 = 0, a23 = 0] = matrix;
+  const [a11, a12, a13, a21, a22, a23] = matrix;
   const [x, y] = centre;
   const [f11, f12, f21, f22] = [1 + a11, a12, a21, 1 + a22];
   const turning = Math.hypot((f11 + f22) / 2, (f21 - f12) / 2);

@@ -328,7 +328,7 @@ test('another setting keeps strokes and names, by what their masks are', async (
   // One motion: there is nothing left to say, and everything comes back.
   await page.getByLabel('Number of motions').selectOption('1');
   await done(page);
-  await expect(rows).toHaveCount(1 + Number(await page.locator('#motions > [data-mask="255"]').count()));
+  await expect(rows).toHaveCount(1 + (await page.locator('#motions > [data-mask="255"]').count()));
   await expect(page.locator('#status')).toHaveText(/Your stroke has no say: its mask is not among these\.$/);
   await page.getByLabel('Number of motions').selectOption('auto');
   await page.getByLabel('Mark what cannot be told').uncheck();

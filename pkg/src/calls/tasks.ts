@@ -112,6 +112,7 @@ export function parted(options: unknown, known: readonly string[]): Asked {
 
 /** Whatever works like one: other realms and older environments have classes of their own. */
 function isSignal(value: unknown): value is AbortSignal {
+  // oxlint-disable-next-line typescript/unbound-method -- only looked at, never called
   const { aborted, addEventListener, removeEventListener } = Object(value) as AbortSignal;
   return typeof aborted === 'boolean' && typeof addEventListener === 'function' && typeof removeEventListener === 'function';
 }
@@ -145,7 +146,7 @@ export function checkedPixels(which: string, pixels: unknown): Pixels {
   checkAttached(which, data);
   const needed = 4 * width * height;
   if (data.length !== needed) throw new VeroneseError('pixel-count-mismatch', `${size} needs ${needed} RGBA bytes, found ${data.length}`);
-  return { data: data as Pixels['data'], width, height };
+  return { data, width, height };
 }
 
 const dataOf = (frames: readonly Pixels[]) => frames.map(({ data }) => data);

@@ -60,7 +60,7 @@ function flat(file: string, name: string, rows: unknown, entries: readonly strin
       const wanted = `[${entries.join(', ')}], ${entries.length} numbers`;
       throw new VeroneseError('invalid-input', `${file}: row ${index} of "${name}" must be ${wanted}`);
     }
-    values.set(row as number[], index * entries.length);
+    values.set(row, index * entries.length);
   });
   return values;
 }

@@ -16,7 +16,7 @@ type Source = string | URL | Blob | ImageBitmap | Pixels;
 type Kept = string | Blob | Pixels | VeroneseError;
 
 /** Where there are no elements (Node, a worker), the class can still be imported. */
-const Base = (globalThis.HTMLElement ?? class {}) as typeof HTMLElement;
+const Base = globalThis.HTMLElement ?? class {};
 
 /** After Okabe and Ito, told apart by people with any common kind of colour blindness; each can be replaced in CSS. */
 const COLOURS = ['transparent', '#f0a000', '#56b4e9', '#d66eaf', '#00a878', '#f0e442', '#d55400', '#0068be', '#ececec', '#805228'];

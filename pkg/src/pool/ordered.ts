@@ -74,7 +74,7 @@ export async function* inOrder<Input, Answer>(
       });
       await Promise.race([taking, answered, aborted.promise].filter((promise) => promise !== undefined));
       if (!answer) continue;
-      answers.shift();
+      void answers.shift();
       yield answer.value;
     }
     if (failure) throw failure.thrown;

@@ -37,7 +37,7 @@ export async function outcomeOf(t, browser, address) {
     const outcome = await page.evaluate(() => globalThis.outcome);
     return { outcome, complaints };
   } catch (error) {
-    throw new Error(`${error.message}\nThe page said: ${complaints.join('\n') || 'nothing'}`);
+    throw new Error(`${error.message}\nThe page said: ${complaints.join('\n') || 'nothing'}`, { cause: error });
   }
 }
 

@@ -337,7 +337,7 @@ describe('work', { timeout: 120_000 }, () => {
     const fine = base64(png(frames[0]));
     const call = () => new Promise((resolve) => {
       class Response { constructor(body, headers, type, status) { Object.assign(this, { headers, status }); } }
-      handler({ Response, callback: resolve }, { body: { image: fine, second: fine } });
+      void handler({ Response, callback: resolve }, { body: { image: fine, second: fine } });
     });
     const answers = await Promise.all(Array.from({ length: 300 }, call));
     const busy = answers.filter(({ status }) => status === 503);

@@ -179,7 +179,7 @@ describe('the CVAT function', () => {
     t.after(end);
     const call = (body) => new Promise((resolve) => {
       class Response { constructor(body, headers, type, status) { Object.assign(this, { body, type, status }); } }
-      handler({ Response, callback: resolve }, { body });
+      void handler({ Response, callback: resolve }, { body });
     });
     const { status, type, body } = await call(Buffer.from(JSON.stringify(request())));
     assert.deepEqual([status, type], [200, 'application/json']);
