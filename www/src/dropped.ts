@@ -8,9 +8,9 @@ import { strings } from './strings.js';
  * called while the event is handled: the browser forgets what it carried as soon as that is over.
  */
 export function filesOf({ items }: DataTransfer): Promise<File[]> {
-  const given = [...items].filter(({ kind }) => kind === 'file').map((item) => {
+  const given = [...items].filter(({ kind }) => kind === 'file').map((item): Promise<File | File[] | null> => {
     const entry = item.webkitGetAsEntry();
-    return entry?.isDirectory ? filesIn(entry as FileSystemDirectoryEntry) : item.getAsFile();
+    return entry?.isDirectory ? filesIn(entry as FileSystemDirectoryEntry) : Promise.resolve(item.getAsFile());
   });
   return Promise.all(given).then((found) => found.flat().filter((file) => file !== null));
 }

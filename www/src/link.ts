@@ -30,7 +30,7 @@ export function settingsFromHash(hash: string): Linked {
   }
   const kind = values.get('masks');
   return {
-    settings: settings as Partial<Settings>,
+    settings,
     kind: kind === 'motions' || kind === 'groups' ? kind : null,
     sample: sampleCalled(values.get('sample')),
     swapped: values.get('swapped') === 'true',
