@@ -42,12 +42,14 @@ pub(crate) enum Set {
     SharedScenes,
     /// Real pairs with masks.
     Pairs,
+    /// Several real pairs of each of many sequences, with masks.
+    Sequences,
     /// Pairs with true flow.
     Flow,
 }
 
 impl Set {
-    pub(crate) const ALL: [Set; 10] = [
+    pub(crate) const ALL: [Set; 11] = [
         Set::Generated,
         Set::Colour,
         Set::Large,
@@ -57,6 +59,7 @@ impl Set {
         Set::Still,
         Set::SharedScenes,
         Set::Pairs,
+        Set::Sequences,
         Set::Flow,
     ];
 
@@ -71,6 +74,7 @@ impl Set {
             Set::Still => "still",
             Set::SharedScenes => "shared-scenes",
             Set::Pairs => "pairs",
+            Set::Sequences => "sequences",
             Set::Flow => "flow",
         }
     }
@@ -86,13 +90,14 @@ impl Set {
             Set::Still => "static scene, noise only",
             Set::SharedScenes => "generated outside the project, photographic textures",
             Set::Pairs => "real pairs with masks",
+            Set::Sequences => "real pairs of 30 sequences",
             Set::Flow => "pairs with true flow",
         }
     }
 
     /// Whether the truth is one label for each thing that moves, rather than foreground and background.
     pub(crate) fn is_scene(self) -> bool {
-        !matches!(self, Set::Pairs | Set::Flow)
+        !matches!(self, Set::Pairs | Set::Sequences | Set::Flow)
     }
 }
 
@@ -181,6 +186,12 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
             cases.push(Case { name, set, sub_pixel, source: Source::Folder(path) });
         }
     }
+    if !quick {
+        for path in folders(&shared.join("data").join("train"))? {
+            let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+            cases.push(Case { name, set: Set::Sequences, sub_pixel: false, source: Source::Folder(path) });
+        }
+    }
     Ok(cases)
 }
 
@@ -213,6 +224,11 @@ fn folders(path: &Path) -> Result<Vec<PathBuf>> {
 }
 
 impl Case {
+    /// The sequence of a pair that is named `SEQUENCE_FRAME`.
+    pub(crate) fn sequence(&self) -> &str {
+        self.name.rsplit_once('_').map_or(&self.name, |(sequence, _)| sequence)
+    }
+
     /// What the scene is, in words.
     pub(crate) fn description(&self) -> String {
         match &self.source {
@@ -278,7 +294,9 @@ fn of_folder(folder: &Path, set: Set) -> Result<Data> {
     let labels =
         |name: &str| -> Result<Vec<u8>> { Ok(picture(name)?.rgba.chunks_exact(4).map(|pixel| pixel[0]).collect()) };
     let has = |name: &str| folder.join(name).is_file();
-    let (one, two) = (picture("first.png")?, picture("second.png")?);
+    let frame =
+        |name: &str| picture(&if has(&format!("{name}.jpg")) { format!("{name}.jpg") } else { format!("{name}.png") });
+    let (one, two) = (frame("first")?, frame("second")?);
     let (first, second) = (one.frame()?, two.frame()?);
     let rgba = [one.rgba, two.rgba];
     let mut data = Data { rgba, first, second, before: None, truth: None, occluded: None, flow: None };

@@ -106,7 +106,7 @@ fn measure(case: &Case, baselines: &Path, variants: &[Variant]) -> Result<Measur
         let groups = grouped(&found);
         outcomes.push(outcome(method, &data, &found.labels, &groups, &motions, milliseconds));
         if method == Method::Best {
-            shown.push(if case.set == Set::Pairs { groups } else { found.labels });
+            shown.push(if matches!(case.set, Set::Pairs | Set::Sequences) { groups } else { found.labels });
         }
     }
     let their = baseline(&baselines.join(&case.name)).map_err(|error| error.to_string())?;
