@@ -15,7 +15,7 @@ pub use settings::Part;
 use crate::alignment::brightness::Photometric;
 use crate::alignment::cost::{View, noise};
 use crate::alignment::dominant::dominant_motion;
-use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::alignment::gauss_newton::{Alignment, Support, align};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::frame::Plane;
@@ -204,8 +204,7 @@ impl PairPyramid {
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];
             base.noise = noise(base, &motion);
-            let how =
-                Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: 1e-3, photometric: false };
+            let how = Alignment::of_region(3, 1e-3);
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
         }
         for level in &mut self.levels {

@@ -35,6 +35,22 @@ pub(crate) struct Alignment {
     pub(crate) photometric: bool,
 }
 
+impl Alignment {
+    /// A motion refined on the pixels of its region, with known brightness. A residual of two standard deviations has a quarter of the
+    /// full weight.
+    pub(crate) fn of_region(iterations: usize, ridge: f64) -> Alignment {
+        Alignment { freedom: Freedom::Affine, iterations, robustness: 4.0, ridge, photometric: false }
+    }
+}
+
+/// Ridge prior for the motion of a label's region. The dominant motion (label 0) has most of the frame to determine its linear terms.
+pub(crate) fn ridge_of_label(label: usize) -> f64 {
+    if label == 0 { 1e-4 } else { 1e-2 }
+}
+
+/// Standard deviation of the blur that softens the border of a region before its motion is refined, pixels.
+pub(crate) const REGION_BLUR: f32 = 0.7;
+
 /// A step shorter than this, pixels of the level, ends the iteration.
 const SMALL_STEP: f64 = 0.003;
 /// Below this sum of support weights a motion is left as it is.

@@ -5,7 +5,7 @@ use super::neighbours;
 use crate::frame::Plane;
 
 /// Nats per pixel of border.
-const PER_BORDER_PIXEL: f64 = 0.5;
+pub(super) const PER_BORDER_PIXEL: f64 = 0.5;
 /// Regions smaller than this share of the frame are not objects.
 pub(crate) const SMALLEST_SHARE: f64 = 0.004;
 

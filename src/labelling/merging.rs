@@ -9,6 +9,7 @@ use super::description::sums;
 use super::splitting::aligned_on;
 use super::{neighbours, pixels};
 use crate::alignment::cost::{CostModel, cost_within};
+use crate::alignment::gauss_newton::ridge_of_label;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::pyramid::Level;
@@ -16,8 +17,6 @@ use crate::motion::AffineMotion;
 
 /// Iterations of the refinement on the joint region.
 const ITERATIONS: usize = 4;
-/// Ridge priors on the linear terms: of a merged dominant motion and of a merged object.
-const RIDGE: (f64, f64) = (1e-4, 1e-2);
 
 /// Two labels that are one body, the smaller first, and its motion.
 pub(crate) struct Merger {
@@ -50,8 +49,7 @@ pub(crate) fn best_merger(
         let region = pixels(labels, |label| [a, b].contains(&label));
         let mut mask = Plane::filled(width, level.height(), 0.0);
         region.iter().for_each(|&p| mask.values_mut()[p] = 1.0);
-        let ridge = if a == 0 { RIDGE.0 } else { RIDGE.1 };
-        let motion = aligned_on(level, &motions[better], &mask, ITERATIONS, ridge);
+        let motion = aligned_on(level, &motions[better], &mask, ITERATIONS, ridge_of_label(a));
         let area = Area::of(&region, width);
         let cost = cost_within(level, &area, &motion, CostModel::ESTIMATION);
         let together: f64 = region.iter().map(|&p| f64::from(pixel * cost.values()[area.index_of(p, width)])).sum();

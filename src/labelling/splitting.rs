@@ -1,10 +1,10 @@
 //! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in parts.
 
-use super::description::{SMALLEST_SHARE, price_of_motion};
+use super::description::{PER_BORDER_PIXEL, SMALLEST_SHARE, price_of_motion};
 use super::pixels;
 use crate::alignment::brightness::Photometric;
 use crate::alignment::cost::{CostModel, cost_within};
-use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::alignment::gauss_newton::{Alignment, REGION_BLUR, Support, align};
 use crate::components::{Connectivity, components};
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -16,8 +16,6 @@ use crate::workspace::Buffer;
 
 /// Smallest number of pixels of a part.
 const SMALLEST_PART: usize = 30;
-/// Softening of a part's border, pixels.
-const SOFTNESS: f32 = 0.7;
 /// Standard deviation of the window over which the two halves compete, pixels …
 const WINDOW: f32 = 2.5;
 /// … and its radius.
@@ -26,8 +24,6 @@ const REACH: usize = 8;
 const ROUNDS: usize = 3;
 /// Smallest share of the region that counts as a half.
 const SMALLEST_HALF: f64 = 0.1;
-/// Nats per pixel of the border between two halves.
-const PER_BORDER_PIXEL: f64 = 0.5;
 
 fn smallest_part(pixels: usize) -> usize {
     SMALLEST_PART.max((SMALLEST_SHARE * pixels as f64) as usize)
@@ -41,7 +37,7 @@ pub(super) fn aligned_on(
     iterations: usize,
     ridge: f64,
 ) -> AffineMotion {
-    let how = Alignment { freedom: Freedom::Affine, iterations, robustness: 4.0, ridge, photometric: false };
+    let how = Alignment::of_region(iterations, ridge);
     align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
 }
 
@@ -63,7 +59,7 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
         let mut fits = Vec::new();
         for &part in &parts {
             let mask: Buffer<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
-            let inner = gaussian(&eroded(&Plane::from_buffer(width, height, mask)), SOFTNESS);
+            let inner = gaussian(&eroded(&Plane::from_buffer(width, height, mask)), REGION_BLUR);
             let motion = aligned_on(level, &motions[label], &inner, 4, 1e-2);
             let [x0, y0, x1, y1] = found.list[part].bounds;
             let area = Area { columns: x0..x1 + 1, rows: y0..y1 + 1 };

@@ -17,7 +17,7 @@ const ITERATIONS: usize = 3;
 /// Longest step of one iteration, pixels.
 const LONGEST_STEP: f32 = 1.5;
 /// Information added to every window, so that flat ones do not move.
-const FLAT: f32 = 0.02;
+pub(crate) const FLAT: f32 = 0.02;
 
 /// Flow relative to the dominant motion, pixels of the base level, with its certainty.
 pub(crate) struct LocalFlow {

@@ -133,8 +133,7 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) 
     for round in 0..2 {
         let Some(region) = heaviest_region(&improved, current, &scored.cost) else { break };
         let support = Support::weighted(&region);
-        let affine =
-            Alignment { freedom: Freedom::Affine, iterations: 3, robustness: 4.0, ridge: RIDGE, photometric: false };
+        let affine = Alignment::of_region(3, RIDGE);
         let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {

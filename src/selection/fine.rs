@@ -8,6 +8,7 @@ use crate::frame::pyramid::Level;
 use crate::frame::warp::Footprint;
 use crate::motion::AffineMotion;
 use crate::order::descending;
+use crate::proposal::local_flow::FLAT;
 use crate::proposal::{Proposal, distinct, translated};
 use crate::workspace::Buffer;
 
@@ -23,8 +24,6 @@ const MOST: usize = 16;
 const STEPS: (f64, f64) = (0.05, 2.0);
 /// Proposals closer than this are the same, pixels.
 const TOLERANCE: f64 = 0.1;
-/// Information added to every window, so that flat ones yield no step.
-const FLAT: f32 = 0.02;
 
 /// The most promising local corrections of the selected motions.
 pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<AffineMotion> {

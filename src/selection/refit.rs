@@ -3,18 +3,14 @@
 use super::ScoredMotion;
 use crate::alignment::brightness::Photometric;
 use crate::alignment::cost::total;
-use crate::alignment::gauss_newton::{Alignment, Freedom, Support, align};
+use crate::alignment::gauss_newton::{Alignment, REGION_BLUR, Support, align, ridge_of_label};
 use crate::frame::Plane;
 use crate::frame::filter::{eroded, gaussian};
 use crate::frame::pyramid::Level;
 use crate::lanes::each_with;
 
-/// Ridge priors on the linear terms: of the dominant motion, which has most of the frame, and of the others.
-const RIDGE: (f64, f64) = (1e-4, 1e-2);
 /// Regions with more pixels than this are eroded before their motion is refined.
 const LARGE: usize = 200;
-/// Softening of a region's border, pixels.
-const SOFTNESS: f32 = 0.7;
 /// Motions of regions with fewer pixels than this are not refined.
 const SMALLEST_REGION: usize = 20;
 
@@ -24,13 +20,7 @@ pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize)
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
         for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
-            let how = Alignment {
-                freedom: Freedom::Affine,
-                iterations: 2,
-                robustness: 4.0,
-                ridge: if k == 0 { RIDGE.0 } else { RIDGE.1 },
-                photometric: false,
-            };
+            let how = Alignment::of_region(2, ridge_of_label(k));
             let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
             let refined = ScoredMotion::new(level, motion);
             if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
@@ -63,5 +53,5 @@ fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
     if pixels > LARGE {
         region = eroded(&region);
     }
-    Some(gaussian(&region, SOFTNESS))
+    Some(gaussian(&region, REGION_BLUR))
 }

@@ -3,6 +3,7 @@
 import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
 import { VeroneseError } from '../common/errors.js';
+import { MOST_JOBS } from '../pool/segmenter.js';
 import { FORMATS, type FormatName, isFormatName } from './formats.js';
 import type { PairSettings } from './pair.js';
 
@@ -91,9 +92,6 @@ export function filesOf(command: WorkCommand): string[] {
   if (command.name === 'points') return [command.file];
   return [command.first, command.second, ...(command.before === undefined ? [] : [command.before])];
 }
-
-/** Maximum number of pairs processed at once. */
-const MOST_JOBS = 256;
 
 const OPTIONS = {
   help: { type: 'boolean', short: 'h' },

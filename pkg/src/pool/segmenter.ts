@@ -28,7 +28,7 @@ import { WorkerPool } from './pool.js';
 import { spawnWith } from './threads.js';
 
 /** Most workers of one pool: more is a mistake, not a wish. */
-const MOST_JOBS = 256;
+export const MOST_JOBS = 256;
 
 /** What the classes need of the place where they run. */
 export interface Host {
