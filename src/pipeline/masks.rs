@@ -22,7 +22,7 @@ use crate::motion::AffineMotion;
 use crate::workspace::Buffer;
 
 /// After a split, an object competes only this far around its region, as a share of the square root of its pixel count …
-const COMPETITION_SHARE: f64 = 0.6;
+const COMPETITION_SHARE: f64 = 0.25;
 /// … and at least this many pixels of the working size.
 const SMALLEST_COMPETITION: usize = 12;
 /// Weight of a pixel of a coarser level, in working pixels. It stands for four, but their noise is not independent.
