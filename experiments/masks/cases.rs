@@ -305,6 +305,10 @@ fn of_folder(folder: &Path, set: Set) -> Result<Data> {
         return Ok(data);
     }
     let mut truth = labels("mask.png")?;
+    if set == Set::Sequences {
+        // One object, in whatever grey its mask has.
+        truth.iter_mut().for_each(|label| *label = u8::from(*label != 0));
+    }
     if has("gt_raw.png") {
         for (label, code) in truth.iter_mut().zip(labels("gt_raw.png")?) {
             if CDNET_VOID.contains(&code) {

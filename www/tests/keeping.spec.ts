@@ -146,10 +146,14 @@ test('a stroke drawn while the frames are segmented again counts afterwards', as
   await done(page);
   await expect(page.getByLabel('Best')).toBeChecked();
   await expect(page.locator('#status')).toHaveText(/motions found in .* Your stroke holds\.$/);
-  // The better result numbers its motions otherwise: the stroke means the mask that it was drawn for, which is still chosen.
+  // The better result numbers its motions otherwise, and may see two in what was one: the stroke means the mask that it was drawn for,
+  // in whichever of its parts, which is still chosen.
   const now = await labelsOnCanvas(page);
+  const goesOn = (label: number): boolean => mostCommon([...found].filter((_, p) => now[p] === label)) === 1;
+  const drawn = [...along(now, 768, 432, [0.7, 0.2], [0.8, 0.2])];
+  expect(drawn).toHaveLength(1);
+  expect(drawn.filter(goesOn)).toEqual(drawn);
   const same = mostCommon([...now].filter((_, p) => found[p] === 1));
-  expect([...along(now, 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([same]);
   await expect(page.locator('#motions > li.selected')).toHaveAttribute('data-mask', String(same));
 });
 
