@@ -160,8 +160,7 @@ test('a stroke drawn while the frames are segmented again counts afterwards', as
 test('cancelling keeps the strokes', async ({ page }) => {
   await open(page);
   await brush(page, 1);
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
-  await page.keyboard.press('Escape');
+  await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#cancel' });
   await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are solved.');
   await expect(strokes(page)).toHaveCount(1);
   await page.locator('#again').click();
