@@ -410,20 +410,25 @@ fn right_where_hidden(scene: &Scene, before: Option<&Frame>) -> f64 {
     right.count() as f64 / hidden.count().max(1) as f64
 }
 
+/// Two objects that move far, so that they occlude much.
+fn large_motions(seed: u64) -> SceneOptions {
+    SceneOptions {
+        width: 200,
+        height: 150,
+        objects: 2,
+        speed: Speed::Large,
+        background: Background::Moving,
+        seed,
+        ..SceneOptions::default()
+    }
+}
+
 #[test]
 fn a_frame_before_tells_what_the_second_hides() {
     let mut with = Vec::new();
     let mut without = Vec::new();
     for seed in 400..406 {
-        let options = SceneOptions {
-            width: 200,
-            height: 150,
-            objects: 2,
-            speed: Speed::Large,
-            background: Background::Moving,
-            seed,
-            ..SceneOptions::default()
-        };
+        let options = large_motions(seed);
         let scene = scene::generate(&options).unwrap();
         with.push(right_where_hidden(&scene, Some(scene.before())));
         without.push(right_where_hidden(&scene, None));
@@ -437,15 +442,7 @@ fn a_frame_before_helps_as_much_when_the_brightness_changes() {
     let mut with = Vec::new();
     let mut constant = Vec::new();
     for seed in 400..406 {
-        let options = SceneOptions {
-            width: 200,
-            height: 150,
-            objects: 2,
-            speed: Speed::Large,
-            background: Background::Moving,
-            seed,
-            ..SceneOptions::default()
-        };
+        let options = large_motions(seed);
         let overlap = |options: &SceneOptions| {
             let scene = scene::generate(options).unwrap();
             let before = Some(scene.before());
@@ -458,7 +455,7 @@ fn a_frame_before_helps_as_much_when_the_brightness_changes() {
     assert!(mean(&with) > mean(&constant) - 0.02, "with a change {with:.3?}, without {constant:.3?}");
 }
 
-/// The frame before has no say in what the background does: bare ground looks alike in any two frames.
+/// The frame before must not affect the motion of the background: bare ground looks alike in any two frames.
 #[test]
 fn a_frame_before_leaves_a_bare_ground_at_rest() {
     for seed in [1, 2] {

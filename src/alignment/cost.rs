@@ -146,8 +146,7 @@ impl<'a> Comparison<'a> {
     /// Fills `costs` with those of row y from column `left` on.
     pub(crate) fn row(&self, y: usize, left: usize, costs: &mut [f32]) {
         let level = self.level;
-        let (noise, position_sigma) =
-            (level.noise * level.noise, self.model.position_sigma * self.model.position_sigma);
+        let (noise, position) = (level.noise * level.noise, self.model.position_sigma * self.model.position_sigma);
         let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / 128.0) as f32);
         let correlation = level.noise_correlation();
         let path = level.path(&self.scaled, left, y);
@@ -155,7 +154,7 @@ impl<'a> Comparison<'a> {
         let mut at = Footprints::new();
         let cost = |sample: f32, first: f32, energy: f32, [fx, fy]: [f32; 2]| {
             let residual = sample - first * (1.0 + gain) - bias;
-            let variance = noise * interpolation_variance(fx, fy, correlation) + position_sigma * energy;
+            let variance = noise * interpolation_variance(fx, fy, correlation) + position * energy;
             self.model.of(residual, variance)
         };
         let columns = left..left + costs.len();
