@@ -38,7 +38,6 @@
 #[cfg(test)]
 extern crate self as veronese;
 
-mod alignment;
 mod answer;
 mod best;
 #[cfg(feature = "codecs")]
@@ -46,6 +45,7 @@ pub mod codecs;
 mod components;
 pub mod embedding;
 mod error;
+mod estimation;
 pub mod factorisation;
 mod frame;
 mod labelling;
@@ -56,15 +56,14 @@ mod measurements;
 mod motion;
 mod options;
 mod order;
+mod pair;
 pub mod paper;
-mod pipeline;
 mod points;
 mod progress;
-mod proposal;
 mod random;
 pub mod refinement;
 pub mod scene;
-mod selection;
+mod view;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 mod workspace;
@@ -77,11 +76,11 @@ pub use measurements::{Measurements, Normalisation};
 pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
 #[doc(hidden)]
-pub use pipeline::Part;
+pub use pair::Part;
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
-pub use pipeline::segment_pair_without;
-pub use pipeline::{
+pub use pair::segment_pair_without;
+pub use pair::{
     Correction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel, segment_pair,
 };
 pub use points::fit_motions;

@@ -3,6 +3,8 @@
 pub(crate) mod area;
 mod derivatives;
 pub(crate) mod filter;
+pub(crate) mod palette;
+pub(crate) mod picture;
 mod plane;
 pub(crate) mod pyramid;
 pub(crate) mod warp;

@@ -12,9 +12,9 @@
 //! β, γ and δ are a maximum likelihood fit to 30 generated scenes (seeds 700 and 900 of the benchmark's series), so that about the
 //! share P of the pixels with probability P is right; docs/masks.md has the measurement on other scenes.
 
-use super::mask_of;
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
+use crate::labelling::mask_of;
 
 /// β: weight of the windowed cost.
 const COST_WEIGHT: f32 = 3.5;

@@ -1,23 +1,14 @@
-//! From motions to masks: the labelling energy and its solvers, occlusion, description length, merging and splitting of regions,
-//! groups of motions, upsampling.
+//! From motions to masks: the terms of the labelling energy, their solver, regions that are split and merged, and the way from coarse
+//! labels to the full frame.
+//!
+//! Inside a labelling, label 0 is the background. How a result is numbered is a matter of its report.
 
-pub(crate) mod appearance;
+pub(crate) mod coherence;
 pub(crate) mod confidence;
-pub(crate) mod description;
-pub(crate) mod energy;
-mod expansion;
-pub(crate) mod groups;
-mod max_flow;
-pub(crate) mod merging;
-mod messages;
-mod potts;
-pub(crate) mod sharpening;
+pub(crate) mod regions;
+pub(crate) mod resolution;
 pub(crate) mod solver;
-pub(crate) mod splitting;
-pub(crate) mod upsampling;
-mod variance_inflation;
-pub(crate) mod views;
-pub(crate) mod visibility;
+pub(crate) mod terms;
 
 use crate::frame::Plane;
 use crate::workspace::Buffer;

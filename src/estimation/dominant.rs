@@ -1,0 +1,91 @@
+//! The dominant motion: the affine motion that explains most of the frame, and the change of brightness between the frames.
+
+use super::alignment::{Alignment, Freedom, Support, align};
+use crate::motion::AffineMotion;
+use crate::view::brightness::Photometric;
+use crate::view::cost::{CostModel, cost_with, total};
+use crate::view::level::Level;
+
+/// Reach of the search for a start at the coarsest level, pixels of that level.
+const REACH: i32 = 3;
+/// How much cheaper than the zero motion (in summed costs) another motion must be. Static cameras are common, and a small wrong
+/// motion of the background does more harm later than missing a small true one here.
+const STATIC_BONUS: f64 = 20.0;
+
+/// The dominant motion of the working frame and the change of brightness (none unless `brightness` allows it), from the levels
+/// `base` and coarser.
+pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -> (AffineMotion, Photometric) {
+    let coarsest = &levels[levels.len() - 1];
+    let start = match brightness {
+        true => Photometric::from_moments(&coarsest.first, &coarsest.second),
+        false => Photometric::default(),
+    };
+    let mut candidates = vec![AffineMotion::STATIC];
+    let shift = best_shift(coarsest, start);
+    if shift != AffineMotion::STATIC {
+        candidates.push(shift);
+    }
+    let finest = &levels[base].thinned(2);
+    let mut best = static_candidate(finest, start, brightness);
+    for candidate in candidates {
+        let (motion, photometric) = descend(levels, base, finest, candidate, start, brightness);
+        let sum = total(&cost_with(finest, &motion, photometric, CostModel::ESTIMATION));
+        if sum < best.0 {
+            best = (sum, motion, photometric);
+        }
+    }
+    (best.1, best.2)
+}
+
+/// The whole-pixel shift at the coarsest level with the smallest cost.
+fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
+    let mut best = (f64::INFINITY, AffineMotion::STATIC);
+    for dx in -REACH..=REACH {
+        for dy in -REACH..=REACH {
+            let (dx, dy) = (f64::from(dx), f64::from(dy));
+            let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
+            let plane = cost_with(level, &shift, photometric, CostModel::ESTIMATION);
+            // The small term decides ties for the shorter shift.
+            let cost = total(&plane) / plane.values().len() as f64 + 1e-3 * (dx * dx + dy * dy).sqrt();
+            if cost < best.0 {
+                best = (cost, shift);
+            }
+        }
+    }
+    best.1
+}
+
+/// Coarse to fine from one start: translation first, then affine, with a stricter robust weight at the end.
+fn descend(
+    levels: &[Level],
+    base: usize,
+    finest: &Level,
+    mut motion: AffineMotion,
+    mut photometric: Photometric,
+    brightness: bool,
+) -> (AffineMotion, Photometric) {
+    let affine =
+        Alignment { freedom: Freedom::Affine, iterations: 5, robustness: 6.0, ridge: 1e-3, photometric: brightness };
+    let translation = Alignment { freedom: Freedom::Translation, iterations: 6, robustness: 9.0, ..affine };
+    for (index, level) in levels.iter().enumerate().skip(base).rev() {
+        let level = if index == base { finest } else { level };
+        let support = Support::everything(level);
+        if index + 1 == levels.len() {
+            motion = align(level, &motion, &support, &mut photometric, translation);
+        }
+        motion = align(level, &motion, &support, &mut photometric, affine);
+        if index == base {
+            motion = align(level, &motion, &support, &mut photometric, Alignment { robustness: 2.0, ..affine });
+        }
+    }
+    (motion, photometric)
+}
+
+/// The zero motion: only the change of brightness is fitted.
+fn static_candidate(level: &Level, mut photometric: Photometric, brightness: bool) -> (f64, AffineMotion, Photometric) {
+    if brightness {
+        photometric = photometric.refined_at_rest(level);
+    }
+    let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::ESTIMATION));
+    (cost - STATIC_BONUS / (level.stride * level.stride) as f64, AffineMotion::STATIC, photometric)
+}

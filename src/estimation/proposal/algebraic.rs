@@ -1,0 +1,190 @@
+//! Proposals from the multibody affine constraint (eq. 6-9) on the pixels that the dominant motion does not explain.
+//!
+//! The dominant motion is a known factor of the polynomial, so it is divided out by weights: a pixel counts by how badly the
+//! dominant motion explains it (the paper leaves out pixels with a small |I_t| to the same end). The measurements are
+//! recentred: derivatives are taken where the local flow d lands, `y = (g, r − gᵀd)`, so that they stay linear for motions of
+//! many pixels. For every degree the flow of each pixel is read off the polynomial by differentiation, `u = ∂p/∂I_x / ∂p/∂I_t`,
+//! which needs no factorisation, and the flows are gathered into translations relative to the dominant motion.
+
+use super::clustering::{Point, k_means};
+use super::local_flow::{LocalFlow, samples};
+use super::translated;
+use crate::embedding::{MultibodyMotion, Refitting, monomials};
+use crate::frame::Plane;
+use crate::frame::warp::{CHUNK, Footprints, RowPath};
+use crate::measurements::Measurements;
+use crate::motion::AffineMotion;
+use crate::order::median_f64;
+use crate::random::Random;
+use crate::view::cost::CostModel;
+use crate::view::level::Level;
+use crate::workspace::{Buffer, kept};
+
+/// Pixels with shorter gradients (grey levels per pixel) are not used.
+const SMALLEST_GRADIENT: f32 = 1.0;
+/// A pixel takes part when its weight e/(e + [`HALF_WEIGHT`]) exceeds this; e is its squared residual in variances.
+const SMALLEST_WEIGHT: f32 = 0.45;
+const HALF_WEIGHT: f32 = 6.0;
+/// Unit of flow in the coordinates of the polynomial, pixels of the base level.
+const FLOW_UNIT: f64 = 2.0;
+/// Longer flows are discarded, pixels of the base level.
+const LARGEST_FLOW: f64 = 8.0;
+/// Rounds of reweighting of the polynomial.
+const ROUNDS: usize = 5;
+/// Pixels per unknown that it takes to fit a polynomial.
+const PER_UNKNOWN: usize = 2;
+/// Pixels that it takes to make a proposal.
+const SMALLEST_GROUP: usize = 6;
+
+/// The measurements that the dominant motion does not explain, with their weights.
+struct Unexplained {
+    measurements: Measurements,
+    weights: Buffer<f64>,
+}
+
+/// Motions found by polynomials of degree 1 to `degrees` on at most `most` unexplained pixels.
+pub(crate) fn from_algebra(
+    level: &Level,
+    dominant: &AffineMotion,
+    flow: &LocalFlow,
+    degrees: usize,
+    most: usize,
+    random: &mut Random,
+) -> Vec<AffineMotion> {
+    let Some(data) = unexplained(level, dominant, flow, most, random) else { return Vec::new() };
+    let mut motions = Vec::new();
+    for degree in 1..=degrees {
+        if data.measurements.len() < PER_UNKNOWN * monomials::unknowns(degree) {
+            break;
+        }
+        for [u, v] in flows_of_degree(&data, degree) {
+            motions.push(translated(dominant, u * level.pixel(), v * level.pixel()));
+        }
+    }
+    motions
+}
+
+fn unexplained(
+    level: &Level,
+    dominant: &AffineMotion,
+    flow: &LocalFlow,
+    most: usize,
+    random: &mut Random,
+) -> Option<Unexplained> {
+    let (width, height) = (level.width(), level.height());
+    let position_sigma = CostModel::ESTIMATION.position_sigma * CostModel::ESTIMATION.position_sigma;
+    let local = samples(level, dominant, &flow.u, &flow.v);
+    let scaled = level.scaled(dominant);
+    let mut places = Buffer::with_capacity(width * height);
+    let mut weights = Buffer::with_capacity(width * height);
+    let (mut seen, mut at) = ([0.0; CHUNK], Footprints::new());
+    for y in 0..height {
+        let path = RowPath::new(&scaled, 0, y);
+        for start in (0..width).step_by(CHUNK) {
+            let chunk = start..(start + CHUNK).min(width);
+            at.follow(&path, start, chunk.len(), width, height);
+            at.sample(level.second.values(), &mut seen);
+            for (k, (x, seen)) in chunk.zip(&seen).enumerate() {
+                let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));
+                if !at.is_inside(k) || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
+                    continue;
+                }
+                let r = seen - level.first.at(x, y);
+                let e = r * r / (level.noise * level.noise + position_sigma * level.energy.at(x, y));
+                let weight = e / (e + HALF_WEIGHT);
+                if weight > SMALLEST_WEIGHT {
+                    places.push(y * width + x);
+                    weights.push(weight);
+                }
+            }
+        }
+    }
+    if places.len() < PER_UNKNOWN * monomials::unknowns(1) {
+        return None;
+    }
+    let chosen = random.choose(places.len(), most);
+    let half = 0.5 * width as f64;
+    let position = |x: usize, y: usize| [x as f64 / half - 1.0, (y as f64 - 0.5 * height as f64) / half];
+    let derivatives = |x: usize, y: usize| {
+        let at = |plane: &Plane| f64::from(plane.at(x, y));
+        let (gx, gy) = (at(&local.gx), at(&local.gy));
+        let temporal = at(&local.residual) - gx * at(&flow.u) - gy * at(&flow.v);
+        let length = (gx * gx + gy * gy + 4.0).sqrt();
+        [gx / length, gy / length, temporal / (length * FLOW_UNIT)]
+    };
+    let points = || chosen.iter().map(|&k| (places[k] % width, places[k] / width));
+    let measurements = Measurements::checked(
+        points().map(|(x, y)| position(x, y)).collect(),
+        points().map(|(x, y)| derivatives(x, y)).collect(),
+    );
+    Some(Unexplained {
+        measurements: measurements.ok()?,
+        weights: chosen.iter().map(|&k| f64::from(weights[k])).collect(),
+    })
+}
+
+/// The flows (pixels of the level) that a polynomial of one degree gives, one per group of pixels.
+fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
+    let refitting = Refitting::new(&data.measurements, degree);
+    let mut weights = data.weights.clone();
+    let mut readings = Buffer::default();
+    let mut close = 0.0;
+    for _ in 0..ROUNDS {
+        // A weight belongs to a row; only their ratios count.
+        let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
+        weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
+        readings = read_off(&refitting, &refitting.fit(&weights));
+        let distances: Buffer<f64> = readings.iter().map(|r| r.distance).collect();
+        close = 1.5 * median_f64(&distances).unwrap_or(0.0) + 1e-9;
+        let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
+        for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
+            let relative = r.distance / close;
+            *w = given / ((r.slope + 1e-2 * mean).max(1e-300) * (1.0 + relative * relative));
+        }
+    }
+    group(&readings, data.measurements.positions(), close, 2 * degree + 1)
+}
+
+/// Flow of a measurement, read off the polynomial by differentiation.
+#[derive(Clone, Copy, Default)]
+struct Reading {
+    /// Flow of the factor that vanishes there, in units of [`FLOW_UNIT`] pixels.
+    flow: [f64; 2],
+    /// |∂p/∂y|.
+    slope: f64,
+    /// |p| / |∂p/∂y|: to first order the distance to the nearest factor.
+    distance: f64,
+}
+
+kept!(Reading);
+
+fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Buffer<Reading> {
+    let all = refitting.read(polynomial);
+    all.iter()
+        .map(|[value, g @ ..]| {
+            let slope = (g[0] * g[0] + g[1] * g[1] + g[2] * g[2]).sqrt();
+            Reading { flow: [g[0] / g[2], g[1] / g[2]], slope, distance: value.abs() / (slope + 1e-9) }
+        })
+        .collect()
+}
+
+/// Median flows of clusters of pixels that are similar in flow and position.
+fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize) -> Vec<[f64; 2]> {
+    let sensible = |(r, p): (&Reading, &[f64; 2])| {
+        let [u, v] = r.flow.map(|f| f * FLOW_UNIT);
+        let sensible = u * u + v * v < LARGEST_FLOW * LARGEST_FLOW && r.distance < close;
+        sensible.then_some([u, v, p[0], p[1]])
+    };
+    let points: Buffer<Point> = readings.iter().zip(positions).filter_map(sensible).collect();
+    let assignment = k_means(&points, groups);
+    (0..groups)
+        .filter_map(|g| {
+            let member = || points.iter().zip(&assignment).filter(move |&(_, &a)| a == g).map(|(p, _)| p);
+            let median = |k: usize| {
+                let values: Buffer<f64> = member().map(|p| p[k]).collect();
+                median_f64(&values).unwrap_or(0.0)
+            };
+            (member().count() >= SMALLEST_GROUP).then(|| [median(0), median(1)])
+        })
+        .collect()
+}

@@ -1,0 +1,192 @@
+//! Greedy deflation: the motion that explains most of what is still unexplained is refined on its own region and added, until no
+//! further motion would pay for itself.
+
+use super::{ScoredMotion, smallest_cost};
+use crate::components::{Connectivity, components};
+use crate::estimation::alignment::{Alignment, Freedom, Support, align};
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::lanes::{LANES, each_with};
+use crate::motion::AffineMotion;
+use crate::order::descending;
+use crate::view::brightness::Photometric;
+use crate::view::cost::total;
+use crate::view::level::Level;
+use crate::workspace::Buffer;
+
+/// When to add a motion, and how many proposals to try.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deflation {
+    /// Gain (cost summed over pixels) that pays for a motion.
+    pub(crate) price: f64,
+    /// Largest number of motions.
+    pub(crate) most: usize,
+    /// Proposals refined per round.
+    pub(crate) tries: usize,
+    /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
+    pub(crate) window: f32,
+}
+
+/// Gain per pixel that does not count: windows across borders and chance produce as much.
+const MARGIN: f32 = 0.35;
+/// Proposals are tried on every second pixel of every second row …
+const THINNING: usize = 2;
+/// … and ranked beforehand by block means; side of a block, pixels.
+const BLOCK: usize = 4;
+/// Regions with at most this many pixels are ignored.
+const SMALLEST_REGION: usize = 6;
+/// Ridge prior on the linear terms: small regions determine them badly.
+const RIDGE: f64 = 2e-2;
+/// Proposals whose estimated gain is below this share of the price are not tried.
+const SMALLEST_TRIED_GAIN: f64 = 0.25;
+
+/// By how much a cost is below the current one at every pixel, averaged over windows.
+fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
+    let mut difference = current.clone();
+    each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
+    gaussian(&difference, window)
+}
+
+fn gain_of(improvement: &Plane) -> f64 {
+    let gain = |d: f32| (d - MARGIN).max(0.0);
+    let (blocks, rest) = improvement.values().as_chunks::<LANES>();
+    let mut sum = 0.0;
+    for block in blocks {
+        block.map(gain).iter().for_each(|&g| sum += f64::from(g));
+    }
+    rest.iter().for_each(|&d| sum += f64::from(gain(d)));
+    sum
+}
+
+/// Means over blocks of `side` × `side` pixels: enough to order proposals.
+fn blocks(plane: &Plane, side: usize) -> Plane {
+    let (width, height) = (plane.width(), plane.height());
+    let mut means = Plane::filled(width.div_ceil(side), height.div_ceil(side), 0.0);
+    for y in 0..height {
+        for (sum, values) in means.row_mut(y / side).iter_mut().zip(plane.row(y).chunks(side)) {
+            values.iter().for_each(|v| *sum += v);
+        }
+    }
+    for y in 0..means.height() {
+        let rows = side.min(height - y * side);
+        for (x, mean) in means.row_mut(y).iter_mut().enumerate() {
+            *mean /= (rows * side.min(width - x * side)) as f32;
+        }
+    }
+    means
+}
+
+/// The gain estimated on block means.
+fn rough_gain(current: &Plane, cost: &Plane, window: f32) -> f64 {
+    let mut difference = current.clone();
+    each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
+    gain_of(&gaussian(&difference, window / BLOCK as f32)) * (BLOCK * BLOCK) as f64
+}
+
+/// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
+/// none if nothing was proposed.
+///
+/// Every round ranks all proposals by block means, refines the most promising on a sample of the pixels, and the best of those on
+/// all pixels.
+pub(crate) fn add_motions(
+    level: &Level,
+    selected: &mut Vec<ScoredMotion>,
+    proposals: &[AffineMotion],
+    how: Deflation,
+) -> Option<AffineMotion> {
+    let thinning = level.thinning(THINNING);
+    let thinned = level.thinned(thinning);
+    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
+    let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
+    loop {
+        let current = smallest_cost(selected);
+        let current_blocks = blocks(&current, BLOCK);
+        let gains: Buffer<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
+        let current_sample = current.thinned(thinning);
+        let mut best: Option<(f64, ScoredMotion)> = None;
+        let order = descending(gains.iter().copied());
+        let next = order.first().map(|&k| proposals[k]);
+        if selected.len() >= how.most {
+            return next;
+        }
+        for &k in order.iter().take(how.tries) {
+            if gains[k] < SMALLEST_TRIED_GAIN * how.price {
+                break;
+            }
+            let (gain, scored) = refined(&thinned, &current_sample, proposals[k], how.window / thinning as f32);
+            if best.as_ref().is_none_or(|b| gain > b.0) {
+                best = Some((gain, scored));
+            }
+        }
+        match best.map(|(_, scored)| refined(level, &current, scored.motion, how.window)) {
+            Some((gain, scored)) if gain >= how.price => selected.push(scored),
+            rejected => return rejected.map(|r| r.1.motion).or(next),
+        }
+    }
+}
+
+/// Refines a proposal twice on the region where it beats the current motions. Returns its gain and the motion.
+fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, ScoredMotion) {
+    let mut scored = ScoredMotion::new(level, proposal);
+    let mut improved = improvement(current, &scored.cost, window);
+    let mut gain = gain_of(&improved);
+    for round in 0..2 {
+        let Some(region) = heaviest_region(&improved, current, &scored.cost) else { break };
+        let support = Support::weighted(&region);
+        let affine = Alignment::of_region(3, RIDGE);
+        let mut motion = scored.motion;
+        let none = &mut Photometric::default();
+        if round == 0 {
+            motion = align(level, &motion, &support, none, Alignment { freedom: Freedom::Translation, ..affine });
+        }
+        motion = align(level, &motion, &support, none, affine);
+        let refined = ScoredMotion::new(level, motion);
+        let refined_improvement = improvement(current, &refined.cost, window);
+        let better = gain_of(&refined_improvement);
+        if better > gain {
+            (scored, improved, gain) = (refined, refined_improvement, better);
+        }
+    }
+    (gain, scored)
+}
+
+/// The connected region in which a cost improves most on the current one, as weights 0 and 1.
+fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Plane> {
+    let (width, height) = (improved.width(), improved.height());
+    let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
+    let found = components(&mask, width, Connectivity::Eight);
+    let mut weights = Buffer::filled(found.list.len(), 0.0f64);
+    for ((&region, a), c) in found.of.iter().zip(current.values()).zip(cost.values()) {
+        weights[region as usize] += f64::from(a - c);
+    }
+    let mut heaviest: Option<usize> = None;
+    for (k, region) in found.list.iter().enumerate() {
+        let counts = region.label == 1 && region.size > SMALLEST_REGION;
+        if counts && heaviest.is_none_or(|h| weights[k] > weights[h]) {
+            heaviest = Some(k);
+        }
+    }
+    let chosen = heaviest?;
+    let values = found.of.iter().map(|&id| if id as usize == chosen { 1.0 } else { 0.0 }).collect();
+    Some(Plane::from_buffer(width, height, values))
+}
+
+/// Removes motions whose absence costs less than their price, the cheapest first. The first motion always stays.
+pub(crate) fn prune(selected: &mut Vec<ScoredMotion>, price: f64) {
+    while selected.len() > 1 {
+        let with_all = total(&smallest_cost(selected));
+        let mut cheapest = (f64::INFINITY, 0);
+        for k in 1..selected.len() {
+            let mut others: Vec<ScoredMotion> = selected.clone();
+            others.remove(k);
+            let absence = total(&smallest_cost(&others)) - with_all;
+            if absence < cheapest.0 {
+                cheapest = (absence, k);
+            }
+        }
+        if cheapest.0 >= price {
+            break;
+        }
+        selected.remove(cheapest.1);
+    }
+}

@@ -1,0 +1,98 @@
+//! Proposals at a finer level: one step of local flow (the constraint with n = 1 in a window) from the cheapest motion of each pixel.
+//! It finds displacements too small for the level of the first selection. Pixels are those of a thinned level.
+
+use super::ScoredMotion;
+use crate::estimation::proposal::local_flow::FLAT;
+use crate::estimation::proposal::{Proposal, distinct, translated};
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::frame::warp::Footprint;
+use crate::motion::AffineMotion;
+use crate::order::descending;
+use crate::view::level::Level;
+use crate::workspace::Buffer;
+
+/// Standard deviation of the window, pixels.
+const WINDOW: f32 = 1.33;
+/// Distance of the windows, pixels.
+const STRIDE: usize = 5;
+/// Number of windows considered, the most promising first.
+const WINDOWS: usize = 200;
+/// Proposals kept.
+const MOST: usize = 16;
+/// Shortest and longest step that makes a proposal, pixels.
+const STEPS: (f64, f64) = (0.05, 2.0);
+/// Proposals closer than this are the same, pixels.
+const TOLERANCE: f64 = 0.1;
+
+/// The most promising local corrections of the selected motions.
+pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<AffineMotion> {
+    let (width, height) = (level.width(), level.height());
+    let winners = winners(selected);
+    let [xx, xy, yy, xr, yr] = window_sums(level, selected, &winners);
+    let [columns, rows] = [width, height].map(|size| size.div_ceil(STRIDE));
+    let mut gains = Buffer::with_capacity(columns * rows);
+    let mut places = Buffer::with_capacity(columns * rows);
+    let mut steps = Buffer::with_capacity(columns * rows);
+    for y in (STRIDE / 2..height).step_by(STRIDE) {
+        for x in (STRIDE / 2..width).step_by(STRIDE) {
+            let (a, c, d) = (xx.at(x, y) + FLAT, xy.at(x, y), yy.at(x, y) + FLAT);
+            let (p, q) = (xr.at(x, y), yr.at(x, y));
+            let determinant = a * d - c * c;
+            let (u, v) = ((c * q - d * p) / determinant, (c * p - a * q) / determinant);
+            gains.push(-(p * u + q * v));
+            places.push(y * width + x);
+            steps.push([u, v]);
+        }
+    }
+    let order = descending(gains.iter().map(|&gain| f64::from(gain)));
+    let pixel = level.pixel();
+    let mut proposals = order.iter().take(WINDOWS).filter_map(|&k| {
+        let [u, v] = steps[k].map(f64::from);
+        let length = (u * u + v * v).sqrt();
+        let (x, y) = (places[k] % width, places[k] / width);
+        (STEPS.0 < length && length < STEPS.1).then(|| Proposal {
+            motion: translated(&selected[winners[places[k]]].motion, u * pixel, v * pixel),
+            place: [x as f64 * pixel, y as f64 * pixel],
+        })
+    });
+    distinct(&mut proposals, TOLERANCE * pixel, [width as f64 * pixel, height as f64 * pixel], MOST)
+}
+
+/// Index of the cheapest motion at every pixel.
+fn winners(selected: &[ScoredMotion]) -> Buffer<usize> {
+    let mut winners = Buffer::filled(selected[0].cost.values().len(), 0);
+    for (p, winner) in winners.iter_mut().enumerate() {
+        for k in 1..selected.len() {
+            if selected[k].cost.values()[p] < selected[*winner].cost.values()[p] {
+                *winner = k;
+            }
+        }
+    }
+    winners
+}
+
+/// Products of gradients and residual along each pixel's cheapest motion, divided by the variance and averaged over windows.
+fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [Plane; 5] {
+    let (width, height) = (level.width(), level.height());
+    let scaled: Vec<AffineMotion> = selected.iter().map(|l| level.scaled(&l.motion)).collect();
+    let noise = level.noise * level.noise;
+    let stride = level.stride as f64;
+    let half = 0.5 * level.stride as f32;
+    let mut sums: [Plane; 5] = std::array::from_fn(|_| Plane::unwritten(width, height));
+    for y in 0..height {
+        for x in 0..width {
+            let [u, v] = scaled[winners[y * width + x]].flow(x as f64, y as f64);
+            let place = [x as f64 + u, y as f64 + v].map(|p| (stride * p) as f32);
+            let at = Footprint::new(place[0], place[1], level.second.width(), level.second.height());
+            let gx = half * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
+            let gy = half * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
+            let r = at.sample(level.second.values()) - level.first.at(x, y);
+            let weight = 1.0 / (noise + 0.02 * level.energy.at(x, y));
+            for (plane, product) in sums.iter_mut().zip([gx * gx, gx * gy, gy * gy, gx * r, gy * r]) {
+                plane.row_mut(y)[x] = weight * product;
+            }
+        }
+    }
+    sums.map(|plane| gaussian(&plane, WINDOW))
+}

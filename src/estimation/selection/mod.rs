@@ -1,0 +1,51 @@
+//! Selection of motions from the proposals: greedy deflation, refinement of each motion on its own pixels, new proposals at finer
+//! levels.
+
+mod deflation;
+mod fine;
+mod refit;
+
+pub(crate) use deflation::{Deflation, add_motions, prune};
+pub(crate) use fine::fine_proposals;
+pub(crate) use refit::refit;
+
+use crate::frame::Plane;
+use crate::frame::filter::gaussian;
+use crate::lanes::lower;
+use crate::motion::AffineMotion;
+use crate::view::cost::{CostModel, cost};
+use crate::view::level::Level;
+
+/// Standard deviation of the window over which costs are averaged during selection, pixels of the second frame.
+const WINDOW: f32 = 2.0;
+
+/// A motion and its cost at every pixel of a level, averaged over windows.
+#[derive(Clone, Debug)]
+pub(crate) struct ScoredMotion {
+    pub(crate) motion: AffineMotion,
+    pub(crate) cost: Plane,
+}
+
+impl ScoredMotion {
+    /// Computes the cost of a motion on a level.
+    #[inline(never)]
+    pub(crate) fn new(level: &Level, motion: AffineMotion) -> ScoredMotion {
+        ScoredMotion {
+            motion,
+            cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32),
+        }
+    }
+
+    /// Lowers a cost plane to this motion's cost wherever that is smaller.
+    #[inline(never)]
+    pub(crate) fn lower(&self, cost: &mut Plane) {
+        lower(cost.values_mut(), self.cost.values());
+    }
+}
+
+/// The smallest cost of any motion at every pixel.
+pub(crate) fn smallest_cost(selected: &[ScoredMotion]) -> Plane {
+    let mut smallest = selected[0].cost.clone();
+    selected[1..].iter().for_each(|scored| scored.lower(&mut smallest));
+    smallest
+}

@@ -1,0 +1,57 @@
+//! Every motion refined on the pixels where it wins.
+
+use super::ScoredMotion;
+use crate::estimation::alignment::{Alignment, REGION_BLUR, Support, align, ridge_of_label};
+use crate::frame::Plane;
+use crate::frame::filter::{eroded, gaussian};
+use crate::lanes::each_with;
+use crate::view::brightness::Photometric;
+use crate::view::cost::total;
+use crate::view::level::Level;
+
+/// Regions with more pixels than this are eroded before their motion is refined.
+const LARGE: usize = 200;
+/// Motions of regions with fewer pixels than this are not refined.
+const SMALLEST_REGION: usize = 20;
+
+/// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
+pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
+    for _ in 0..rounds {
+        let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
+        for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
+            let Some(region) = region else { continue };
+            let how = Alignment::of_region(2, ridge_of_label(k));
+            let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
+            let refined = ScoredMotion::new(level, motion);
+            if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
+                *scored = refined;
+            }
+        }
+    }
+}
+
+fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
+    let mut weighted = cost.clone();
+    each_with(weighted.values_mut(), [weights.values()], |c, [w]| c * w);
+    total(&weighted)
+}
+
+/// Weights of the pixels where motion `k` is cheapest, eroded and softened.
+fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
+    let cost = &selected[k].cost;
+    let mut region = Plane::filled(cost.width(), cost.height(), 1.0);
+    for (other, scored) in selected.iter().enumerate().filter(|&(other, _)| other != k) {
+        each_with(region.values_mut(), [cost.values(), scored.cost.values()], |r, [own, value]| {
+            let wins = if k < other { own <= value } else { own < value };
+            if wins { r } else { 0.0 }
+        });
+    }
+    let pixels = region.values().iter().filter(|&&w| w > 0.0).count();
+    if pixels < SMALLEST_REGION {
+        return None;
+    }
+    if pixels > LARGE {
+        region = eroded(&region);
+    }
+    Some(gaussian(&region, REGION_BLUR))
+}

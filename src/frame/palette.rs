@@ -1,0 +1,65 @@
+//! The quantised colours of a frame.
+
+use super::Frame;
+use crate::workspace::Buffer;
+
+/// Steps per colour channel: 8³ colours are few enough to learn from one frame and still tell clothes from grass.
+const STEPS: usize = 8;
+/// Number of different colours.
+pub(crate) const COLOURS: usize = STEPS * STEPS * STEPS;
+
+/// The quantised colour of every working pixel.
+#[derive(Clone, Debug)]
+pub(crate) struct Palette {
+    size: [usize; 2],
+    indices: Buffer<u16>,
+}
+
+impl Palette {
+    /// Quantises the mean colours over the full-size pixels of each working pixel.
+    pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
+        let step = frame.width().div_ceil(width).next_power_of_two();
+        let mut indices = Buffer::with_capacity(width * height);
+        let mut sums = Buffer::unwritten(4 * width);
+        let sums: &mut [[u32; 4]] = sums.as_chunks_mut().0;
+        for rows in frame.colours().chunks(frame.width() * step) {
+            sums.fill([0; 4]);
+            for row in rows.chunks(frame.width()) {
+                for ([red, green, blue, count], colours) in sums.iter_mut().zip(row.chunks(step)) {
+                    for [r, g, b, _] in colours {
+                        *red += u32::from(*r);
+                        *green += u32::from(*g);
+                        *blue += u32::from(*b);
+                    }
+                    *count += colours.len() as u32;
+                }
+            }
+            indices.extend(sums.iter().map(|[r, g, b, count]| {
+                let [r, g, b] = [r, g, b].map(|sum| sum * STEPS as u32 / (256 * count.max(&1)));
+                ((r * STEPS as u32 + g) * STEPS as u32 + b) as u16
+            }));
+        }
+        Palette { size: [width, height], indices }
+    }
+
+    /// Width in working pixels.
+    pub(crate) fn width(&self) -> usize {
+        self.size[0]
+    }
+
+    /// The number of a pixel's colour, below [`COLOURS`].
+    #[inline(always)]
+    pub(crate) fn index(&self, pixel: usize) -> usize {
+        usize::from(self.indices[pixel])
+    }
+
+    /// Every `step`-th pixel of every `step`-th row.
+    pub(crate) fn thinned(&self, step: usize) -> Palette {
+        let size = self.size.map(|s| s.div_ceil(step));
+        let mut indices = Buffer::with_capacity(size[0] * size[1]);
+        for row in self.indices.chunks_exact(self.size[0]).step_by(step) {
+            indices.extend(row.iter().step_by(step));
+        }
+        Palette { size, indices }
+    }
+}

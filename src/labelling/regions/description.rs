@@ -1,0 +1,90 @@
+//! Minimum description length: an object stays if it explains its pixels so much better than any other motion that this pays for its
+//! six parameters and its border.
+
+use crate::frame::Plane;
+use crate::labelling::neighbours;
+
+/// Nats per pixel of border.
+pub(super) const PER_BORDER_PIXEL: f64 = 0.5;
+/// Regions smaller than this share of the frame are not objects.
+pub(crate) const SMALLEST_SHARE: f64 = 0.004;
+
+/// Nats for the six parameters of a motion in a frame of N = `pixels`: (6/2) ln N.
+pub(crate) fn price_of_motion(pixels: usize) -> f64 {
+    3.0 * libm::log(pixels as f64)
+}
+
+/// Description length in nats of both frames by n motions and labels: residuals, six parameters per motion, borders.
+///
+/// `raw` as in [`worth`].
+pub(crate) fn length(raw: &[Plane], labels: &[u8], width: usize) -> f64 {
+    let left_over: f64 = labels.iter().enumerate().map(|(p, &l)| f64::from(raw[usize::from(l)].values()[p])).sum();
+    // Every pair of neighbours is counted by both of its labels.
+    let borders = border_lengths(labels, raw.len(), width).iter().sum::<usize>() / 2;
+    0.5 * left_over + raw.len() as f64 * price_of_motion(labels.len()) + PER_BORDER_PIXEL * borders as f64
+}
+
+/// Nats that each object saves beyond its price; infinite for the dominant motion, element 0.
+///
+/// `raw[k]` are the estimation costs of motion k; half a cost is a nat.
+pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
+    let pixels = labels.len();
+    let counts = counts(labels, raw.len());
+    let borders = border_lengths(labels, raw.len(), width);
+    let sums = sums(raw, labels);
+    (0..raw.len())
+        .map(|k| {
+            if k == 0 {
+                return f64::INFINITY;
+            }
+            if (counts[k] as f64) < SMALLEST_SHARE * pixels as f64 {
+                return -1e9 + counts[k] as f64;
+            }
+            let other = (0..raw.len()).filter(|&m| m != k).map(|m| sums[k][m]).fold(f64::INFINITY, f64::min);
+            0.5 * (other - sums[k][k]) - price_of_motion(pixels) - PER_BORDER_PIXEL * borders[k] as f64
+        })
+        .collect()
+}
+
+/// Summed cost of every motion (second index) on the pixels of every label (first).
+pub(crate) fn sums(raw: &[Plane], labels: &[u8]) -> Vec<Vec<f64>> {
+    let mut sums = vec![vec![0.0f64; raw.len()]; raw.len()];
+    for (p, &label) in labels.iter().enumerate() {
+        for (sum, plane) in sums[usize::from(label)].iter_mut().zip(raw) {
+            *sum += f64::from(plane.values()[p]);
+        }
+    }
+    sums
+}
+
+/// Number of pixels of each label.
+pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
+    const PART: usize = 32;
+    let mut counts = vec![0; of];
+    for part in labels.chunks(PART) {
+        // Most parts have one label.
+        if let Some(count) = counts.get_mut(usize::from(part[0])).filter(|_| part.iter().all(|&l| l == part[0])) {
+            *count += part.len();
+            continue;
+        }
+        for &label in part {
+            if let Some(count) = counts.get_mut(usize::from(label)) {
+                *count += 1;
+            }
+        }
+    }
+    counts
+}
+
+/// Number of neighbouring pairs of which exactly one has the label.
+fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
+    let mut lengths = vec![0; of];
+    neighbours(labels.len(), width, |p, q| {
+        let (a, b) = (labels[p], labels[q]);
+        if a != b {
+            lengths[usize::from(a)] += 1;
+            lengths[usize::from(b)] += 1;
+        }
+    });
+    lengths
+}

@@ -1,0 +1,194 @@
+//! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in parts.
+
+use super::description::{PER_BORDER_PIXEL, SMALLEST_SHARE, price_of_motion};
+use crate::components::{Connectivity, components};
+use crate::estimation::alignment::{Alignment, REGION_BLUR, Support, align};
+use crate::frame::Plane;
+use crate::frame::area::Area;
+use crate::frame::filter::{eroded, gaussian};
+use crate::labelling::pixels;
+use crate::motion::AffineMotion;
+use crate::order::descending;
+use crate::view::brightness::Photometric;
+use crate::view::cost::{CostModel, cost_within};
+use crate::view::level::Level;
+use crate::workspace::Buffer;
+
+/// Smallest number of pixels of a part.
+const SMALLEST_PART: usize = 30;
+/// Standard deviation of the window over which the two halves compete, pixels …
+const WINDOW: f32 = 2.5;
+/// … and its radius.
+const REACH: usize = 8;
+/// Rounds of the two-body split.
+const ROUNDS: usize = 3;
+/// Smallest share of the region that counts as a half.
+const SMALLEST_HALF: f64 = 0.1;
+
+fn smallest_part(pixels: usize) -> usize {
+    SMALLEST_PART.max((SMALLEST_SHARE * pixels as f64) as usize)
+}
+
+/// A motion refined on the pixels of a mask.
+pub(super) fn aligned_on(
+    level: &Level,
+    motion: &AffineMotion,
+    mask: &Plane,
+    iterations: usize,
+    ridge: f64,
+) -> AffineMotion {
+    let how = Alignment::of_region(iterations, ridge);
+    align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
+}
+
+/// Splits objects into connected components where separate motions pay for themselves. Returns whether anything changed.
+pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
+    let (width, height) = (level.width(), level.height());
+    let found = components(labels, width, Connectivity::Eight);
+    let by_size = descending(found.list.iter().map(|c| c.size as f64));
+    let mut changed = false;
+    for label in 1..motions.len() {
+        let parts: Vec<usize> = by_size
+            .iter()
+            .copied()
+            .filter(|&k| usize::from(found.list[k].label) == label && found.list[k].size >= smallest_part(labels.len()))
+            .collect();
+        if parts.len() < 2 {
+            continue;
+        }
+        let mut fits = Vec::new();
+        for &part in &parts {
+            let mask: Buffer<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
+            let inner = gaussian(&eroded(&Plane::from_buffer(width, height, mask)), REGION_BLUR);
+            let motion = aligned_on(level, &motions[label], &inner, 4, 1e-2);
+            let [x0, y0, x1, y1] = found.list[part].bounds;
+            let area = Area { columns: x0..x1 + 1, rows: y0..y1 + 1 };
+            let [together, alone] =
+                [motions[label], motion].map(|m| cost_within(level, &area, &m, CostModel::ESTIMATION));
+            let mut gain = 0.0;
+            for y in area.rows.clone() {
+                for x in area.columns.clone().filter(|&x| found.of[y * width + x] as usize == part) {
+                    gain += 0.5 * f64::from(together.at(x - x0, y - y0) - alone.at(x - x0, y - y0));
+                }
+            }
+            fits.push((gain, motion, part));
+        }
+        if fits.iter().map(|f| f.0).sum::<f64>() < price_of_motion(labels.len()) {
+            continue;
+        }
+        if fits[0].0 > 0.0 {
+            motions[label] = fits[0].1;
+        }
+        for (_, motion, part) in fits.into_iter().skip(1) {
+            if motions.len() >= most {
+                break;
+            }
+            let new = motions.len() as u8;
+            motions.push(motion);
+            for (slot, &id) in labels.iter_mut().zip(&found.of) {
+                if id as usize == part {
+                    *slot = new;
+                }
+            }
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// Splits objects into two bodies where that pays. Starts from the halves along the long axis; motions are fitted to the halves and
+/// pixels reassigned to the better one.
+pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
+    let mut changed = false;
+    for label in 1..motions.len() {
+        if motions.len() >= most {
+            break;
+        }
+        let region = pixels(labels, |l| l == label);
+        if region.len() < 2 * smallest_part(labels.len()) {
+            continue;
+        }
+        if let Some((pair, second)) = two_bodies(level, &motions[label], &region) {
+            motions[label] = pair[0];
+            motions.push(pair[1]);
+            let new = (motions.len() - 1) as u8;
+            region.iter().zip(&second).filter(|(_, s)| **s).for_each(|(&p, _)| labels[p] = new);
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// Two motions that explain a region better than one by more than their price, and which of its pixels belong to the second.
+fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Buffer<bool>)> {
+    let (width, height) = (level.width(), level.height());
+    let around = Area::of(region, width).grown(REACH, width, height);
+    let mut second = far_half(region, width);
+    let mut pair = [*motion; 2];
+    for _ in 0..ROUNDS {
+        let mut costs = Vec::with_capacity(2);
+        for (side, motion) in pair.iter_mut().enumerate() {
+            let mut mask = Plane::filled(width, height, 0.0);
+            for (&p, &s) in region.iter().zip(&second) {
+                mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
+            }
+            *motion = aligned_on(level, motion, &mask, 3, 3e-2);
+            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::ESTIMATION), WINDOW));
+        }
+        for (&p, s) in region.iter().zip(&mut second) {
+            let place = around.index_of(p, width);
+            *s = costs[1].values()[place] < costs[0].values()[place];
+        }
+        let share = second.iter().filter(|s| **s).count() as f64 / region.len() as f64;
+        if !(SMALLEST_HALF..=1.0 - SMALLEST_HALF).contains(&share) {
+            return None;
+        }
+    }
+    let [one, two @ ..] = [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::ESTIMATION));
+    let mut gain = 0.0;
+    for (&p, &s) in region.iter().zip(&second) {
+        let place = around.index_of(p, width);
+        gain += 0.5 * f64::from(one.values()[place] - two[usize::from(s)].values()[place]);
+    }
+    let price =
+        price_of_motion(width * height) + PER_BORDER_PIXEL * inner_border(region, &second, width, height) as f64;
+    (gain > price).then_some((pair, second))
+}
+
+/// Which pixels of a region lie beyond its centre along its long axis.
+fn far_half(region: &[usize], width: usize) -> Buffer<bool> {
+    let n = region.len() as f64;
+    let place = |p: usize| ((p % width) as f64, (p / width) as f64);
+    let (mut cx, mut cy) = (0.0, 0.0);
+    for &p in region {
+        cx += place(p).0 / n;
+        cy += place(p).1 / n;
+    }
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for &p in region {
+        let (x, y) = (place(p).0 - cx, place(p).1 - cy);
+        xx += x * x;
+        xy += x * y;
+        yy += y * y;
+    }
+    let largest = 0.5 * (xx + yy + ((xx - yy) * (xx - yy) + 4.0 * xy * xy).sqrt());
+    let (ax, ay) = if xx >= yy { (largest - yy, xy) } else { (xy, largest - xx) };
+    region.iter().map(|&p| (place(p).0 - cx) * ax + (place(p).1 - cy) * ay > 0.0).collect()
+}
+
+/// Number of neighbouring pairs of the region that the split separates.
+fn inner_border(region: &[usize], second: &[bool], width: usize, height: usize) -> usize {
+    let mut side = Buffer::filled(width * height, 0u8);
+    for (&p, &s) in region.iter().zip(second) {
+        side[p] = 1 + u8::from(s);
+    }
+    let apart = |a: u8, b: u8| usize::from(a != 0 && b != 0 && a != b);
+    region
+        .iter()
+        .map(|&p| {
+            let right = if (p + 1) % width != 0 { apart(side[p], side[p + 1]) } else { 0 };
+            let below = if p + width < side.len() { apart(side[p], side[p + width]) } else { 0 };
+            right + below
+        })
+        .sum()
+}

@@ -1,0 +1,161 @@
+//! Colour model: pixels that motion alone cannot assign take the label of similar colours.
+//!
+//! A histogram of quantised colours per label, weighted by the margin by which each pixel's own motion is cheaper than the next, gives
+//! the probability of a label given a colour. How far it can be trusted is measured by cross-validation: blocks of the frame form
+//! two halves, and the histograms of one half predict the labels of the other. If labels share their colours the prediction fails,
+//! and colours are ignored.
+
+use crate::frame::Plane;
+use crate::frame::palette::{COLOURS, Palette};
+use crate::workspace::Buffer;
+
+/// Prior probability of every colour under every label.
+const PRIOR: f32 = 1e-3;
+/// Cost per nat of improbability if colours can be trusted entirely.
+const PRICE_PER_NAT: f32 = 1.0;
+/// Largest cost of a colour.
+const LARGEST_PRICE: f32 = 2.0;
+/// Summed margins, in costs, below which the colours of a label are unknown.
+const SMALLEST_SUPPORT: f32 = 20.0;
+/// Side of the blocks that form the two halves, working pixels.
+const BLOCK: usize = 12;
+
+/// Cost of each colour under each label.
+#[derive(Clone, Debug)]
+pub(crate) struct ColourPrices {
+    /// The costs of all labels for the first colour, for the second, …
+    table: Buffer<f32>,
+    labels: usize,
+}
+
+impl ColourPrices {
+    /// Learned from pixels, weighted by how clearly their motion wins.
+    pub(crate) fn learned(palette: &Palette, costs: &[Plane], labels: &[u8]) -> ColourPrices {
+        let n = costs.len();
+        let weights = margins(costs, labels);
+        let trust = trust(palette, labels, &weights, n);
+        let mut table = posterior(palette, labels, &weights, n, |_| true);
+        table.iter_mut().for_each(|p| *p = (-PRICE_PER_NAT * trust * trust * libm::logf(*p)).min(LARGEST_PRICE));
+        ColourPrices { table, labels: n }
+    }
+
+    /// The cost of a label for the colour of a pixel.
+    #[inline(always)]
+    pub(crate) fn of(&self, palette: &Palette, pixel: usize, label: usize) -> f32 {
+        self.table[palette.index(pixel) * self.labels + label]
+    }
+}
+
+/// Adds the costs of the colours.
+pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8]) {
+    let prices = ColourPrices::learned(palette, costs, labels);
+    for (label, cost) in costs.iter_mut().enumerate() {
+        cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += prices.of(palette, p, label));
+    }
+}
+
+/// How well the colours of one half of the blocks predict the labels of the other: information per pixel as a share of the
+/// information needed, averaged over the labels; 0…1.
+fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
+    let width = palette.width();
+    let half = |p: usize| (p % width / BLOCK + p / width / BLOCK) % 2;
+    let tables = [0, 1].map(|which| posterior(palette, labels, weights, n, |p| half(p) == which));
+    let mut information = vec![(0.0f32, 0.0f32); n];
+    for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
+        let believed = tables[1 - half(p)][palette.index(p) * n + usize::from(label)];
+        let (sum, count) = &mut information[usize::from(label)];
+        *sum += weight * libm::logf(believed * n as f32);
+        *count += weight;
+    }
+    let needed = libm::logf(n as f32);
+    let shares = information.iter().map(|(sum, count)| (sum / count.max(1e-9) / needed).clamp(0.0, 1.0));
+    shares.sum::<f32>() / n as f32
+}
+
+/// By how much each pixel's own motion is cheaper than the next one.
+fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
+    let next = |p: usize, own: usize| {
+        (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min)
+    };
+    let gap = |(p, &own): (usize, &u8)| next(p, usize::from(own)) - costs[usize::from(own)].values()[p];
+    labels.iter().enumerate().map(gap).map(|gap| gap.max(0.0)).collect()
+}
+
+/// Probability of every label for every colour, all labels equally likely beforehand; from the pixels that `counts` admits.
+fn posterior(
+    palette: &Palette,
+    labels: &[u8],
+    weights: &[f32],
+    n: usize,
+    counts: impl Fn(usize) -> bool,
+) -> Buffer<f32> {
+    let mut table = Buffer::filled(n * COLOURS, 0.0f32);
+    let mut totals = vec![1e-9f32; n];
+    for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate().filter(|&(p, _)| counts(p)) {
+        table[palette.index(p) * n + usize::from(label)] += weight;
+        totals[usize::from(label)] += weight;
+    }
+    let known = totals.iter().filter(|&&total| total >= SMALLEST_SUPPORT).count().max(1) as f32;
+    for of_colour in table.chunks_exact_mut(n) {
+        let mut sum = 0.0;
+        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= SMALLEST_SUPPORT) {
+            *share = *share / total + PRIOR;
+            sum += *share;
+        }
+        // A label without enough pixels to learn from gets the average probability for every colour.
+        let average = if sum > 0.0 { sum / known } else { 1.0 };
+        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < SMALLEST_SUPPORT) {
+            *share = average;
+            sum += average;
+        }
+        of_colour.iter_mut().for_each(|share| *share /= sum);
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Frame;
+
+    /// Left and right half of the frame have a motion each; only every third column knows which.
+    fn costs(width: usize, height: usize) -> ([Plane; 2], Vec<u8>) {
+        let cost = |label: bool| {
+            Plane::from_fn(width, height, |x, _| if x % 3 == 0 && (x < width / 2) == label { 2.0 } else { 0.0 })
+        };
+        let labels = (0..width * height).map(|p| u8::from(p % width >= width / 2)).collect();
+        ([cost(false), cost(true)], labels)
+    }
+
+    /// The costs that the colours add.
+    fn said(palette: &Palette, costs: &[Plane; 2], labels: &[u8]) -> [Plane; 2] {
+        let mut with = costs.clone();
+        add_colours(&mut with, palette, labels);
+        for (with, without) in with.iter_mut().zip(costs) {
+            with.values_mut().iter_mut().zip(without.values()).for_each(|(w, o)| *w -= o);
+        }
+        with
+    }
+
+    fn frame(colour: impl Fn(usize, usize) -> [u8; 3]) -> Frame {
+        let rgba: Vec<u8> = (0..72 * 48)
+            .flat_map(|p| colour(p % 72, p / 72))
+            .collect::<Vec<_>>()
+            .chunks(3)
+            .flat_map(|c| [c[0], c[1], c[2], 255])
+            .collect();
+        Frame::from_rgba(72, 48, &rgba).unwrap()
+    }
+
+    #[test]
+    fn colours_that_separate_the_labels_are_used_and_others_are_not() {
+        let (costs, labels) = costs(72, 48);
+        let telling = frame(|x, _| if x < 36 { [200, 30, 30] } else { [30, 30, 200] });
+        let said = said(&Palette::new(&telling, 72, 48), &costs, &labels);
+        assert!(said[1].at(10, 20) > said[0].at(10, 20) + 0.5);
+        assert!(said[0].at(60, 20) > said[1].at(60, 20) + 0.5);
+        let shared = frame(|x, y| if (x / 2 + y / 2) % 2 == 0 { [200, 30, 30] } else { [30, 30, 200] });
+        let said = self::said(&Palette::new(&shared, 72, 48), &costs, &labels);
+        assert!((said[0].at(10, 20) - said[1].at(10, 20)).abs() < 0.01);
+    }
+}

@@ -1,0 +1,123 @@
+//! The data term: the cost of every motion at every pixel, made into the cost of its label.
+
+use crate::frame::Plane;
+use crate::labelling::coherence::Coherence;
+use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_variance};
+use crate::labelling::terms::views::{cheapest, costs_in_views};
+use crate::lanes::{each_with, lower};
+use crate::motion::AffineMotion;
+use crate::view::cost::CostModel;
+use crate::view::level::Level;
+use crate::workspace::Buffer;
+
+/// Share of λ that an object pays for every pixel on the frame's border. Without it the part of an object's outline along the frame's
+/// border would be free, and labels would leak into flat regions there.
+const FRAME_BORDER: f32 = 0.375;
+
+/// Label cost of every motion at every pixel; the first is the dominant motion.
+///
+/// A pixel that a motion moves out of the frame cannot be compared, so the motion costs there as much as the cheapest one that keeps
+/// the pixel inside. This is at least the neutral cost for an object and at most the neutral cost for the dominant motion, so that
+/// objects do not win pixels by moving them out of the frame.
+pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> Vec<Plane> {
+    LabelCosts::new(level, motions, coherence).costs
+}
+
+/// Label costs, and the intermediate results that sharpening uses again.
+pub(crate) struct LabelCosts {
+    /// See [`label_costs`].
+    pub(crate) costs: Vec<Plane>,
+    /// Weight of the second frame in the costs, if there is a frame before.
+    pub(crate) shares: Option<Plane>,
+    pub(crate) variance_inflation: Plane,
+}
+
+impl LabelCosts {
+    /// Computes them row by row, so that the only intermediate plane is that of the smallest costs.
+    pub(crate) fn new(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> LabelCosts {
+        let (mut costs, shares) = costs_in_views(level, motions);
+        let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY));
+        let mut inflation = Plane::unwritten(level.width(), level.height());
+        let mut seen = Buffer::unwritten(level.width());
+        for y in 0..level.height() {
+            inflation_rows.write(y, inflation.row_mut(y));
+            seen.fill(f32::INFINITY);
+            for cost in &mut costs {
+                inflate_variance(cost.row_mut(y), inflation.row(y));
+                lower(&mut seen, cost.row(y));
+            }
+            for (label, cost) in costs.iter_mut().enumerate() {
+                to_label_costs(label, cost.row_mut(y), &seen, coherence);
+            }
+        }
+        costs.iter_mut().skip(1).for_each(|cost| add_frame_border_price(cost, coherence));
+        LabelCosts { costs, shares, variance_inflation: inflation }
+    }
+}
+
+/// Turns costs of a motion into those of its label: fills in pixels moved out of the frame and adds the object bias. `seen` is the
+/// smallest cost of any motion that keeps the pixel inside, infinite if there is none.
+#[inline(never)]
+pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
+    let neutral = CostModel::LABELS.outside();
+    let (least, most, object_bias) = match label {
+        0 => (f32::NEG_INFINITY, neutral, 0.0),
+        _ => (neutral, f32::INFINITY, coherence.object_bias),
+    };
+    each_with(costs, [seen], |cost, [seen]| {
+        let unseen = if seen < most { seen } else { neutral };
+        let unseen = if unseen > least { unseen } else { neutral };
+        object_bias + if cost.is_finite() { cost } else { unseen }
+    });
+}
+
+/// Price of an object's pixel on the frame's border, for each of the borders it lies on.
+pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
+    FRAME_BORDER * coherence.smoothness
+}
+
+fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
+    let price = frame_border_price(coherence);
+    let (width, height) = (cost.width(), cost.height());
+    for y in [0, height - 1] {
+        cost.row_mut(y).iter_mut().for_each(|c| *c += price);
+    }
+    for y in 0..height {
+        for x in [0, width - 1] {
+            cost.row_mut(y)[x] += price;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::labelling::coherence::tests::COHERENCE;
+    use crate::view::level::build;
+
+    fn noise(seed: u64) -> Plane {
+        let mut random = crate::random::Random::from_seed(seed);
+        Plane::from_fn(64, 48, |_, _| random.uniform(0.0, 255.0) as f32)
+    }
+
+    #[test]
+    fn leaving_the_frame_wins_an_object_nothing_and_costs_the_dominant_motion_nothing() {
+        let (still, leaving) = (AffineMotion::STATIC, AffineMotion::translation(20.0, 0.0));
+        let same = &build(noise(1), noise(1), None, 24)[0];
+        let other = &build(noise(1), noise(2), None, 24)[0];
+        for level in [same, other] {
+            let object = label_costs(level, &[still, leaving], COHERENCE);
+            let dominant = label_costs(level, &[leaving, still], COHERENCE);
+            for y in 1..47 {
+                for x in 45..63 {
+                    assert!(object[1].at(x, y) >= object[0].at(x, y) + COHERENCE.object_bias, "({x}, {y})");
+                    assert!(dominant[0].at(x, y) <= dominant[1].at(x, y), "({x}, {y})");
+                }
+            }
+        }
+        let nowhere = AffineMotion::translation(100.0, 0.0);
+        let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
+        assert_eq!(unseen[0].at(30, 30), CostModel::LABELS.outside());
+        assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.object_bias).abs() < 1e-6);
+    }
+}

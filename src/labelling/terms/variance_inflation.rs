@@ -1,0 +1,90 @@
+//! Larger variances where no motion fits well.
+//!
+//! The noise of a pair is measured where the dominant motion explains it. Elsewhere an affine motion may be only approximate: limbs,
+//! cloth, water, parallax, blur. Costs there saturate for correct and wrong motions alike, and their difference is mostly chance. The
+//! cost of the best motion around a pixel tells by how much the variance is too small, and costs are computed again with the
+//! inflated variance. Where the model holds, nearly everywhere in most frames, nothing changes.
+
+use crate::frame::Plane;
+use crate::frame::filter::RowFilter;
+use crate::lanes::{each, each_with};
+use crate::view::cost::CostModel;
+
+/// Standard deviation of the window in which the fit is judged, pixels.
+const WINDOW: f32 = 4.0;
+/// Largest windowed cost that noise alone explains.
+const EXPECTED: f32 = 0.5;
+/// Largest factor of the standard deviation.
+const LARGEST: f32 = 3.0;
+
+/// Factor of each pixel's variance, computed row by row from the smallest label cost.
+///
+/// The mean of the saturated costs grows about as the standard deviation of the residuals.
+pub(crate) struct VarianceInflation {
+    smallest: Plane,
+    window: RowFilter,
+}
+
+impl VarianceInflation {
+    /// `smallest` is infinite where all motions move a pixel out of every view.
+    pub(crate) fn new(mut smallest: Plane) -> VarianceInflation {
+        each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::LABELS.outside() });
+        let window = RowFilter::gaussian(smallest.width(), WINDOW);
+        VarianceInflation { smallest, window }
+    }
+
+    /// Writes the factors of row y.
+    pub(crate) fn write(&mut self, y: usize, row: &mut [f32]) {
+        self.window.row(&self.smallest, y, row);
+        each(row, |m| {
+            let ratio = (m / EXPECTED).clamp(1.0, LARGEST);
+            ratio * ratio
+        });
+    }
+}
+
+/// Costs with inflated variance: e / (1 + e/T) with e / inflation in place of e. Infinite costs stay infinite.
+#[inline(never)]
+pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32]) {
+    each_with(costs, [inflation], |cost, [inflation]| {
+        let share = cost / CostModel::LABELS.truncation;
+        let allowed = cost / (inflation * (1.0 - share) + share);
+        if cost.is_finite() { allowed } else { cost }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::labelling::terms::views::cheapest;
+
+    fn allow(costs: &mut [Plane]) {
+        let mut inflation = VarianceInflation::new(cheapest(costs, f32::INFINITY));
+        let mut row = vec![0.0; costs[0].width()];
+        for y in 0..costs[0].height() {
+            inflation.write(y, &mut row);
+            costs.iter_mut().for_each(|cost| inflate_variance(cost.row_mut(y), &row));
+        }
+    }
+
+    #[test]
+    fn where_one_motion_fits_nothing_changes_and_where_none_does_the_better_one_is_told_apart() {
+        let plane = |good: f32, bad: f32| Plane::from_fn(80, 40, move |x, _| if x < 40 { good } else { bad });
+        let mut costs = [plane(0.4, 1.4), plane(1.9, 1.9)];
+        let before = costs.clone();
+        allow(&mut costs);
+        for k in 0..2 {
+            assert_eq!(costs[k].at(10, 20), before[k].at(10, 20));
+        }
+        let gap = |costs: &[Plane; 2]| costs[1].at(70, 20) - costs[0].at(70, 20);
+        assert!(gap(&costs) > 1.3 * gap(&before), "{} was {}", gap(&costs), gap(&before));
+    }
+
+    #[test]
+    fn what_is_saturated_or_unseen_stays_so() {
+        let mut costs = [Plane::filled(20, 20, CostModel::LABELS.truncation), Plane::filled(20, 20, f32::INFINITY)];
+        let before = costs.clone();
+        allow(&mut costs);
+        assert_eq!(costs, before);
+    }
+}

@@ -1,0 +1,80 @@
+//! Occlusion: a pixel that lands behind another object in the second frame cannot look the same there.
+
+use crate::frame::Plane;
+use crate::frame::filter::eroded;
+use crate::frame::warp::warp;
+use crate::labelling::mask_of;
+use crate::lanes::each_with;
+use crate::motion::AffineMotion;
+use crate::view::cost::inverse;
+use crate::view::level::Level;
+use crate::workspace::Buffer;
+
+/// Largest cost of a motion at a pixel that it moves behind another object: neither for nor against it.
+const HIDDEN: f32 = 1.5;
+
+/// Costs in which a motion pays no more than [`HIDDEN`] for pixels that it moves behind another object.
+///
+/// The dominant motion may be occluded by any object, an object only at pixels labelled as an object so far. Otherwise objects would
+/// grow into the background around others.
+pub(crate) fn with_visibility(
+    level: &Level,
+    motions: &[AffineMotion],
+    costs: &[Plane],
+    labels: &[u8],
+    object_bias: f32,
+) -> Vec<Plane> {
+    let hide = |(k, hidden): (usize, Buffer<bool>)| {
+        let most = most_where_hidden(k, object_bias);
+        let mut out = costs[k].clone();
+        for (c, _) in out.values_mut().iter_mut().zip(&hidden).filter(|(_, hidden)| **hidden) {
+            *c = c.min(most);
+        }
+        out
+    };
+    hidden_under(level, motions, labels).into_iter().enumerate().map(hide).collect()
+}
+
+/// Largest cost of a label where its motion moves a pixel behind another object.
+pub(crate) fn most_where_hidden(label: usize, object_bias: f32) -> f32 {
+    HIDDEN + if label == 0 { 0.0 } else { object_bias }
+}
+
+/// For every motion, the pixels at which [`with_visibility`] limits its cost.
+pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Buffer<bool>> {
+    let landed = landed(level, motions, labels);
+    let hidden = |k: usize| {
+        let covered = covered(level, &motions[k], &landed, k);
+        covered.values().iter().zip(labels).map(|(covered, label)| *covered > 0.5 && (k == 0 || *label != 0)).collect()
+    };
+    (0..motions.len()).map(hidden).collect()
+}
+
+/// Pixels labelled dominant that the dominant motion moves behind an object.
+pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Buffer<bool> {
+    let covered = covered(level, &motions[0], &landed(level, motions, labels), 0);
+    covered.values().iter().zip(labels).map(|(&covered, &label)| label == 0 && covered > 0.5).collect()
+}
+
+/// The masks of all objects where they are in the second frame, with their labels.
+fn landed(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<(usize, Plane)> {
+    (1..motions.len()).map(|k| (k, moved_mask(level, &motions[k], labels, k))).collect()
+}
+
+/// How far the position that a motion moves each pixel to is covered by objects other than `own`, 0…1.
+fn covered(level: &Level, motion: &AffineMotion, landed: &[(usize, Plane)], own: usize) -> Plane {
+    let mut cover = Plane::filled(level.width(), level.height(), 0.0);
+    for (_, mask) in landed.iter().filter(|(other, _)| *other != own) {
+        each_with(cover.values_mut(), [mask.values()], |c, [m]| if m > c { m } else { c });
+    }
+    warp(&cover, &level.scaled(motion))
+}
+
+/// The eroded mask of an object, moved to its place in the second frame.
+fn moved_mask(level: &Level, motion: &AffineMotion, labels: &[u8], label: usize) -> Plane {
+    let mask = eroded(&mask_of(labels, label as u8, level.width(), level.height()));
+    match inverse(&level.scaled(motion)) {
+        Some(back) => warp(&mask, &back),
+        None => mask,
+    }
+}

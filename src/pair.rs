@@ -1,0 +1,173 @@
+//! The image pipeline: the stages that turn two frames into masks, in order.
+
+mod correction;
+mod evidence;
+mod hypothesis;
+mod labels;
+mod report;
+mod settings;
+
+pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
+pub use report::{PairEvidence, Segmentation, SegmentedMotion};
+#[doc(hidden)]
+pub use settings::Part;
+
+use crate::error::{Error, Result};
+use crate::estimation::alignment::{Alignment, Support, align};
+use crate::estimation::dominant::dominant_motion;
+use crate::frame::Frame;
+use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::motion::AffineMotion;
+use crate::options::SegmentOptions;
+use crate::progress::{Progress, Stages};
+use crate::random::Random;
+use crate::view::brightness::Photometric;
+use crate::view::cost::{View, noise};
+use crate::view::level::{Level, levels};
+use crate::workspace;
+use settings::Settings;
+
+/// The stages of [`segment_pair`], in order.
+const STAGES: &[&str] =
+    &["frames", "dominant", "measurements", "algebra", "selection", "refinement", "labels", "masks"];
+
+/// Segments two frames: how many things move, how each one moves and which pixels belong to it.
+///
+/// `before` is the frame before the first. It helps to label pixels that are occluded in the second.
+///
+/// # Errors
+/// [`Error::InvalidOption`], [`Error::FrameSizeMismatch`].
+pub fn segment_pair(
+    first: &Frame,
+    second: &Frame,
+    before: Option<&Frame>,
+    options: &SegmentOptions,
+    progress: Progress<'_>,
+) -> Result<Segmentation> {
+    segment_with(first, second, before, options, Settings::new(options, size(first)), progress)
+}
+
+/// [`segment_pair`] without one part of the pipeline, for ablation studies.
+///
+/// # Errors
+/// As [`segment_pair`].
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub fn segment_pair_without(
+    part: Part,
+    first: &Frame,
+    second: &Frame,
+    before: Option<&Frame>,
+    options: &SegmentOptions,
+) -> Result<Segmentation> {
+    let mut settings = Settings { without: Some(part), ..Settings::new(options, size(first)) };
+    if part == Part::Coherence {
+        settings.coherence.smoothness = 0.0;
+    }
+    segment_with(first, second, before, options, settings, &mut |_| {})
+}
+
+fn segment_with(
+    first: &Frame,
+    second: &Frame,
+    before: Option<&Frame>,
+    options: &SegmentOptions,
+    settings: Settings,
+    progress: Progress<'_>,
+) -> Result<Segmentation> {
+    options.motions.validate()?;
+    check_sizes(first, second, before)?;
+    let _call = workspace::begin([first.width(), first.height()]);
+    let mut stages = Stages::new(STAGES, progress);
+    let mut random = Random::from_seed(options.seed);
+
+    stages.begin("frames");
+    let pyramid = settings.pyramid(first);
+    // Nobody else needs the pyramids of the other frames: the pair has their planes for itself.
+    let mut pair =
+        Pair::new(first, &pyramid, &settings.pyramid(second), before.map(|f| settings.pyramid(f)).as_ref(), &settings);
+    stages.begin("dominant");
+    let dominant = pair.find_dominant(settings.has(Part::Brightness));
+    let found = hypothesis::best(&pair, dominant, &settings, &mut random, &mut stages);
+    stages.begin("refinement");
+    let found = hypothesis::refine(&pair, found, &settings);
+    stages.begin("labels");
+    let labelled = labels::label(&pair, found, &settings);
+    stages.begin("masks");
+    Ok(report::report(&pair, labelled, &settings, first, second, options))
+}
+
+fn size(frame: &Frame) -> [usize; 2] {
+    [frame.width(), frame.height()]
+}
+
+fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<()> {
+    let size = (first.width(), first.height());
+    for other in [Some(second), before].into_iter().flatten() {
+        if (other.width(), other.height()) != size {
+            return Err(Error::FrameSizeMismatch { first: size, second: (other.width(), other.height()) });
+        }
+    }
+    Ok(())
+}
+
+/// The levels of a pair, from the working size down. The frame before, if there is one, is a third view of the same scene; a pair
+/// of the same frames the other way round is one with the frames swapped.
+pub(crate) struct Pair<'a> {
+    /// Level 0 is the working size.
+    levels: Vec<Level>,
+    /// Index of the level on which the dominant motion is found and others are proposed.
+    base: usize,
+    /// Index of the level on which motions are first selected, the base level or a finer one.
+    selection: usize,
+    /// Index of the level on which the draft labels are solved.
+    draft: usize,
+    /// What the labels follow, at the sizes of the levels down to the base or the draft level.
+    appearance: &'a Appearance,
+    /// Full-size pixels per working pixel.
+    reduction: f64,
+}
+
+impl<'a> Pair<'a> {
+    /// `pyramid` is that of `first`.
+    pub(crate) fn new(
+        first: &Frame,
+        pyramid: &'a FramePyramid,
+        second: &FramePyramid,
+        before: Option<&FramePyramid>,
+        settings: &Settings,
+    ) -> Pair<'a> {
+        let levels = levels(&pyramid.levels, &second.levels, before.map(|before| &before.levels[..]));
+        let within =
+            |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
+        let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
+        let appearance = pyramid.appearance(first, base.max(draft) + 1);
+        Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
+    }
+
+    /// Finds the dominant motion, measures the noise and, with `brightness`, removes the change of brightness from every view.
+    fn find_dominant(&mut self, brightness: bool) -> AffineMotion {
+        let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
+        for level in &mut self.levels {
+            photometric.remove_from(level, View::Second);
+        }
+        if motion != AffineMotion::STATIC {
+            let base = &mut self.levels[self.base];
+            base.noise = noise(base, &motion);
+            let how = Alignment::of_region(3, 1e-3);
+            motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
+        }
+        for level in &mut self.levels {
+            level.noise = noise(level, &motion);
+        }
+        let base = &self.levels[self.base];
+        if brightness && let Some(photometric) = Photometric::of_frame_before(base, &motion) {
+            self.levels.iter_mut().for_each(|level| photometric.remove_from(level, View::Before));
+        }
+        motion
+    }
+
+    fn finest(&self) -> &Level {
+        &self.levels[0]
+    }
+}

@@ -1,0 +1,46 @@
+//! Evidence for the number of motions: description lengths with fewer and with more motions than were found.
+
+use super::Pair;
+use super::labels::{Labelled, borders, estimation_costs};
+use super::settings::Settings;
+use crate::answer::Candidate;
+use crate::frame::Plane;
+use crate::labelling::regions::description::{length, price_of_motion, worth};
+use crate::labelling::solver::Solver;
+use crate::labelling::terms::data::label_costs;
+use crate::motion::AffineMotion;
+use crate::options::MAX_MOTIONS;
+
+/// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
+/// solved for each number at the base level, without costs of occlusion and colour.
+pub(super) fn evidence(pair: &Pair<'_>, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
+    let level = &pair.levels[pair.base];
+    let width = level.width();
+    let n = labelled.motions.len();
+    let motions: Vec<AffineMotion> =
+        labelled.motions.iter().chain(&labelled.runner_up).copied().take(MAX_MOTIONS).collect();
+    let mut raw = estimation_costs(level, &motions);
+    let mut costs = label_costs(level, &motions, settings.coherence);
+    let borders = borders(pair, pair.base, settings);
+    let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
+    let one_more = (motions.len() > n).then(|| length(&raw, &solve(&costs), width));
+    raw.truncate(n);
+    costs.truncate(n);
+    let mut labels = solve(&costs);
+    let mut candidates = vec![Candidate { motions: n, score: length(&raw, &labels, width) }];
+    if n < MAX_MOTIONS {
+        // A motion without pixels costs its six parameters.
+        let unused = candidates[0].score + price_of_motion(labels.len());
+        candidates.insert(0, Candidate { motions: n + 1, score: one_more.map_or(unused, |score| score.min(unused)) });
+    }
+    while raw.len() > 1 {
+        let worths = worth(&raw, &labels, width);
+        let Some((weakest, _)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
+        raw.remove(weakest);
+        costs.remove(weakest);
+        labels = solve(&costs);
+        candidates.push(Candidate { motions: raw.len(), score: length(&raw, &labels, width) });
+    }
+    candidates.reverse();
+    candidates
+}

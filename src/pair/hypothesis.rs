@@ -1,0 +1,115 @@
+//! The motions of a pair: they are proposed and selected under each hypothesis about the dominant motion, then refined level by level.
+
+use super::Pair;
+use super::settings::{Part, Settings};
+use crate::estimation::proposal::algebraic::from_algebra;
+use crate::estimation::proposal::local_flow::local_flow;
+use crate::estimation::proposal::tiles::from_tiles;
+use crate::estimation::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
+use crate::motion::AffineMotion;
+use crate::progress::Stages;
+use crate::random::Random;
+use crate::view::cost::total;
+use crate::view::level::Level;
+
+/// The hypothesis of a static background is tried only if adding the zero motion to those found lowers the cost below this share.
+/// In frames with large flat areas, one affine motion fitted across several objects can explain more than the static background does;
+/// much of the background is then left unexplained.
+const STATIC_GAIN_SHARE: f64 = 0.95;
+/// The hypothesis wins only if its motions together cost less than this share of those found with the dominant motion. A background
+/// that moves by less than a pixel costs about the same as a static one plus one more motion.
+const CLEARLY_CHEAPER: f64 = 0.9;
+
+impl Settings {
+    /// How motions are added at the selection level (0) and at finer levels (1).
+    fn deflation(&self, stage: usize) -> Deflation {
+        Deflation { price: self.price[stage], most: self.most, tries: self.tries, window: self.gain_window }
+    }
+
+    fn refit(&self, level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
+        refit(level, selected, if self.has(Part::Refinement) { rounds } else { 0 });
+    }
+}
+
+/// The selected motions, and the best proposal that was rejected.
+pub(super) struct Found {
+    pub(super) selected: Vec<ScoredMotion>,
+    pub(super) runner_up: Option<AffineMotion>,
+}
+
+/// The motions selected with the dominant motion as found or, where those are clearly cheaper, with a static background.
+pub(super) fn best(
+    pair: &Pair<'_>,
+    dominant: AffineMotion,
+    settings: &Settings,
+    random: &mut Random,
+    stages: &mut Stages<'_>,
+) -> Found {
+    let (mut winner, least) = with_dominant(pair, dominant, None, settings, random, stages);
+    let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
+    if other && static_is_missing(&pair.levels[pair.selection], &winner.selected) {
+        let (found, cost) = with_dominant(pair, AffineMotion::STATIC, Some(dominant), settings, random, stages);
+        if cost < CLEARLY_CHEAPER * least {
+            winner = found;
+        }
+    }
+    winner
+}
+
+/// Whether the zero motion explains much that no selected motion does.
+fn static_is_missing(level: &Level, selected: &[ScoredMotion]) -> bool {
+    let found = smallest_cost(selected);
+    let mut with_static = found.clone();
+    ScoredMotion::new(level, AffineMotion::STATIC).lower(&mut with_static);
+    total(&with_static) < STATIC_GAIN_SHARE * total(&found)
+}
+
+/// The motions selected under one hypothesis, and their cost.
+fn with_dominant(
+    pair: &Pair<'_>,
+    dominant: AffineMotion,
+    rival: Option<AffineMotion>,
+    settings: &Settings,
+    random: &mut Random,
+    stages: &mut Stages<'_>,
+) -> (Found, f64) {
+    let level = &pair.levels[pair.base];
+    stages.begin("measurements");
+    let flow = local_flow(&pair.levels, &dominant, pair.base);
+    stages.begin("algebra");
+    let mut proposals = Vec::new();
+    if settings.has(Part::Algebra) {
+        proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements, random);
+    }
+    if settings.has(Part::Windows) {
+        proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
+    }
+    proposals.extend(rival);
+    stages.begin("selection");
+    let level = &pair.levels[pair.selection];
+    let mut selected = vec![ScoredMotion::new(level, dominant)];
+    let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(0));
+    settings.refit(level, &mut selected, 1);
+    let cost = total(&smallest_cost(&selected)) + settings.hypothesis_price * selected.len() as f64;
+    (Found { selected, runner_up }, cost)
+}
+
+/// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels.
+pub(super) fn refine(pair: &Pair<'_>, found: Found, settings: &Settings) -> Found {
+    let Found { mut selected, mut runner_up } = found;
+    settings.refit(&pair.levels[pair.selection], &mut selected, 2);
+    if settings.least == 1 {
+        prune(&mut selected, settings.price[0]);
+    }
+    for level in pair.levels[..pair.selection].iter().rev() {
+        let level = &level.thinned(2);
+        selected = selected.iter().map(|l| ScoredMotion::new(level, l.motion)).collect();
+        if settings.has(Part::FinerLevels) {
+            let how = Deflation { tries: 2, ..settings.deflation(1) };
+            let proposals = fine_proposals(level, &selected);
+            runner_up = add_motions(level, &mut selected, &proposals, how).or(runner_up);
+        }
+        settings.refit(level, &mut selected, 1);
+    }
+    Found { selected, runner_up }
+}

@@ -1,0 +1,378 @@
+//! The label of every working pixel.
+//!
+//! Draft labels are solved on a coarser level. There, motions that do not pay for themselves are pruned, costs are corrected for
+//! occlusion, and regions are merged and split. The labels are then sharpened at the working size, and small components removed.
+
+use super::Pair;
+use super::hypothesis::Found;
+use super::settings::{Part, Settings};
+use crate::components::absorb_small;
+use crate::frame::Plane;
+use crate::labelling::regions::description::{SMALLEST_SHARE, counts, price_of_motion, worth};
+use crate::labelling::regions::merging::best_merger;
+use crate::labelling::regions::splitting::{split_bodies, split_components};
+use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
+use crate::labelling::solver::Solver;
+use crate::labelling::terms::colour::{ColourPrices, add_colours};
+use crate::labelling::terms::data::LabelCosts;
+use crate::labelling::terms::smoothness::Borders;
+use crate::labelling::terms::visibility::{hidden_under, with_visibility};
+use crate::motion::AffineMotion;
+use crate::view::cost::{CostModel, cost};
+use crate::view::level::Level;
+use crate::workspace::Buffer;
+
+/// After a split, an object competes only this far around its region, as a share of the square root of its pixel count …
+const COMPETITION_SHARE: f64 = 0.25;
+/// … and at least this many pixels of the working size.
+const SMALLEST_COMPETITION: usize = 12;
+/// Weight of a pixel of a coarser level, in working pixels. It stands for four, but their noise is not independent.
+const COARSE_PIXEL: f32 = 2.0;
+/// Smoothness on a coarser level, as a share of that at the working size: borders have half as many pixels.
+const COARSE_SMOOTHNESS: f32 = 0.7;
+
+/// Motions (pixels of the working size) and the label of each pixel.
+pub(super) struct Labelled {
+    pub(super) motions: Vec<AffineMotion>,
+    pub(super) labels: Buffer<u8>,
+    /// The best motion that was rejected, here or during selection, because it did not pay for itself.
+    pub(super) runner_up: Option<AffineMotion>,
+}
+
+/// A labelling in progress: the motions, their costs and the current labels.
+struct LabelState<'a> {
+    level: &'a Level,
+    settings: &'a Settings,
+    borders: Borders,
+    motions: Vec<AffineMotion>,
+    /// Label costs, corrected for occlusion.
+    costs: Vec<Plane>,
+    /// Label costs before the correction for occlusion.
+    uncorrected: LabelCosts,
+    /// Estimation costs, from which description lengths are computed.
+    raw: Vec<Plane>,
+    labels: Buffer<u8>,
+    /// For every label, the pixels at which it may not compete; empty if all labels compete everywhere.
+    excluded: Vec<Buffer<bool>>,
+    /// The motion pruned last, or the best one rejected by the selection.
+    runner_up: Option<AffineMotion>,
+}
+
+pub(super) fn label(pair: &Pair<'_>, found: Found, settings: &Settings) -> Labelled {
+    let mut state = LabelState::new(pair, found, settings);
+    state.solve();
+    state.prune();
+    state.try_static_background();
+    state.correct_occlusion();
+    state.merge();
+    if state.split() {
+        state.prune();
+        state.merge();
+    }
+    if pair.draft == 0 {
+        state.add_colour_costs(pair);
+        state.solve_final();
+    } else {
+        state.sharpen(pair);
+    }
+    let width = pair.finest().width();
+    state.clean(width);
+    let LabelState { motions, labels, runner_up, .. } = state;
+    Labelled { motions, labels, runner_up }
+}
+
+/// Smoothness weights on a level.
+pub(super) fn borders(pair: &Pair<'_>, index: usize, settings: &Settings) -> Borders {
+    let level = &pair.levels[index];
+    let mut coherence = settings.coherence;
+    coherence.smoothness *= if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
+    if settings.has(Part::Edges) {
+        Borders::new(&pair.appearance.pictures[index], level.noise, coherence)
+    } else {
+        Borders::uniform(level.width(), level.height(), coherence)
+    }
+}
+
+/// Estimation costs of every motion on a level, in units of working pixels.
+pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
+    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
+    if level.index > 0 {
+        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= nats_of_pixel(level));
+    }
+    raw
+}
+
+/// Weight of a pixel of a level, in working pixels.
+fn nats_of_pixel(level: &Level) -> f32 {
+    if level.index > 0 { COARSE_PIXEL } else { 1.0 }
+}
+
+impl<'a> LabelState<'a> {
+    fn new(pair: &'a Pair<'_>, found: Found, settings: &'a Settings) -> LabelState<'a> {
+        let level = &pair.levels[pair.draft];
+        let borders = borders(pair, pair.draft, settings);
+        let motions: Vec<AffineMotion> = found.selected.into_iter().map(|scored| scored.motion).collect();
+        let mut state = LabelState {
+            level,
+            settings,
+            borders,
+            costs: Vec::new(),
+            uncorrected: LabelCosts::new(level, &motions, settings.coherence),
+            raw: Vec::new(),
+            labels: Buffer::filled(level.width() * level.height(), 0),
+            excluded: Vec::new(),
+            motions,
+            runner_up: found.runner_up,
+        };
+        state.reset_costs();
+        state
+    }
+
+    fn size(&self) -> (usize, usize) {
+        (self.level.width(), self.level.height())
+    }
+
+    /// Computes the costs of all motions anew.
+    fn recompute_costs(&mut self) {
+        self.uncorrected = LabelCosts::new(self.level, &self.motions, self.settings.coherence);
+        self.reset_costs();
+    }
+
+    fn reset_costs(&mut self) {
+        self.raw = estimation_costs(self.level, &self.motions);
+        self.costs = self.uncorrected.costs.clone();
+    }
+
+    fn solve(&mut self) {
+        self.labels = self.borders.solve(&self.costs, self.settings.coherence.draft_solver);
+    }
+
+    fn uses_colour(&self) -> bool {
+        self.motions.len() > 1 && self.settings.has(Part::Colour)
+    }
+
+    /// Adds the costs of the colours.
+    fn add_colour_costs(&mut self, pair: &Pair<'_>) {
+        if self.uses_colour() {
+            add_colours(&mut self.costs, &pair.appearance.palette, &self.labels);
+        }
+    }
+
+    /// Solves for the final labels: exactly if there are two, nearly so otherwise.
+    fn solve_final(&mut self) {
+        let solver = match self.motions.len() {
+            2 => Solver::Expansion { sweeps: 1 },
+            _ => self.settings.coherence.solver,
+        };
+        self.labels = self.borders.solve(&self.costs, solver);
+    }
+
+    /// Turns draft labels into labels of the working size.
+    fn sharpen(&mut self, pair: &Pair<'_>) {
+        let step = 1 << pair.draft;
+        let colours = self
+            .uses_colour()
+            .then(|| ColourPrices::learned(&pair.appearance.palette.thinned(step), &self.costs, &self.labels));
+        let visible = self.motions.len() < 2 || !self.settings.has(Part::Visibility);
+        let hidden = if visible { Vec::new() } else { hidden_under(self.level, &self.motions, &self.labels) };
+        let coarse = CoarseLabelling {
+            width: self.level.width(),
+            labels: &self.labels,
+            step,
+            variance_inflation: &self.uncorrected.variance_inflation,
+            shares: self.uncorrected.shares.as_ref(),
+            hidden: &hidden,
+            excluded: &self.excluded,
+            colours: colours.as_ref(),
+        };
+        let fine = WorkingLevel {
+            level: pair.finest(),
+            picture: self.settings.has(Part::Edges).then(|| &pair.appearance.pictures[0]),
+            palette: &pair.appearance.palette,
+            motions: &self.motions,
+            coherence: self.settings.coherence,
+        };
+        self.labels = sharpened(&coarse, &fine, self.settings.coherence.sharpening);
+    }
+
+    /// Removes the least worthy motion and solves again, as long as there is one that does not pay for itself.
+    fn prune(&mut self) {
+        let most = self.settings.most;
+        while self.motions.len() > self.settings.least
+            && (self.settings.has(Part::ModelSelection) || self.motions.len() > most)
+        {
+            let worths = worth(&self.raw, &self.labels, self.size().0);
+            let Some((weakest, value)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
+            if *value > 0.0 && self.motions.len() <= most {
+                break;
+            }
+            self.runner_up = Some(self.motions[weakest]);
+            self.remove(weakest);
+            // Only the pixels of the removed motion are undecided.
+            self.labels = self.borders.solve(&self.costs, Solver::LIGHT);
+        }
+    }
+
+    fn remove(&mut self, k: usize) {
+        self.motions.remove(k);
+        self.costs.remove(k);
+        self.uncorrected.costs.remove(k);
+        self.raw.remove(k);
+        if k < self.excluded.len() {
+            self.excluded.remove(k);
+        }
+    }
+
+    /// Corrects for occlusion. Takes several rounds, since what is occluded depends on the masks.
+    fn correct_occlusion(&mut self) {
+        if self.motions.len() < 2 || !self.settings.has(Part::Visibility) {
+            return;
+        }
+        for _ in 0..self.settings.visibility_rounds {
+            self.update_occlusion();
+            self.solve();
+        }
+        self.prune();
+    }
+
+    /// Updates the costs: no motion pays for pixels that are occluded in the second frame.
+    fn update_occlusion(&mut self) {
+        let object_bias = self.settings.coherence.object_bias;
+        self.costs = with_visibility(self.level, &self.motions, &self.uncorrected.costs, &self.labels, object_bias);
+    }
+
+    /// Makes the background static if that shortens the description: the zero motion costs no parameters. A dominant motion that was
+    /// fitted across objects on a flat background is recognised here, once the objects have motions of their own.
+    fn try_static_background(&mut self) {
+        if self.motions[0] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
+            return;
+        }
+        let own = |plane: &Plane| -> f64 {
+            let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| **label == 0);
+            pixels.map(|(cost, _)| f64::from(*cost)).sum()
+        };
+        let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
+        if 0.5 * (at_rest - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
+            self.motions[0] = AffineMotion::STATIC;
+            self.recompute_costs();
+            self.solve();
+            self.prune();
+        }
+    }
+
+    /// Merges regions that one motion explains better than two.
+    fn merge(&mut self) {
+        while self.motions.len() > self.settings.least && self.settings.has(Part::ModelSelection) {
+            let pixel = nats_of_pixel(self.level);
+            let Some(merger) = best_merger(self.level, &self.motions, &self.raw, &self.labels, pixel) else { break };
+            let [kept, gone] = merger.labels;
+            self.motions[kept] = merger.motion;
+            self.motions.remove(gone);
+            for label in &mut self.labels {
+                *label = match usize::from(*label) {
+                    l if l == gone => kept as u8,
+                    l if l > gone => *label - 1,
+                    _ => *label,
+                };
+            }
+            if gone < self.excluded.len() {
+                let other = self.excluded.remove(gone);
+                self.excluded[kept].iter_mut().zip(&other).for_each(|(excluded, other)| *excluded &= other);
+            }
+            self.recompute_costs();
+            self.add_exclusion_costs();
+            self.update_occlusion();
+            self.solve();
+        }
+    }
+
+    /// Splits regions that contain several bodies. Returns whether there were any.
+    fn split(&mut self) -> bool {
+        if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
+            return false;
+        }
+        let level = self.level;
+        self.clean(level.width());
+        let most = self.settings.most + 3;
+        let parts = split_components(level, &mut self.motions, &mut self.labels, most);
+        let bodies = split_bodies(level, &mut self.motions, &mut self.labels, most);
+        if !(parts || bodies) {
+            return false;
+        }
+        self.recompute_costs();
+        self.restrict_to_surroundings();
+        self.update_occlusion();
+        self.solve();
+        true
+    }
+
+    /// Lets objects compete only near their own regions, so that two bodies with similar motions do not take each other's pixels.
+    fn restrict_to_surroundings(&mut self) {
+        let (width, height) = self.size();
+        let sizes = counts(&self.labels, self.motions.len());
+        self.excluded = vec![Buffer::filled(self.labels.len(), false)];
+        for k in 1..self.motions.len() {
+            let smallest = SMALLEST_COMPETITION >> self.level.index;
+            let reach = smallest.max((COMPETITION_SHARE * (sizes[k] as f64).sqrt()) as usize);
+            let near = near_label(&self.labels, k as u8, width, height, reach);
+            self.excluded.push(near.iter().map(|near| !near).collect());
+        }
+        self.add_exclusion_costs();
+    }
+
+    /// Makes labels expensive where they may not compete.
+    fn add_exclusion_costs(&mut self) {
+        for (cost, excluded) in self.uncorrected.costs.iter_mut().zip(&self.excluded) {
+            let pixels = cost.values_mut().iter_mut().zip(excluded);
+            pixels.filter(|(_, excluded)| **excluded).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+        }
+    }
+
+    /// Gives small components to the labels around them and removes motions without pixels. Rows of labels are `width` long.
+    fn clean(&mut self, width: usize) {
+        let smallest = (SMALLEST_SHARE * self.labels.len() as f64) as usize;
+        absorb_small(&mut self.labels, width, smallest);
+        let sizes = counts(&self.labels, self.motions.len());
+        let mut next = 0u8;
+        let renumbered: Vec<u8> = (0..self.motions.len())
+            .map(|k| {
+                let number = next;
+                if k == 0 || sizes[k] > 0 {
+                    next += 1;
+                }
+                number
+            })
+            .collect();
+        self.labels.iter_mut().for_each(|l| *l = renumbered[usize::from(*l)]);
+        for k in (1..sizes.len()).rev() {
+            if sizes[k] == 0 {
+                self.remove(k);
+            }
+        }
+    }
+}
+
+/// Which pixels lie within `reach` of a label in Chebyshev distance.
+fn near_label(labels: &[u8], label: u8, width: usize, height: usize, reach: usize) -> Buffer<bool> {
+    let spread = |line: &mut dyn FnMut(usize) -> (bool, usize), length: usize, out: &mut [bool]| {
+        let mut last: Option<usize> = None;
+        for k in 0..length {
+            let (set, p) = line(k);
+            if set {
+                last = Some(k);
+            }
+            out[p] |= last.is_some_and(|l| k - l <= reach);
+        }
+    };
+    let mut rows = Buffer::filled(labels.len(), false);
+    for y in 0..height {
+        spread(&mut |k| (labels[y * width + k] == label, y * width + k), width, &mut rows);
+        spread(&mut |k| (labels[y * width + width - 1 - k] == label, y * width + width - 1 - k), width, &mut rows);
+    }
+    let mut near = Buffer::filled(labels.len(), false);
+    for x in 0..width {
+        spread(&mut |k| (rows[k * width + x], k * width + x), height, &mut near);
+        spread(&mut |k| (rows[(height - 1 - k) * width + x], (height - 1 - k) * width + x), height, &mut near);
+    }
+    near
+}

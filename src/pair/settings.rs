@@ -1,0 +1,175 @@
+//! Every number of the pipeline that depends on the quality, an option or the size of the frames. The values come from measurements
+//! on generated scenes and on real pairs (docs/masks.md). Numbers that never change are constants beside the code that uses them.
+
+use crate::frame::pyramid::FramePyramid;
+use crate::frame::{Frame, MIN_SIDE};
+use crate::labelling::coherence::Coherence;
+use crate::labelling::solver::Solver;
+use crate::options::{MotionCount, Quality, SegmentOptions};
+
+/// Parts of the pipeline that can be left out one at a time, to measure what each is worth. Only for that: without the feature
+/// `ablation` all are there, and nothing promises that they stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Gain and bias between the frames.
+    Brightness,
+    /// The hypothesis that nothing but objects moves.
+    StaticHypothesis,
+    /// Proposals from the multibody constraint.
+    Algebra,
+    /// Proposals from single windows.
+    Windows,
+    /// Proposals and selection on levels finer than that of the first selection.
+    FinerLevels,
+    /// Motions refined on the pixels where they win, after each stage of the selection.
+    Refinement,
+    /// Cheaper borders along edges of the image.
+    Edges,
+    /// Borders that cost anything at all.
+    Coherence,
+    /// Costs corrected for occlusion.
+    Visibility,
+    /// Regions split into the bodies they consist of.
+    Splitting,
+    /// Motions taken away that do not pay for their description.
+    ModelSelection,
+    /// What the colours say.
+    Colour,
+    /// Enlarging along the edges of the full frame.
+    GuidedEnlarging,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Settings {
+    /// How often the frames are halved to reach the working size.
+    pub(crate) halvings: usize,
+    /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
+    pub(crate) base_side: usize,
+    /// Longer side of the level on which motions are first selected at most, pixels.
+    pub(crate) selection_side: usize,
+    /// Longer side of the level on which labels are drafted at most, pixels.
+    pub(crate) draft_side: usize,
+    /// The coarsest level keeps the shorter side at least this long, pixels.
+    pub(crate) smallest_side: usize,
+    /// Highest degree of the multibody polynomial.
+    pub(crate) degrees: usize,
+    /// Measurements that the polynomial is fitted to, at most.
+    pub(crate) measurements: usize,
+    /// Proposals from single windows, at most.
+    pub(crate) tiles: usize,
+    /// Proposals tried in earnest per round of the selection.
+    pub(crate) tries: usize,
+    /// Gain that pays for a motion in the first selection and at finer levels (costs summed over the pixels looked at).
+    pub(crate) price: [f64; 2],
+    /// Price of a motion when two hypotheses about the dominant one are compared.
+    pub(crate) hypothesis_price: f64,
+    /// Largest number of motions.
+    pub(crate) most: usize,
+    /// Number of motions below which none is taken away again.
+    pub(crate) least: usize,
+    /// Standard deviation of the window over which the gain of a motion is gathered, pixels looked at.
+    pub(crate) gain_window: f32,
+    /// How often labels are corrected for occlusion.
+    pub(crate) visibility_rounds: usize,
+    /// How labels hold together.
+    pub(crate) coherence: Coherence,
+    /// What is left out.
+    #[cfg(feature = "ablation")]
+    pub(crate) without: Option<Part>,
+}
+
+/// Longer side of the working size at most, pixels.
+const WORK_SIDE_BEST: usize = 448;
+/// The same with quality `fast`.
+const WORK_SIDE_FAST: usize = 320;
+
+/// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.
+fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
+    let (mut longer, mut shorter, mut halvings) = (width.max(height), width.min(height), 0);
+    while longer > work_side && shorter >= 2 * MIN_SIDE {
+        (longer, shorter) = (longer.div_ceil(2), shorter.div_ceil(2));
+        halvings += 1;
+    }
+    halvings
+}
+
+impl Settings {
+    /// The settings for a pair of frames of the given width and height.
+    pub(crate) fn new(options: &SegmentOptions, size: [usize; 2]) -> Settings {
+        let halvings = halvings_to(WORK_SIDE_BEST, size);
+        // Halving averages the noise; what remains is model error, which neighbours share. Motions are then best selected at the working
+        // size itself, with a higher smoothness. For frames at their original size, a coarser level averages the noise.
+        let (fine_side, smoothness) = if halvings > 0 { (448, 12.0) } else { (320, 8.0) };
+        let best = Settings {
+            halvings,
+            base_side: 224,
+            selection_side: fine_side,
+            draft_side: fine_side,
+            smallest_side: 24,
+            degrees: 3,
+            measurements: 2000,
+            tiles: 48,
+            tries: 6,
+            price: [60.0, 30.0],
+            hypothesis_price: 300.0,
+            most: 7,
+            least: 1,
+            gain_window: 2.0,
+            visibility_rounds: 2,
+            coherence: Coherence {
+                smoothness,
+                object_bias: 0.05,
+                draft_solver: Solver::FAST,
+                solver: Solver::BEST,
+                sharpening: Solver::BEST,
+            },
+            #[cfg(feature = "ablation")]
+            without: None,
+        };
+        let mut settings = match options.quality {
+            Quality::Best => best,
+            Quality::Fast => Settings {
+                halvings: halvings_to(WORK_SIDE_FAST, size),
+                // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
+                selection_side: 224,
+                draft_side: 224,
+                degrees: 2,
+                measurements: 1000,
+                tiles: 24,
+                tries: 1,
+                visibility_rounds: 1,
+                gain_window: 1.5,
+                coherence: Coherence {
+                    smoothness: if halvings_to(WORK_SIDE_FAST, size) > 1 { 12.0 } else { 8.0 },
+                    solver: Solver::FAST,
+                    sharpening: Solver::LIGHT,
+                    ..best.coherence
+                },
+                ..best
+            },
+        };
+        if let MotionCount::Given(n) = options.motions {
+            // The caller knows better than the price: anything that helps is added, nothing needed is taken away.
+            settings.most = n;
+            settings.least = n;
+            settings.price = [1.0, 1.0];
+        }
+        settings
+    }
+
+    /// The pyramid of a frame.
+    pub(crate) fn pyramid(&self, frame: &Frame) -> FramePyramid {
+        FramePyramid::new(frame, self.halvings, self.smallest_side)
+    }
+
+    /// Whether a part takes part.
+    pub(crate) fn has(&self, part: Part) -> bool {
+        #[cfg(feature = "ablation")]
+        return self.without != Some(part);
+        #[cfg(not(feature = "ablation"))]
+        {
+            let _ = part;
+            true
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Photometric change (gain and bias) between the first frame and another view of the scene.
+
+use std::rc::Rc;
+
+use super::cost::{View, inverse, total};
+use crate::frame::Plane;
+use crate::frame::warp::Footprint;
+use crate::motion::AffineMotion;
+use crate::view::level::Level;
+
+/// Change of brightness between the frames: `I2 ≈ I1 (1 + gain/128) + bias`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Photometric {
+    /// Grey levels.
+    pub(crate) bias: f64,
+    /// Grey levels at a grey level of 128.
+    pub(crate) gain: f64,
+}
+
+/// Smallest and largest factor of the gain.
+const GAINS: (f64, f64) = (0.7, 1.4);
+/// Reweighted least squares steps with a known motion; three settle to a tenth of a grey level.
+const STEPS: usize = 3;
+/// Squared residual, in noise variances, at which a pixel's weight has fallen to a quarter.
+const ROBUSTNESS: f64 = 4.0;
+
+impl Photometric {
+    /// A first guess from the mean and standard deviation of both frames.
+    pub(crate) fn from_moments(first: &Plane, view: &Plane) -> Photometric {
+        let (first_mean, first_deviation) = mean_and_deviation(first);
+        let (view_mean, view_deviation) = mean_and_deviation(view);
+        let gain = (view_deviation / first_deviation.max(1e-3)).clamp(GAINS.0, GAINS.1);
+        Photometric { bias: view_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
+    }
+
+    /// Refined between the first frame and the second under the zero motion.
+    pub(crate) fn refined_at_rest(mut self, level: &Level) -> Photometric {
+        for _ in 0..STEPS {
+            self = self.step(level, |x, y| Some(level.second.at(x * level.stride, y * level.stride)));
+        }
+        self
+    }
+
+    /// That of the frame before the first, given the motion (of the working frame) from the first frame to the second. None if the
+    /// motion is singular or there is no frame before.
+    pub(crate) fn of_frame_before(level: &Level, motion: &AffineMotion) -> Option<Photometric> {
+        let view = level.before.as_deref()?;
+        let scaled = level.scaled(&inverse(motion)?);
+        let sample = |x: usize, y: usize| {
+            let (px, py) = level.path(&scaled, x, y).at(0);
+            let footprint = Footprint::new(px, py, view.width(), view.height());
+            footprint.inside.then(|| footprint.sample(view.values()))
+        };
+        let start = Photometric::from_moments(&level.first, view);
+        Some((0..STEPS).fold(start, |photometric, _| photometric.step(level, sample)))
+    }
+
+    /// One reweighted least squares step between the pixels of the first frame and the samples of the view that belong to them.
+    fn step(self, level: &Level, sample: impl Fn(usize, usize) -> Option<f32>) -> Photometric {
+        let variance = f64::from(level.noise * level.noise);
+        let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for p in 0..level.first.values().len() {
+            let (x, y) = (p % level.width(), p / level.width());
+            let Some(value) = sample(x, y) else { continue };
+            let first = level.first.values()[p];
+            let i = f64::from(first) / 128.0;
+            let r = f64::from(value) - f64::from(first) - self.bias - self.gain * i;
+            let robust = ROBUSTNESS / (ROBUSTNESS + r * r / variance);
+            let w = robust * robust;
+            q += w;
+            qi += w * i;
+            qii += w * i * i;
+            qr += w * r;
+            qir += w * i * r;
+        }
+        let determinant = q * qii - qi * qi;
+        if determinant <= 1e-9 * q * qii {
+            return Photometric { bias: self.bias + qr / q.max(1e-9), gain: self.gain };
+        }
+        Photometric {
+            bias: self.bias + (qii * qr - qi * qir) / determinant,
+            gain: self.gain + (q * qir - qi * qr) / determinant,
+        }
+    }
+
+    /// Removes the change from a view of a level, `(I − bias) / (1 + gain/128)`, and the gain from its gradients.
+    pub(crate) fn remove_from(self, level: &mut Level, view: View) {
+        let (scale, bias) = ((1.0 / (1.0 + self.gain / 128.0)) as f32, self.bias as f32);
+        let remove = |plane: &mut Rc<Plane>, bias: f32| {
+            Rc::make_mut(plane).values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
+        };
+        match view {
+            View::Second => {
+                remove(&mut level.second, bias);
+                remove(&mut level.second_dx, 0.0);
+                remove(&mut level.second_dy, 0.0);
+            }
+            View::Before => level.before.iter_mut().for_each(|before| remove(before, bias)),
+        }
+    }
+}
+
+fn mean_and_deviation(plane: &Plane) -> (f64, f64) {
+    let n = plane.values().len() as f64;
+    let mean = total(plane) / n;
+    let variance = plane.values().iter().map(|&v| (f64::from(v) - mean) * (f64::from(v) - mean)).sum::<f64>() / n;
+    (mean, variance.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::filter::gaussian;
+    use crate::random::Random;
+    use crate::view::level::build;
+
+    #[test]
+    fn brightness_of_the_frame_before_is_measured_along_the_motion_despite_other_movers() {
+        let mut random = Random::from_seed(3);
+        let texture = gaussian(&Plane::from_fn(100, 60, |_, _| random.uniform(-200.0, 450.0) as f32), 1.0);
+        let first = Plane::from_fn(80, 60, |x, y| texture.at(x + 10, y));
+        // The scene moves by 4 pixels to the right, so it was 4 pixels further left; a fifth of it does something else.
+        let before = Plane::from_fn(80, 60, |x, y| if x < 16 { 90.0 } else { texture.at(x + 14, y) * 0.8 + 12.0 });
+        let level = &build(first.clone(), first, Some(before), 64)[0];
+        let found = Photometric::of_frame_before(level, &AffineMotion::translation(4.0, 0.0)).unwrap();
+        assert!((found.bias - 12.0).abs() < 0.5, "{found:?}");
+        assert!((1.0 + found.gain / 128.0 - 0.8).abs() < 0.01, "{found:?}");
+    }
+}

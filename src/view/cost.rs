@@ -1,0 +1,302 @@
+//! The cost of a motion at a pixel: a robust function of the intensity difference along it, in units of its standard deviation.
+//!
+//! ```text
+//! r  = I2(x + A x) − I1(x)                           intensity difference along the motion
+//! v  = s² q(A, x) + κ² |∇I1|²                         its variance if A is correct: noise, plus a position error of κ pixels
+//! ρ  = e / (1 + e/T),  e = r²/v                       Geman-McClure, saturating at T
+//! ```
+//! `q` corrects for the averaging that bilinear interpolation does to noise: `q = (1 + k(fx) k(fy)) / 2` with
+//! `k(f) = 1 − 2 (1 − c) f (1 − f)`, f the fractional shift and c the correlation of neighbouring noise. Without it a
+//! half-pixel shift beats the true motion in flat areas.
+
+use super::brightness::Photometric;
+use crate::frame::Plane;
+use crate::frame::area::Area;
+use crate::frame::warp::{CHUNK, Footprints};
+use crate::lanes::{LANES, each};
+use crate::motion::AffineMotion;
+use crate::order::median;
+use crate::view::level::Level;
+use crate::workspace::Buffer;
+
+/// The two constants of the cost.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CostModel {
+    /// T: the largest cost, of a pixel that the motion does not explain.
+    pub(crate) truncation: f32,
+    /// κ: standard deviation of the position predicted by a correct motion, pixels.
+    pub(crate) position_sigma: f32,
+}
+
+impl CostModel {
+    /// For estimating motions.
+    pub(crate) const ESTIMATION: CostModel = CostModel { truncation: 4.0, position_sigma: 0.15 };
+    /// For labelling pixels.
+    pub(crate) const LABELS: CostModel = CostModel { truncation: 2.0, position_sigma: 0.15 };
+
+    #[inline(always)]
+    fn of(self, residual: f32, variance: f32) -> f32 {
+        // e / (1 + e/T) with a single division by anything but T.
+        let square = residual * residual;
+        square / (variance + square * (1.0 / self.truncation))
+    }
+
+    /// Neutral cost of a pixel whose displaced position lies outside the view.
+    pub(crate) fn outside(self) -> f32 {
+        0.5 * self.truncation
+    }
+}
+
+/// Noise factor q of interpolation at the fractional shift (fx, fy).
+#[inline(always)]
+fn interpolation_variance(fx: f32, fy: f32, correlation: f32) -> f32 {
+    let c = 2.0 * (1.0 - correlation);
+    0.5 * (1.0 + (1.0 - c * fx * (1.0 - fx)) * (1.0 - c * fy * (1.0 - fy)))
+}
+
+/// The frame that the first one is compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum View {
+    Second,
+    Before,
+}
+
+/// Cost of a motion (of the working frame) at every pixel of a level, between the first frame and the second. A pixel that leaves the
+/// second frame has the neutral cost, even if there is a frame before. Flat areas look alike in any two frames, so with the frame
+/// before a wrong motion would pay nothing for most pixels it moves out of view, and a motion fitted across several objects could
+/// pass for the background.
+pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
+    cost_within(level, &level.area(), motion, model)
+}
+
+/// [`cost`] at the pixels of an area, as a plane of its size.
+#[inline(never)]
+pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
+    let mut plane = cost_in(level, View::Second, area, motion, model);
+    each(plane.values_mut(), |c| if c.is_finite() { c } else { model.outside() });
+    plane
+}
+
+/// Cost of a motion in one view at the pixels of an area; infinite where the displaced position lies outside, or where there is no
+/// such view.
+#[inline(never)]
+pub(crate) fn cost_in(level: &Level, view: View, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
+    match Comparison::new(level, view, motion, model) {
+        Some(comparison) => comparison.plane(area),
+        None => Plane::filled(area.width(), area.height(), f32::INFINITY),
+    }
+}
+
+/// Cost under a change of brightness that has not yet been removed from the second frame.
+pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
+    Comparison {
+        level,
+        view: &level.second,
+        scaled: level.scaled(motion),
+        photometric,
+        model,
+        outside: model.outside(),
+    }
+    .plane(&level.area())
+}
+
+/// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none if the motion is singular.
+#[inline(never)]
+pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
+    let a = &motion.matrix;
+    let (p, q, r, s) = (1.0 + a[0], a[1], a[3], 1.0 + a[4]);
+    let determinant = p * s - q * r;
+    if determinant.abs() < 1e-6 {
+        return None;
+    }
+    let (ip, iq, ir, is) = (s / determinant, -q / determinant, -r / determinant, p / determinant);
+    Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
+}
+
+/// A level's first frame compared with another along a motion.
+pub(crate) struct Comparison<'a> {
+    level: &'a Level,
+    view: &'a Plane,
+    scaled: AffineMotion,
+    photometric: Photometric,
+    model: CostModel,
+    /// Cost of a pixel that leaves the view.
+    outside: f32,
+}
+
+impl<'a> Comparison<'a> {
+    /// A comparison with one view; pixels that leave it have infinite cost. None if there is no such view.
+    pub(crate) fn new(level: &'a Level, view: View, motion: &AffineMotion, model: CostModel) -> Option<Comparison<'a>> {
+        let (view, moved) = match view {
+            View::Second => (&*level.second, *motion),
+            View::Before => (level.before.as_deref()?, inverse(motion)?),
+        };
+        let scaled = level.scaled(&moved);
+        Some(Comparison { level, view, scaled, photometric: Photometric::default(), model, outside: f32::INFINITY })
+    }
+
+    fn plane(&self, area: &Area) -> Plane {
+        let mut plane = Plane::unwritten(area.width(), area.height());
+        for (k, y) in area.rows.clone().enumerate() {
+            self.row(y, area.columns.start, plane.row_mut(k));
+        }
+        plane
+    }
+
+    /// Fills `costs` with those of row y from column `left` on.
+    pub(crate) fn row(&self, y: usize, left: usize, costs: &mut [f32]) {
+        let level = self.level;
+        let (noise, position) = (level.noise * level.noise, self.model.position_sigma * self.model.position_sigma);
+        let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / 128.0) as f32);
+        let correlation = level.noise_correlation();
+        let path = level.path(&self.scaled, left, y);
+        let mut samples = [0.0; CHUNK];
+        let mut at = Footprints::new();
+        let cost = |sample: f32, first: f32, energy: f32, [fx, fy]: [f32; 2]| {
+            let residual = sample - first * (1.0 + gain) - bias;
+            let variance = noise * interpolation_variance(fx, fy, correlation) + position * energy;
+            self.model.of(residual, variance)
+        };
+        let columns = left..left + costs.len();
+        let rows = level.first.row(y)[columns.clone()].chunks(CHUNK).zip(level.energy.row(y)[columns].chunks(CHUNK));
+        for (k, (costs, (first, energy))) in costs.chunks_mut(CHUNK).zip(rows).enumerate() {
+            at.follow(&path, k * CHUNK, costs.len(), self.view.width(), self.view.height());
+            at.sample(self.view.values(), &mut samples);
+            let (blocks, rest) = costs.as_chunks_mut::<LANES>();
+            let ((first, first_rest), (energy, energy_rest)) =
+                (first.as_chunks::<LANES>(), energy.as_chunks::<LANES>());
+            let places = [&samples, &at.fx, &at.fy].map(|values| values.as_chunks::<LANES>().0.iter());
+            let [samples_of, fx_of, fy_of] = places;
+            let done = blocks.as_flattened().len();
+            for (((block, first), energy), ((sample, fx), fy)) in
+                blocks.iter_mut().zip(first).zip(energy).zip(samples_of.zip(fx_of).zip(fy_of))
+            {
+                *block = std::array::from_fn(|l| cost(sample[l], first[l], energy[l], [fx[l], fy[l]]));
+            }
+            for (k, ((c, first), energy)) in rest.iter_mut().zip(first_rest).zip(energy_rest).enumerate() {
+                let k = done + k;
+                *c = cost(samples[k], *first, *energy, [at.fx[k], at.fy[k]]);
+            }
+            if !at.all_inside(costs.len()) {
+                let outside = costs.iter_mut().enumerate().filter(|(k, _)| !at.is_inside(*k));
+                outside.for_each(|(_, cost)| *cost = self.outside);
+            }
+        }
+    }
+}
+
+/// Sum of a cost plane.
+pub(crate) fn total(plane: &Plane) -> f64 {
+    (0..plane.height()).map(|y| f64::from(lane_sum(plane.row(y)))).sum()
+}
+
+/// Sum of a row in eight lanes, an order that vectorises and is the same on every platform.
+pub(crate) fn lane_sum(row: &[f32]) -> f32 {
+    let mut lanes = [0.0f32; 8];
+    let chunks = row.chunks_exact(8);
+    let rest: f32 = chunks.remainder().iter().sum();
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane += value;
+        }
+    }
+    lanes.iter().sum::<f32>() + rest
+}
+
+/// Standard deviation of the intensity difference along a correct motion, grey levels, from the flatter half of the pixels
+/// (1.4826 × median absolute deviation), between half a grey level and 8.
+pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
+    const SMALLEST: f32 = 0.5;
+    const LARGEST: f32 = 8.0;
+    /// About this many pixels are enough; larger levels are sampled.
+    const ENOUGH: f64 = 8192.0;
+    let stride = (level.first.values().len() as f64 / ENOUGH).sqrt().ceil() as usize;
+    let level = &level.thinned(stride.max(1));
+    let scaled = level.scaled(motion);
+    let flat = median(level.energy.values()).unwrap_or(0.0);
+    let mut residuals = Buffer::with_capacity(level.energy.values().len());
+    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
+    for y in 0..level.height() {
+        let path = level.path(&scaled, 0, y);
+        let rows = level.first.row(y).chunks(CHUNK).zip(level.energy.row(y).chunks(CHUNK));
+        for (k, (first, energy)) in rows.enumerate() {
+            at.follow(&path, k * CHUNK, first.len(), level.second.width(), level.second.height());
+            at.sample(level.second.values(), &mut samples);
+            for x in (0..first.len()).filter(|&x| at.is_inside(x) && energy[x] <= flat) {
+                let q = interpolation_variance(at.fx[x], at.fy[x], level.noise_correlation());
+                residuals.push((samples[x] - first[x]) / q.sqrt());
+            }
+        }
+    }
+    let Some(centre) = median(&residuals) else { return LARGEST };
+    residuals.iter_mut().for_each(|r| *r = (*r - centre).abs());
+    (1.4826 * median(&residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::Random;
+    use crate::view::level::build;
+
+    fn level(before: bool) -> Level {
+        let mut random = Random::from_seed(5);
+        let mut noise = || Plane::from_fn(70, 50, |_, _| random.uniform(0.0, 255.0) as f32);
+        let (first, second, third) = (noise(), noise(), noise());
+        build(first, second, before.then_some(third), 64).remove(0)
+    }
+
+    const MOTION: AffineMotion = AffineMotion { matrix: [0.02, -0.01, 9.3, 0.03, 0.01, -4.6] };
+
+    #[test]
+    fn the_cost_of_an_area_is_that_part_of_the_whole() {
+        for level in [level(false), level(true)] {
+            let whole = cost(&level, &MOTION, CostModel::LABELS);
+            let area = Area { columns: 3..68, rows: 7..31 };
+            let part = cost_within(&level, &area, &MOTION, CostModel::LABELS);
+            assert_eq!((part.width(), part.height()), (65, 24));
+            for (k, y) in area.rows.clone().enumerate() {
+                for (a, b) in part.row(k).iter().zip(&whole.row(y)[area.columns.clone()]) {
+                    assert!((a - b).abs() < 1e-3, "row {y}: {a}, {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sample_of_the_pixels_costs_what_these_pixels_cost() {
+        let level = level(true);
+        let whole = cost(&level, &MOTION, CostModel::ESTIMATION);
+        let sample = cost(&level.thinned(3), &MOTION, CostModel::ESTIMATION);
+        assert_eq!((sample.width(), sample.height()), (24, 17));
+        for (a, b) in sample.values().iter().zip(whole.thinned(3).values()) {
+            assert!((a - b).abs() < 1e-3, "{a}, {b}");
+        }
+    }
+
+    #[test]
+    fn costs_of_a_part_of_a_row_are_those_of_the_plane() {
+        let frame =
+            |shift: f32| Plane::from_fn(150, 20, |x, y| 100.0 + 50.0 * libm::sinf(0.3 * x as f32 + shift + y as f32));
+        let levels = build(frame(0.0), frame(0.2), None, 16);
+        let motion = AffineMotion::new([0.01, 0.0, -6.0, 0.0, -0.02, 1.5]);
+        let comparison = Comparison::new(&levels[0], View::Second, &motion, CostModel::LABELS).unwrap();
+        let plane = comparison.plane(&levels[0].area());
+        for (left, count) in [(0, 150), (0, 1), (3, 20), (9, 64), (40, 71), (141, 9)] {
+            let mut part = vec![f32::NAN; count];
+            comparison.row(7, left, &mut part);
+            let near = part.iter().zip(&plane.row(7)[left..]).all(|(a, b)| a == b || (a - b).abs() < 1e-4);
+            assert!(near, "{count} from {left} on");
+        }
+    }
+
+    #[test]
+    fn the_inverse_motion_leads_back() {
+        let a = AffineMotion::new([0.03, -0.02, 4.0, 0.01, 0.05, -2.0]);
+        let back = inverse(&a).unwrap();
+        let [u, v] = a.flow(13.0, 40.0);
+        let [p, q] = back.flow(13.0 + u, 40.0 + v);
+        assert!((u + p).abs() < 1e-12 && (v + q).abs() < 1e-12);
+        assert!(inverse(&AffineMotion::new([-1.0, 0.0, 0.0, 0.0, -1.0, 0.0])).is_none());
+    }
+}

@@ -1,0 +1,141 @@
+//! One size of two frames, and of the frame before if there is one, with gradients: what alignment and labelling compare.
+
+use std::rc::Rc;
+
+use crate::frame::Plane;
+use crate::frame::area::Area;
+use crate::frame::pyramid::FrameLevel;
+#[cfg(test)]
+use crate::frame::pyramid::levels_of;
+use crate::frame::warp::RowPath;
+use crate::motion::AffineMotion;
+
+/// Correlation of neighbouring pixels' noise after the pre-blur, exp(−1/(4σ²)).
+const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
+/// The same on coarser levels, after the 5-tap filter and halving (measured).
+const NOISE_CORRELATION_HALVED: f32 = 0.4;
+
+/// A sample of a level keeps its shorter side at least this long, pixels.
+const SMALLEST_SAMPLE: usize = 8;
+
+/// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame, times the stride where it is thinned.
+#[derive(Clone, Debug)]
+pub(crate) struct Level {
+    /// 0 for the working size.
+    pub(crate) index: u32,
+    pub(crate) first: Rc<Plane>,
+    pub(crate) second: Rc<Plane>,
+    pub(crate) before: Option<Rc<Plane>>,
+    /// Gradients of the first frame, per pixel of the second.
+    pub(crate) first_dx: Rc<Plane>,
+    pub(crate) first_dy: Rc<Plane>,
+    /// Gradients of the second frame.
+    pub(crate) second_dx: Rc<Plane>,
+    pub(crate) second_dy: Rc<Plane>,
+    /// Squared gradient length of the first frame.
+    pub(crate) energy: Rc<Plane>,
+    /// Standard deviation of the residual of a correct motion in flat areas, grey levels (see `noise`).
+    pub(crate) noise: f32,
+    /// Distance of the first frame's pixels in pixels of the second: 1, or more where the level is [`thinned`](Level::thinned).
+    pub(crate) stride: usize,
+}
+
+impl Level {
+    fn new(index: u32, first: &FrameLevel, second: &FrameLevel, before: Option<&FrameLevel>) -> Level {
+        Level {
+            index,
+            first: first.luminance.clone(),
+            second: second.luminance.clone(),
+            before: before.map(|before| before.luminance.clone()),
+            first_dx: first.dx.clone(),
+            first_dy: first.dy.clone(),
+            second_dx: second.dx.clone(),
+            second_dy: second.dy.clone(),
+            energy: first.energy(),
+            noise: 4.0,
+            stride: 1,
+        }
+    }
+
+    pub(crate) fn width(&self) -> usize {
+        self.first.width()
+    }
+
+    pub(crate) fn height(&self) -> usize {
+        self.first.height()
+    }
+
+    /// All its pixels.
+    pub(crate) fn area(&self) -> Area {
+        Area::whole(self.width(), self.height())
+    }
+
+    /// Size of a pixel in pixels of the working frame.
+    pub(crate) fn pixel(&self) -> f64 {
+        f64::from(1u32 << self.index) * self.stride as f64
+    }
+
+    /// `stride`, or less on a level so small that too few pixels would remain.
+    pub(crate) fn thinning(&self, stride: usize) -> usize {
+        stride.min(self.width().min(self.height()) / SMALLEST_SAMPLE).max(1)
+    }
+
+    /// The level with every `stride`-th pixel of every `stride`-th row of the first frame and the whole second frame: a sample of the
+    /// pixels without blur. Small levels keep more pixels ([`thinning`](Self::thinning)).
+    pub(crate) fn thinned(&self, stride: usize) -> Level {
+        let stride = self.thinning(stride);
+        let sample = |plane: &Rc<Plane>| if stride == 1 { plane.clone() } else { Rc::new(plane.thinned(stride)) };
+        Level {
+            index: self.index,
+            first: sample(&self.first),
+            second: self.second.clone(),
+            before: self.before.clone(),
+            first_dx: sample(&self.first_dx),
+            first_dy: sample(&self.first_dy),
+            second_dx: self.second_dx.clone(),
+            second_dy: self.second_dy.clone(),
+            energy: sample(&self.energy),
+            noise: self.noise,
+            stride: self.stride * stride,
+        }
+    }
+
+    /// Where a motion in pixels of this level takes the pixels of row `y` from column `x0` on, in pixels of the second frame.
+    pub(crate) fn path(&self, scaled: &AffineMotion, x0: usize, y: usize) -> RowPath {
+        RowPath::new(scaled, x0, y).times(self.stride as f64)
+    }
+
+    /// A motion of the working frame in pixels of this level.
+    pub(crate) fn scaled(&self, motion: &AffineMotion) -> AffineMotion {
+        let mut a = motion.matrix;
+        a[2] /= self.pixel();
+        a[5] /= self.pixel();
+        AffineMotion::new(a)
+    }
+
+    /// Inverse of [`scaled`](Self::scaled).
+    pub(crate) fn unscaled(&self, motion: &AffineMotion) -> AffineMotion {
+        let mut a = motion.matrix;
+        a[2] *= self.pixel();
+        a[5] *= self.pixel();
+        AffineMotion::new(a)
+    }
+
+    /// Correlation of the noise of neighbouring pixels.
+    pub(crate) fn noise_correlation(&self) -> f32 {
+        if self.index == 0 { NOISE_CORRELATION_FULL } else { NOISE_CORRELATION_HALVED }
+    }
+}
+
+/// The levels of a pair, from the working size down. All pyramids are those of frames of one size.
+pub(crate) fn levels(first: &[FrameLevel], second: &[FrameLevel], before: Option<&[FrameLevel]>) -> Vec<Level> {
+    let pair = first.iter().zip(second).enumerate();
+    pair.map(|(k, (first, second))| Level::new(k as u32, first, second, before.map(|b| &b[k]))).collect()
+}
+
+/// [`levels`] of luminances that need no blur.
+#[cfg(test)]
+pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest: usize) -> Vec<Level> {
+    let [first, second] = [first, second].map(|plane| levels_of(plane, smallest));
+    levels(&first, &second, before.map(|plane| levels_of(plane, smallest)).as_deref())
+}
