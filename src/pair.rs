@@ -83,9 +83,10 @@ fn segment_with(
 
     stages.begin("frames");
     let pyramid = settings.pyramid(first);
-    // Nobody else needs the pyramids of the other frames: the pair has their planes for itself.
-    let mut pair =
-        Pair::new(first, &pyramid, &settings.pyramid(second), before.map(|f| settings.pyramid(f)).as_ref(), &settings);
+    let before = before.map(|frame| settings.pyramid(frame));
+    let mut pair = Pair::new(first, &pyramid, &settings.pyramid(second), before.as_ref(), &settings);
+    // The pair now has the planes of the other frames to itself and need not copy what it changes.
+    drop(before);
     stages.begin("dominant");
     let dominant = pair.find_dominant(settings.has(Part::Brightness));
     let found = hypothesis::best(&pair, dominant, &settings, &mut random, &mut stages);
@@ -148,23 +149,37 @@ impl<'a> Pair<'a> {
     /// Finds the dominant motion, measures the noise and, with `brightness`, removes the change of brightness from every view.
     fn find_dominant(&mut self, brightness: bool) -> AffineMotion {
         let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
-        for level in &mut self.levels {
-            photometric.remove_from(level, View::Second);
-        }
+        self.remove(photometric, View::Second);
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];
             base.noise = noise(base, &motion);
             let how = Alignment::of_region(3, 1e-3);
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
         }
-        for level in &mut self.levels {
-            level.noise = noise(level, &motion);
-        }
-        let base = &self.levels[self.base];
-        if brightness && let Some(photometric) = Photometric::of_frame_before(base, &motion) {
-            self.levels.iter_mut().for_each(|level| photometric.remove_from(level, View::Before));
-        }
+        self.measure_along(&motion, brightness);
         motion
+    }
+
+    /// As [`find_dominant`](Self::find_dominant) where the dominant motion is known.
+    fn take_dominant(&mut self, motion: &AffineMotion, brightness: bool) {
+        if brightness && let Some(photometric) = Photometric::along(&self.levels[self.base], View::Second, motion) {
+            self.remove(photometric, View::Second);
+        }
+        self.measure_along(motion, brightness);
+    }
+
+    /// Measures the noise along the dominant motion and removes the change of brightness from the frame before.
+    fn measure_along(&mut self, motion: &AffineMotion, brightness: bool) {
+        for level in &mut self.levels {
+            level.noise = noise(level, motion);
+        }
+        if brightness && let Some(photometric) = Photometric::along(&self.levels[self.base], View::Before, motion) {
+            self.remove(photometric, View::Before);
+        }
+    }
+
+    fn remove(&mut self, photometric: Photometric, view: View) {
+        self.levels.iter_mut().for_each(|level| photometric.remove_from(level, view));
     }
 
     fn finest(&self) -> &Level {

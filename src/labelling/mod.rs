@@ -1,7 +1,8 @@
 //! From motions to masks: the terms of the labelling energy, their solver, regions that are split and merged, and the way from coarse
 //! labels to the full frame.
 //!
-//! Inside a labelling, label 0 is the background. How a result is numbered is a matter of its report.
+//! Inside a labelling the background has the label [`BACKGROUND`], however few pixels it may have. How a result is numbered is a matter
+//! of its report.
 
 pub(crate) mod coherence;
 pub(crate) mod confidence;
@@ -12,6 +13,20 @@ pub(crate) mod terms;
 
 use crate::frame::Plane;
 use crate::workspace::Buffer;
+
+/// The label of the background in every labelling.
+pub(crate) const BACKGROUND: usize = 0;
+
+/// The labels of the objects among `of` labels.
+pub(crate) fn objects(of: usize) -> std::ops::Range<usize> {
+    BACKGROUND + 1..of
+}
+
+/// Whether a pixel's label is that of the background.
+#[inline(always)]
+pub(crate) fn is_background(label: u8) -> bool {
+    usize::from(label) == BACKGROUND
+}
 
 /// Calls `pair` for every pair of 4-connected neighbours among `count` pixels of a grid `width` wide.
 #[inline(always)]

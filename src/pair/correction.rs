@@ -1,58 +1,34 @@
-//! Interactive correction: labels are solved again under strokes that say which motions are possible at a pixel.
+//! Interactive correction: the labels of a pair are solved again under strokes that say which motions are possible at a pixel.
 //!
-//! The motions do not change. A stroke is a hard constraint on its own pixels and a soft one around them: a label that the nearest
-//! stroke excludes costs `STROKE_PRICE · exp(−d/STROKE_REACH)` more. The geodesic distance d grows slowly where the frames agree
-//! with the stroke, at image edges where they cannot tell, and fast where they contradict it. One stroke therefore takes a whole
-//! region with it and stops at its border. Labels that no stroke reaches are returned bit for bit.
+//! It is the labelling of [`segment_pair`](crate::segment_pair) at the working size with the motions given and one more term
+//! ([`strokes`](crate::labelling::terms::strokes)). Labels that no stroke reaches are returned bit for bit.
 
 use super::Pair;
+use super::labels::LabelState;
 use super::report::{SegmentedMotion, at_working_size, describe};
 use super::settings::{Part, Settings};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
-use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
 use crate::labelling::resolution::upsampling::upsample;
-use crate::labelling::terms::colour::add_colours;
-use crate::labelling::terms::data::label_costs;
-use crate::labelling::terms::smoothness::Borders;
-use crate::labelling::terms::visibility::with_visibility;
+use crate::labelling::solver::MAX_LABELS;
+use crate::labelling::terms::strokes::add_strokes;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
 use crate::workspace::{self, Buffer};
 
-const STAGES: &[&str] = &["frames", "dominant", "labels", "masks"];
+const STAGES: &[&str] = &["frames", "labels", "masks"];
 
-/// Largest number of motions in a [`Correction`]: the bits of a set.
-pub const MAX_CORRECTED: usize = 16;
+/// Largest number of motions in a [`Correction`]: what the labelling solves at once.
+pub const MAX_CORRECTED: usize = MAX_LABELS;
 
-/// Price of an excluded label next to the stroke: twice the cost of a motion that does not fit.
-const STROKE_PRICE: f32 = 4.0;
-/// Geodesic distance at which it has fallen to 1/e.
-const STROKE_REACH: f32 = 24.0;
 /// A stroke has no influence below this share of its price.
 const SMALLEST_INFLUENCE: f32 = 0.02;
-/// Length of a step between neighbours where the frames agree with the stroke …
-const AGREED_STEP: f32 = 0.25;
-/// … added to it where the frames cannot tell …
-const UNDECIDED_STEP: f32 = 2.0;
-/// … and added at a strong edge where they cannot tell, and everywhere where they contradict the stroke.
-const BARRIER: f32 = 40.0;
-/// Intensity step, grey levels, at which an edge has 1 − 1/e of its full strength.
-const STRONG_EDGE: f32 = 24.0;
-/// Difference of two motions' costs at which the frames decide between them …
-const DECISIVE_GAP: f32 = 0.5;
-/// … averaged over this window, working pixels.
-const GAP_WINDOW: f32 = 1.5;
 /// Price of changing a label where no stroke has influence.
 const CHANGE_PRICE: f32 = 2.0;
-/// Double sweeps in which distances are propagated.
-const SWEEPS: usize = 2;
 /// Full-size labels are computed anew within this many working pixels of a change.
 const MARGIN: usize = 3;
-/// Price of an excluded label on the stroke itself.
-const EXCLUDED_PRICE: f32 = 1e6;
 
 /// Input of [`relabel`].
 #[derive(Clone, Copy, Debug)]
@@ -98,24 +74,20 @@ pub fn relabel(
     super::check_sizes(first, second, before)?;
     correction.check(first.width() * first.height())?;
     let _call = workspace::begin([first.width(), first.height()]);
-    let settings = Settings::new(options, super::size(first));
+    // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
+    let settings = Settings { draft_side: usize::MAX, ..Settings::new(options, super::size(first)) };
     let mut stages = Stages::new(STAGES, progress);
     let labels = if correction.allowed.iter().all(|&set| set == 0) {
         correction.labels.to_vec()
     } else {
         stages.begin("frames");
         let pyramid = settings.pyramid(first);
-        let mut pair = Pair::new(
-            first,
-            &pyramid,
-            &settings.pyramid(second),
-            before.map(|f| settings.pyramid(f)).as_ref(),
-            &settings,
-        );
-        stages.begin("dominant");
-        pair.find_dominant(settings.has(Part::Brightness));
-        stages.begin("labels");
+        let before = before.map(|frame| settings.pyramid(frame));
+        let mut pair = Pair::new(first, &pyramid, &settings.pyramid(second), before.as_ref(), &settings);
+        drop(before);
         let working = WorkingCorrection::new(&pair, correction, first.width());
+        pair.take_dominant(&working.motions[0], settings.has(Part::Brightness));
+        stages.begin("labels");
         let solved = working.solve(&pair, &settings);
         stages.begin("masks");
         working.enlarge(&solved, correction, first.luminance())
@@ -196,51 +168,31 @@ impl WorkingCorrection {
 
     /// The labels of working size.
     fn solve(&self, pair: &Pair<'_>, settings: &Settings) -> Buffer<u8> {
-        let level = pair.finest();
-        let coherence = settings.coherence;
-        let mut costs = label_costs(level, &self.motions, coherence);
         // Unlabelled pixels count as the dominant motion's here, as when the masks were corrected for occlusion.
-        let known: Buffer<u8> = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
-        if self.motions.len() > 1 {
-            costs = with_visibility(level, &self.motions, &costs, &known, coherence.object_bias);
-            add_colours(&mut costs, &pair.appearance.palette, &known);
-        }
-        let influence = self.add_stroke_costs(&mut costs, &pair.appearance.pictures[0].luminance);
-        let mut solved =
-            Borders::new(&pair.appearance.pictures[0], level.noise, coherence).solve(&costs, coherence.solver);
-        for (p, label) in solved.iter_mut().enumerate() {
+        let known = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
+        let mut state = LabelState::resumed(pair, self.motions.clone(), known, settings);
+        state.update_occlusion();
+        state.add_colour_costs(pair);
+        let influence = add_strokes(&mut state.costs, &self.allowed, &pair.appearance.pictures[0].luminance);
+        self.add_change_price(&mut state.costs, &influence);
+        state.solve_final();
+        for (p, label) in state.labels.iter_mut().enumerate() {
             if influence[p] < SMALLEST_INFLUENCE {
                 *label = self.labels[p];
             }
         }
-        solved
+        state.labels
     }
 
-    /// Adds the prices of labels that strokes exclude, and the price of a change where strokes have little influence. Returns the
-    /// influence of the nearest stroke at every pixel, 0…1.
-    fn add_stroke_costs(&self, costs: &mut [Plane], edges: &Plane) -> Buffer<f32> {
-        let mut influence: Buffer<f32> = self.allowed.iter().map(|&set| if set == 0 { 0.0 } else { 1.0 }).collect();
-        let smooth: Vec<Plane> = costs.iter().map(|c| gaussian(c, GAP_WINDOW)).collect();
-        for k in 0..costs.len() {
-            let excluded = |p: usize| self.allowed[p] != 0 && self.allowed[p] >> k & 1 == 0;
-            if !(0..self.allowed.len()).any(excluded) {
-                continue;
-            }
-            let distance = distances(edges, &cost_gap(&smooth, k), excluded);
-            for (p, c) in costs[k].values_mut().iter_mut().enumerate() {
-                let strength = libm::expf(-distance[p] / STROKE_REACH);
-                *c += if excluded(p) { EXCLUDED_PRICE } else { STROKE_PRICE * strength };
-                influence[p] = influence[p].max(strength);
-            }
-        }
+    /// Adds the price of a change where strokes have little influence.
+    fn add_change_price(&self, costs: &mut [Plane], influence: &[f32]) {
         for (k, cost) in costs.iter_mut().enumerate() {
-            for (p, c) in cost.values_mut().iter_mut().enumerate() {
-                if self.labels[p] != UNLABELLED && usize::from(self.labels[p]) != k {
-                    *c += CHANGE_PRICE * (1.0 - influence[p]);
+            for ((c, &label), share) in cost.values_mut().iter_mut().zip(&self.labels).zip(influence) {
+                if label != UNLABELLED && usize::from(label) != k {
+                    *c += CHANGE_PRICE * (1.0 - share);
                 }
             }
         }
-        influence
     }
 
     /// Full-size labels: enlarged along the edges of the frame near changes, unchanged elsewhere. Strokes hold at every pixel of
@@ -279,76 +231,5 @@ impl WorkingCorrection {
             }
         }
         near
-    }
-}
-
-/// By how much label k is more expensive than the cheapest other, in units of [`DECISIVE_GAP`], cut to −1…1.
-fn cost_gap(costs: &[Plane], k: usize) -> Vec<f32> {
-    let other =
-        |p: usize| (0..costs.len()).filter(|&l| l != k).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min);
-    let own = costs[k].values().iter().enumerate();
-    own.map(|(p, &own)| ((own - other(p)) / DECISIVE_GAP).clamp(-1.0, 1.0)).collect()
-}
-
-/// Geodesic distance of every pixel from the nearest one that `starts`. `agreement`, −1…1, is how far the frames agree with the
-/// stroke. Distances are propagated along rows and columns in [`SWEEPS`] double sweeps; behind many corners they come out too large.
-fn distances(edges: &Plane, agreement: &[f32], starts: impl Fn(usize) -> bool) -> Vec<f32> {
-    let (width, height) = (edges.width(), edges.height());
-    let values = edges.values();
-    let step = |p: usize, q: usize| {
-        let both_agree = agreement[p].min(agreement[q]);
-        let edge = 1.0 - libm::expf(-(values[p] - values[q]).abs() / STRONG_EDGE);
-        AGREED_STEP + (1.0 - both_agree.abs()) * (UNDECIDED_STEP + BARRIER * edge) + BARRIER * (-both_agree).max(0.0)
-    };
-    let right: Vec<f32> = (0..values.len()).map(|p| if (p + 1) % width == 0 { 0.0 } else { step(p, p + 1) }).collect();
-    let down: Vec<f32> = (0..(height - 1) * width).map(|p| step(p, p + width)).collect();
-    let mut distance: Vec<f32> = (0..values.len()).map(|p| if starts(p) { 0.0 } else { f32::INFINITY }).collect();
-    for _ in 0..SWEEPS {
-        for p in 0..values.len() {
-            if p % width > 0 {
-                distance[p] = distance[p].min(distance[p - 1] + right[p - 1]);
-            }
-            if p >= width {
-                distance[p] = distance[p].min(distance[p - width] + down[p - width]);
-            }
-        }
-        for p in (0..values.len()).rev() {
-            if (p + 1) % width != 0 {
-                distance[p] = distance[p].min(distance[p + 1] + right[p]);
-            }
-            if p + width < values.len() {
-                distance[p] = distance[p].min(distance[p + width] + down[p]);
-            }
-        }
-    }
-    distance
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const WIDTH: usize = 9;
-
-    /// A flat image with a white column in the middle that has a gap in the last row.
-    fn walled() -> Plane {
-        Plane::from_fn(WIDTH, 5, |x, y| if x == 4 && y < 4 { 255.0 } else { 0.0 })
-    }
-
-    #[test]
-    fn where_the_frames_cannot_tell_distance_goes_around_an_edge() {
-        let distance = distances(&walled(), &[0.0; 45], |p| p == 0);
-        let step = UNDECIDED_STEP + AGREED_STEP;
-        assert_eq!(distance[3], 3.0 * step);
-        // Down, through the gap, up again.
-        assert_eq!(distance[8], 16.0 * step);
-    }
-
-    #[test]
-    fn where_they_agree_it_crosses_edges_and_where_they_do_not_it_stops() {
-        assert_eq!(distances(&walled(), &[1.0; 45], |p| p == 0)[8], 8.0 * AGREED_STEP);
-        let mut agreement = [1.0; 45];
-        (0..45).filter(|p| p % WIDTH > 4).for_each(|p| agreement[p] = -1.0);
-        assert!(distances(&walled(), &agreement, |p| p == 0)[5] > BARRIER);
     }
 }

@@ -17,6 +17,7 @@ use crate::labelling::terms::colour::{ColourPrices, add_colours};
 use crate::labelling::terms::data::LabelCosts;
 use crate::labelling::terms::smoothness::Borders;
 use crate::labelling::terms::visibility::{hidden_under, with_visibility};
+use crate::labelling::{BACKGROUND, is_background, objects};
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
@@ -40,18 +41,18 @@ pub(super) struct Labelled {
 }
 
 /// A labelling in progress: the motions, their costs and the current labels.
-struct LabelState<'a> {
+pub(super) struct LabelState<'a> {
     level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
     motions: Vec<AffineMotion>,
     /// Label costs, corrected for occlusion.
-    costs: Vec<Plane>,
+    pub(super) costs: Vec<Plane>,
     /// Label costs before the correction for occlusion.
     uncorrected: LabelCosts,
     /// Estimation costs, from which description lengths are computed.
     raw: Vec<Plane>,
-    labels: Buffer<u8>,
+    pub(super) labels: Buffer<u8>,
     /// For every label, the pixels at which it may not compete; empty if all labels compete everywhere.
     excluded: Vec<Buffer<bool>>,
     /// The motion pruned last, or the best one rejected by the selection.
@@ -109,20 +110,31 @@ fn nats_of_pixel(level: &Level) -> f32 {
 
 impl<'a> LabelState<'a> {
     fn new(pair: &'a Pair<'_>, found: Found, settings: &'a Settings) -> LabelState<'a> {
+        let motions = found.selected.into_iter().map(|scored| scored.motion).collect();
         let level = &pair.levels[pair.draft];
-        let borders = borders(pair, pair.draft, settings);
-        let motions: Vec<AffineMotion> = found.selected.into_iter().map(|scored| scored.motion).collect();
+        let labels = Buffer::filled(level.width() * level.height(), 0);
+        LabelState { runner_up: found.runner_up, ..LabelState::resumed(pair, motions, labels, settings) }
+    }
+
+    /// The state of a labelling whose motions and labels, of the draft level, are known.
+    pub(super) fn resumed(
+        pair: &'a Pair<'_>,
+        motions: Vec<AffineMotion>,
+        labels: Buffer<u8>,
+        settings: &'a Settings,
+    ) -> LabelState<'a> {
+        let level = &pair.levels[pair.draft];
         let mut state = LabelState {
             level,
             settings,
-            borders,
+            borders: borders(pair, pair.draft, settings),
             costs: Vec::new(),
             uncorrected: LabelCosts::new(level, &motions, settings.coherence),
             raw: Vec::new(),
-            labels: Buffer::filled(level.width() * level.height(), 0),
+            labels,
             excluded: Vec::new(),
             motions,
-            runner_up: found.runner_up,
+            runner_up: None,
         };
         state.reset_costs();
         state
@@ -152,19 +164,15 @@ impl<'a> LabelState<'a> {
     }
 
     /// Adds the costs of the colours.
-    fn add_colour_costs(&mut self, pair: &Pair<'_>) {
+    pub(super) fn add_colour_costs(&mut self, pair: &Pair<'_>) {
         if self.uses_colour() {
             add_colours(&mut self.costs, &pair.appearance.palette, &self.labels);
         }
     }
 
-    /// Solves for the final labels: exactly if there are two, nearly so otherwise.
-    fn solve_final(&mut self) {
-        let solver = match self.motions.len() {
-            2 => Solver::Expansion { sweeps: 1 },
-            _ => self.settings.coherence.solver,
-        };
-        self.labels = self.borders.solve(&self.costs, solver);
+    /// Solves for the final labels.
+    pub(super) fn solve_final(&mut self) {
+        self.labels = self.borders.solve(&self.costs, self.settings.coherence.solver);
     }
 
     /// Turns draft labels into labels of the working size.
@@ -236,7 +244,7 @@ impl<'a> LabelState<'a> {
     }
 
     /// Updates the costs: no motion pays for pixels that are occluded in the second frame.
-    fn update_occlusion(&mut self) {
+    pub(super) fn update_occlusion(&mut self) {
         let object_bias = self.settings.coherence.object_bias;
         self.costs = with_visibility(self.level, &self.motions, &self.uncorrected.costs, &self.labels, object_bias);
     }
@@ -244,16 +252,16 @@ impl<'a> LabelState<'a> {
     /// Makes the background static if that shortens the description: the zero motion costs no parameters. A dominant motion that was
     /// fitted across objects on a flat background is recognised here, once the objects have motions of their own.
     fn try_static_background(&mut self) {
-        if self.motions[0] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
+        if self.motions[BACKGROUND] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
             return;
         }
         let own = |plane: &Plane| -> f64 {
-            let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| **label == 0);
+            let pixels = plane.values().iter().zip(&self.labels).filter(|(_, label)| is_background(**label));
             pixels.map(|(cost, _)| f64::from(*cost)).sum()
         };
         let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
-        if 0.5 * (at_rest - own(&self.raw[0])) < price_of_motion(self.labels.len()) {
-            self.motions[0] = AffineMotion::STATIC;
+        if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(self.labels.len()) {
+            self.motions[BACKGROUND] = AffineMotion::STATIC;
             self.recompute_costs();
             self.solve();
             self.prune();
@@ -311,7 +319,7 @@ impl<'a> LabelState<'a> {
         let (width, height) = self.size();
         let sizes = counts(&self.labels, self.motions.len());
         self.excluded = vec![Buffer::filled(self.labels.len(), false)];
-        for k in 1..self.motions.len() {
+        for k in objects(self.motions.len()) {
             let smallest = SMALLEST_COMPETITION >> self.level.index;
             let reach = smallest.max((COMPETITION_SHARE * (sizes[k] as f64).sqrt()) as usize);
             let near = near_label(&self.labels, k as u8, width, height, reach);
@@ -337,14 +345,14 @@ impl<'a> LabelState<'a> {
         let renumbered: Vec<u8> = (0..self.motions.len())
             .map(|k| {
                 let number = next;
-                if k == 0 || sizes[k] > 0 {
+                if k == BACKGROUND || sizes[k] > 0 {
                     next += 1;
                 }
                 number
             })
             .collect();
         self.labels.iter_mut().for_each(|l| *l = renumbered[usize::from(*l)]);
-        for k in (1..sizes.len()).rev() {
+        for k in objects(sizes.len()).rev() {
             if sizes[k] == 0 {
                 self.remove(k);
             }

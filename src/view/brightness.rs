@@ -41,11 +41,14 @@ impl Photometric {
         self
     }
 
-    /// That of the frame before the first, given the motion (of the working frame) from the first frame to the second. None if the
-    /// motion is singular or there is no frame before.
-    pub(crate) fn of_frame_before(level: &Level, motion: &AffineMotion) -> Option<Photometric> {
-        let view = level.before.as_deref()?;
-        let scaled = level.scaled(&inverse(motion)?);
+    /// The change between the first frame and a view, given the motion (of the working frame) from the first frame to the second. None
+    /// if the motion is singular or there is no such view.
+    pub(crate) fn along(level: &Level, view: View, motion: &AffineMotion) -> Option<Photometric> {
+        let (view, motion) = match view {
+            View::Second => (&*level.second, *motion),
+            View::Before => (level.before.as_deref()?, inverse(motion)?),
+        };
+        let scaled = level.scaled(&motion);
         let sample = |x: usize, y: usize| {
             let (px, py) = level.path(&scaled, x, y).at(0);
             let footprint = Footprint::new(px, py, view.width(), view.height());
@@ -122,7 +125,7 @@ mod tests {
         // The scene moves by 4 pixels to the right, so it was 4 pixels further left; a fifth of it does something else.
         let before = Plane::from_fn(80, 60, |x, y| if x < 16 { 90.0 } else { texture.at(x + 14, y) * 0.8 + 12.0 });
         let level = &build(first.clone(), first, Some(before), 64)[0];
-        let found = Photometric::of_frame_before(level, &AffineMotion::translation(4.0, 0.0)).unwrap();
+        let found = Photometric::along(level, View::Before, &AffineMotion::translation(4.0, 0.0)).unwrap();
         assert!((found.bias - 12.0).abs() < 0.5, "{found:?}");
         assert!((1.0 + found.gain / 128.0 - 0.8).abs() < 0.01, "{found:?}");
     }

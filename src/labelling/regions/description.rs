@@ -2,7 +2,7 @@
 //! six parameters and its border.
 
 use crate::frame::Plane;
-use crate::labelling::neighbours;
+use crate::labelling::{BACKGROUND, neighbours};
 
 /// Nats per pixel of border.
 pub(super) const PER_BORDER_PIXEL: f64 = 0.5;
@@ -34,7 +34,7 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
     let sums = sums(raw, labels);
     (0..raw.len())
         .map(|k| {
-            if k == 0 {
+            if k == BACKGROUND {
                 return f64::INFINITY;
             }
             if (counts[k] as f64) < SMALLEST_SHARE * pixels as f64 {

@@ -6,7 +6,7 @@ use crate::estimation::alignment::{Alignment, REGION_BLUR, Support, align};
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::{eroded, gaussian};
-use crate::labelling::pixels;
+use crate::labelling::{objects, pixels};
 use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::view::brightness::Photometric;
@@ -47,7 +47,7 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
     let found = components(labels, width, Connectivity::Eight);
     let by_size = descending(found.list.iter().map(|c| c.size as f64));
     let mut changed = false;
-    for label in 1..motions.len() {
+    for label in objects(motions.len()) {
         let parts: Vec<usize> = by_size
             .iter()
             .copied()
@@ -100,7 +100,7 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
 /// pixels reassigned to the better one.
 pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let mut changed = false;
-    for label in 1..motions.len() {
+    for label in objects(motions.len()) {
         if motions.len() >= most {
             break;
         }

@@ -7,6 +7,7 @@ use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::palette::Palette;
 use crate::frame::picture::Picture;
+use crate::labelling::BACKGROUND;
 use crate::labelling::coherence::Coherence;
 use crate::labelling::solver::Solver;
 use crate::labelling::terms::colour::ColourPrices;
@@ -235,7 +236,7 @@ impl<'a> Comparisons<'a> {
                 let label = usize::from(label);
                 let row = &mut row[..count];
                 to_label_costs(label, row, &seen, fine.coherence);
-                if label > 0 {
+                if label != BACKGROUND {
                     let across = if y == 0 || y + 1 == height { border } else { 0.0 };
                     for (c, x) in row.iter_mut().zip(columns.clone()) {
                         *c += across + if x == 0 || x + 1 == width { border } else { 0.0 };

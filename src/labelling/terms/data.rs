@@ -1,6 +1,7 @@
 //! The data term: the cost of every motion at every pixel, made into the cost of its label.
 
 use crate::frame::Plane;
+use crate::labelling::BACKGROUND;
 use crate::labelling::coherence::Coherence;
 use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_variance};
 use crate::labelling::terms::views::{cheapest, costs_in_views};
@@ -50,7 +51,7 @@ impl LabelCosts {
                 to_label_costs(label, cost.row_mut(y), &seen, coherence);
             }
         }
-        costs.iter_mut().skip(1).for_each(|cost| add_frame_border_price(cost, coherence));
+        costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, coherence));
         LabelCosts { costs, shares, variance_inflation: inflation }
     }
 }
@@ -61,7 +62,7 @@ impl LabelCosts {
 pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
     let neutral = CostModel::LABELS.outside();
     let (least, most, object_bias) = match label {
-        0 => (f32::NEG_INFINITY, neutral, 0.0),
+        BACKGROUND => (f32::NEG_INFINITY, neutral, 0.0),
         _ => (neutral, f32::INFINITY, coherence.object_bias),
     };
     each_with(costs, [seen], |cost, [seen]| {

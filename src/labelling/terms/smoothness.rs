@@ -138,7 +138,7 @@ mod tests {
             Plane::from_fn(64, 48, |x, _| if x >= 34 { 1.0 } else { 0.0 }),
             Plane::from_fn(64, 48, |x, _| if x < 30 { 1.0 } else { 0.0 }),
         ];
-        let labels = borders.solve(&costs, Solver::Expansion { sweeps: 1 });
+        let labels = borders.solve(&costs, Solver::BEST);
         assert!((0..64 * 48).all(|p| usize::from(labels[p]) == usize::from(p % 64 >= 32)));
     }
 }

@@ -3,7 +3,7 @@
 use crate::frame::Plane;
 use crate::frame::filter::eroded;
 use crate::frame::warp::warp;
-use crate::labelling::mask_of;
+use crate::labelling::{BACKGROUND, is_background, mask_of, objects};
 use crate::lanes::each_with;
 use crate::motion::AffineMotion;
 use crate::view::cost::inverse;
@@ -37,7 +37,7 @@ pub(crate) fn with_visibility(
 
 /// Largest cost of a label where its motion moves a pixel behind another object.
 pub(crate) fn most_where_hidden(label: usize, object_bias: f32) -> f32 {
-    HIDDEN + if label == 0 { 0.0 } else { object_bias }
+    HIDDEN + if label == BACKGROUND { 0.0 } else { object_bias }
 }
 
 /// For every motion, the pixels at which [`with_visibility`] limits its cost.
@@ -45,20 +45,25 @@ pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8
     let landed = landed(level, motions, labels);
     let hidden = |k: usize| {
         let covered = covered(level, &motions[k], &landed, k);
-        covered.values().iter().zip(labels).map(|(covered, label)| *covered > 0.5 && (k == 0 || *label != 0)).collect()
+        covered
+            .values()
+            .iter()
+            .zip(labels)
+            .map(|(covered, label)| *covered > 0.5 && (k == BACKGROUND || !is_background(*label)))
+            .collect()
     };
     (0..motions.len()).map(hidden).collect()
 }
 
 /// Pixels labelled dominant that the dominant motion moves behind an object.
 pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Buffer<bool> {
-    let covered = covered(level, &motions[0], &landed(level, motions, labels), 0);
-    covered.values().iter().zip(labels).map(|(&covered, &label)| label == 0 && covered > 0.5).collect()
+    let covered = covered(level, &motions[BACKGROUND], &landed(level, motions, labels), BACKGROUND);
+    covered.values().iter().zip(labels).map(|(&covered, &label)| is_background(label) && covered > 0.5).collect()
 }
 
 /// The masks of all objects where they are in the second frame, with their labels.
 fn landed(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<(usize, Plane)> {
-    (1..motions.len()).map(|k| (k, moved_mask(level, &motions[k], labels, k))).collect()
+    objects(motions.len()).map(|k| (k, moved_mask(level, &motions[k], labels, k))).collect()
 }
 
 /// How far the position that a motion moves each pixel to is covered by objects other than `own`, 0…1.

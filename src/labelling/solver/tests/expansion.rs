@@ -2,7 +2,7 @@
 //! to switch to it, while the others keep theirs.
 
 use super::max_flow::GridFlow;
-use super::potts::Potts;
+use crate::labelling::solver::potts::Potts;
 use crate::workspace::Buffer;
 
 /// At most `sweeps` times over all labels, from `init` or from the cheapest label of every pixel. Exact for two labels.

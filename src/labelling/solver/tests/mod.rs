@@ -1,11 +1,13 @@
-//! The solvers against brute force on small grids, and against each other on problems like those of the pipeline.
+//! The solver against brute force on small grids, and against α-expansion by minimum cuts on problems like those of the pipeline.
+
+mod expansion;
+mod max_flow;
 
 use super::*;
 use crate::frame::Plane;
 use crate::random::Random;
 
-const SOLVERS: [Solver; 4] =
-    [Solver::FAST, Solver::BEST, Solver::Messages { levels: 1, iterations: 30 }, Solver::Expansion { sweeps: 4 }];
+const SOLVERS: [Solver; 3] = [Solver::FAST, Solver::BEST, Solver { levels: 1, iterations: 30 }];
 
 struct Grid {
     costs: Vec<Plane>,
@@ -89,7 +91,7 @@ fn two_labels_are_solved_exactly_by_expansion() {
         for _ in 0..12 {
             let grid = random_grid(&mut random, width, height, 2);
             let problem = grid.problem();
-            let found = problem.energy(&minimise(&problem, Solver::Expansion { sweeps: 1 }, None));
+            let found = problem.energy(&expansion::minimise(&problem, 1, None));
             assert!((found - brute_force(&problem)).abs() < 1e-5, "{width}×{height}");
         }
     }
@@ -130,6 +132,17 @@ fn trees_are_solved_exactly_by_messages() {
 }
 
 #[test]
+fn two_labels_come_near_the_minimum_cut() {
+    for seed in 20..24 {
+        let grid = scene_like(seed, 70, 51, 2);
+        let problem = grid.problem();
+        let optimum = problem.energy(&expansion::minimise(&problem, 1, None));
+        let found = problem.energy(&minimise(&problem, Solver::BEST, None));
+        assert!(found >= optimum - 1e-3 && found <= 1.005 * optimum, "{found} for {optimum}");
+    }
+}
+
+#[test]
 fn no_solver_is_worse_than_descent_and_the_bound_holds() {
     for (seed, labels) in [(1, 2), (2, 4), (3, 7), (4, 11)] {
         let grid = scene_like(seed, 70, 51, labels);
@@ -152,7 +165,7 @@ fn no_solver_is_worse_than_descent_and_the_bound_holds() {
 fn the_start_is_never_made_worse_and_bad_starts_are_ignored() {
     let grid = scene_like(5, 40, 30, 3);
     let problem = grid.problem();
-    let good = minimise(&problem, Solver::Expansion { sweeps: 5 }, None);
+    let good = expansion::minimise(&problem, 5, None);
     for solver in SOLVERS {
         let from_good = problem.energy(&minimise(&problem, solver, Some(&good)));
         assert!(from_good <= problem.energy(&good) + 1e-9);
@@ -172,7 +185,7 @@ fn forbidden_labels_and_odd_sizes_are_handled() {
             assert!(minimise(&problem, solver, None).iter().all(|&l| l == 1), "{solver:?} {width}×{height}");
         }
     }
-    let costs = vec![Plane::filled(20, 20, 1.0); 20];
+    let costs = vec![Plane::filled(20, 20, 1.0); MAX_LABELS];
     let weight = Plane::filled(20, 20, 1.0);
     let problem = Potts { costs: &costs, horizontal: &weight, vertical: &weight };
     assert_eq!(minimise(&problem, Solver::BEST, None)[..], [0; 400]);
@@ -214,15 +227,15 @@ fn scene_costs(seed: u64, width: usize, height: usize, objects: usize) -> (Grid,
 #[ignore = "a measurement: run with --ignored --nocapture"]
 fn energies_and_times() {
     let all = [
-        Solver::Messages { levels: 1, iterations: 2 },
-        Solver::Messages { levels: 4, iterations: 1 },
-        Solver::FAST,
-        Solver::Messages { levels: 4, iterations: 5 },
-        Solver::BEST,
-        Solver::Messages { levels: 1, iterations: 20 },
-        Solver::Messages { levels: 1, iterations: 100 },
-        Solver::Expansion { sweeps: 1 },
-        Solver::Expansion { sweeps: 4 },
+        Some(Solver { levels: 1, iterations: 2 }),
+        Some(Solver::LIGHT),
+        Some(Solver::FAST),
+        Some(Solver { levels: 4, iterations: 5 }),
+        Some(Solver::BEST),
+        Some(Solver { levels: 1, iterations: 20 }),
+        Some(Solver { levels: 1, iterations: 100 }),
+        // α-expansion.
+        None,
     ];
     for (objects, seed) in [(1, 1), (3, 1), (3, 2), (3, 3), (7, 1)] {
         let (grid, truth) = scene_costs(seed, 320, 240, objects);
@@ -234,7 +247,10 @@ fn energies_and_times() {
             let mut found = Buffer::default();
             for _ in 0..5 {
                 let start = std::time::Instant::now();
-                found = minimise(&problem, solver, None);
+                found = match solver {
+                    Some(solver) => minimise(&problem, solver, None),
+                    None => expansion::minimise(&problem, 4, None),
+                };
                 milliseconds = milliseconds.min(start.elapsed().as_secs_f64() * 1e3);
             }
             let excess = 100.0 * (problem.energy(&found) / bound - 1.0);
