@@ -1,26 +1,27 @@
-//! The result: labels at full size, numbered by pixel count, statistics of every motion, evidence for their number.
+//! The result: labels at full size, statistics of every motion, evidence for their number. Motions are numbered by pixel count, here
+//! and nowhere else.
 
 use serde::Serialize;
+
+mod statistics;
+mod unknown;
+
+pub(crate) use statistics::describe;
 
 use super::Pair;
 use super::evidence::evidence;
 use super::labels::Labelled;
 use super::settings::{Part, Settings};
 use crate::answer::{Candidate, UNLABELLED};
-use crate::frame::filter::gaussian;
-use crate::frame::warp::{CHUNK, Footprint, Footprints, RowPath};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
 use crate::labelling::regions::groups::groups;
 use crate::labelling::resolution::upsampling::{enlarged, upsample};
 use crate::labelling::terms::views::costs_where_seen;
-use crate::labelling::terms::visibility::hidden;
-use crate::lanes::each_with;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::order::descending;
-use crate::view::cost::{CostModel, cost, lane_sum};
 use crate::workspace::Buffer;
 
 /// What [`segment_pair`](crate::segment_pair) found.
@@ -81,15 +82,6 @@ pub struct PairEvidence {
     pub candidates: Vec<Candidate>,
 }
 
-/// Standard deviation of the window in which a motion must explain a pixel, working pixels.
-const UNKNOWN_WINDOW: f32 = 1.5;
-/// Share of the saturated cost above which the motion does not explain the pixel.
-const UNKNOWN_COST: f32 = 0.7;
-/// Standard deviation of the window in which texture is measured, working pixels.
-const TEXTURE_WINDOW: f32 = 3.0;
-/// Mean squared gradient, in units of the noise variance, below which there is no texture: noise alone has 0.15 to 0.2.
-const NO_TEXTURE: f32 = 0.2;
-
 pub(super) fn report(
     pair: &Pair<'_>,
     labelled: Labelled,
@@ -103,7 +95,7 @@ pub(super) fn report(
     let candidates = evidence(pair, &labelled, settings);
     let sure = (options.mark_unknown || options.confidence)
         .then(|| probabilities(&costs_where_seen(level, &labelled.motions), &labelled.labels));
-    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown(pair, &labelled, sure));
+    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown::unknown(pair, &labelled, sure));
     let grouping = groups(&labelled.motions, &labelled.labels, size[0], pair.reduction);
 
     let full = if settings.has(Part::GuidedEnlarging) {
@@ -177,33 +169,6 @@ pub(super) fn at_working_size(motion: &AffineMotion, reduction: f64) -> AffineMo
     AffineMotion::new(a)
 }
 
-/// Working pixels that leave the frame, are occluded, are not explained by their own motion, have no texture around them, or
-/// whose label is more likely wrong than right.
-fn unknown(pair: &Pair<'_>, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
-    let level = pair.finest();
-    let limit = UNKNOWN_COST * CostModel::LABELS.truncation;
-    let texture = gaussian(&level.energy, TEXTURE_WINDOW);
-    let no_texture = NO_TEXTURE * level.noise * level.noise;
-    let mut unknown = hidden(level, &labelled.motions, &labelled.labels);
-    for (k, motion) in labelled.motions.iter().enumerate() {
-        let own = gaussian(&cost(level, motion, CostModel::LABELS), UNKNOWN_WINDOW);
-        let scaled = level.scaled(motion);
-        for y in 0..level.height() {
-            let path = RowPath::new(&scaled, 0, y);
-            for x in 0..level.width() {
-                let p = y * level.width() + x;
-                if usize::from(labelled.labels[p]) == k {
-                    let (px, py) = path.at(x);
-                    let inside = Footprint::new(px, py, level.width(), level.height()).inside;
-                    let decided = texture.values()[p] > no_texture && probabilities[k].values()[p] >= 0.5;
-                    unknown[p] |= !inside || !decided || own.values()[p] > limit;
-                }
-            }
-        }
-    }
-    unknown
-}
-
 /// Labels enlarged by nearest neighbour.
 fn nearest(labels: &[u8], size: [usize; 2], frame: &Frame, reduction: f64) -> Vec<u8> {
     (0..frame.width() * frame.height()).map(|p| labels[working_pixel(p, frame.width(), size, reduction)]).collect()
@@ -221,93 +186,4 @@ fn mark_unlabelled(labels: &mut [u8], width: usize, unknown: &[bool], size: [usi
             *label = UNLABELLED;
         }
     }
-}
-
-/// Pixels, residuals, boxes and group numbers of the motions.
-pub(super) fn describe(
-    motions: &[AffineMotion],
-    grouping: &[usize],
-    labels: &[u8],
-    first: &Plane,
-    second: &Plane,
-) -> Vec<SegmentedMotion> {
-    let tallies = tallies(motions, labels, first, second);
-    let sizes: Vec<usize> = tallies.iter().map(|tally| tally.pixels).collect();
-    let group_numbers = number_groups(grouping, &sizes);
-    let described = motions.iter().zip(&tallies).zip(group_numbers).enumerate();
-    described
-        .map(|(k, ((motion, tally), group))| SegmentedMotion {
-            label: k as u8,
-            matrix: *motion,
-            pixels: tally.pixels,
-            share: tally.pixels as f64 / labels.len() as f64,
-            residual: (tally.squares / tally.compared.max(1) as f64).sqrt(),
-            bbox: tally.bounds(),
-            group,
-        })
-        .collect()
-}
-
-/// Statistics of a motion's pixels.
-struct Tally {
-    pixels: usize,
-    /// First column and row, and one past the last.
-    corners: [usize; 4],
-    /// Sum of the squared intensity differences along the motion …
-    squares: f64,
-    /// … and the number of pixels it is taken over: those that land inside the second frame.
-    compared: usize,
-}
-
-impl Tally {
-    /// x, y, width, height; zeros where there are no pixels.
-    fn bounds(&self) -> [usize; 4] {
-        let [left, top, right, bottom] = self.corners;
-        if self.pixels == 0 { [0; 4] } else { [left, top, right - left, bottom - top] }
-    }
-}
-
-/// A tally of every motion, in one pass over the runs of its label.
-fn tallies(motions: &[AffineMotion], labels: &[u8], first: &Plane, second: &Plane) -> Vec<Tally> {
-    let (width, height) = (first.width(), first.height());
-    let none = |_| Tally { pixels: 0, corners: [usize::MAX, usize::MAX, 0, 0], squares: 0.0, compared: 0 };
-    let mut tallies: Vec<Tally> = motions.iter().map(none).collect();
-    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
-    for (y, row) in labels.chunks_exact(width).enumerate() {
-        let mut start = 0;
-        for run in row.chunk_by(|a, b| a == b) {
-            let (k, columns) = (usize::from(run[0]), start..start + run.len());
-            start = columns.end;
-            let (Some(motion), Some(tally)) = (motions.get(k), tallies.get_mut(k)) else { continue };
-            tally.pixels += run.len();
-            let [left, top, right, bottom] = tally.corners;
-            tally.corners = [left.min(columns.start), top.min(y), right.max(columns.end), bottom.max(y + 1)];
-            let path = RowPath::new(motion, columns.start, y);
-            for (part, values) in first.row(y)[columns].chunks(CHUNK).enumerate() {
-                at.follow(&path, part * CHUNK, values.len(), width, height);
-                at.sample(second.values(), &mut samples);
-                each_with(&mut samples, [values], |sample, [value]| (sample - value) * (sample - value));
-                if !at.all_inside(values.len()) {
-                    let outside = samples.iter_mut().enumerate().filter(|(k, _)| !at.is_inside(*k));
-                    outside.for_each(|(_, square)| *square = 0.0);
-                }
-                tally.squares += f64::from(lane_sum(&samples[..values.len()]));
-                tally.compared += at.count_inside(values.len());
-            }
-        }
-    }
-    tallies
-}
-
-/// Groups numbered by decreasing number of pixels.
-fn number_groups(grouping: &[usize], sizes: &[usize]) -> Vec<u8> {
-    let mut totals: Vec<(usize, usize)> = Vec::new();
-    for (&group, &size) in grouping.iter().zip(sizes) {
-        match totals.iter_mut().find(|t| t.0 == group) {
-            Some(t) => t.1 += size,
-            None => totals.push((group, size)),
-        }
-    }
-    let order = descending(totals.iter().map(|t| t.1 as f64));
-    grouping.iter().map(|g| order.iter().position(|&k| totals[k].0 == *g).unwrap_or(0) as u8).collect()
 }
