@@ -40,6 +40,7 @@ extern crate self as veronese;
 
 mod answer;
 mod best;
+pub mod clip;
 #[cfg(feature = "codecs")]
 pub mod codecs;
 mod components;

@@ -48,6 +48,12 @@ impl AffineMotion {
         (derivatives[0] * u + derivatives[1] * v + derivatives[2]) / (u * u + v * v + 1.0).sqrt()
     }
 
+    /// The same motion where all lengths are `factor` times as many pixels.
+    pub(crate) fn scaled(&self, factor: f64) -> AffineMotion {
+        let a = &self.matrix;
+        AffineMotion::new([a[0], a[1], a[2] * factor, a[3], a[4], a[5] * factor])
+    }
+
     /// The same motion in coordinates `x' = (x − centre) / scale`, flow still in pixels of the old unit.
     pub fn in_normalised(&self, centre: [f64; 2], scale: f64) -> AffineMotion {
         let a = &self.matrix;

@@ -5,7 +5,8 @@ mod evidence;
 mod hypothesis;
 mod labels;
 mod report;
-mod settings;
+pub(crate) mod settings;
+pub(crate) mod solution;
 
 pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
 pub use report::{PairEvidence, Segmentation, SegmentedMotion};

@@ -5,7 +5,7 @@
 
 use super::Pair;
 use super::labels::LabelState;
-use super::report::{SegmentedMotion, at_working_size, describe};
+use super::report::{SegmentedMotion, describe};
 use super::settings::{Part, Settings};
 use crate::answer::UNLABELLED;
 use crate::error::{Error, Result};
@@ -162,7 +162,7 @@ impl WorkingCorrection {
                 (_, both) => both,
             };
         }
-        let motions = correction.motions.iter().map(|m| at_working_size(m, pair.reduction)).collect();
+        let motions = correction.motions.iter().map(|m| m.scaled(1.0 / pair.reduction)).collect();
         WorkingCorrection { motions, labels, allowed, step, size: [width, height] }
     }
 

@@ -85,12 +85,11 @@ pub(super) fn label(pair: &Pair<'_>, found: Found, settings: &Settings) -> Label
 /// Smoothness weights on a level.
 pub(super) fn borders(pair: &Pair<'_>, index: usize, settings: &Settings) -> Borders {
     let level = &pair.levels[index];
-    let mut coherence = settings.coherence;
-    coherence.smoothness *= if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
+    let smoothness = settings.coherence.smoothness * if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
     if settings.has(Part::Edges) {
-        Borders::new(&pair.appearance.pictures[index], level.noise, coherence)
+        Borders::new(&pair.appearance.pictures[index], level.noise, smoothness)
     } else {
-        Borders::uniform(level.width(), level.height(), coherence)
+        Borders::uniform(level.width(), level.height(), smoothness)
     }
 }
 

@@ -115,8 +115,7 @@ pub(super) fn report(
     for (sure, _) in confidence.iter_mut().flatten().zip(&labels).filter(|(_, label)| **label == UNLABELLED) {
         *sure = 0;
     }
-    let matrices: Vec<AffineMotion> =
-        order.iter().map(|&k| at_full_size(&labelled.motions[k], pair.reduction)).collect();
+    let matrices: Vec<AffineMotion> = order.iter().map(|&k| labelled.motions[k].scaled(pair.reduction)).collect();
     let groups: Vec<usize> = order.iter().map(|&k| grouping[k]).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
@@ -151,22 +150,6 @@ fn by_size(labels: &[u8], of: usize) -> Buffer<usize> {
     let mut order = descending(sizes.iter().map(|&s| s as f64));
     order.retain(|&k| sizes[k] > 0);
     order
-}
-
-/// A motion of the working size in pixels of the full size.
-fn at_full_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
-    let mut a = motion.matrix;
-    a[2] *= reduction;
-    a[5] *= reduction;
-    AffineMotion::new(a)
-}
-
-/// A motion of the full size in pixels of the working size.
-pub(super) fn at_working_size(motion: &AffineMotion, reduction: f64) -> AffineMotion {
-    let mut a = motion.matrix;
-    a[2] /= reduction;
-    a[5] /= reduction;
-    AffineMotion::new(a)
 }
 
 /// Labels enlarged by nearest neighbour.

@@ -157,6 +157,14 @@ impl Settings {
         settings
     }
 
+    /// The solver of final labels.
+    pub(crate) fn solver(quality: Quality) -> Solver {
+        match quality {
+            Quality::Best => Solver::BEST,
+            Quality::Fast => Solver::FAST,
+        }
+    }
+
     /// The pyramid of a frame.
     pub(crate) fn pyramid(&self, frame: &Frame) -> FramePyramid {
         FramePyramid::new(frame, self.halvings, self.smallest_side)

@@ -124,7 +124,7 @@ impl Region {
             Plane::from_buffer(area.width(), area.height(), cost.collect())
         };
         let mut costs: Vec<Plane> = present.iter().map(fixed).collect();
-        let mut borders = Borders::uniform(area.width(), area.height(), fine.coherence);
+        let mut borders = Borders::uniform(area.width(), area.height(), fine.coherence.smoothness);
         let corner = [area.columns.start, area.rows.start];
         for tile in &self.tiles {
             comparisons.fill(coarse, fine, tile, corner, &number, &mut costs);
@@ -133,7 +133,7 @@ impl Region {
                 let mut around = tile.area.clone();
                 around.columns.start = around.columns.start.max(corner[0] + 1) - 1;
                 around.rows.start = around.rows.start.max(corner[1] + 1) - 1;
-                borders.follow(picture, fine.level.noise, fine.coherence, &around, corner);
+                borders.follow(picture, fine.level.noise, fine.coherence.smoothness, &around, corner);
             }
         }
         let numbered: Buffer<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();

@@ -4,7 +4,6 @@ use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::picture::Picture;
 use crate::frame::warp::CHUNK;
-use crate::labelling::coherence::Coherence;
 use crate::labelling::solver::potts::Potts;
 use crate::labelling::solver::{Solver, minimise};
 use crate::lanes::whole;
@@ -28,30 +27,23 @@ pub(crate) struct Borders {
 }
 
 impl Borders {
-    pub(crate) fn new(picture: &Picture, noise: f32, coherence: Coherence) -> Borders {
+    pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32) -> Borders {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
-        let mut borders = Self::uniform(width, height, coherence);
-        borders.follow(picture, noise, coherence, &Area::whole(width, height), [0, 0]);
+        let mut borders = Self::uniform(width, height, smoothness);
+        borders.follow(picture, noise, smoothness, &Area::whole(width, height), [0, 0]);
         borders
     }
 
     /// Borders that cost the same everywhere.
-    pub(crate) fn uniform(width: usize, height: usize, coherence: Coherence) -> Borders {
-        let everywhere = Plane::filled(width, height, coherence.smoothness);
+    pub(crate) fn uniform(width: usize, height: usize, smoothness: f32) -> Borders {
+        let everywhere = Plane::filled(width, height, smoothness);
         Borders { horizontal: everywhere.clone(), vertical: everywhere }
     }
 
     /// Sets the prices of an area from the edges of the picture. The grid begins at the picture's pixel `corner`.
-    pub(crate) fn follow(
-        &mut self,
-        picture: &Picture,
-        noise: f32,
-        coherence: Coherence,
-        area: &Area,
-        corner: [usize; 2],
-    ) {
+    pub(crate) fn follow(&mut self, picture: &Picture, noise: f32, smoothness: f32, area: &Area, corner: [usize; 2]) {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
-        let price = Price { smoothness: coherence.smoothness, per_step: 1.0 / SMALLEST_STEP.max(NOISE_STEPS * noise) };
+        let price = Price { smoothness, per_step: 1.0 / SMALLEST_STEP.max(NOISE_STEPS * noise) };
         let places = area.columns.start - corner[0]..area.columns.end - corner[0];
         for y in area.rows.clone() {
             let start = y * width;
@@ -128,8 +120,8 @@ mod tests {
         let bright = Picture { luminance: step(60.0, 160.0), colours: [0; 3].map(|_| step(60.0, 160.0)) };
         let coloured =
             Picture { luminance: grey.clone(), colours: [step(40.0, 140.0), step(140.0, 76.0), grey.clone()] };
-        let borders = Borders::new(&bright, 1.0, COHERENCE);
-        for borders in [&borders, &Borders::new(&coloured, 1.0, COHERENCE)] {
+        let borders = Borders::new(&bright, 1.0, COHERENCE.smoothness);
+        for borders in [&borders, &Borders::new(&coloured, 1.0, COHERENCE.smoothness)] {
             assert_eq!(borders.horizontal.at(10, 10), COHERENCE.smoothness);
             assert!(borders.horizontal.at(31, 10) < 0.03 * COHERENCE.smoothness);
         }

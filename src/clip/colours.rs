@@ -1,0 +1,67 @@
+//! Colours of objects and of the background, learned from the frames around a moment.
+
+use crate::frame::Plane;
+use crate::frame::palette::{COLOURS, Palette};
+
+/// Odds, nats, from which a pixel counts for one side: probability .6. Chosen on ten real clips; 1.5 gives the same.
+const SURE: f32 = 0.4;
+/// Pixels that each side needs before its colours are known.
+const FEWEST: f32 = 200.0;
+/// Pixels added to every colour of both sides. Insensitive: 4 gives the same.
+const PRIOR: f32 = 1.0;
+/// Largest ratio, nats.
+const MOST: f32 = 4.0;
+
+/// How often each colour is seen on objects and on the background.
+#[derive(Clone, Debug)]
+pub(crate) struct ColourCounts([Vec<f32>; 2]);
+
+impl ColourCounts {
+    pub(crate) fn none() -> ColourCounts {
+        ColourCounts([(); 2].map(|()| vec![0.0; COLOURS]))
+    }
+
+    /// The counts of one frame, from the odds of object against background at its pixels.
+    pub(crate) fn of(palette: &Palette, odds: &Plane) -> ColourCounts {
+        let mut counts = ColourCounts::none();
+        for (p, &odds) in odds.values().iter().enumerate().filter(|(_, odds)| odds.abs() > SURE) {
+            counts.0[usize::from(odds < 0.0)][palette.index(p)] += 1.0;
+        }
+        counts
+    }
+
+    pub(crate) fn add(&mut self, other: &ColourCounts) {
+        let pairs = self.0.iter_mut().flatten().zip(other.0.iter().flatten());
+        pairs.for_each(|(count, other)| *count += other);
+    }
+
+    /// Log-likelihood ratio of object against background for each colour, nats; zero while a side is unknown.
+    pub(crate) fn ratios(&self) -> Vec<f32> {
+        let totals = self.0.each_ref().map(|side| side.iter().sum::<f32>());
+        if totals.iter().any(|&total| total < FEWEST) {
+            return vec![0.0; COLOURS];
+        }
+        let share =
+            |side: usize, colour: usize| (self.0[side][colour] + PRIOR) / (totals[side] + PRIOR * COLOURS as f32);
+        (0..COLOURS).map(|colour| libm::logf(share(0, colour) / share(1, colour)).clamp(-MOST, MOST)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::Frame;
+
+    #[test]
+    fn colours_of_one_side_speak_for_it_once_both_are_known() {
+        let rgba: Vec<u8> =
+            (0..64 * 48).flat_map(|p| if p % 64 < 20 { [250, 10, 10, 255] } else { [10, 10, 250, 255] }).collect();
+        let palette = Palette::new(&Frame::from_rgba(64, 48, rgba).unwrap(), 64, 48);
+        let ratios =
+            |odds: &dyn Fn(usize) -> f32| ColourCounts::of(&palette, &Plane::from_fn(64, 48, |x, _| odds(x))).ratios();
+        let known = ratios(&|x| if x < 20 { 2.0 } else { -2.0 });
+        assert!(known[palette.index(3)] > 3.0 && known[palette.index(40)] < -3.0);
+        assert!(ratios(&|_| -2.0).iter().all(|&ratio| ratio == 0.0), "no object yet");
+        assert!(ratios(&|x| if x < 20 { 0.1 } else { -2.0 }).iter().all(|&ratio| ratio == 0.0), "not sure enough");
+    }
+}
