@@ -1,8 +1,8 @@
 //! Which foreground is which object: numbers that last from an object's first frame to its last.
 //!
 //! The labels of the frame before are carried along the motions. A connected region that one object leads to is that object, with all the
-//! parts that single frames give motions of their own. Where several lead to one region, they share it; where none does, the region is
-//! an object that was hidden, or a new one. Pieces of an object that move apart for some frames are two.
+//! parts that single frames give motions of their own. Where several lead to one region, they share it. Where none does, the region is
+//! an object, or a part of one, that was hidden; or else a new one. Pieces of an object that move apart are two.
 
 use super::carry::destination;
 use super::evidence::Evidence;
@@ -20,10 +20,18 @@ pub(crate) const MAX_OBJECTS: usize = 254;
 const CLAIM: f64 = 0.2;
 /// … and a region with less than this share of carried pixels is not claimed by what grazes it.
 const GRAZE: f64 = 0.05;
+/// Share of its pixels from which an object is in full sight.
+const WHOLE: f64 = 0.9;
+/// What is left of its full size in every frame in which less is in sight: objects also become smaller by moving away.
+const SHRINKING: f64 = 0.98;
 /// Frames for which an object may be hidden and keep its number.
 const LONGEST_HIDDEN: usize = 10;
-/// A hidden object is looked for within this many of its radii of where its motion leads.
+/// What was hidden of an object is looked for this far from where its motion leads, in roots of its size.
 const SEARCH: f64 = 1.5;
+/// A part of an object in sight moves like it, to within this many working pixels …
+const SAME_MOTION: f64 = 1.0;
+/// … and this share of its displacement.
+const SAME_SPEED: f64 = 0.25;
 /// Overlap of two colour histograms, 0…1, from which they may be of one object.
 const ALIKE: f64 = 0.4;
 /// Largest ratio of the sizes of an object before and after it was hidden.
@@ -42,7 +50,9 @@ const SMOOTHNESS: f32 = 3.0;
 #[derive(Clone, Debug)]
 struct Object {
     number: u8,
+    /// Working pixels where it was last seen whole: more than [`WHOLE`] of the most before.
     pixels: f64,
+    /// Its centre there, moved on with it since.
     centre: [f64; 2],
     /// Displacement of its centre in a frame, working pixels.
     velocity: [f64; 2],
@@ -120,18 +130,22 @@ impl Identities {
         numbers
     }
 
-    /// The hidden object that a region is, if any: the one whose colours are most alike among those that may be here.
+    /// The object that a region is, or is a part of, which was hidden until now: the one whose colours are most alike among those that
+    /// may be here.
     fn returned(&self, record: &Record, pixels: &[usize]) -> Option<u8> {
         let (centre, colours) = (centre(pixels, record.size()[0]), histogram(record, pixels));
-        let size = pixels.len() as f64;
+        let ([u, v], size) = (velocity(record, pixels), pixels.len() as f64);
         let mut best = (ALIKE, None);
-        for object in self.objects.iter().filter(|object| object.hidden > 0) {
-            let frames = (object.hidden + 1) as f64;
-            let [dx, dy] = [0, 1].map(|k| object.centre[k] + frames * object.velocity[k] - centre[k]);
-            let reach = SEARCH * object.pixels.sqrt() * (1.0 + 0.1 * frames);
-            let grown = (size / object.pixels).max(object.pixels / size);
+        for object in &self.objects {
+            let [r, s] = object.velocity;
+            let moves_alike =
+                ((u - r) * (u - r) + (v - s) * (v - s)).sqrt() < SAME_MOTION + SAME_SPEED * (r * r + s * s).sqrt();
+            let grown = size / object.pixels;
+            let may_be = if object.hidden > 0 { grown > 1.0 / GROWTH } else { moves_alike };
+            let [dx, dy] = [0, 1].map(|k| object.centre[k] + object.velocity[k] - centre[k]);
+            let reach = SEARCH * object.pixels.sqrt() * (1.0 + 0.1 * object.hidden as f64);
             let alike = overlap(&object.colours, &colours);
-            if (dx * dx + dy * dy).sqrt() < reach && grown < GROWTH && alike > best.0 {
+            if may_be && grown < GROWTH && (dx * dx + dy * dy).sqrt() < reach && alike > best.0 {
                 best = (alike, Some(object.number));
             }
         }
@@ -182,14 +196,21 @@ impl Identities {
         labels.iter().enumerate().filter(|(_, l)| **l > 0).for_each(|(p, &l)| pixels[usize::from(l)].push(p));
         for object in &mut self.objects {
             object.hidden += 1;
+            (0..2).for_each(|k| object.centre[k] += object.velocity[k]);
         }
         for (number, pixels) in pixels.iter().enumerate().filter(|(_, pixels)| !pixels.is_empty()) {
-            let (centre, velocity) = (centre(pixels, record.size()[0]), velocity(record, pixels));
-            let (number, colours, size) = (number as u8, histogram(record, pixels), pixels.len() as f64);
-            let seen = Object { number, pixels: size, centre, velocity, colours, hidden: 0, apart: [0.0; 2] };
+            let (number, size, velocity) = (number as u8, pixels.len() as f64, velocity(record, pixels));
+            let seen = || {
+                let (centre, colours) = (centre(pixels, record.size()[0]), histogram(record, pixels));
+                Object { number, pixels: size, centre, velocity, colours, hidden: 0, apart: [0.0; 2] }
+            };
             match self.objects.iter_mut().find(|object| object.number == number) {
-                Some(object) => *object = Object { apart: object.apart, ..seen },
-                None => self.objects.push(seen),
+                Some(object) if size < WHOLE * object.pixels => {
+                    (object.hidden, object.velocity) = (0, velocity);
+                    object.pixels *= SHRINKING;
+                }
+                Some(object) => *object = Object { apart: object.apart, ..seen() },
+                None => self.objects.push(seen()),
             }
         }
         self.objects.retain(|object| object.hidden <= LONGEST_HIDDEN);
