@@ -25,9 +25,9 @@ use crate::labelling::resolution::upsampling::upsample;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
-use crate::pair::solution::{Solution, solve};
+use crate::pair::solution::{Prior, Solution, solve};
 use crate::workspace;
-use evidence::Evidence;
+use evidence::{Flow, flow, odds};
 use identity::Identities;
 use record::Record;
 use round::{Foreground, Round};
@@ -110,16 +110,21 @@ pub struct ClipSegmenter {
     /// Frames so far.
     count: usize,
     last: Option<Newest>,
+    /// Whether the newest frame waits for its pair with the next one.
+    waits: bool,
+    /// What is expected of the next pair.
+    prior: Option<Prior>,
     rounds: [Round; 2],
     identities: Identities,
 }
 
-/// The newest frame, which waits for the next.
-#[derive(Debug)]
+/// The newest frame.
+#[derive(Clone, Debug)]
 struct Newest {
-    frame: Frame,
+    frame: Rc<Frame>,
     pyramid: Rc<FramePyramid>,
-    back: Option<Evidence>,
+    /// Odds and flow of the pair with the frame before.
+    back: Option<(Plane, Flow)>,
 }
 
 impl ClipSegmenter {
@@ -133,11 +138,12 @@ impl ClipSegmenter {
             let reason = format!("must be 0 to {MAX_LOOK_AHEAD}");
             return Err(Error::InvalidOption { name: "lookAhead", reason });
         }
-        let delay = options.look_ahead.unwrap_or(WHOLE_CLIP);
+        // A stream has its frames' future in the first round alone.
+        let delays = options.look_ahead.map_or([WHOLE_CLIP / 2; 2], |frames| [frames, 0]);
         let solver = Settings::solver(options.pair.quality);
-        let delays = [delay - delay / 2, delay / 2];
         let rounds = [0, 1].map(|k| Round::new(DECAYS[k], delays[k], solver));
-        Ok(ClipSegmenter { options, count: 0, last: None, rounds, identities: Identities::new() })
+        let identities = Identities::new();
+        Ok(ClipSegmenter { options, count: 0, last: None, waits: false, prior: None, rounds, identities })
     }
 
     /// Takes the next frame. Returns a frame that has waited long enough, if there is one.
@@ -155,27 +161,65 @@ impl ClipSegmenter {
         let _call = workspace::begin(size);
         let settings = Settings::new(&self.options.pair, size);
         let pyramid = Rc::new(settings.pyramid(&frame));
-        let Some(last) = self.last.take() else {
-            self.last = Some(Newest { frame, pyramid, back: None });
-            return Ok(None);
+        let newest = Newest { frame: Rc::new(frame), pyramid, back: None };
+        match (self.options.look_ahead, self.last.take()) {
+            (None, last) => Ok(self.push_with_both(last, newest, &settings)),
+            (Some(_), last) => Ok(self.push_with_back(last, newest, &settings)),
+        }
+    }
+
+    /// In a whole clip a frame has two pairs: it waits for the next frame.
+    fn push_with_both(&mut self, last: Option<Newest>, newest: Newest, settings: &Settings) -> Option<ClipFrame> {
+        self.waits = true;
+        let Some(last) = last else {
+            self.last = Some(newest);
+            return None;
         };
-        let seed = self.options.pair.seed;
-        let onward = solve(&last.frame, &last.pyramid, &pyramid, &settings, seed);
-        let back = solve(&frame, &pyramid, &last.pyramid, &settings, seed);
-        let [onward, back] = if [&onward, &back].into_iter().all(Solution::is_cut) {
+        let onward = self.solve(&last, &newest, None, settings);
+        let back = self.solve(&newest, &last, None, settings);
+        let [onward, back] = if onward.is_cut() && back.is_cut() {
             [None, None]
         } else {
-            [onward, back].map(|solution| Some(Evidence::new(solution)))
+            [onward, back].map(|solution| Some((odds(&solution), flow(solution))))
         };
-        self.last = Some(Newest { frame, pyramid, back });
-        Ok(self.advance(last, onward))
+        self.last = Some(Newest { back, ..newest });
+        self.advance(last, onward)
+    }
+
+    /// In a stream a frame has its pair with the frame before, near what was found there, and is expected to go on as it came. Only the
+    /// first frame may wait for the next.
+    fn push_with_back(&mut self, last: Option<Newest>, mut newest: Newest, settings: &Settings) -> Option<ClipFrame> {
+        let Some(last) = last else {
+            self.waits = self.options.look_ahead != Some(0);
+            self.last = Some(newest.clone());
+            return if self.waits { None } else { self.advance(newest, None) };
+        };
+        let back = self.solve(&newest, &last, self.prior.as_ref(), settings);
+        if self.waits {
+            let onward = (!back.is_cut()).then(|| self.solve(&last, &newest, None, settings));
+            // With a look-ahead it does not come out yet.
+            self.advance(last, onward.map(|solution| (odds(&solution), flow(solution))));
+            self.waits = false;
+        }
+        self.prior = (!back.is_cut()).then(|| back.prior());
+        newest.back = (!back.is_cut()).then(|| (odds(&back), flow(back)));
+        self.last = Some(newest.clone());
+        let onward = newest.back.as_ref().map(|(_, back)| back.continued());
+        self.advance_with(newest, None, onward)
+    }
+
+    fn solve(&self, first: &Newest, second: &Newest, prior: Option<&Prior>, settings: &Settings) -> Solution {
+        solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior, self.options.pair.seed)
     }
 
     /// The frames that still wait. The segmenter is then ready for another clip, whose objects get new numbers.
     pub fn finish(&mut self) -> Vec<ClipFrame> {
         let Some(last) = self.last.take() else { return Vec::new() };
         let _call = workspace::begin([last.frame.width(), last.frame.height()]);
-        let mut frames: Vec<ClipFrame> = self.advance(last, None).into_iter().collect();
+        let mut frames = Vec::new();
+        if std::mem::take(&mut self.waits) {
+            frames.extend(self.advance(last, None));
+        }
         while let Some(foreground) = self.rounds[0].next() {
             frames.extend(self.second_round(foreground));
         }
@@ -190,17 +234,40 @@ impl ClipSegmenter {
         self.identities.dropped
     }
 
-    fn advance(&mut self, Newest { frame, pyramid, back }: Newest, onward: Option<Evidence>) -> Option<ClipFrame> {
-        let record = Rc::new(Record { index: self.count, frame, pyramid, onward, back });
+    fn advance(&mut self, newest: Newest, onward: Option<(Plane, Flow)>) -> Option<ClipFrame> {
+        let (odds, onward) = onward.unzip();
+        self.advance_with(newest, odds, onward)
+    }
+
+    /// Hands a frame to the rounds, with what is known of its way to the next one.
+    fn advance_with(
+        &mut self,
+        Newest { frame, pyramid, back }: Newest,
+        onward_odds: Option<Plane>,
+        onward: Option<Flow>,
+    ) -> Option<ClipFrame> {
+        let (back_odds, back) = back.unzip();
+        let odds = match (onward_odds, back_odds) {
+            (Some(mut odds), Some(other)) => {
+                odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o = 0.5 * (*o + b));
+                odds
+            }
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) => {
+                let finest = &pyramid.levels[0].luminance;
+                Plane::filled(finest.width(), finest.height(), 0.0)
+            }
+        };
+        let record = Rc::new(Record { index: self.count, frame, pyramid, odds, onward, back });
         self.count += 1;
-        let odds = record.odds();
+        let odds = record.odds.clone();
         let foreground = self.rounds[0].push(record, odds)?;
         self.second_round(foreground)
     }
 
     /// The second round starts from the pairs' odds and the first round's cut.
     fn second_round(&mut self, Foreground { record, mask, .. }: Foreground) -> Option<ClipFrame> {
-        let mut odds = record.odds();
+        let mut odds = record.odds.clone();
         for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
             let cut = if object > 0 { FIRST_CUT } else { -FIRST_CUT };
             *odds = SECOND_ROUND_ODDS * odds.clamp(-MOST_ODDS, MOST_ODDS) + cut;
@@ -252,7 +319,7 @@ fn confidence(odds: &Plane, labels: &[u8], id: u8) -> f64 {
 }
 
 /// The motion that most of an object's working pixels have.
-fn largest(onward: &Evidence, labels: &[u8], id: u8) -> usize {
+fn largest(onward: &Flow, labels: &[u8], id: u8) -> usize {
     let mut counts = vec![0usize; onward.motions.len()];
     labels
         .iter()

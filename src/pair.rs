@@ -15,7 +15,7 @@ pub use settings::Part;
 
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
-use crate::estimation::dominant::dominant_motion;
+use crate::estimation::dominant::{dominant_motion, dominant_motion_near};
 use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::motion::AffineMotion;
@@ -90,7 +90,7 @@ fn segment_with(
     drop(before);
     stages.begin("dominant");
     let dominant = pair.find_dominant(settings.has(Part::Brightness));
-    let found = hypothesis::best(&pair, dominant, &settings, &mut random, &mut stages);
+    let (found, _) = hypothesis::best(&pair, dominant, &settings, &mut random, &mut stages);
     stages.begin("refinement");
     let found = hypothesis::refine(&pair, found, &settings);
     stages.begin("labels");
@@ -149,7 +149,21 @@ impl<'a> Pair<'a> {
 
     /// Finds the dominant motion, measures the noise and, with `brightness`, removes the change of brightness from every view.
     fn find_dominant(&mut self, brightness: bool) -> AffineMotion {
-        let (mut motion, photometric) = dominant_motion(&self.levels, self.base, brightness);
+        let found = dominant_motion(&self.levels, self.base, brightness);
+        self.settle_dominant(found, brightness)
+    }
+
+    /// As [`find_dominant`](Self::find_dominant), near a motion that is expected.
+    fn find_dominant_near(&mut self, expected: &AffineMotion, brightness: bool) -> AffineMotion {
+        let found = dominant_motion_near(&self.levels, self.base, expected, brightness);
+        self.settle_dominant(found, brightness)
+    }
+
+    fn settle_dominant(
+        &mut self,
+        (mut motion, photometric): (AffineMotion, Photometric),
+        brightness: bool,
+    ) -> AffineMotion {
         self.remove(photometric, View::Second);
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];

@@ -4,8 +4,8 @@
 //! parts that single frames give motions of their own. Where several lead to one region, they share it. Where none does, the region is
 //! an object, or a part of one, that was hidden; or else a new one. Pieces of an object that move apart are two.
 
-use super::carry::destination;
-use super::evidence::Evidence;
+use super::carry::carried_labels;
+use super::evidence::Flow;
 use super::record::Record;
 use crate::components::{Connectivity, components};
 use crate::frame::Plane;
@@ -218,20 +218,6 @@ impl Identities {
     }
 }
 
-/// The labels that the pixels of a frame had in the frame before, 0 where they come from outside.
-fn carried_labels(labels: &[u8], back: &Evidence) -> Vec<u8> {
-    let (width, height) = (back.odds.width(), back.odds.height());
-    let mut carried = Vec::with_capacity(labels.len());
-    for y in 0..height {
-        for x in 0..width {
-            let [px, py] = destination(back, x, y).map(|at| at + 0.5);
-            let inside = px >= 0.0 && py >= 0.0 && px < width as f32 && py < height as f32;
-            carried.push(if inside { labels[py as usize * width + px as usize] } else { 0 });
-        }
-    }
-    carried
-}
-
 /// Shares a region among the objects that lead to it: each pixel stays with its own, and pixels of one motion stay together.
 fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: &[u8], labels: &mut [u8]) {
     let [width, height] = record.size();
@@ -268,10 +254,10 @@ fn centre(pixels: &[usize], width: usize) -> [f64; 2] {
 }
 
 /// Mean displacement of some pixels.
-fn mean_motion(along: &Evidence, pixels: &[usize], width: usize) -> [f64; 2] {
+fn mean_motion(along: &Flow, pixels: &[usize], width: usize) -> [f64; 2] {
     let n = pixels.len().max(1) as f64;
     let sums = pixels.iter().fold([0.0, 0.0], |[a, b], &p| {
-        let [u, v] = along.motions[usize::from(along.labels[p])].flow((p % width) as f64, (p / width) as f64);
+        let [u, v] = along.at(p % width, p / width);
         [a + u, b + v]
     });
     sums.map(|sum| sum / n)

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use super::evidence::Evidence;
+use super::evidence::Flow;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
@@ -12,32 +12,20 @@ use crate::labelling::terms::smoothness::Borders;
 pub(crate) struct Record {
     /// Position in the clip, from 0.
     pub(crate) index: usize,
-    pub(crate) frame: Frame,
+    pub(crate) frame: Rc<Frame>,
     pub(crate) pyramid: Rc<FramePyramid>,
-    /// Evidence of the pair with the next frame; none at the end of a scene.
-    pub(crate) onward: Option<Evidence>,
-    /// Evidence of the pair with the frame before; none at the beginning of a scene.
-    pub(crate) back: Option<Evidence>,
+    /// Log-odds of object against background from the frame's pairs, nats; zero where there is no pair.
+    pub(crate) odds: Plane,
+    /// To the next frame; none at the end of a scene.
+    pub(crate) onward: Option<Flow>,
+    /// To the frame before; none at the beginning of a scene.
+    pub(crate) back: Option<Flow>,
 }
 
 impl Record {
     /// Width and height of the working size.
     pub(crate) fn size(&self) -> [usize; 2] {
-        let finest = &self.pyramid.levels[0].luminance;
-        [finest.width(), finest.height()]
-    }
-
-    /// Log-odds of object against background from both pairs: their mean, or those of the only one. Zero where there is none.
-    pub(crate) fn odds(&self) -> Plane {
-        match (&self.onward, &self.back) {
-            (Some(onward), Some(back)) => {
-                let mut odds = onward.odds.clone();
-                odds.values_mut().iter_mut().zip(back.odds.values()).for_each(|(o, b)| *o = 0.5 * (*o + b));
-                odds
-            }
-            (Some(only), None) | (None, Some(only)) => only.odds.clone(),
-            (None, None) => Plane::filled(self.size()[0], self.size()[1], 0.0),
-        }
+        [self.odds.width(), self.odds.height()]
     }
 
     pub(crate) fn appearance(&self) -> &Appearance {

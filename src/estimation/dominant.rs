@@ -37,6 +37,27 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -
     (best.1, best.2)
 }
 
+/// [`dominant_motion`] near one that is expected, from the base level alone.
+pub(crate) fn dominant_motion_near(
+    levels: &[Level],
+    base: usize,
+    expected: &AffineMotion,
+    brightness: bool,
+) -> (AffineMotion, Photometric) {
+    let finest = &levels[base].thinned(2);
+    let start = match brightness {
+        true => Photometric::from_moments(&finest.first, &finest.second),
+        false => Photometric::default(),
+    };
+    let mut best = static_candidate(finest, start, brightness);
+    let (motion, photometric) = descend(&levels[..=base], base, finest, *expected, start, brightness);
+    let sum = total(&cost_with(finest, &motion, photometric, CostModel::ESTIMATION));
+    if sum < best.0 {
+        best = (sum, motion, photometric);
+    }
+    (best.1, best.2)
+}
+
 /// The whole-pixel shift at the coarsest level with the smallest cost.
 fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
     let mut best = (f64::INFINITY, AffineMotion::STATIC);

@@ -37,23 +37,38 @@ pub(super) struct Found {
     pub(super) runner_up: Option<AffineMotion>,
 }
 
-/// The motions selected with the dominant motion as found or, where those are clearly cheaper, with a static background.
+/// The motions selected with the dominant motion as found or, where those are clearly cheaper, with a static background; and their cost.
 pub(super) fn best(
     pair: &Pair<'_>,
     dominant: AffineMotion,
     settings: &Settings,
     random: &mut Random,
     stages: &mut Stages<'_>,
-) -> Found {
-    let (mut winner, least) = with_dominant(pair, dominant, None, settings, random, stages);
+) -> (Found, f64) {
+    let (mut winner, mut least) = with_dominant(pair, dominant, None, settings, random, stages);
     let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
     if other && static_is_missing(&pair.levels[pair.selection], &winner.selected) {
         let (found, cost) = with_dominant(pair, AffineMotion::STATIC, Some(dominant), settings, random, stages);
         if cost < CLEARLY_CHEAPER * least {
-            winner = found;
+            (winner, least) = (found, cost);
         }
     }
-    winner
+    (winner, least)
+}
+
+/// The motions selected among those expected, without a search for others, and their cost. The first is the dominant one.
+pub(super) fn expected(
+    pair: &Pair<'_>,
+    dominant: AffineMotion,
+    objects: &[AffineMotion],
+    settings: &Settings,
+) -> (Found, f64) {
+    let level = &pair.levels[pair.selection];
+    let mut selected = vec![ScoredMotion::new(level, dominant)];
+    let runner_up = add_motions(level, &mut selected, objects, settings.deflation(0));
+    settings.refit(level, &mut selected, 1);
+    let cost = total(&smallest_cost(&selected)) + settings.hypothesis_price * selected.len() as f64;
+    (Found { selected, runner_up }, cost)
 }
 
 /// Whether the zero motion explains much that no selected motion does.

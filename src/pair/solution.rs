@@ -4,6 +4,7 @@ use super::settings::{Part, Settings};
 use super::{Pair, hypothesis, labels};
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
+use crate::labelling::BACKGROUND;
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::groups::groups;
 use crate::labelling::terms::views::{cheapest, costs_where_seen};
@@ -24,6 +25,8 @@ pub(crate) struct Solution {
     pub(crate) probabilities: Vec<Plane>,
     /// The group of every motion, named by its smallest label: motions of one rigid background share one.
     pub(crate) groups: Vec<usize>,
+    /// Cost of the selected motions: what a pair that follows may be expected to cost.
+    cost: f64,
     /// Mean of the smallest cost of any motion, as a share of the largest cost there is.
     unexplained: f32,
 }
@@ -39,20 +42,53 @@ impl Solution {
     }
 }
 
-/// Solves the pair of a frame and another one, whose pyramid is `second`.
+/// What is expected of a pair.
+#[derive(Clone, Debug)]
+pub(crate) struct Prior {
+    /// Motions, pixels of the working size; the first is that of the background.
+    pub(crate) motions: Vec<AffineMotion>,
+    /// Cost of the selected motions.
+    cost: f64,
+}
+
+/// Expected motions are enough where they cost no more than this share more than expected. Else a search adds others.
+const TOLERANCE: f64 = 0.05;
+
+impl Solution {
+    /// What to expect of a pair in which everything keeps its motion.
+    pub(crate) fn prior(&self) -> Prior {
+        Prior { motions: self.motions.clone(), cost: self.cost }
+    }
+}
+
+/// Solves the pair of a frame and another one, whose pyramid is `second`. With a prior, motions are searched for only where those
+/// expected do not explain the pair.
 pub(crate) fn solve(
     first: &Frame,
     pyramid: &FramePyramid,
     second: &FramePyramid,
     settings: &Settings,
+    prior: Option<&Prior>,
     seed: u64,
 ) -> Solution {
     let mut random = Random::from_seed(seed);
     let mut ignored = |_| {};
     let mut stages = Stages::new(super::STAGES, &mut ignored);
     let mut pair = Pair::new(first, pyramid, second, None, settings);
-    let dominant = pair.find_dominant(settings.has(Part::Brightness));
-    let found = hypothesis::best(&pair, dominant, settings, &mut random, &mut stages);
+    let brightness = settings.has(Part::Brightness);
+    let expected = prior.map(|prior| {
+        let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], brightness);
+        hypothesis::expected(&pair, dominant, &prior.motions[BACKGROUND + 1..], settings)
+    });
+    let enough = |cost: f64| prior.is_some_and(|prior| cost < (1.0 + TOLERANCE) * prior.cost + settings.price[0]);
+    let (found, cost) = match expected {
+        Some((found, cost)) if enough(cost) => (found, cost),
+        _ => {
+            pair = Pair::new(first, pyramid, second, None, settings);
+            let dominant = pair.find_dominant(brightness);
+            hypothesis::best(&pair, dominant, settings, &mut random, &mut stages)
+        }
+    };
     let found = hypothesis::refine(&pair, found, settings);
     let labelled = labels::label(&pair, found, settings);
     let level = pair.finest();
@@ -62,5 +98,5 @@ pub(crate) fn solve(
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
     let probabilities = probabilities(&costs, &labelled.labels);
     let groups = groups(&labelled.motions, &labelled.labels, level.width(), pair.reduction);
-    Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, unexplained }
+    Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, cost, unexplained }
 }
