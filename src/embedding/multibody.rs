@@ -10,8 +10,7 @@ use crate::linear::{NullVector, Triangle};
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 
-/// If the last entry of the null vector is below this share of its length, it cannot be scaled to 1: no motions explain the I_t of the
-/// data.
+/// If the last entry of the null vector is below this share of its length, it counts as zero and cannot be scaled to 1.
 const SMALLEST_LAST_ENTRY: f64 = 1e-13;
 
 /// The multibody affine motion 𝒜 ∈ R^{M_n × M_n} of (7): `ν_n(y)ᵀ 𝒜 ν_n(x) = Π_i yᵀA_i x`, with 𝒜(M_n, M_n) = 1.
@@ -46,7 +45,7 @@ impl MultibodyMotion {
 
     /// 𝒜 from ã of (9): M_n² − Z_n coefficients in the order of [`kept_pairs`], known up to scale.
     ///
-    /// If the last coefficient vanishes, which happens if no motions explain the data, the result is that of n static motions.
+    /// If the last coefficient vanishes, the scale is undetermined, and the result is the matrix of n static motions.
     ///
     /// ```
     /// use veronese::AffineMotion;

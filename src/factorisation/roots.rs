@@ -1,4 +1,4 @@
-//! All roots of a real polynomial in one variable by the Ehrlich–Aberth iteration (Aberth, Math. Comp. 27, 1973).
+//! All roots of a real polynomial in one variable by the Ehrlich–Aberth iteration (Aberth, Mathematics of Computation 27, 1973).
 
 use nalgebra::Complex;
 

@@ -1,4 +1,4 @@
-//! Singular values of a square matrix by bidiagonalisation and bisection.
+//! Singular values of a square matrix by reduction to bidiagonal form and bisection.
 //!
 //! The symmetric tridiagonal matrix with zero diagonal and the entries of the bidiagonal matrix B alternating next to it has the
 //! eigenvalues ±σ (the Golub–Kahan form). Bisection on its Sturm counts always converges, uses + − × ÷ only, and is accurate to
