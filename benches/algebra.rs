@@ -1,4 +1,4 @@
-//! The algebra stage by stage: protocol B1, 600 measurements, 2 % noise; and the linear step at the largest size.
+//! The stages of the algebra with protocol B1, 600 measurements and 2 % noise, and the linear step at the largest size.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../tests/support/protocol.rs"]
@@ -51,7 +51,7 @@ fn rank_rule(criterion: &mut Criterion) {
     }
 }
 
-/// The paper's five steps and its refinement of (19), and differentiation at points.
+/// The paper's five steps, its refinement (19), and differentiation at points.
 fn factorisation(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("factorisation");
     for n in 2..=4 {

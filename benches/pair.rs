@@ -1,4 +1,4 @@
-//! The image pipeline as a whole: a generated pair of 320 × 240 pixels with two objects, for each quality.
+//! The image pipeline in both qualities, on a generated pair of 320 × 240 pixels with two objects.
 
 use std::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! Writes the generated pairs that come with the page: `cargo run --release --features codecs --example samples`.
+//! Writes the generated sample pairs of the page: `cargo run --release --features codecs --example samples`.
 
 use std::error::Error;
 use std::fs;

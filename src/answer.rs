@@ -1,4 +1,4 @@
-//! What is found on measurements, and the two things that answers on frames share with it.
+//! The result types for measurements, and [`UNLABELLED`] and [`Candidate`], which results for frames use too.
 
 use serde::Serialize;
 
@@ -6,10 +6,10 @@ use crate::embedding::rank::RankCandidate;
 use crate::motion::AffineMotion;
 use crate::refinement::Report;
 
-/// The label of a measurement or pixel that no motion explains.
+/// The label of a measurement or pixel without a motion: an outlier, or a pixel whose motion is unknown.
 pub const UNLABELLED: u8 = 255;
 
-/// What [`fit_motions`](crate::fit_motions) found.
+/// The result of [`fit_motions`](crate::fit_motions).
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct MotionFit {
@@ -20,9 +20,9 @@ pub struct MotionFit {
     /// One label per measurement, in input order; [`UNLABELLED`] for an outlier.
     #[serde(skip)]
     pub labels: Vec<u8>,
-    /// What the number of motions rests on.
+    /// Evidence for the number of motions.
     pub evidence: FitEvidence,
-    /// What the steps of the paper gave; only with [`Method::Paper`](crate::Method::Paper).
+    /// Results of the steps of the paper; only with [`Method::Paper`](crate::Method::Paper).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stages: Option<PaperStages>,
 }
@@ -37,9 +37,9 @@ pub struct FittedMotion {
     pub matrix: AffineMotion,
     /// Number of measurements that belong to it.
     pub measurements: usize,
-    /// How many of the six entries its measurements determine (the rank of their constraints): below 6 the rest is a choice.
+    /// Rank of the constraints that its measurements put on the six entries, 0 to 6. Below 6, the entries are one of many solutions.
     pub determined: usize,
-    /// Covariance of the six entries, in the squared units of the entries, where the labels are taken as known; only with
+    /// Covariance of the six entries, in products of their units, with the labels taken as known; only with
     /// [`Method::Best`](crate::Method::Best).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub covariance: Option<[[f64; 6]; 6]>,
@@ -49,30 +49,31 @@ pub struct FittedMotion {
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct FitEvidence {
-    /// Singular values of the embedded data matrix P̃_n at the n that was chosen, decreasing, columns scaled to unit norm.
+    /// Singular values of the embedded data matrix P̃_n for the chosen n, decreasing, columns scaled to unit length; empty with
+    /// [`Method::Best`](crate::Method::Best) and for n > 6.
     pub singular_values: Vec<f64>,
-    /// The numbers of motions that were tried; a smaller score is better.
+    /// The numbers of motions that were tried, with their scores.
     pub candidates: Vec<Candidate>,
 }
 
-/// One number of motions that was tried.
+/// A number of motions that was tried.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Candidate {
-    /// The number.
+    /// The number of motions.
     pub motions: usize,
     /// Its score; smaller is better.
     pub score: f64,
 }
 
-/// What the steps of the paper gave, one after another.
+/// The results of the steps of the paper's algorithm.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PaperStages {
-    /// Ranks at the numbers of motions that were tried (Theorem 1); empty where the number was given.
+    /// Rank for each number of motions tried (Theorem 1); empty if the number was given.
     pub ranks: Vec<RankCandidate>,
-    /// Whether the rank rule (12) was fulfilled; where not, the number is the smallest whose rank is too low, or else the last
-    /// tried. `None` where the number was given.
+    /// Whether some number satisfied the rank rule (12); `None` if the number was given. If none did, see
+    /// [`number_of_motions`](crate::embedding::rank::number_of_motions) for the number that is used.
     pub rank_rule_fired: Option<bool>,
     /// Motions after the polynomial factorisation (section 3.3), in the order of [`MotionFit::motions`].
     pub factorisation: Vec<AffineMotion>,

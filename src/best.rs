@@ -1,4 +1,4 @@
-//! Our own solution of Problem 1 on points: the most likely mixture of motions.
+//! [`Method::Best`](crate::Method::Best): the maximum likelihood mixture of motions.
 
 use crate::answer::{Candidate, FitEvidence, FittedMotion, MotionFit, UNLABELLED};
 use crate::error::{Error, Result};
@@ -13,19 +13,20 @@ use crate::refinement::{Matrix6, Mixture, Samples, Search, covariance, determine
 
 const STAGES: &[&str] = &["search", "labels"];
 
-/// Measurements that one motion needs at least: one for each entry.
+/// Smallest number of measurements per motion: one for each entry.
 const PER_MOTION: usize = 6;
-/// Up to this many motions the search starts from the algebra (differentiation of the multibody motion at points), which is exact without
-/// noise and saves time; beyond, its cost grows with the sixth power of n and random starts do as well.
+/// Up to this many motions, the search starts from the algebra (differentiation of the multibody motion at points), which is exact
+/// without noise and saves time. The cost of the algebra grows with the sixth power of n, and for more motions random starts do as well.
 const ALGEBRAIC: usize = 2;
-/// Points at which the multibody motion is differentiated, and the measurements it is estimated from.
+/// Points at which the multibody motion is differentiated.
 const POINTS: usize = 20;
+/// Largest number of measurements from which the multibody motion is estimated.
 const ESTIMATED_FROM: usize = 1000;
 
-/// The most likely motions, their number where it is not given, outliers, labels and covariances.
+/// The maximum likelihood fit: motions, their number unless it is given, outliers, labels and covariances.
 ///
 /// # Errors
-/// [`Error::TooFewMeasurements`] for fewer than six per motion.
+/// [`Error::TooFewMeasurements`] for fewer than six measurements per motion.
 pub(crate) fn best_fit(measurements: &Measurements, options: &FitOptions, progress: Progress<'_>) -> Result<MotionFit> {
     let mut stages = Stages::new(STAGES, progress);
     let (least, largest) = match options.motions {
@@ -60,7 +61,7 @@ pub(crate) fn best_fit(measurements: &Measurements, options: &FitOptions, progre
     Ok(MotionFit { count: motions.len(), motions, labels, evidence, stages: None })
 }
 
-/// Motions worth trying; none where the algebra is not asked or has too few measurements.
+/// Hypotheses from the algebra; none for more than [`ALGEBRAIC`] motions or too few measurements.
 fn algebraic_hypotheses(normalised: &Measurements, n: usize, random: &mut Random) -> Vec<[f64; 6]> {
     if n > ALGEBRAIC {
         return Vec::new();
@@ -73,7 +74,8 @@ fn algebraic_hypotheses(normalised: &Measurements, n: usize, random: &mut Random
     pool.unwrap_or_default().iter().filter(|motion| motion.is_finite()).map(|motion| motion.matrix).collect()
 }
 
-/// The motions of a fit by decreasing number of measurements (ties by the share, then the entries), in the input's coordinates.
+/// The motions of a fit by decreasing number of measurements (ties: share, then entries), in the coordinates of the input, and the
+/// labels.
 fn labelled_motions(
     search: &mut Search<'_>,
     samples: &Samples,
@@ -108,7 +110,8 @@ fn labelled_motions(
     (motions, labels)
 }
 
-/// The covariance of the entries in the input's coordinates: restoring a motion is linear, so its columns are the restored unit motions.
+/// The covariance `L C Lᵀ` of the entries in the coordinates of the input. Restoring a motion is linear; column k of its matrix L is the
+/// restored k-th unit motion.
 fn restored_covariance(normalised: &Matrix6, normalisation: &Normalisation) -> Matrix6 {
     let columns: [[f64; 6]; 6] = std::array::from_fn(|k| {
         let mut unit = [0.0; 6];

@@ -1,8 +1,20 @@
-//! Image files: PNG, JPEG, WebP, BMP and PNM in, PNG out. For Node and native programs (feature `codecs`); a browser decodes
-//! by itself.
+//! Image files: decoding of PNG, JPEG, WebP, BMP and PNM, encoding of PNG. For Node and native programs (feature `codecs`); browsers
+//! decode images themselves.
 //!
-//! The bytes come from outside, so nothing is believed: the header's size is checked before a decoder opens the file, what is
-//! packed beside the pixels stays packed, and whatever a decoder complains about becomes [`Error::UnreadableImage`].
+//! Files are not trusted. The size in the header is checked before a decoder opens the file, compressed metadata are not unpacked, and all
+//! complaints of a decoder become [`Error::UnreadableImage`].
+//!
+//! ```
+//! use veronese::codecs::{decode_image, encode_colour_png};
+//!
+//! let rgb: Vec<u8> = (0..32 * 24).flat_map(|p| [p as u8, (p / 32) as u8, 200]).collect();
+//! let picture = decode_image(&encode_colour_png(32, 24, &rgb)?)?;
+//! assert_eq!((picture.width, picture.height), (32, 24));
+//! assert_eq!(picture.rgba[..4], [0, 0, 200, 255]);
+//! let frame = picture.frame()?; // for `segment_pair`
+//! assert_eq!((frame.width(), frame.height()), (32, 24));
+//! # Ok::<(), veronese::Error>(())
+//! ```
 
 use std::io::Cursor;
 
@@ -14,10 +26,10 @@ use crate::frame::{Frame, MAX_SIDE};
 
 mod header;
 
-/// Most that one decoder may allocate, bytes: 16-bit RGBA of the largest frame, three times over.
+/// Maximum allocation of a decoder in bytes: three times the largest frame in 16-bit RGBA.
 const MAX_ALLOCATION: usize = 3 * 8 * MAX_SIDE * MAX_SIDE;
 
-/// A decoded image: RGBA bytes row by row, as `ImageData` has them.
+/// A decoded image: RGBA bytes, row by row, like `ImageData`. See the [module example](self).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Width in pixels.
@@ -29,21 +41,31 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// The picture as a frame of a pair.
+    /// Converts the picture to a frame.
     ///
     /// # Errors
-    /// [`Error::FrameSizeUnsupported`] for sides outside 16…4096.
+    /// [`Error::FrameSizeUnsupported`] for a side outside 16 to 4096 pixels; [`Error::PixelCountMismatch`] if the bytes do not fill it.
     pub fn frame(&self) -> Result<Frame> {
         Frame::from_rgba(self.width, self.height, &self.rgba)
     }
 }
 
-/// Decodes a PNG, JPEG, WebP, BMP or PNM file; the format is told by its first bytes. An Exif orientation is applied, as
-/// browsers do; of an animation the first image is taken.
+/// Decodes a PNG, JPEG, WebP, BMP or PNM file, whose format is recognised by its first bytes. The Exif orientation is applied, as in
+/// browsers. Of an animation, the first image is decoded.
+///
+/// ```
+/// use veronese::codecs::decode_image;
+///
+/// let picture = decode_image(b"P5 2 1 255 \x07\xff")?; // PNM, grey
+/// assert_eq!(picture.rgba, [7, 7, 7, 255, 255, 255, 255, 255]);
+/// assert_eq!(decode_image(b"P5 2 1 255 \x07").unwrap_err().code(), "unreadable-image"); // truncated
+/// assert_eq!(decode_image(b"P5 9999 1 255 ").unwrap_err().code(), "frame-size-unsupported");
+/// # Ok::<(), veronese::Error>(())
+/// ```
 ///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`] for a header with a side of 0 or above 4096, [`Error::UnreadableImage`] for everything
-/// that a decoder refuses: another format, damaged or truncated data.
+/// [`Error::FrameSizeUnsupported`] for a side of 0 or above 4096 in the header; [`Error::UnreadableImage`] for another format, and for
+/// damaged or truncated data.
 pub fn decode_image(bytes: &[u8]) -> Result<Picture> {
     if bytes.is_empty() {
         return Err(unreadable("it is empty"));
@@ -63,8 +85,8 @@ pub fn decode_image(bytes: &[u8]) -> Result<Picture> {
     Ok(Picture { width: rgba.width() as usize, height: rgba.height() as usize, rgba: rgba.into_raw() })
 }
 
-/// By the crate png itself: through the crate image, opening a file unpacks its colour profile, which nobody asks for here and
-/// which can be a thousand times as large as the file.
+/// Decodes PNG with the crate `png` directly. The crate `image` unpacks the colour profile when it opens a file, which is not needed and
+/// may be a thousand times as large as the file.
 fn png_image(bytes: &[u8]) -> Result<(DynamicImage, Orientation)> {
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: MAX_ALLOCATION });
     decoder.set_ignore_iccp_chunk(true);
@@ -108,8 +130,8 @@ fn other_image(bytes: &[u8], format: ImageFormat) -> Result<(DynamicImage, Orien
     Ok((DynamicImage::from_decoder(decoder).map_err(unreadable)?, orientation))
 }
 
-/// Whether the marker "end of image" follows the start of the (last) scan. The decoder fills what a truncated file lacks
-/// with grey, and a segmentation of grey would look like an answer.
+/// Whether the marker "end of image" follows the last start of a scan. The decoder fills the rest of a truncated file with grey, which
+/// would be segmented as if it were image content.
 fn jpeg_ends(bytes: &[u8]) -> bool {
     const START_OF_SCAN: [u8; 2] = [0xff, 0xda];
     const END_OF_IMAGE: [u8; 2] = [0xff, 0xd9];
@@ -121,17 +143,26 @@ fn jpeg_ends(bytes: &[u8]) -> bool {
 }
 
 fn unreadable(reason: impl std::fmt::Display) -> Error {
-    // One line: decoders put causes on lines of their own.
+    // On one line: decoders put causes on separate lines.
     let reason = reason.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
     Error::UnreadableImage { reason }
 }
 
-/// Encodes an 8-bit indexed PNG: one index per pixel, row by row, and up to 256 RGB colours. A reader that ignores colours
-/// gets the indices back as they were.
+/// Encodes an 8-bit indexed PNG from one index per pixel, row by row, and a palette of up to 256 RGB colours. A reader that ignores the
+/// palette gets the indices unchanged.
+///
+/// ```
+/// use veronese::codecs::{decode_image, encode_indexed_png};
+///
+/// let file = encode_indexed_png(3, 1, &[0, 1, 0], &[0, 0, 0, 255, 128, 0])?; // black and orange
+/// assert_eq!(decode_image(&file)?.rgba, [0, 0, 0, 255, 255, 128, 0, 255, 0, 0, 0, 255]);
+/// assert_eq!(encode_indexed_png(3, 1, &[0, 1, 2], &[0; 6]).unwrap_err().code(), "invalid-option");
+/// # Ok::<(), veronese::Error>(())
+/// ```
 ///
 /// # Errors
-/// [`Error::InvalidOption`] where indices do not fill width × height, the palette is empty, longer than 256 colours, not
-/// whole colours, or shorter than the largest index asks for.
+/// [`Error::InvalidOption`] if the number of indices is not width × height, or if the palette is empty, is not a multiple of three bytes,
+/// has more than 256 colours, or has no colour for the largest index.
 pub fn encode_indexed_png(width: usize, height: usize, indices: &[u8], palette: &[u8]) -> Result<Vec<u8>> {
     let colours = palette.len() / 3;
     let needed = indices.iter().max().map_or(0, |&largest| usize::from(largest) + 1);
@@ -150,16 +181,31 @@ pub fn encode_indexed_png(width: usize, height: usize, indices: &[u8], palette: 
 
 /// Encodes an 8-bit grey PNG from one byte per pixel, row by row.
 ///
+/// ```
+/// use veronese::codecs::{decode_image, encode_grey_png};
+///
+/// assert_eq!(decode_image(&encode_grey_png(2, 1, &[0, 99])?)?.rgba, [0, 0, 0, 255, 99, 99, 99, 255]);
+/// # Ok::<(), veronese::Error>(())
+/// ```
+///
 /// # Errors
-/// [`Error::InvalidOption`] where the bytes do not fill width × height.
+/// [`Error::InvalidOption`] if the number of bytes is not width × height, or is 0.
 pub fn encode_grey_png(width: usize, height: usize, grey: &[u8]) -> Result<Vec<u8>> {
     encode(width, height, grey, png::ColorType::Grayscale, None)
 }
 
-/// Encodes an 8-bit RGB PNG from three bytes per pixel, or an RGBA PNG from four, row by row.
+/// Encodes an 8-bit RGB PNG from three bytes per pixel, or an RGBA PNG from four bytes per pixel, row by row.
+///
+/// ```
+/// use veronese::codecs::{decode_image, encode_colour_png};
+///
+/// let rgba = [255, 128, 0, 255, 60, 150, 255, 128];
+/// assert_eq!(decode_image(&encode_colour_png(2, 1, &rgba)?)?.rgba, rgba);
+/// # Ok::<(), veronese::Error>(())
+/// ```
 ///
 /// # Errors
-/// [`Error::InvalidOption`] where the bytes fill width × height pixels neither of three bytes nor of four.
+/// [`Error::InvalidOption`] if the number of bytes is neither 3 · width · height nor 4 · width · height, or is 0.
 pub fn encode_colour_png(width: usize, height: usize, pixels: &[u8]) -> Result<Vec<u8>> {
     let alpha = width.checked_mul(height).and_then(|n| n.checked_mul(4)) == Some(pixels.len());
     encode(width, height, pixels, if alpha { png::ColorType::Rgba } else { png::ColorType::Rgb }, None)
@@ -201,7 +247,7 @@ fn encode(
 mod tests {
     use super::*;
 
-    /// A picture without symmetry: a transposed or mirrored one differs.
+    /// A picture without symmetry.
     fn picture(width: usize, height: usize) -> Vec<u8> {
         (0..width * height).flat_map(|i| [(i % width) as u8, (i / width) as u8, (i % 251) as u8]).collect()
     }
@@ -220,14 +266,14 @@ mod tests {
     #[test]
     fn a_truncated_file_is_unreadable_wherever_it_is_cut() {
         let file = encode_colour_png(37, 21, &picture(37, 21)).unwrap();
-        // 12 bytes of IEND carry no pixels, nor does the checksum before them.
+        // The last 12 bytes, IEND, and the checksum before them carry no pixels.
         for length in 0..file.len() - 20 {
             let error = decode_image(&file[..length]).unwrap_err();
             assert_eq!(error.code(), "unreadable-image", "{length} of {} bytes", file.len());
         }
     }
 
-    /// A PNG of 64×64 black pixels with a chunk of its own between header and pixels.
+    /// A PNG of 64 × 64 black pixels with an additional chunk between header and pixels.
     fn png_with(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
         let plain = encode_grey_png(64, 64, &[0; 64 * 64]).unwrap();
         let mut file = plain[..33].to_vec();
@@ -269,7 +315,7 @@ mod tests {
         file
     }
 
-    /// A WebP file of these chunks.
+    /// A WebP file with the given chunks.
     fn webp(chunks: &[(&[u8; 4], Vec<u8>)]) -> Vec<u8> {
         let mut body = b"WEBP".to_vec();
         for (kind, content) in chunks {
@@ -302,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_of_unsupported_sides_is_refused_as_such_in_every_format() {
+    fn unsupported_sizes_are_recognised_in_every_format() {
         let pam =
             |side: &str| format!("P7\nWIDTH {side}\n# wide\nHEIGHT 8\nDEPTH 1\nMAXVAL 255\nENDHDR\n").into_bytes();
         let files = [
@@ -336,8 +382,8 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_inside_a_file_is_no_larger_than_the_file_says() {
-        // 400 MB of planes for a canvas of 64×64.
+    fn the_size_of_a_frame_inside_a_file_is_checked() {
+        // 400 MB of planes for a canvas of 64 × 64 pixels.
         for file in [
             webp(&[(b"VP8X", extended(0, 64, 64)), (b"VP8 ", lossy(16_383, 16_383))]),
             webp(&[
@@ -351,7 +397,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chunk_that_claims_more_than_the_file_has_is_refused() {
+    fn a_chunk_longer_than_the_file_is_rejected() {
         let mut file = webp(&[(b"VP8X", extended(8, 64, 64)), (b"VP8 ", lossy(64, 64)), (b"EXIF", vec![0; 4])]);
         let size = file.len() - 8;
         file[size..size + 4].copy_from_slice(&0x7000_0000_u32.to_le_bytes());
@@ -359,16 +405,16 @@ mod tests {
     }
 
     #[test]
-    fn what_png_carries_beside_the_pixels_changes_none_of_them() {
+    fn png_metadata_do_not_change_the_pixels() {
         let plain = decode_image(&encode_grey_png(64, 64, &[0; 64 * 64]).unwrap()).unwrap();
-        // Not one of them is what its kind should be.
+        // None of these chunks has valid content.
         for kind in [b"iCCP", b"zTXt", b"iTXt", b"tEXt", b"eXIf", b"gAMA", b"veRo"] {
             assert_eq!(decode_image(&png_with(kind, &[b'a'; 300])).unwrap(), plain, "{kind:?}");
         }
     }
 
     #[test]
-    fn indices_beyond_the_palette_are_refused() {
+    fn indices_beyond_the_palette_are_rejected() {
         assert!(encode_indexed_png(2, 1, &[0, 1], &[0, 0, 0, 9, 9, 9]).is_ok());
         for palette in [&[0, 0, 0][..], &[], &[0; 7], &[0; 257 * 3]] {
             assert_eq!(encode_indexed_png(2, 1, &[0, 1], palette).unwrap_err().code(), "invalid-option");
@@ -376,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_do_not_fill_the_picture_are_refused() {
+    fn bytes_that_do_not_fill_the_picture_are_rejected() {
         assert_eq!(encode_grey_png(3, 3, &[0; 8]).unwrap_err().code(), "invalid-option");
         assert_eq!(encode_grey_png(0, 3, &[]).unwrap_err().code(), "invalid-option");
         assert_eq!(encode_colour_png(usize::MAX, 2, &[0; 8]).unwrap_err().code(), "invalid-option");

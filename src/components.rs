@@ -1,49 +1,50 @@
-//! Connected components of a labelling: where they are, how large, and what becomes of those that are too small.
+//! Connected components of a labelling: position, size, and absorption of small ones.
 
 use crate::order::ascending;
 use crate::workspace::{Buffer, kept};
 
-/// Which pixels touch.
+/// Which pixels are neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Connectivity {
-    /// Those that share a side.
+    /// Pixels that share a side.
     Four,
-    /// Those that share a side or a corner.
+    /// Pixels that share a side or a corner.
     Eight,
 }
 
-/// One connected region of one label.
+/// A connected region of one label.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Component {
     /// The label of its pixels.
     pub(crate) label: u8,
     /// Number of its pixels.
     pub(crate) size: usize,
-    /// Bounding box: first column, first row, last column, last row.
+    /// Bounding box, inclusive: first column, first row, last column, last row.
     pub(crate) bounds: [usize; 4],
 }
 
 /// All components of a labelling, numbered in the raster order of their first pixels.
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
-    /// Number of the component of every pixel.
+    /// Index in `list` of the component of every pixel.
     pub(crate) of: Buffer<u32>,
     pub(crate) list: Buffer<Component>,
 }
 
-/// Neighbouring pixels of a row with one label.
+/// A maximal run of pixels with one label in a row.
 #[derive(Clone, Copy, Default)]
 struct Run {
+    /// First column, and the column after the last.
     columns: [usize; 2],
     row: usize,
     label: u8,
-    /// An earlier run of the same component, or the run itself.
+    /// Union-find link: an earlier run of the same component, or the run itself.
     earlier: usize,
 }
 
 kept!(Component, Run);
 
-/// The components of `labels`, rows of `width` pixels.
+/// The components of `labels`, row-major with rows of `width` pixels.
 pub(crate) fn components(labels: &[u8], width: usize, connectivity: Connectivity) -> Components {
     let mut runs: Buffer<Run> = Buffer::list();
     let mut above = 0..0;
@@ -78,13 +79,13 @@ pub(crate) fn components(labels: &[u8], width: usize, connectivity: Connectivity
     Components { of, list }
 }
 
-/// Joins the runs of the last row, from `begin`, with those of the row above that they touch.
+/// Joins the runs of the last row, which start at index `begin`, with the runs of the row above that they touch.
 fn join(runs: &mut [Run], above: std::ops::Range<usize>, begin: usize, connectivity: Connectivity) {
     let reach = usize::from(connectivity == Connectivity::Eight);
     let mut from = above.start;
     for k in begin..runs.len() {
         let [start, end] = runs[k].columns;
-        // What ends before this run begins touches no later run either.
+        // A run above that ends before this one begins cannot touch a later one either.
         while from < above.end && runs[from].columns[1] + reach <= start {
             from += 1;
         }
@@ -101,7 +102,7 @@ fn join(runs: &mut [Run], above: std::ops::Range<usize>, begin: usize, connectiv
     }
 }
 
-/// The first run of a run's component, as far as it is known. Shortens the way for the next who asks.
+/// The first known run of the component of run `k`. Halves the path on the way.
 fn first_of(runs: &mut [Run], mut k: usize) -> usize {
     while runs[k].earlier != k {
         runs[k].earlier = runs[runs[k].earlier].earlier;
@@ -110,11 +111,11 @@ fn first_of(runs: &mut [Run], mut k: usize) -> usize {
     k
 }
 
-/// Gives every 4-connected component of fewer than `smallest` pixels the label most frequent around it (the smaller label
-/// of equals), the smallest components first. A component with nothing around it stays.
+/// Gives every 4-connected component of fewer than `smallest` pixels the most frequent label around it (ties: the smallest label),
+/// smallest components first. A component that fills the frame stays.
 pub(crate) fn absorb_small(labels: &mut [u8], width: usize, smallest: usize) {
-    // What a component is given to may itself be given away later: then both are one component in the next round. Each
-    // round but the last removes a component; a handful is enough for all but contrived labellings.
+    // The component that absorbs one may be small too and be absorbed in the next round. Every round but the last removes a component,
+    // and eight rounds are enough for all but contrived labellings.
     for _ in 0..8 {
         if !absorb_once(labels, width, smallest) {
             break;
@@ -150,7 +151,7 @@ fn absorb_once(labels: &mut [u8], width: usize, smallest: usize) -> bool {
         let mut winner = usize::from(label);
         let mut most = 0;
         for (l, &count) in votes.iter().enumerate() {
-            // Its own label may touch it at a corner: that is no surrounding.
+            // Another component of the same label may touch it at a corner. It does not count.
             if l != usize::from(label) && count > most {
                 (winner, most) = (l, count);
             }
@@ -195,7 +196,7 @@ mod tests {
         }
     }
 
-    /// By flooding, pixel after pixel.
+    /// The components by flood fill.
     fn flooded(labels: &[u8], width: usize, connectivity: Connectivity) -> Components {
         let height = labels.len() / width;
         let (mut of, mut list) = (vec![u32::MAX; labels.len()], Vec::new());
@@ -227,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn components_are_those_that_flooding_finds() {
+    fn components_agree_with_flood_fill() {
         let mut random = crate::random::Random::from_seed(11);
         for (width, height, kinds) in [(19, 14, 2), (1, 9, 2), (12, 1, 3), (13, 13, 4), (25, 8, 2)] {
             let labels: Vec<u8> = (0..width * height).map(|_| random.uniform(0.0, f64::from(kinds)) as u8).collect();

@@ -1,7 +1,7 @@
-//! The one error type of the crate: the caller's input cannot be processed, and why.
+//! The error type of the crate: why an input cannot be processed.
 //!
-//! What is *not* an error: data that cannot tell (an answer that says so, with its evidence) and a solver that stopped
-//! early (a report). See ARCHITECTURE.md, "Three answers".
+//! Ambiguous data are not an error but a result with its evidence, and a solver that stops early returns a report. See "Three kinds of
+//! outcome" in ARCHITECTURE.md.
 
 /// Why an input cannot be processed. Every variant has a stable [`code`](Error::code).
 #[non_exhaustive]
@@ -67,15 +67,15 @@ pub enum Error {
         /// Index in the input.
         index: usize,
     },
-    /// An option has a value that it cannot have.
+    /// An option has an invalid value.
     #[error("option '{name}': {reason}")]
     InvalidOption {
         /// The option's name.
         name: &'static str,
-        /// What is wrong and what would be right.
+        /// What is wrong, and which values are valid.
         reason: String,
     },
-    /// A file is no image, or a damaged one.
+    /// A file is not an image in a supported format, or is damaged.
     #[error("the image cannot be read: {reason}")]
     UnreadableImage {
         /// What the decoder said.
@@ -84,7 +84,16 @@ pub enum Error {
 }
 
 impl Error {
-    /// A stable kebab-case code: the same on the command line, in JavaScript and here.
+    /// A stable kebab-case code, the same on the command line and in JavaScript. The message ([`Display`](std::fmt::Display)) may change.
+    ///
+    /// ```
+    /// use veronese::{Frame, Measurements};
+    ///
+    /// assert_eq!(Frame::from_rgba(32, 32, &[0; 12][..]).unwrap_err().code(), "pixel-count-mismatch");
+    /// let error = Measurements::new(vec![[0.0, 0.0]], vec![[1.0, f64::NAN, 0.0]]).unwrap_err();
+    /// assert_eq!(error.code(), "not-finite");
+    /// assert_eq!(error.to_string(), "derivative number 0 is not a finite number of usable size");
+    /// ```
     pub fn code(&self) -> &'static str {
         match self {
             Error::FrameSizeMismatch { .. } => "frame-size-mismatch",
@@ -99,5 +108,5 @@ impl Error {
     }
 }
 
-/// The crate's result.
+/// A result with the crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;

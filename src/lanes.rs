@@ -1,10 +1,9 @@
-//! Loops over rows, a handful of values at a time.
+//! Loops over slices in blocks of a fixed size, which the compiler vectorises.
 //!
-//! WebAssembly's instructions work on four values at once, but the compiler makes use of them only where it knows the number of turns
-//! (see `.cargo/config.toml`): elsewhere each loop would come with a second one for the rest, and most loops do not matter. Those
-//! that do are written in blocks, or with the functions here.
+//! The build for WebAssembly vectorises only loops of known length (see `.cargo/config.toml`). A vectorised loop of unknown length needs
+//! a second loop for the remainder, and most loops are not worth that code size. Loops that are use blocks, or the functions here.
 
-/// Values that are worked on together: one register of WebAssembly. Two would make no loop faster and each twice as long.
+/// Values in a block: one 128-bit register of `f32`. Blocks of two registers are no faster and double the code.
 pub(crate) const LANES: usize = 4;
 
 /// Replaces every value v by f(v).
@@ -19,7 +18,7 @@ pub(crate) fn each<T: Copy>(values: &mut [T], f: impl Fn(T) -> T) {
     }
 }
 
-/// Replaces every value v by f(v, w), w the values at the same place of `others`, as far as all go.
+/// Replaces every value v by f(v, w), with w the values at the same index of `others`, up to the shortest length.
 #[inline(always)]
 pub(crate) fn each_with<T: Copy, const N: usize>(values: &mut [T], others: [&[T]; N], f: impl Fn(T, [T; N]) -> T) {
     let count = others.iter().fold(values.len(), |least, other| least.min(other.len()));
@@ -34,14 +33,14 @@ pub(crate) fn each_with<T: Copy, const N: usize>(values: &mut [T], others: [&[T]
     }
 }
 
-/// Lowers values to others wherever those are smaller, as far as both go.
+/// Replaces every value by the minimum of itself and the other value, up to the shorter length.
 #[inline(never)]
 pub(crate) fn lower(values: &mut [f32], others: &[f32]) {
     each_with(values, [others], |v, [o]| if o < v { o } else { v });
 }
 
-/// The first values of a part of a row as an array, whose length the compiler knows: in place, or where there are fewer a copy with
-/// anything behind.
+/// The first N values of a slice as an array of known length: in place, or, if the slice is shorter, a copy in `space` followed by
+/// arbitrary values.
 pub(crate) fn whole<'a, const N: usize>(part: &'a [f32], space: &'a mut [f32; N]) -> &'a [f32; N] {
     if let Some(array) = part.first_chunk() {
         return array;
@@ -55,7 +54,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_and_rest_are_worked_on_alike() {
+    fn blocks_and_remainder_are_treated_alike() {
         for count in [0, 1, 7, 8, 9, 40, 43] {
             let start: Vec<f32> = (0..count).map(|k| k as f32 * 0.3).collect();
             let mut values = start.clone();

@@ -1,21 +1,16 @@
-//! How many things move between two video frames, how each moves, and which pixels belong to it: from the intensities alone.
+//! Motion segmentation of two video frames: how many motions there are, what each motion is, and which pixels follow it. There is no
+//! trained model; everything is estimated from the intensities of the two frames.
 //!
-//! A pixel x = (x, y, 1) with the image derivatives y = (I_x, I_y, I_t) that moves with the affine motion A satisfies
-//! `yᵀ A x = 0`. Whichever of n motions it belongs to, it satisfies the product of all n constraints, the *multibody affine
-//! constraint*, which is one linear equation in the products of monomials of x and y. Its solution holds all motions at once;
-//! factorising or differentiating it gives them one by one, before any pixel is assigned to one (R. Vidal and S. Sastry,
-//! *Segmentation of Dynamic Scenes from Image Intensities*, IEEE Workshop on Vision and Motion Computing, 2002).
+//! A pixel x = (x, y, 1) with image derivatives y = (I_x, I_y, I_t) that moves with the affine motion A satisfies `yᵀ A x = 0`. A pixel
+//! that moves with one of n motions satisfies the product of their n constraints, the *multibody affine constraint*. It is a linear
+//! equation in products of monomials of x and y, and its solution contains all n motions. Factorising or differentiating it recovers
+//! them before any pixel is assigned to a motion (R. Vidal and S. Sastry, *Segmentation of Dynamic Scenes from Image Intensities*, IEEE
+//! Workshop on Vision and Motion Computing, 2002; "the paper" in this documentation, which cites its equations by number).
 //!
-//! [`fit_motions`] solves this for given measurements:
-//! 1. [`embedding`]: the Veronese map, the embedded data matrix, its rank, the multibody motion (eq. 6-12);
-//! 2. [`factorisation`]: the polynomial into motions, as in the paper (eq. 13-17) or by differentiation;
-//! 3. [`refinement`]: the paper's nonlinear refinement (eq. 19), and the most likely mixture of motions with outliers.
+//! # Segmenting two frames
 //!
-//! [`segment_pair`] does it for two frames:
-//! 1. luminance, pyramids, gradients; 2. the dominant motion and the change of brightness; 3. measurements of what it leaves
-//!    unexplained, taken where a local flow lands; 4. motions proposed by the multibody constraint on them; 5. greedy selection;
-//! 6. each motion refined on the intensities of its pixels, coarse to fine; 7. labels of least energy, corrected for occlusion;
-//! 8. masks at full size, groups, evidence.
+//! [`segment_pair`] takes two [`Frame`]s and returns a [`Segmentation`]: one label for each pixel of the first frame and one
+//! [`AffineMotion`] for each label. The scene of this example is generated, so the true motions are known:
 //!
 //! ```
 //! use veronese::scene::{self, SceneOptions};
@@ -24,17 +19,100 @@
 //! # fn main() -> veronese::Result<()> {
 //! let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
 //! let found = segment_pair(scene.first(), scene.second(), None, &SegmentOptions::default(), &mut |_stage| {})?;
+//! assert_eq!(found.count, 2); // the background and one object
 //! assert_eq!(found.labels.len(), 160 * 120);
-//! for motion in &found.motions {
-//!     println!("{} {:.1} % {:?}", motion.label, 100.0 * motion.share, motion.matrix);
+//! for (motion, truth) in found.motions.iter().zip(&scene.motions) {
+//!     let ([u, v], [p, q]) = (motion.matrix.flow(80.0, 60.0), truth.flow(80.0, 60.0));
+//!     assert!((u - p).abs() < 0.5 && (v - q).abs() < 0.5); // pixels
 //! }
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! The same input gives the same bits natively and in WebAssembly; ARCHITECTURE.md says what that takes.
+//! With the frame before the first as the third argument (here `Some(scene.before())`), labels of pixels that are hidden in the second
+//! frame are more often right.
+//!
+//! The stages are: luminance, pyramids and gradients; the dominant motion and the change of brightness; measurements on the pixels that
+//! the dominant motion does not explain; candidate motions from the multibody constraint; greedy selection; refinement of each motion
+//! on the intensities of its pixels, coarse to fine; labels of least energy, corrected for occlusion; masks at full size, groups of
+//! motions, evidence for their number.
+//!
+//! # Frames, planes and derivatives
+//!
+//! A [`Frame`] is made from RGBA bytes. Its luminance is a [`Plane`], a row-major array of `f32`:
+//!
+//! ```
+//! use veronese::Plane;
+//!
+//! let mut plane = Plane::from_fn(4, 3, |x, y| (10 * y + x) as f32);
+//! assert_eq!((plane.at(3, 2), plane.row(1)), (23.0, &[10.0, 11.0, 12.0, 13.0][..]));
+//! plane.row_mut(0).fill(0.5);
+//! assert_eq!(plane.values()[..5], [0.5, 0.5, 0.5, 0.5, 10.0]);
+//! assert_eq!(Plane::filled(2, 1, 7.0), Plane::from_vec(2, 1, vec![7.0, 7.0]));
+//! ```
+//!
+//! [`derivatives`] computes the image derivatives of the paper. Here, a horizontal ramp of 4 grey levels per pixel moves to the right by
+//! one pixel:
+//!
+//! ```
+//! use veronese::{Frame, derivatives};
+//!
+//! # fn main() -> veronese::Result<()> {
+//! let ramp = |shift: u8| {
+//!     let grey = (0..24).flat_map(|_| 0..32).map(|x: u8| 100 + 4 * x - 4 * shift);
+//!     Frame::from_rgba(32, 24, grey.flat_map(|v| [v, v, v, 255]).collect::<Vec<u8>>())
+//! };
+//! let (first, second) = (ramp(0)?, ramp(1)?);
+//! assert_eq!((first.width(), first.height()), (32, 24));
+//! assert!((first.luminance().at(5, 0) - 120.0).abs() < 1e-3);
+//!
+//! let y = derivatives(&first, &second, None); // luminance scaled to [0, 1]
+//! let (ix, it) = (255.0 * y.x.at(16, 12), 255.0 * y.t.at(16, 12));
+//! assert!((ix - 4.0).abs() < 0.1 && (it + 4.0).abs() < 0.1); // I_x u + I_t = 0 with u = 1
+//! assert!(y.y.row(12).iter().all(|iy| iy.abs() < 1e-5));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Correcting labels
+//!
+//! [`relabel`] solves the labels again, given a person's strokes. A [`Correction`] holds a set of possible motions for each pixel:
+//!
+//! ```
+//! use veronese::scene::{self, SceneOptions};
+//! use veronese::{AffineMotion, Correction, SegmentOptions, relabel, segment_pair};
+//!
+//! # fn main() -> veronese::Result<()> {
+//! # let scene = scene::generate(&SceneOptions { width: 96, height: 72, objects: 1, ..SceneOptions::default() })?;
+//! # let (first, second, options) = (scene.first(), scene.second(), SegmentOptions::default());
+//! let found = segment_pair(first, second, None, &options, &mut |_| {})?;
+//! let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
+//! let groups: Vec<u8> = found.motions.iter().map(|motion| motion.group).collect();
+//!
+//! let mut allowed = vec![0; found.labels.len()]; // no constraint anywhere
+//! let pixel = found.labels.iter().position(|&label| label == 1).unwrap();
+//! allowed[pixel] = 0b1; // motion 0 only
+//! let correction = Correction { motions: &motions, groups: &groups, labels: &found.labels, allowed: &allowed };
+//! let corrected = relabel(first, second, None, &correction, &options, &mut |_| {})?;
+//! assert_eq!(corrected.labels[pixel], 0);
+//! assert!(corrected.motions[1].pixels < found.motions[1].pixels);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Measurements instead of frames
+//!
+//! [`fit_motions`] solves the paper's Problem 1 for given [`Measurements`]: positions with image derivatives. Its parts are public:
+//!
+//! 1. [`embedding`]: the Veronese map, the embedded data matrix, its rank, the multibody motion (eq. 6–12);
+//! 2. [`factorisation`]: from the multibody motion to n motions, as in the paper (eq. 13–17) or by differentiation;
+//! 3. [`refinement`]: the paper's nonlinear refinement (eq. 19), and the maximum likelihood fit of a mixture of motions with outliers.
+//!
+//! # Reproducibility
+//!
+//! The same input gives the same bits in native code and in WebAssembly. "Reproducible bits" in ARCHITECTURE.md explains how.
 
-// Unit tests share generators with the integration tests, which know the crate by its name.
+// Unit tests share generators with the integration tests, which refer to the crate by name.
 #[cfg(test)]
 extern crate self as veronese;
 

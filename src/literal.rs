@@ -1,8 +1,9 @@
-//! The paper's own image experiment, literally (section 4): derivatives, the pixels with a strong temporal derivative,
-//! Problem 1 on them. It is here to be compared with; [`segment_pair`](crate::segment_pair) is what to use.
+//! The image experiment of the paper to the letter (section 4): derivatives, selection of the pixels with a strong temporal derivative,
+//! Problem 1 on these pixels.
 //!
-//! One pixel gives one equation for two unknowns of flow, so that on textured images the labels of single pixels are noisy,
-//! and a moving background is not foreseen: the pixels left out are simply not labelled.
+//! It serves for comparison; use [`segment_pair`](crate::segment_pair) for results. One pixel gives one equation for the two components
+//! of its flow, so the labels of single pixels are noisy in textured images. Pixels that are not selected have no label, and the
+//! selection assumes a static background.
 
 use serde::Serialize;
 
@@ -13,15 +14,21 @@ use crate::measurements::Measurements;
 use crate::options::{FitOptions, Method, MotionCount};
 use crate::points::fit_motions;
 
-/// The threshold on |I_t| of the paper's experiment, for images scaled to [0, 1].
+/// The paper's threshold on |I_t|, for intensities scaled to [0, 1].
 pub const PAPER_THRESHOLD: f64 = 0.115;
 
-/// Which pixels take part.
+/// Which pixels [`literal_pair`] uses.
+///
+/// ```
+/// use veronese::{KeptPixels, PAPER_THRESHOLD};
+///
+/// assert_eq!(KeptPixels::default(), KeptPixels::Above(PAPER_THRESHOLD));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum KeptPixels {
-    /// Those with |I_t| above this, the image scaled to [0, 1].
+    /// Pixels with |I_t| above this threshold, at least 0, for intensities scaled to [0, 1].
     Above(f64),
-    /// This share of all pixels, those with the largest |I_t|; 0…1. The paper's 1995 of 150 × 200 pixels are 0.0665.
+    /// This share of all pixels, 0 to 1, those with the largest |I_t|. The paper keeps 1995 of 150 × 200 pixels, a share of 0.0665.
     Strongest(f64),
 }
 
@@ -31,7 +38,7 @@ impl Default for KeptPixels {
     }
 }
 
-/// What the paper's method makes of a pair.
+/// The result of [`literal_pair`].
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct LiteralSegmentation {
@@ -44,19 +51,31 @@ pub struct LiteralSegmentation {
     pub labels: Vec<u8>,
     /// Number of pixels kept, N.
     pub kept: usize,
-    /// The motions, pixels per frame, and the stages they come from. Its labels are those of the kept pixels in raster
-    /// order.
+    /// The motions, in pixels, with the stages of [`Method::Paper`]. Its labels are those of the kept pixels in raster order.
     pub fit: MotionFit,
 }
 
-/// Segments a pair as the paper does: the measurements (x, y) of the kept pixels, Problem 1 by the paper's method, every
-/// kept pixel to the motion with the smallest |yᵀAx|.
+/// Segments a pair of frames as the paper does: [`Method::Paper`] on the measurements of the kept pixels, each of which gets the label
+/// of the motion with the smallest |yᵀAx|.
 ///
-/// With `before` the derivatives use three frames, as filters with smoothing in time need; without it two.
+/// With `before`, the frame before the first, derivatives use three frames and are smoothed in time; without it they use two.
+///
+/// ```
+/// use veronese::{KeptPixels, MotionCount, UNLABELLED, literal_pair, scene};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let scene = scene::leader_follower(2)?;
+/// let kept = KeptPixels::Strongest(0.0665);
+/// let found = literal_pair(scene.first(), scene.second(), Some(scene.before()), kept, MotionCount::Given(2))?;
+/// assert_eq!((found.fit.count, found.labels.len()), (2, 200 * 150));
+/// assert_eq!(found.labels.iter().filter(|&&label| label != UNLABELLED).count(), found.kept);
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
-/// [`Error::FrameSizeMismatch`], [`Error::InvalidOption`] (`threshold`, `motions`), and
-/// [`Error::TooFewMeasurements`] where too few pixels change.
+/// [`Error::FrameSizeMismatch`]; [`Error::InvalidOption`] `threshold` or `motions`; [`Error::TooFewMeasurements`] if too few pixels
+/// are kept.
 pub fn literal_pair(
     first: &Frame,
     second: &Frame,
@@ -89,7 +108,7 @@ pub fn literal_pair(
     Ok(LiteralSegmentation { width, height, labels, kept: kept.len(), fit })
 }
 
-/// The pixels that take part, in raster order. A pixel without any change never does.
+/// The kept pixels in raster order. A pixel with I_t = 0 is never kept.
 fn kept_pixels(change: &[f32], threshold: KeptPixels) -> Result<Vec<usize>> {
     let invalid = |reason: String| Err(Error::InvalidOption { name: "threshold", reason });
     let limit = match threshold {
@@ -98,7 +117,7 @@ fn kept_pixels(change: &[f32], threshold: KeptPixels) -> Result<Vec<usize>> {
         KeptPixels::Strongest(share) if (0.0..=1.0).contains(&share) => {
             let mut sizes: Vec<f32> = change.iter().map(|t| t.abs()).collect();
             sizes.sort_by(|a, b| b.total_cmp(a));
-            // The first value that is no longer kept: what equals it is not kept either.
+            // The largest value that is not kept. Pixels equal to it are not kept either.
             sizes.get((share * change.len() as f64) as usize).copied().unwrap_or(0.0)
         }
         KeptPixels::Strongest(share) => return invalid(format!("must be a share from 0 to 1, not {share}")),
@@ -124,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_processed_is_refused() {
+    fn invalid_input_is_rejected() {
         let scene = scene::leader_follower(1).unwrap();
         let frame = scene.first();
         let run = |second: &Frame, motions| literal_pair(frame, second, None, KeptPixels::default(), motions);

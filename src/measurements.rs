@@ -1,31 +1,51 @@
-//! The paper's image measurements: pixel positions and image derivatives, checked once, normalised for the algebra.
+//! The paper's image measurements: positions and image derivatives, validated on construction, normalised for the algebra.
 
 use crate::error::{Error, Result};
 use crate::motion::AffineMotion;
 use crate::workspace::{Buffer, kept};
 
-/// Largest absolute value a measurement may have: products of degree 20 (n = 10) must stay finite after normalisation.
+/// Largest absolute value of an entry of a measurement: products of degree 20 (n = 10) must stay finite after normalisation.
 const LARGEST: f64 = 1e12;
 
 kept!([f64; 2], [f64; 3]);
 
 /// N image measurements `(x_j, y_j)`: positions `(x, y)` and derivatives `(I_x, I_y, I_t)`.
 ///
-/// Positions are in pixels (or any unit: the motions come out in the same), derivatives in grey levels per pixel and per frame.
+/// Positions are in pixels, derivatives in grey levels per pixel and grey levels per frame. Other units work too; motions have the unit
+/// of the positions.
+///
+/// ```
+/// use veronese::{AffineMotion, Measurements, Random};
+///
+/// // Measurements of a known motion: I_t follows from the gradient (I_x, I_y) by brightness constancy (eq. 3).
+/// let motion = AffineMotion::new([0.01, -0.02, 1.5, 0.02, 0.01, -0.5]);
+/// let mut random = Random::from_seed(1);
+/// let (mut positions, mut derivatives) = (Vec::new(), Vec::new());
+/// for _ in 0..100 {
+///     let [x, y] = [random.uniform(0.0, 320.0), random.uniform(0.0, 240.0)];
+///     let ([u, v], [ix, iy]) = (motion.flow(x, y), [random.normal(), random.normal()]);
+///     positions.push([x, y]);
+///     derivatives.push([ix, iy, -ix * u - iy * v]);
+/// }
+/// let measurements = Measurements::new(positions, derivatives)?;
+/// assert_eq!(measurements.len(), 100);
+/// assert!(measurements.iter().all(|(position, derivatives)| motion.residual(position, derivatives).abs() < 1e-12));
+/// # Ok::<(), veronese::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurements {
     positions: Buffer<[f64; 2]>,
     derivatives: Buffer<[f64; 3]>,
 }
 
-/// The change of coordinates of [`Measurements::normalised`], to carry motions back.
+/// The change of coordinates made by [`Measurements::normalised`], which converts motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normalisation {
-    /// Centre of the positions' bounding box.
+    /// Centre of the bounding box of the positions.
     pub centre: [f64; 2],
-    /// Half of the longer side of the bounding box (1 where all positions are the same).
+    /// Half of the longer side of the bounding box; 1 if all positions are the same.
     pub scale: f64,
-    /// Root mean square length of the derivatives (1 where all are zero).
+    /// Root mean square length of the derivatives; 1 if all are zero.
     pub intensity: f64,
 }
 
@@ -33,12 +53,13 @@ impl Measurements {
     /// Measurements from two lists of equal length.
     ///
     /// # Errors
-    /// [`Error::MeasurementCountMismatch`], [`Error::NotFinite`].
+    /// [`Error::MeasurementCountMismatch`] for lists of different length; [`Error::NotFinite`] for an entry that is not finite or whose
+    /// absolute value exceeds 10¹².
     pub fn new(positions: Vec<[f64; 2]>, derivatives: Vec<[f64; 3]>) -> Result<Self> {
         Self::checked(positions.into(), derivatives.into())
     }
 
-    /// [`Measurements::new`] of buffers.
+    /// [`Measurements::new`] from buffers.
     pub(crate) fn checked(positions: Buffer<[f64; 2]>, derivatives: Buffer<[f64; 3]>) -> Result<Self> {
         if positions.len() != derivatives.len() {
             return Err(Error::MeasurementCountMismatch { positions: positions.len(), derivatives: derivatives.len() });
@@ -58,7 +79,7 @@ impl Measurements {
         self.positions.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no measurements.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
@@ -78,7 +99,16 @@ impl Measurements {
         self.positions.iter().copied().zip(self.derivatives.iter().copied())
     }
 
-    /// The measurements with the given indices, in that order. Indices out of range are left out.
+    /// The measurements with the given indices, in that order. Indices out of range are skipped.
+    ///
+    /// ```
+    /// use veronese::Measurements;
+    ///
+    /// let all = Measurements::new(vec![[0.0, 0.0], [1.0, 2.0]], vec![[1.0, 0.0, 0.5], [0.0, 1.0, 0.25]])?;
+    /// let one = all.subset(&[1, 7]);
+    /// assert_eq!((one.positions(), one.derivatives()), (&[[1.0, 2.0]][..], &[[0.0, 1.0, 0.25]][..]));
+    /// # Ok::<(), veronese::Error>(())
+    /// ```
     pub fn subset(&self, indices: &[usize]) -> Measurements {
         let valid = || indices.iter().filter(|&&j| j < self.len());
         Measurements {
@@ -87,9 +117,26 @@ impl Measurements {
         }
     }
 
-    /// Positions in [−1, 1]², derivatives of unit root mean square: one isotropic change of coordinates and one global
-    /// factor, so that noise that was equal on all derivatives stays equal. Every estimator works in these coordinates:
-    /// the conditioning of the embedded data depends on them more than on the choice of basis (measured up to n = 10).
+    /// The measurements with positions in [−1, 1]² and derivatives of root mean square length 1, and the change of coordinates.
+    ///
+    /// Positions are scaled isotropically and derivatives by one common factor, so noise of equal variance on all derivatives keeps
+    /// equal variances. All estimators work in these coordinates. They matter more for the conditioning of the embedded data than the
+    /// choice of polynomial basis (measured up to n = 10).
+    ///
+    /// ```
+    /// use veronese::{AffineMotion, Measurements};
+    ///
+    /// let positions = vec![[0.0, 0.0], [320.0, 0.0], [320.0, 240.0]];
+    /// let data = Measurements::new(positions, vec![[30.0, 40.0, 0.0]; 3])?;
+    /// let (normalised, normalisation) = data.normalised();
+    /// assert_eq!((normalisation.centre, normalisation.scale, normalisation.intensity), ([160.0, 120.0], 160.0, 50.0));
+    /// assert_eq!(normalised.positions()[0], [-1.0, -0.75]);
+    /// assert_eq!(normalised.derivatives()[0], [0.6, 0.8, 0.0]);
+    ///
+    /// let motion = AffineMotion::translation(2.0, 1.0);
+    /// assert_eq!(normalisation.restore(&normalisation.apply(&motion)), motion);
+    /// # Ok::<(), veronese::Error>(())
+    /// ```
     pub fn normalised(&self) -> (Measurements, Normalisation) {
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
@@ -118,12 +165,12 @@ impl Measurements {
 }
 
 impl Normalisation {
-    /// A motion found on the normalised measurements, in the coordinates of the original ones.
+    /// Converts a motion from normalised to original coordinates.
     pub fn restore(&self, motion: &AffineMotion) -> AffineMotion {
         motion.from_normalised(self.centre, self.scale)
     }
 
-    /// A motion of the original measurements, in normalised coordinates.
+    /// Converts a motion from original to normalised coordinates.
     pub fn apply(&self, motion: &AffineMotion) -> AffineMotion {
         motion.in_normalised(self.centre, self.scale)
     }

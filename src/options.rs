@@ -1,14 +1,22 @@
-//! What a caller may choose, checked in one place.
+//! The options of the public functions and their validation.
 
 use crate::error::{Error, Result};
 
-/// Largest number of motions (the paper's own limit: n = 10 needs 2430 measurements).
+/// Largest number of motions. [`Method::Paper`] needs 2430 measurements for n = 10.
 pub const MAX_MOTIONS: usize = 10;
 
 /// How many motions to look for.
+///
+/// ```
+/// use veronese::{MAX_MOTIONS, MotionCount};
+///
+/// assert_eq!(MotionCount::default(), MotionCount::Auto);
+/// assert!(MotionCount::Given(MAX_MOTIONS).validate().is_ok());
+/// assert_eq!(MotionCount::Given(0).validate().unwrap_err().code(), "invalid-option");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum MotionCount {
-    /// Find the number.
+    /// Estimate the number.
     #[default]
     Auto,
     /// Exactly this many, 1 to [`MAX_MOTIONS`].
@@ -16,8 +24,10 @@ pub enum MotionCount {
 }
 
 impl MotionCount {
+    /// Checks a given number. The functions that take options call this themselves.
+    ///
     /// # Errors
-    /// [`Error::InvalidOption`] for a number outside 1…10.
+    /// [`Error::InvalidOption`] for a number outside 1 to [`MAX_MOTIONS`].
     pub fn validate(self) -> Result<()> {
         match self {
             MotionCount::Given(n) if n == 0 || n > MAX_MOTIONS => Err(Error::InvalidOption {
@@ -29,34 +39,77 @@ impl MotionCount {
     }
 }
 
-/// Which algorithm solves Problem 1 on points.
+/// The algorithm of [`fit_motions`](crate::fit_motions).
+///
+/// ```
+/// use veronese::{FitOptions, Measurements, Method, MotionCount, fit_motions};
+///
+/// # fn main() -> veronese::Result<()> {
+/// // A horizontal and a vertical gradient at each of nine positions; all of them move by (0.5, -0.25).
+/// let positions: Vec<[f64; 2]> = (0..18).map(|j| [f64::from(j % 3), f64::from(j / 3 % 3)]).collect();
+/// let derivatives = (0..18).map(|j| if j < 9 { [2.0, 0.0, -1.0] } else { [0.0, 2.0, 0.5] }).collect();
+/// let data = Measurements::new(positions, derivatives)?;
+/// for method in [Method::Paper, Method::Best] {
+///     let options = FitOptions { motions: MotionCount::Given(1), method, ..FitOptions::default() };
+///     let fit = fit_motions(&data, &options, &mut |_| {})?;
+///     let [u, v] = fit.motions[0].matrix.flow(1.0, 1.0);
+///     assert!((u - 0.5).abs() < 1e-6 && (v + 0.25).abs() < 1e-6);
+///     assert_eq!(fit.stages.is_some(), method == Method::Paper); // the intermediate results of the paper
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
-    /// The paper's: rank rule, factorisation, nonlinear refinement of (19), labels by the smallest residual.
+    /// The paper's algorithm: rank rule (12), five-step factorisation (section 3.3), nonlinear refinement of (19). Each measurement gets
+    /// the label of its smallest residual; none is an outlier. See [`paper`](crate::paper).
     Paper,
-    /// Ours: algebraic start by differentiation, mixture likelihood, best of many starts.
+    /// Maximum likelihood: expectation-maximisation of a mixture of motions with a class of outliers, from many starts. More accurate
+    /// than [`Method::Paper`] on noisy data.
     #[default]
     Best,
 }
 
-/// How much work to spend on an image pair.
+/// How much work to spend on a pair of frames.
+///
+/// ```
+/// use veronese::scene::{self, SceneOptions};
+/// use veronese::{Quality, SegmentOptions, segment_pair};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
+/// for quality in [Quality::Fast, Quality::Best] {
+///     let options = SegmentOptions { quality, ..SegmentOptions::default() };
+///     let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {})?;
+///     assert_eq!(found.labels.len(), 160 * 120); // labels always have the size of the frames
+/// }
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Quality {
-    /// For live use.
+    /// For live video: frames are processed at 320 pixels or less (longer side), with fewer candidate motions.
     Fast,
-    /// For keeping.
+    /// For stored results: frames are processed at 448 pixels or less (longer side).
     #[default]
     Best,
 }
 
 /// Options of [`fit_motions`](crate::fit_motions).
+///
+/// ```
+/// use veronese::{FitOptions, Method, MotionCount};
+///
+/// let options = FitOptions { motions: MotionCount::Given(3), ..FitOptions::default() };
+/// assert_eq!((options.method, options.seed), (Method::Best, 1));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FitOptions {
     /// Number of motions; default [`MotionCount::Auto`].
     pub motions: MotionCount,
     /// Algorithm; default [`Method::Best`].
     pub method: Method,
-    /// Seed of every random choice; default 1.
+    /// Seed of the random numbers; default 1.
     pub seed: u64,
 }
 
@@ -67,18 +120,39 @@ impl Default for FitOptions {
 }
 
 /// Options of [`segment_pair`](crate::segment_pair).
+///
+/// ```
+/// use veronese::scene::{self, SceneOptions};
+/// use veronese::{MotionCount, SegmentOptions, UNLABELLED, segment_pair};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let scene = scene::generate(&SceneOptions { width: 96, height: 72, ..SceneOptions::default() })?;
+/// let options = SegmentOptions {
+///     motions: MotionCount::Given(2),
+///     mark_unknown: true,
+///     confidence: true,
+///     ..SegmentOptions::default()
+/// };
+/// let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {})?;
+/// assert_eq!(found.count, 2);
+/// assert_eq!(found.labels.iter().filter(|&&label| label == UNLABELLED).count(), found.unlabelled);
+/// assert_eq!(found.confidence.map(|confidence| confidence.len()), Some(96 * 72));
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SegmentOptions {
     /// Number of motions; default [`MotionCount::Auto`].
     pub motions: MotionCount,
-    /// Work to spend; default [`Quality::Best`].
+    /// How much work to spend; default [`Quality::Best`].
     pub quality: Quality,
-    /// Label 255 where a pixel is hidden or outside in the second frame, where there is no texture around it, and where its label
-    /// would more likely be wrong than right; default off.
+    /// Label a pixel [`UNLABELLED`](crate::UNLABELLED) if it is hidden or outside in the second frame, has no texture around it, or has
+    /// a label that is more likely wrong than right; default `false`.
     pub mark_unknown: bool,
-    /// Say for every pixel how sure its label is ([`Segmentation::confidence`](crate::Segmentation::confidence)); default off.
+    /// Compute [`Segmentation::confidence`](crate::Segmentation::confidence), the probability that the label of a pixel is right;
+    /// default `false`.
     pub confidence: bool,
-    /// Seed of every random choice; default 1.
+    /// Seed of the random numbers; default 1.
     pub seed: u64,
 }
 

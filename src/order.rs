@@ -1,22 +1,23 @@
-//! Orders and medians of numbers, in one place and without the standard library's sorting: results must not depend on how equals
-//! fall, and each of its routines brings several kilobytes for every type and order it is used with. For the same reason the work
-//! itself is never inlined.
+//! Sorted orders and medians of numbers.
+//!
+//! Ties are always broken by index. The standard library's sorting is not used because each instance of it adds several kilobytes to
+//! the WebAssembly module; for the same reason the functions here are never inlined.
 
 use std::cmp::Ordering;
 
 use crate::workspace::Buffer;
 
-/// Indices by increasing key; equals by index. NaN comes last (−NaN first).
+/// Indices by increasing key, ties by index. NaN comes last, −NaN first.
 pub(crate) fn ascending(keys: impl IntoIterator<Item = f64>) -> Buffer<usize> {
     merged(keys.into_iter().map(order_of).collect())
 }
 
-/// Indices by increasing key: sorted by merging.
+/// Indices by increasing key, ties by index, by merge sort.
 #[inline(never)]
 fn merged(keys: Buffer<u64>) -> Buffer<usize> {
     let mut order: Buffer<usize> = (0..keys.len()).collect();
     let mut merged = order.clone();
-    // Runs of 1, 2, 4 … in order are merged by twos; the left one goes first among equals.
+    // Sorted runs of length 1, 2, 4, … are merged in pairs; on ties the left one comes first.
     let mut length = 1;
     while length < order.len() {
         for (runs, target) in order.chunks(2 * length).zip(merged.chunks_mut(2 * length)) {
@@ -38,12 +39,12 @@ fn merged(keys: Buffer<u64>) -> Buffer<usize> {
     order
 }
 
-/// Indices by decreasing key; equals by index.
+/// Indices by decreasing key, ties by index.
 pub(crate) fn descending(keys: impl IntoIterator<Item = f64>) -> Buffer<usize> {
     ascending(keys.into_iter().map(|key| -key))
 }
 
-/// Sorts a handful of values; equals keep their order. The time grows with the square of their number.
+/// Sorts a short list by insertion, stable. The time is quadratic in its length.
 pub(crate) fn sort_few<T: Copy>(values: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     for end in 1..values.len() {
         let value = values[end];
@@ -56,14 +57,14 @@ pub(crate) fn sort_few<T: Copy>(values: &mut [T], compare: impl Fn(&T, &T) -> Or
     }
 }
 
-/// The upper median, which is a value of the list; `None` of nothing.
+/// The upper median, which is an element of the list; `None` if the list is empty.
 #[inline(never)]
 pub(crate) fn median(values: &[f32]) -> Option<f32> {
-    // Widening keeps value and order.
+    // Widening is exact and keeps the order.
     middle(values.iter().map(|&v| order_of(f64::from(v))).collect()).map(|v| v as f32)
 }
 
-/// The same in double precision.
+/// [`median`] in double precision.
 #[inline(never)]
 pub(crate) fn median_f64(values: &[f64]) -> Option<f64> {
     middle(values.iter().map(|&v| order_of(v)).collect())
@@ -71,18 +72,19 @@ pub(crate) fn median_f64(values: &[f64]) -> Option<f64> {
 
 const SIGN: u64 = 1 << 63;
 
-/// A whole number that stands to others as the value does by `total_cmp`.
+/// An integer key whose order is that of `total_cmp`.
 fn order_of(value: f64) -> u64 {
     let bits = value.to_bits();
     if bits & SIGN == 0 { bits | SIGN } else { !bits }
 }
 
-/// Inverse of [`order_of`].
+/// The inverse of [`order_of`].
 fn value_of(order: u64) -> f64 {
     f64::from_bits(if order & SIGN == 0 { !order } else { order & !SIGN })
 }
 
-/// The upper median of values given by their order: digit after digit, from the first, those with the middle one's digit are kept.
+/// The upper median of values given by their keys, by radix selection: from the most significant byte on, only keys with the byte of
+/// the median are kept.
 #[inline(never)]
 fn middle(mut left: Buffer<u64>) -> Option<f64> {
     let mut rank = left.len() / 2;
@@ -108,16 +110,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn equals_keep_their_order() {
+    fn ties_keep_their_order() {
         assert_eq!(ascending([2.0, 1.0, 2.0, 0.0])[..], [3, 1, 0, 2]);
         assert_eq!(descending([2.0, 1.0, 2.0, 0.0])[..], [0, 2, 1, 3]);
     }
 
     #[test]
-    fn orders_and_medians_are_those_of_sorting() {
+    fn orders_and_medians_agree_with_sorting() {
         let mut random = crate::random::Random::from_seed(4);
         for count in [0, 1, 2, 3, 7, 64, 100, 1001] {
-            // Many equals, both signs of zero, infinities.
+            // Many ties, both signs of zero, infinities.
             let mut values: Vec<f64> = (0..count).map(|_| (random.uniform(-9.0, 9.0) as i32) as f64 * 0.3).collect();
             if count > 6 {
                 (values[1], values[2], values[5]) = (-0.0, f64::INFINITY, f64::NEG_INFINITY);

@@ -1,4 +1,4 @@
-//! Problem 1 of the paper on given measurements: the number of motions, the motions, the segmentation.
+//! Problem 1 of the paper for given measurements: the number of motions, the motions, the segmentation.
 
 use crate::answer::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED};
 use crate::best::best_fit;
@@ -12,13 +12,44 @@ use crate::paper::paper_fit;
 use crate::progress::Progress;
 use crate::workspace::Buffer;
 
-/// An entry counts as determined where its singular value exceeds this share of the largest (normalised measurements).
+/// Singular values below this share of the largest count as zero (normalised measurements).
 const DETERMINED: f64 = 1e-6;
 
-/// Solves Problem 1: how many affine motions explain the measurements, which, and which measurement belongs to which.
+/// Solves Problem 1 of the paper: the number of affine motions that explain the measurements, the motions, and the motion of each
+/// measurement.
+///
+/// ```
+/// use veronese::{AffineMotion, FitOptions, Measurements, Random, fit_motions};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let truth = [AffineMotion::translation(0.5, -0.25), AffineMotion::new([0.2, -0.4, 0.0, 0.4, 0.2, 0.6])];
+/// let mut random = Random::from_seed(1);
+/// let (mut positions, mut derivatives) = (Vec::new(), Vec::new());
+/// for j in 0..300 {
+///     let [x, y] = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
+///     let [u, v] = truth[usize::from(j >= 200)].flow(x, y); // 200 measurements of one motion, 100 of the other
+///     let [ix, iy] = [random.normal(), random.normal()];
+///     positions.push([x, y]);
+///     derivatives.push([ix, iy, -ix * u - iy * v + 0.01 * random.normal()]);
+/// }
+/// let measurements = Measurements::new(positions, derivatives)?;
+///
+/// let fit = fit_motions(&measurements, &FitOptions::default(), &mut |_| {})?;
+/// assert_eq!(fit.count, 2);
+/// for (motion, truth) in fit.motions.iter().zip(&truth) {
+///     assert!(truth.relative_error(&motion.matrix) < 0.02);
+///     assert_eq!(motion.determined, 6);
+/// }
+/// let right = fit.labels.iter().enumerate().filter(|&(j, &label)| label == u8::from(j >= 200)).count();
+/// assert!(right > 280); // measurements near both planes may get either label
+/// # Ok(())
+/// # }
+/// ```
 ///
 /// # Errors
-/// [`Error::InvalidOption`](crate::Error::InvalidOption), [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements).
+/// [`Error::InvalidOption`](crate::Error::InvalidOption) for a number of motions outside 1 to [`MAX_MOTIONS`](crate::MAX_MOTIONS);
+/// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) for fewer than 6 measurements per motion, or, with
+/// [`Method::Paper`], fewer than M_n² − Z_n − 1 in all (6, 24, 64, 139, … for n = 1, 2, 3, 4, …).
 pub fn fit_motions(measurements: &Measurements, options: &FitOptions, progress: Progress<'_>) -> Result<MotionFit> {
     options.motions.validate()?;
     match options.method {
@@ -32,7 +63,7 @@ fn fit_as_the_paper(measurements: &Measurements, options: &FitOptions, progress:
     let order = order_by_count(fit.refined.len(), &fit.labels);
     let (motions, labels) = ordered_motions(measurements, &fit.refined, &fit.labels);
     let in_order = |motions: &[AffineMotion]| order.iter().map(|&i| motions[i]).collect();
-    // The rule fires where the rank is one less than the number of columns: the score is how far it is from that.
+    // The rank rule (12) asks for a rank of one less than the number of columns. The score is the difference from that.
     let candidates = fit
         .ranks
         .iter()
@@ -52,8 +83,8 @@ fn fit_as_the_paper(measurements: &Measurements, options: &FitOptions, progress:
     })
 }
 
-/// Motions by decreasing number of measurements, and the labels in that numbering. `nearest` holds for each measurement the index
-/// of its motion in `found`; an index beyond marks an outlier, [`UNLABELLED`].
+/// Motions by decreasing number of measurements, and the labels in that numbering. `nearest` holds the index in `found` of each
+/// measurement's motion; an index out of range marks an outlier, [`UNLABELLED`].
 pub(crate) fn ordered_motions(
     measurements: &Measurements,
     found: &[AffineMotion],
@@ -83,8 +114,8 @@ fn order_by_count(motions: usize, nearest: &[usize]) -> Buffer<usize> {
     descending(counts.iter().map(|&count| count as f64))
 }
 
-/// The rank of the constraints `φᵀa = −I_t`, φ = (I_x x, I_x y, I_x, I_y x, I_y y, I_y), that measurements put on one motion: 6 where
-/// they determine it, less where their gradients are parallel, or their positions in line.
+/// The rank of the constraints `φᵀa = −I_t`, φ = (I_x x, I_x y, I_x, I_y x, I_y y, I_y), that measurements put on the six entries a of
+/// one motion: 6 if they determine it, fewer if, for example, their gradients are parallel or their positions collinear.
 fn determined_entries(measurements: &Measurements) -> usize {
     let (normalised, _) = measurements.normalised();
     let mut qr = RowQr::new(6);

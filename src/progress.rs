@@ -1,20 +1,36 @@
-//! Telling the caller where the work is. The core has no clock: whoever listens measures the time between two calls.
+//! Progress reports. The core has no clock; a listener that wants times measures them between two calls.
 
-/// A stage of the work that has just begun.
+/// A stage of a call that has just begun.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stage {
-    /// A camelCase name, stable: the key of the stage in the timing report.
+    /// A stable camelCase name, the key of the stage in the timing report.
     pub name: &'static str,
-    /// Position of the stage among all stages of this call, from 0.
+    /// Index of the stage among those of the call, from 0.
     pub index: usize,
-    /// Number of stages of this call.
+    /// Number of stages of the call.
     pub of: usize,
 }
 
-/// Called at the beginning of every stage. A stage that is entered again (n tried after n) is reported again.
+/// A listener that is called at the beginning of every stage. A stage that is entered several times is reported each time.
+///
+/// ```
+/// use veronese::scene::{self, SceneOptions};
+/// use veronese::{SegmentOptions, segment_pair};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let scene = scene::generate(&SceneOptions { width: 64, height: 48, objects: 1, ..SceneOptions::default() })?;
+/// let mut names = Vec::new();
+/// segment_pair(scene.first(), scene.second(), None, &SegmentOptions::default(), &mut |stage| {
+///     println!("{} of {}: {}", stage.index + 1, stage.of, stage.name);
+///     names.push(stage.name);
+/// })?;
+/// assert_eq!((names[0], names[names.len() - 1]), ("frames", "masks"));
+/// # Ok(())
+/// # }
+/// ```
 pub type Progress<'a> = &'a mut dyn FnMut(Stage);
 
-/// Reports the stages of one call by name, so that the order stands in one place.
+/// Reports the stages of one call by name; their order is defined by the list of names.
 pub(crate) struct Stages<'a> {
     names: &'static [&'static str],
     progress: Progress<'a>,
@@ -25,7 +41,7 @@ impl<'a> Stages<'a> {
         Stages { names, progress }
     }
 
-    /// Reports that `name` begins. Unknown names are a mistake of ours, caught in tests.
+    /// Reports that the stage `name` begins.
     #[inline(never)]
     pub(crate) fn begin(&mut self, name: &'static str) {
         let index = self.names.iter().position(|&n| n == name);

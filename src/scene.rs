@@ -1,16 +1,16 @@
-//! Synthetic scenes with exact truth: textured objects in affine motion before a background, for tests and benchmarks.
+//! Synthetic scenes with exact ground truth, for tests and benchmarks: textured objects in affine motion in front of a background.
 //!
-//! Three frames at t = −1, 0, 1 show the same layers; the truth belongs to the middle one, `first`. The layers have a fixed
-//! depth order, so that objects hide each other and the background. Rendering is sub-pixel exact (cubic splines,
-//! anti-aliased outlines); the camera adds blur, a change of brightness between the frames, noise and eight bits. The same
-//! options give the same bytes on every machine.
+//! Three frames at t = −1, 0, 1 show the same layers. The ground truth is that of the middle frame, `first`. The layers have a fixed
+//! depth order, so objects occlude each other and the background. Rendering has sub-pixel accuracy (cubic splines, anti-aliased
+//! outlines). The camera adds blur, a change of brightness between frames, noise, and quantisation to eight bits. The same options give
+//! the same bytes on every platform.
 //!
 //! ```
 //! use veronese::scene::{self, SceneOptions};
 //!
 //! let scene = scene::generate(&SceneOptions { objects: 3, seed: 7, ..SceneOptions::default() })?;
 //! assert_eq!(scene.labels.len(), 320 * 240);
-//! assert_eq!(scene.motions.len(), 4);
+//! assert_eq!(scene.motions.len(), 4); // the background and three objects
 //! # Ok::<(), veronese::Error>(())
 //! ```
 
@@ -33,7 +33,7 @@ use texture::Style;
 /// Largest number of objects in a scene.
 pub const MAX_OBJECTS: usize = 8;
 
-/// How fast objects move relative to the background, and the camera, if it moves.
+/// Speed of the objects relative to the background, and of the camera if it moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Speed {
     /// Objects 0.3 pixels per frame, camera 0.1.
@@ -46,39 +46,65 @@ pub enum Speed {
     Large,
 }
 
-/// What the background does.
+/// Motion of the background.
+///
+/// ```
+/// use veronese::AffineMotion;
+/// use veronese::scene::{Background, SceneOptions, generate};
+///
+/// let small = SceneOptions { width: 64, height: 48, ..SceneOptions::default() };
+/// let still = generate(&SceneOptions { background: Background::Static, ..small })?;
+/// let moving = generate(&SceneOptions { background: Background::Moving, ..small })?;
+/// assert!(still.motions[0] == AffineMotion::STATIC && moving.motions[0] != AffineMotion::STATIC);
+/// # Ok::<(), veronese::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
-    /// It stands still.
+    /// No motion.
     Static,
-    /// It moves as before a moving camera: translation, some rotation and zoom.
+    /// The motion of a background seen by a moving camera: translation with some rotation, zoom and shear.
     Moving,
 }
 
-/// What a scene shows and how it is recorded.
+/// Contents of a scene and properties of the camera.
+///
+/// ```
+/// use veronese::scene::{SceneOptions, generate};
+///
+/// // The second frame is 20 % brighter.
+/// let options = SceneOptions { width: 64, height: 48, objects: 0, gain: 1.2, ..SceneOptions::default() };
+/// let scene = generate(&options)?;
+/// let mean = |frame: &veronese::Frame| frame.luminance().values().iter().sum::<f32>() / (64.0 * 48.0);
+/// let ratio = mean(scene.second()) / mean(scene.first());
+/// assert!((1.1..1.3).contains(&ratio));
+///
+/// let wrong = SceneOptions { noise: f64::NAN, ..options };
+/// assert_eq!(generate(&wrong).unwrap_err().code(), "invalid-option");
+/// # Ok::<(), veronese::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SceneOptions {
     /// Width in pixels; default 320.
     pub width: usize,
     /// Height in pixels; default 240.
     pub height: usize,
-    /// Number of objects, 0 to [`MAX_OBJECTS`]; default 2. There may be fewer in the scene where they do not fit.
+    /// Number of objects, 0 to [`MAX_OBJECTS`]; default 2. The scene has fewer if they do not fit.
     pub objects: usize,
-    /// Default [`Speed::Medium`].
+    /// Speed of objects and camera; default [`Speed::Medium`].
     pub speed: Speed,
-    /// Default [`Background::Moving`].
+    /// Motion of the background; default [`Background::Moving`].
     pub background: Background,
-    /// Standard deviation of the noise at grey level 128, in grey levels, 0 to 50; default 2. It grows with √I.
+    /// Standard deviation of the noise at grey level 128, in grey levels, 0 to 50; default 2. It is proportional to √I.
     pub noise: f64,
-    /// The second frame's brightness is `gain · I + bias`, the frame's before is `I / gain − bias`; 0.5 to 2, default 1.
+    /// Gain of the second frame, whose intensity is `gain · I + bias`; that of the frame before is `I / gain − bias`. 0.5 to 2, default 1.
     pub gain: f64,
-    /// See `gain`; grey levels, −100 to 100, default 0.
+    /// Bias of the second frame (see `gain`), in grey levels, −100 to 100; default 0.
     pub bias: f64,
-    /// Standard deviation of the camera's blur, pixels, 0 to 5; default 0.65.
+    /// Standard deviation of the Gaussian blur of the camera, in pixels, 0 to 5; default 0.65.
     pub blur: f64,
-    /// Colour or grey; default grey.
+    /// Colour (`true`) or grey (`false`); default grey.
     pub colour: bool,
-    /// What else there is in the scene follows from this number; default 1.
+    /// Seed of everything else: textures, shapes, motions, noise; default 1.
     pub seed: u64,
 }
 
@@ -101,8 +127,16 @@ impl Default for SceneOptions {
 }
 
 impl SceneOptions {
-    /// The same scene recorded by a camera drawn from the seed: blur 0.5 to 0.8 pixels, noise 1 to 3 grey levels, gain 0.97
-    /// to 1.03, bias −3 to 3.
+    /// The same scene with a random camera, drawn from the seed: blur 0.5 to 0.8 pixels, noise 1 to 3 grey levels, gain 0.97 to 1.03,
+    /// bias −3 to 3 grey levels.
+    ///
+    /// ```
+    /// use veronese::scene::SceneOptions;
+    ///
+    /// let options = SceneOptions::default().with_drawn_camera();
+    /// assert!((0.5..0.8).contains(&options.blur) && (0.97..1.03).contains(&options.gain));
+    /// assert_eq!(options, SceneOptions::default().with_drawn_camera());
+    /// ```
     pub fn with_drawn_camera(mut self) -> Self {
         let mut random = Random::from_seed(self.seed ^ 0xCA3E_7A00);
         self.blur = random.uniform(0.5, 0.8);
@@ -112,8 +146,15 @@ impl SceneOptions {
         self
     }
 
-    /// A benchmark: for every size one scene of each speed and background, six in all, with one to four objects and drawn
-    /// cameras; seeds from `seed` on.
+    /// A benchmark: for each size (width, height), one scene for each [`Background`] and each [`Speed`] from sub-pixel to large, six in
+    /// all, with one to four objects and random cameras. The seeds are `seed`, `seed + 1`, ….
+    ///
+    /// ```
+    /// use veronese::scene::SceneOptions;
+    ///
+    /// let series = SceneOptions::series(40, &[(320, 240), (640, 480)]);
+    /// assert_eq!((series.len(), series[11].width, series[11].seed), (12, 640, 51));
+    /// ```
     pub fn series(seed: u64, sizes: &[(usize, usize)]) -> Vec<SceneOptions> {
         let mut series = Vec::new();
         for &(width, height) in sizes {
@@ -137,20 +178,38 @@ impl SceneOptions {
     }
 }
 
-/// Three frames and the truth about the middle one.
+/// Three frames, and the ground truth of the middle one.
+///
+/// ```
+/// use veronese::scene::{SceneOptions, generate};
+///
+/// let scene = generate(&SceneOptions { width: 96, height: 72, noise: 0.0, ..SceneOptions::default() })?;
+/// let (first, second) = (scene.first().luminance(), scene.second().luminance());
+/// // Visible pixels keep their intensity along their motion; here compared at the nearest pixel.
+/// let mut differences = Vec::new();
+/// for p in (0..96 * 72).filter(|&p| !scene.occluded[p]) {
+///     let (x, y) = (p % 96, p / 96);
+///     let [u, v] = scene.motions[usize::from(scene.labels[p])].flow(x as f64, y as f64);
+///     let (x2, y2) = ((x as f64 + u).round() as usize, (y as f64 + v).round() as usize);
+///     differences.push((second.at(x2, y2) - first.at(x, y)).abs());
+/// }
+/// differences.sort_by(f32::total_cmp);
+/// assert!(differences[differences.len() / 2] < 5.0); // grey levels
+/// # Ok::<(), veronese::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// The frames before, first, second (t = −1, 0, 1).
+    /// The frames before, first and second (t = −1, 0, 1).
     pub frames: [Frame; 3],
-    /// The same as RGBA bytes, row by row.
+    /// The RGBA bytes of the frames, row by row.
     pub rgba: [Vec<u8>; 3],
-    /// The layer seen at every pixel of `first`: 0 the background, 1… the objects from back to front.
+    /// The visible layer at every pixel of `first`: 0 is the background, 1, 2, … the objects from back to front.
     pub labels: Vec<u8>,
-    /// The motion of every layer, from `first` to `second`, the background's first.
+    /// The motion of each layer from `first` to `second`, in pixels, in the order of the labels.
     pub motions: Vec<AffineMotion>,
-    /// Pixels of `first` that in `second` are outside or hidden.
+    /// Whether a pixel of `first` is outside or hidden in `second`.
     pub occluded: Vec<bool>,
-    /// What was asked for.
+    /// The options of the scene.
     pub options: SceneOptions,
 }
 
@@ -160,7 +219,7 @@ impl Scene {
         &self.frames[0]
     }
 
-    /// The frame at t = 0, whose truth is known.
+    /// The frame at t = 0, to which the ground truth belongs.
     pub fn first(&self) -> &Frame {
         &self.frames[1]
     }
@@ -171,7 +230,7 @@ impl Scene {
     }
 }
 
-/// Ranges of speeds in pixels, and how much the linear part of a motion may vary (camera, objects).
+/// Ranges of speeds in pixels per frame, and bounds of the linear parts (see [`drawn_motion`]).
 struct Ranges {
     object: [f64; 2],
     camera: [f64; 2],
@@ -189,7 +248,7 @@ fn ranges(options: &SceneOptions) -> Ranges {
     Ranges { object, camera, camera_linear, object_linear }
 }
 
-/// A motion with flow `translation` at `centre`, a rotation up to `amount` degrees, a zoom up to `amount` per cent and some
+/// A random motion with the flow `translation` at `centre`, a rotation up to `amount` degrees, a zoom up to `amount` per cent and some
 /// shear.
 fn drawn_motion(random: &mut Random, centre: [f64; 2], translation: [f64; 2], amount: f64) -> AffineMotion {
     let angle = random.uniform(-amount, amount) * PI / 180.0;
@@ -200,17 +259,18 @@ fn drawn_motion(random: &mut Random, centre: [f64; 2], translation: [f64; 2], am
     about(centre, translation, linear)
 }
 
-/// The motion with flow `translation` at `centre` and the given linear part.
+/// The motion with the flow `translation` at `centre` and the linear part `[a11, a12, a21, a22]`.
 fn about(centre: [f64; 2], translation: [f64; 2], b: [f64; 4]) -> AffineMotion {
     let u = translation[0] - b[0] * centre[0] - b[1] * centre[1];
     let v = translation[1] - b[2] * centre[0] - b[3] * centre[1];
     AffineMotion::new([b[0], b[1], u, b[2], b[3], v])
 }
 
-/// Generates a scene.
+/// Generates a scene. See the [module example](self).
 ///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`](crate::Error::FrameSizeUnsupported), [`Error::InvalidOption`](crate::Error::InvalidOption).
+/// [`Error::FrameSizeUnsupported`](crate::Error::FrameSizeUnsupported); [`Error::InvalidOption`](crate::Error::InvalidOption) for an
+/// option out of the range given in [`SceneOptions`].
 pub fn generate(options: &SceneOptions) -> Result<Scene> {
     render::check(options)?;
     let mut random = Random::from_seed(options.seed);
@@ -254,11 +314,21 @@ pub fn generate(options: &SceneOptions) -> Result<Scene> {
     render::render(&layers, options, &mut random)
 }
 
-/// A scene like that of the paper's figures 2 and 3: two small robots, one after the other on a circle, before a static
-/// background; 200 × 150 pixels, grey. `labels` are 0 background, 1 leader, 2 follower.
+/// A scene like that of Figures 2 and 3 of the paper: two small robots follow each other on a circle in front of a static background;
+/// 200 × 150 pixels, grey. Labels are 0 for the background, 1 for the leader, 2 for the follower.
+///
+/// ```
+/// use veronese::AffineMotion;
+/// use veronese::scene::leader_follower;
+///
+/// let scene = leader_follower(1)?;
+/// assert_eq!((scene.first().width(), scene.first().height()), (200, 150));
+/// assert_eq!((scene.motions.len(), scene.motions[0]), (3, AffineMotion::STATIC));
+/// # Ok::<(), veronese::Error>(())
+/// ```
 ///
 /// # Errors
-/// None that could happen; the signature is that of [`generate`].
+/// None in practice; the signature is that of [`generate`].
 pub fn leader_follower(seed: u64) -> Result<Scene> {
     let options = SceneOptions {
         width: 200,
@@ -270,7 +340,7 @@ pub fn leader_follower(seed: u64) -> Result<Scene> {
     };
     let mut random = Random::from_seed(seed);
     let mut layers = vec![background(&mut random, &options, AffineMotion::STATIC, 8, (&Style::WALLS, RICH))];
-    // Seen obliquely from above the circle is an ellipse; the follower has its own, and is a little faster to catch up.
+    // Seen obliquely from above, the circle is an ellipse. The follower has its own, and is a little faster.
     let start = random.uniform(0.0, 2.0 * PI);
     let circle = [random.uniform(92.0, 108.0), random.uniform(70.0, 80.0)];
     for (behind, radius, speed) in [(0.0, 46.0, 1.9), (random.uniform(1.0, 1.5), 50.0, 2.4)] {
@@ -286,11 +356,20 @@ pub fn leader_follower(seed: u64) -> Result<Scene> {
     render::render(&layers, &SceneOptions { objects: 2, ..options }, &mut random)
 }
 
-/// A camera that moves sideways past a still scene: the nearer a thing, the faster it goes by. Three things before a wall, nearer
-/// and nearer; 400 × 300 pixels, colour. `labels` are 0 the wall, 1… the things from far to near.
+/// A camera moves sideways past a static scene, so near objects are displaced more than far ones: three objects at different depths in
+/// front of a wall; 400 × 300 pixels, colour. Labels are 0 for the wall, 1 to 3 for the objects from far to near.
+///
+/// ```
+/// use veronese::scene::parallax;
+///
+/// let scene = parallax(4)?;
+/// let speeds: Vec<f64> = scene.motions.iter().map(|motion| motion.flow(200.0, 150.0)[0].abs()).collect();
+/// assert!(speeds.is_sorted());
+/// # Ok::<(), veronese::Error>(())
+/// ```
 ///
 /// # Errors
-/// None that could happen; the signature is that of [`generate`].
+/// None in practice; the signature is that of [`generate`].
 pub fn parallax(seed: u64) -> Result<Scene> {
     let options = SceneOptions {
         width: 400,
@@ -303,7 +382,7 @@ pub fn parallax(seed: u64) -> Result<Scene> {
         ..SceneOptions::default()
     };
     let mut random = Random::from_seed(seed);
-    // Inverse depths of wall and things; the camera also goes a little forward, towards the middle of the frame.
+    // Inverse depths of the wall and the objects. The camera also moves a little forward, towards the centre of the frame.
     let depths = [0.35, 0.8, 1.3, 2.0];
     let (sideways, forward) = (-4.0, 0.004);
     let moved = |inverse_depth: f64, centre: [f64; 2]| {
@@ -324,12 +403,21 @@ pub fn parallax(seed: u64) -> Result<Scene> {
     render::render(&layers, &options, &mut random)
 }
 
-/// A place seen from straight above by a camera that stands still: two cars (three with an odd seed), in opposite and crosswise
-/// directions, on a ground that is nearly bare; 384 × 216 pixels, colour. One affine motion can follow all of the cars at once, and on
-/// the ground it is contradicted by a few small marks only. `labels` are 0 the ground, 1… the cars.
+/// Cars on nearly textureless ground, seen from above by a static camera: two cars in opposite directions, and with an odd seed a third
+/// one across; 384 × 216 pixels, colour. Labels are 0 for the ground, 1, 2, … for the cars.
+///
+/// The scene is difficult because one affine motion fits all cars at once, and on the ground only a few small marks contradict it.
+///
+/// ```
+/// use veronese::scene::bare_ground;
+///
+/// assert_eq!(bare_ground(2)?.motions.len(), 3); // the ground and two cars
+/// assert_eq!(bare_ground(3)?.motions.len(), 4);
+/// # Ok::<(), veronese::Error>(())
+/// ```
 ///
 /// # Errors
-/// None that could happen; the signature is that of [`generate`].
+/// None in practice; the signature is that of [`generate`].
 pub fn bare_ground(seed: u64) -> Result<Scene> {
     let options = SceneOptions {
         width: 384,

@@ -1,14 +1,14 @@
-//! The boundary to JavaScript, and the only place that knows it: RGBA bytes and plain options in, plain data out.
+//! The interface to JavaScript: RGBA bytes and plain options in, plain data out. No arithmetic happens here.
 //!
-//! What is asked of frames and what is asked of measurements share little: the package builds a module of each, so that nobody who
-//! segments frames loads the algebra of measurements as well.
+//! Calls on frames and calls on measurements share little code. The package builds a module for each, so that pages that only segment
+//! frames do not load the algebra for measurements.
 //!
-//! Every object that is handed out is a copy of its own: nothing views the memory of the module and nothing needs freeing.
-//! Every error is an `Error` named `VeroneseError` with a stable `code`. No arithmetic happens here.
+//! Results are copies: nothing refers to the memory of the module, and nothing needs freeing. Every error is an `Error` named
+//! `VeroneseError` with a stable `code`.
 //!
-//! **Pitfalls.** A view of wasm memory (`Uint8Array::view`, `ImageData` over a Rust slice) goes stale when the memory grows:
-//! copy. An exception that crosses Rust frames, as a panic here does, leaves the stack pointer where it was: the instance must
-//! not be called again (the package starts a fresh one).
+//! **Pitfalls.** A view of WebAssembly memory (`Uint8Array::view`, `ImageData` over a Rust slice) becomes invalid when the memory grows, so
+//! always copy. An exception that unwinds Rust frames, such as a panic, does not restore the stack pointer. The instance must not be
+//! called again; the package replaces it.
 
 use js_sys::{Array, Function, Object, Reflect};
 use wasm_bindgen::prelude::*;
@@ -30,14 +30,14 @@ pub use frames::{paint_labels, paint_labels_offscreen, relabel, segment_image_da
 #[cfg(feature = "points")]
 pub use points::fit_motions;
 
-/// Version of the JSON.
+/// Version of the report format.
 const REPORT_VERSION: f64 = 1.0;
 const SOFTWARE: &str = concat!("veronese ", env!("CARGO_PKG_VERSION"));
-/// 2⁵³ − 1: the largest whole number that JavaScript counts to without gaps.
+/// `Number.MAX_SAFE_INTEGER`, 2⁵³ − 1.
 const MAX_SAFE_INTEGER: f64 = 9_007_199_254_740_991.0;
 
-/// Runs when the module is instantiated: a panic, which would otherwise reach the caller as "unreachable", is thrown as an
-/// error of code `internal` that keeps its message and place.
+/// Runs when the module is instantiated. It makes panics, which would otherwise be a `RuntimeError: unreachable`, throw an error with code
+/// `internal` that has the message and location of the panic.
 #[wasm_bindgen(start)]
 pub fn start() {
     std::panic::set_hook(Box::new(|info| {
@@ -45,7 +45,7 @@ pub fn start() {
     }));
 }
 
-/// What is thrown: an `Error` named `VeroneseError` with a `code`.
+/// An error to throw: an `Error` named `VeroneseError` with a `code`.
 struct Failure {
     code: &'static str,
     message: String,
@@ -71,13 +71,13 @@ impl From<Failure> for JsValue {
     fn from(failure: Failure) -> JsValue {
         let error = js_sys::Error::new(&failure.message);
         error.set_name("VeroneseError");
-        // Setting a property of an object of our own cannot fail.
+        // Cannot fail: the object is an ordinary one, created here.
         let _ = Reflect::set(&error, &"code".into(), &failure.code.into());
         error.into()
     }
 }
 
-/// The core's progress as calls of a function. What the function throws goes on to the caller at once.
+/// A progress listener that calls a JavaScript function. An exception of the function propagates to the caller.
 fn listener(on_stage: Option<Function>) -> impl FnMut(Stage) {
     move |stage: Stage| {
         let Some(function) = &on_stage else { return };
@@ -93,7 +93,7 @@ fn listener(on_stage: Option<Function>) -> impl FnMut(Stage) {
     }
 }
 
-/// The options' own entries that are not `undefined`: all of them, so that a misspelt one is not silently left out.
+/// The own entries of the options that are not `undefined`. All of them are read, so a misspelt name is an error.
 fn entries(options: &JsValue) -> Result<Vec<(String, JsValue)>, Failure> {
     if options.is_undefined() {
         return Ok(Vec::new());
@@ -148,7 +148,7 @@ fn invalid(name: &str, wanted: &str, found: &JsValue) -> Failure {
     Failure::option(format!("option '{name}': must be {wanted}, not {found}"))
 }
 
-/// A number as JavaScript writes it: what Rust has for that is twelve kilobytes of the module.
+/// A number in JavaScript's notation. Rust's formatting of floats would add twelve kilobytes to the module.
 fn written(number: f64) -> String {
     js_sys::Number::from(number).to_string_with_radix(10).map(String::from).unwrap_or_default()
 }

@@ -1,24 +1,23 @@
-//! The workspace: buffers that were let go are kept for the next of their size, so that a call like the one before it asks the
-//! allocator for nothing but its result and a few short lists.
+//! The workspace: dropped buffers are kept and reused, so a call like the previous one allocates only its result and a few short lists.
 //!
-//! Each thread has its own, and only while a call is under way is anything taken from it or put into it: what a caller makes and lets go
-//! of, frames and measurements, is the allocator's. A call begins by giving back what the one before it did not use; where frames are
-//! of another size than before, everything, so that this is one piece again before anything new is asked for.
+//! Each thread has its own workspace. It is used only during a call; buffers that the caller creates and drops (frames, measurements)
+//! come from the allocator. A call begins by freeing the buffers that the previous one did not use, or all of them if the size of the
+//! frames has changed, which avoids fragmentation.
 
 use std::cell::{Cell, RefCell};
 use std::ops::{Deref, DerefMut};
 use std::thread::LocalKey;
 
-/// Values of which buffers are kept.
+/// A type of values whose buffers are reused.
 pub(crate) trait Kept: Copy + Default + 'static {
-    /// This thread's buffers of such values that nobody uses.
+    /// This thread's free buffers of the type.
     fn shelf() -> &'static LocalKey<Cell<Shelf<Self>>>;
 }
 
-/// Buffers that nobody uses, each with the number of the call that used it last.
+/// Free buffers, each with the number of the call that used it last.
 pub(crate) struct Shelf<T> {
     kept: Vec<(u32, Vec<T>)>,
-    /// Whether [`SHELVES`] knows of it.
+    /// Whether it is registered in [`SHELVES`].
     known: bool,
 }
 
@@ -32,26 +31,27 @@ impl<T> Default for Shelf<T> {
     }
 }
 
-/// A thread's calls.
+/// The state of a thread's calls.
 #[derive(Clone, Copy)]
 struct Calls {
-    /// Whether one is under way.
+    /// Whether a call is in progress.
     busy: bool,
-    /// The number of the last, and the size of its frames.
+    /// Number of the last call.
     number: u32,
+    /// Width and height of its frames.
     size: [usize; 2],
 }
 
 thread_local! {
     static CALLS: Cell<Calls> = const { Cell::new(Calls { busy: false, number: 0, size: [0; 2] }) };
-    /// What gives back the buffers of each shelf that no call has used since the one of a number.
+    /// For each shelf, the function that frees buffers not used since a given call.
     static SHELVES: RefCell<Vec<fn(u32)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// A call under way: it ends when this is let go.
+/// A call in progress. Dropping it ends the call.
 pub(crate) struct Call(());
 
-/// Begins a call on frames of a size.
+/// Begins a call on frames of the given width and height.
 pub(crate) fn begin(size: [usize; 2]) -> Call {
     let last = CALLS.get();
     let number = last.number.wrapping_add(1);
@@ -67,14 +67,29 @@ impl Drop for Call {
     }
 }
 
-/// Gives back to the allocator what this thread's last call on frames left for the next: about as much as the call took, some thirty
-/// bytes for each pixel of large frames. Never needed for an answer; for a thread that goes on and has no more frames to segment.
+/// Frees the buffers that this thread keeps for its next call on frames: for large frames, about thirty bytes per pixel.
+///
+/// Results never depend on it. It is meant for threads that live on but have no more frames to segment.
+///
+/// ```
+/// use veronese::scene::{self, SceneOptions};
+/// use veronese::{SegmentOptions, release_workspace, segment_pair};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let scene = scene::generate(&SceneOptions { width: 64, height: 48, objects: 1, ..SceneOptions::default() })?;
+/// let segment = || segment_pair(scene.first(), scene.second(), None, &SegmentOptions::default(), &mut |_| {});
+/// let found = segment()?;
+/// release_workspace();
+/// assert_eq!(segment()?.labels, found.labels);
+/// # Ok(())
+/// # }
+/// ```
 pub fn release_workspace() {
     let unused = CALLS.get().number.wrapping_add(1);
     SHELVES.with_borrow(|shelves| shelves.iter().for_each(|sweep| sweep(unused)));
 }
 
-/// Makes [`Kept`] of types.
+/// Implements [`Kept`] for types.
 macro_rules! kept {
     ($($value:ty),*) => {$(
         impl $crate::workspace::Kept for $value {
@@ -92,12 +107,12 @@ pub(crate) use kept;
 
 kept!(f32, f64, u8, u16, u32, u64, usize, bool, [f32; 2], [f32; 4], [f32; 8], [f32; 16]);
 
-/// A vector whose memory comes from the workspace and goes back there.
+/// A vector whose memory comes from the workspace and returns to it when dropped.
 #[derive(Debug, PartialEq)]
 pub(crate) struct Buffer<T: Kept>(Vec<T>);
 
 impl<T: Kept> Buffer<T> {
-    /// Without values, with room for some.
+    /// An empty buffer with at least the given capacity.
     #[inline(never)]
     pub(crate) fn with_capacity(length: usize) -> Self {
         let mut buffer = Self::used(length);
@@ -105,7 +120,7 @@ impl<T: Kept> Buffer<T> {
         buffer
     }
 
-    /// As many values as asked for, of whatever was there before: for those who write all of them.
+    /// A buffer of unspecified values, for callers that overwrite all of them.
     #[inline(never)]
     pub(crate) fn unwritten(length: usize) -> Self {
         let mut buffer = Self::used(length);
@@ -114,7 +129,7 @@ impl<T: Kept> Buffer<T> {
         buffer
     }
 
-    /// One value, many times.
+    /// A buffer of equal values.
     #[inline]
     pub(crate) fn filled(length: usize, value: T) -> Self {
         let mut buffer = Self::unwritten(length);
@@ -122,7 +137,7 @@ impl<T: Kept> Buffer<T> {
         buffer
     }
 
-    /// Without values, with as much room as there is: for lists of which nobody knows how long they will be.
+    /// An empty buffer with the largest free capacity, for lists of unknown length.
     #[inline(never)]
     pub(crate) fn list() -> Self {
         let mut buffer = Buffer(T::shelf().with(|shelf| take(shelf, None)));
@@ -130,7 +145,7 @@ impl<T: Kept> Buffer<T> {
         buffer
     }
 
-    /// A copy of some values.
+    /// A copy of a slice.
     #[inline(never)]
     pub(crate) fn of(values: &[T]) -> Self {
         let mut buffer = Self::with_capacity(values.len());
@@ -138,7 +153,7 @@ impl<T: Kept> Buffer<T> {
         buffer
     }
 
-    /// Room for some values, with whatever values are in it.
+    /// A buffer with at least the given capacity and arbitrary contents.
     #[inline(never)]
     fn used(length: usize) -> Self {
         let capacity = if CALLS.get().busy { rounded(length) } else { length };
@@ -147,14 +162,14 @@ impl<T: Kept> Buffer<T> {
     }
 }
 
-/// The smallest of the sizes that has room for `length` values: powers of two, and three steps between each and the next.
+/// The smallest size class of at least `length` values: powers of two, and three equal steps between each and the next.
 fn rounded(length: usize) -> usize {
     let step = (length.max(8).next_power_of_two() / 8).max(1);
     length.next_multiple_of(step)
 }
 
-/// A buffer of a size, or the largest there is; one without any room where none is kept. This and the next are never inlined because
-/// they are nearly the same code for all types.
+/// A free buffer of the given capacity, or the largest for `None`; one without capacity if there is none. Never inlined, like [`put`],
+/// because the code is nearly the same for all types.
 #[inline(never)]
 fn take<T>(shelf: &Cell<Shelf<T>>, capacity: Option<usize>) -> Vec<T> {
     if !CALLS.get().busy {
@@ -162,7 +177,7 @@ fn take<T>(shelf: &Cell<Shelf<T>>, capacity: Option<usize>) -> Vec<T> {
     }
     let mut stock = shelf.take();
     let found = match capacity {
-        // What was used last is most likely still in the cache.
+        // The most recently used buffer is most likely still in the cache.
         Some(capacity) => stock.kept.iter().rposition(|(_, buffer)| buffer.capacity() == capacity),
         None => (0..stock.kept.len()).max_by_key(|&k| stock.kept[k].1.capacity()),
     };
@@ -171,7 +186,7 @@ fn take<T>(shelf: &Cell<Shelf<T>>, capacity: Option<usize>) -> Vec<T> {
     buffer
 }
 
-/// Keeps a buffer, if a call is under way and it is of a size that is ever looked for.
+/// Keeps a buffer if a call is in progress and its capacity is a size class.
 #[inline(never)]
 fn put<T>(shelf: &Cell<Shelf<T>>, buffer: Vec<T>, sweep: fn(u32)) {
     let Calls { busy, number, .. } = CALLS.get();
@@ -186,7 +201,7 @@ fn put<T>(shelf: &Cell<Shelf<T>>, buffer: Vec<T>, sweep: fn(u32)) {
     }
 }
 
-/// Gives back what no call has used since the one of a number.
+/// Frees the buffers that were not last used by the call number `since`.
 fn sweep<T: Kept>(since: u32) {
     T::shelf().with(|shelf| {
         let mut stock = shelf.take();
@@ -201,7 +216,7 @@ impl<T: Kept> Drop for Buffer<T> {
     #[inline(never)]
     fn drop(&mut self) {
         let values = std::mem::take(&mut self.0);
-        // A thread that ends takes its workspace along.
+        // Fails while a thread ends, after its workspace has been freed.
         let _ = T::shelf().try_with(|shelf| put(shelf, values, sweep::<T>));
     }
 }
@@ -237,7 +252,7 @@ impl<T: Kept> FromIterator<T> for Buffer<T> {
     #[inline]
     fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
         let values = values.into_iter();
-        // Room for as many as there may be: what is not used is there for the next.
+        // The upper bound: unused capacity is reused later anyway.
         let (least, most) = values.size_hint();
         let mut buffer = Self::with_capacity(most.unwrap_or(least));
         buffer.0.extend(values);
@@ -273,13 +288,13 @@ impl<'a, T: Kept> IntoIterator for &'a mut Buffer<T> {
 mod tests {
     use super::*;
 
-    /// Where a buffer's values lie.
+    /// The address of a buffer's values.
     fn place(buffer: &Buffer<f64>) -> *const f64 {
         buffer.as_ptr()
     }
 
     #[test]
-    fn a_size_has_room_and_is_its_own_size() {
+    fn a_size_class_is_large_enough_and_its_own_class() {
         for length in (0..5000).chain([76_800, 307_200, 16_777_216]) {
             let size = rounded(length);
             assert!(size >= length && size <= length + length / 4 + 1, "{size} for {length}");
@@ -288,7 +303,7 @@ mod tests {
         assert_eq!(rounded(1 << 24), 1 << 24);
     }
 
-    /// Sizes of the buffers that are kept.
+    /// Capacities of the free buffers of a type.
     fn kept<T: Kept>() -> Vec<usize> {
         T::shelf().with(|shelf| {
             let stock = shelf.take();
@@ -299,7 +314,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_let_go_is_used_again() {
+    fn dropped_buffers_are_reused() {
         let _call = begin([640, 480]);
         let first = Buffer::filled(1000, 1.0);
         let at = place(&first);
@@ -317,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_call_did_not_use_is_given_back() {
+    fn buffers_that_a_call_did_not_use_are_freed() {
         let used = |size, lengths: &[usize]| {
             let _call = begin(size);
             lengths.iter().for_each(|&length| drop(Buffer::filled(length, 0u64)));
@@ -334,7 +349,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thread_can_let_go_of_everything() {
+    fn release_workspace_frees_all_buffers() {
         let call = begin([320, 240]);
         drop(Buffer::filled(100, 0u32));
         drop(call);
@@ -344,7 +359,7 @@ mod tests {
     }
 
     #[test]
-    fn between_calls_nothing_is_kept() {
+    fn buffers_dropped_outside_a_call_are_not_kept() {
         drop(Buffer::filled(64, 0u16));
         assert!(kept::<u16>().is_empty());
         let call = begin([320, 240]);

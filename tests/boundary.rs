@@ -1,4 +1,4 @@
-//! What only the boundary to JavaScript can show, run under Node: the rest of it is tested by the package, from outside.
+//! The interface to JavaScript under Node: panics. Everything else is tested by the package.
 #![cfg(target_arch = "wasm32")]
 #![allow(clippy::unwrap_used, clippy::panic, reason = "clippy knows #[test] only, not #[wasm_bindgen_test]")]
 

@@ -1,4 +1,4 @@
-//! Labels under strokes: what is said holds, what is far from it stays, one stroke takes a region with it.
+//! Interactive correction: strokes hold exactly, distant labels do not change, one stroke corrects a region.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
@@ -47,7 +47,7 @@ impl Case {
         }
     }
 
-    /// The pixel of a label that is farthest inside its bounding box's middle: the nearest to the box's centre.
+    /// The pixel of a label that is nearest to the centre of its bounding box.
     fn middle(&self, label: u8) -> [usize; 2] {
         let [x, y, w, h] = self.found.motions[usize::from(label)].bbox;
         let centre = [x + w / 2, y + h / 2];
@@ -62,7 +62,7 @@ impl Case {
 }
 
 #[test]
-fn nothing_said_changes_nothing() {
+fn without_strokes_nothing_changes() {
     let case = Case::new(320, 240, 3);
     let again = case.ask(&case.found.labels, &vec![0; case.pixels()]).unwrap();
     assert_eq!(again.labels, case.found.labels);
@@ -76,7 +76,7 @@ fn nothing_said_changes_nothing() {
 }
 
 #[test]
-fn what_is_said_holds_to_the_pixel_and_far_away_everything_stays() {
+fn strokes_hold_exactly_and_distant_labels_do_not_change() {
     let case = Case::new(640, 480, 5);
     assert!(case.found.count >= 2);
     let mut allowed = vec![0; case.pixels()];
@@ -88,7 +88,7 @@ fn what_is_said_holds_to_the_pixel_and_far_away_everything_stays() {
             assert_eq!(corrected.labels[p], 0);
         }
         let (u, v) = (p % 640, p / 640);
-        // Two pixels to a working pixel: e⁻⁴ of the say is left where steps are of full length, and objects are smaller than this.
+        // At two pixels per working pixel, the influence falls to e⁻⁴ at this distance for steps of full length. Objects are smaller.
         if u.abs_diff(x).max(v.abs_diff(y)) > 220 {
             assert_eq!(corrected.labels[p], case.found.labels[p]);
         }
@@ -99,8 +99,8 @@ fn what_is_said_holds_to_the_pixel_and_far_away_everything_stays() {
 }
 
 #[test]
-fn one_stroke_mends_a_wrong_region() {
-    // An object was taken for background: its labels are lost, its motion is known.
+fn one_stroke_corrects_a_region() {
+    // An object was labelled as background: its labels are lost, its motion is known.
     for seed in [5, 7, 11] {
         let case = Case::new(320, 240, seed);
         let object = 1u8;
@@ -119,7 +119,7 @@ fn one_stroke_mends_a_wrong_region() {
 }
 
 #[test]
-fn an_eraser_takes_a_label_away_and_a_set_leaves_the_choice() {
+fn an_excluded_label_is_removed_and_a_full_set_is_no_constraint() {
     let case = Case::new(320, 240, 5);
     let n = case.motions.len();
     let everything = (1u16 << n) - 1;
@@ -127,7 +127,7 @@ fn an_eraser_takes_a_label_away_and_a_set_leaves_the_choice() {
     case.disc(&mut allowed, case.middle(1), 6, everything & !0b10);
     let erased = case.ask(&case.found.labels, &allowed).unwrap();
     assert!(allowed.iter().zip(&erased.labels).all(|(&set, &l)| set == 0 || l != 1));
-    // All labels are possible: the disc says nothing that could be broken, and the mask keeps its middle.
+    // All labels are possible: the disc is no constraint, and the mask keeps its centre.
     let mut open = vec![0; case.pixels()];
     case.disc(&mut open, case.middle(1), 6, everything);
     let kept = case.ask(&case.found.labels, &open).unwrap();
@@ -136,7 +136,7 @@ fn an_eraser_takes_a_label_away_and_a_set_leaves_the_choice() {
 }
 
 #[test]
-fn unlabelled_pixels_stay_so_where_nobody_speaks() {
+fn unlabelled_pixels_without_strokes_stay_unlabelled() {
     let case = Case::new(320, 240, 5);
     let mut labels = case.found.labels.clone();
     labels[..320 * 20].fill(UNLABELLED);
@@ -149,7 +149,7 @@ fn unlabelled_pixels_stay_so_where_nobody_speaks() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_refused() {
+fn inconsistent_input_is_rejected() {
     let case = Case::new(64, 48, 1);
     let (pixels, labels) = (case.pixels(), &case.found.labels);
     let reason = |result: Result<Relabelling, Error>| match result {

@@ -1,4 +1,4 @@
-//! The linear step up to n = 10 without noise: accuracy and time. A measurement rather than a test:
+//! Accuracy and time of the linear step without noise, up to n = 10. It prints measurements:
 //! `cargo test --release --test degrees -- --ignored --nocapture`.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]

@@ -1,7 +1,7 @@
-//! The estimator against the statistical limit, on the paper's experiment and on everything that could break it.
+//! The estimator compared with the statistical limit, on the paper's experiment and on difficult inputs.
 //!
-//! The oracle knows the segmentation; no method without that knowledge can be better, and the unknown labels alone cost up to
-//! 15 %. The full tables: `cargo test --release --test estimator -- --ignored --nocapture` (environment: TRIALS, SEED).
+//! The oracle knows the true labels. No method without them can be more accurate; not knowing them costs up to 15 %. The full tables:
+//! `cargo test --release --test estimator -- --ignored --nocapture` (environment variables TRIALS, SEED).
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
@@ -22,7 +22,7 @@ fn matrices(fit: &MotionFit) -> Vec<AffineMotion> {
     fit.motions.iter().map(|motion| motion.matrix).collect()
 }
 
-/// A tried cell of the table: mean errors of estimator and oracle, and how often a motion was wrong by more than 20 %.
+/// A cell of the table: mean errors of estimator and oracle, and the number of trials with a motion wrong by more than 20 %.
 struct Cell {
     error: f64,
     oracle: f64,
@@ -42,7 +42,7 @@ fn cell(protocol: &Protocol, trials: u64, seed: u64) -> Cell {
     cell
 }
 
-/// No gross failure, and a mean error within `ratio` of the oracle's.
+/// Asserts that no trial fails, and that the mean error is below `ratio` times that of the oracle.
 fn assert_cell(protocol: &Protocol, trials: u64, ratio: f64) {
     let cell = cell(protocol, trials, 7);
     assert_eq!(cell.failures, 0, "{protocol:?}");
@@ -50,8 +50,7 @@ fn assert_cell(protocol: &Protocol, trials: u64, ratio: f64) {
     assert!(found < ratio, "ratio {found:.3} above {ratio}: {protocol:?}");
 }
 
-// The bounds are the long-run ratios (see the table; 1.06, 1.10, 1.14 with outliers, 1.12 for the small motion) plus the scatter of
-// few trials.
+// The bounds are the ratios of the full table (1.06, 1.10, 1.14 with outliers, 1.12 for the small motion) plus the scatter of few trials.
 
 #[test]
 fn general_motions_are_found_as_well_as_unknown_labels_allow() {
@@ -123,7 +122,7 @@ fn labels_counts_and_order_agree() {
         assert_eq!(fit.labels.iter().filter(|&&l| usize::from(l) == i).count(), motion.measurements);
         assert!(i == 0 || motion.measurements <= fit.motions[i - 1].measurements);
     }
-    // The first motion has most of the measurements; an outlier near a plane cannot be told apart.
+    // The first motion has most of the measurements. Outliers near a plane are mislabelled.
     let right = |j: &usize| match problem.labels[*j] {
         None => fit.labels[*j] == UNLABELLED,
         Some(0) => fit.labels[*j] == 0,
@@ -137,7 +136,7 @@ fn labels_counts_and_order_agree() {
 
 #[test]
 fn covariances_predict_the_errors() {
-    // With one motion there are no labels to guess: the squared error in units of the covariance is χ² with six degrees of freedom.
+    // With one motion the labels are known, and the squared error in units of the covariance is χ² with six degrees of freedom.
     let protocol = Protocol { count: 300, ..Protocol::new(1, 0.05) };
     let mut sum = 0.0;
     for seed in 0..60 {
@@ -148,11 +147,11 @@ fn covariances_predict_the_errors() {
             nalgebra::Vector6::from_fn(|k, _| fit.motions[0].matrix.matrix[k] - problem.motions[0].matrix[k]);
         sum += difference.dot(&covariance.cholesky().unwrap().solve(&difference)) / 60.0;
     }
-    // Deviation of the mean: √(12/60) = 0.45.
+    // The standard deviation of the mean is √(12/60) = 0.45.
     assert!((sum - 6.0).abs() < 1.8, "mean {sum}");
 }
 
-/// Everything a caller can hold against an answer: finite numbers, labels that exist.
+/// Asserts what holds for every result: finite numbers, labels of existing motions.
 fn assert_sound(fit: &MotionFit, count: usize) {
     assert_eq!(fit.labels.len(), count);
     assert!(fit.labels.iter().all(|&l| l == UNLABELLED || usize::from(l) < fit.count));
@@ -164,7 +163,7 @@ fn assert_sound(fit: &MotionFit, count: usize) {
 }
 
 #[test]
-fn poor_data_get_an_honest_answer() {
+fn poor_data_give_a_sound_result() {
     let mut random = Random::from_seed(3);
     let mut vectors = |count: usize| -> Vec<[f64; 3]> {
         (0..count).map(|_| std::array::from_fn(|_| random.uniform(-1.0, 1.0))).collect()
@@ -253,7 +252,7 @@ fn scale_and_place_do_not_matter() {
 
 #[test]
 fn the_same_input_gives_the_same_bits_everywhere() {
-    // FNV-1a over the bits of everything that comes out; the number was found natively, other targets must find it too.
+    // FNV-1a over all bits of the results. The constant must be the same on all targets.
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut eat = |value: u64| {
         value.to_le_bytes().iter().for_each(|&b| hash = (hash ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
@@ -279,7 +278,7 @@ fn the_same_input_gives_the_same_bits_everywhere() {
     assert_eq!(hash, GOLDEN, "found {hash:#018x}");
 }
 
-/// Changes with every change of the arithmetic; then take the number that the failing test prints.
+/// Changes with the arithmetic (see CONTRIBUTING.md, "Golden hashes"). A failing test prints the new value.
 const GOLDEN: u64 = 0xe4fd_ba56_39b4_eb3e;
 
 #[cfg(not(target_arch = "wasm32"))]

@@ -1,10 +1,10 @@
-//! The examples do what they say: each is run as a reader runs it, and its output is compared.
+//! The examples: each is run with cargo, and its output is checked.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]
 
 use std::process::Command;
 
-/// What an example prints. Cargo has built it already where all tests run, with the features they run with.
+/// The output of an example, built with the features of the tests so that cargo can reuse the build.
 fn output(example: &str) -> String {
     let mut cargo = Command::new(env!("CARGO"));
     cargo.current_dir(env!("CARGO_MANIFEST_DIR")).args(["run", "--quiet", "--locked", "--example", example]);

@@ -1,5 +1,5 @@
-//! The paper's Figure 1 on protocol B1: mean and median error of the factorisation, the refinement and the differentiation.
-//! A measurement rather than a test: `cargo test --test figure_1 -- --ignored --nocapture`.
+//! Figure 1 of the paper with protocol B1: mean and median errors of factorisation, refinement and differentiation. It prints
+//! measurements: `cargo test --test figure_1 -- --ignored --nocapture`.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]
 
@@ -54,7 +54,8 @@ fn summary(trials: &[Vec<f64>]) -> String {
     format!("{mean:.3}/{:.3} [{:.1}]", means[means.len() / 2], 100.0 * failed as f64 / means.len() as f64)
 }
 
-/// How often the rank rule finds the number of motions, raw and with scaled columns.
+/// How often the rank rule finds the number of motions, with raw and with scaled columns. "=" counts numbers that satisfy (12), "<=" the
+/// smallest number with a deficient rank.
 #[test]
 #[ignore = "takes ten seconds and prints a table"]
 fn rank_rule() {

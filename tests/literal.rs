@@ -1,4 +1,4 @@
-//! The paper's image experiment on scenes for which its assumptions hold, and what it leaves alone.
+//! The paper's image experiment, on scenes that satisfy its assumptions.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
@@ -7,7 +7,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use veronese::scene::{self, Background, SceneOptions, Speed};
 use veronese::{KeptPixels, MotionCount, UNLABELLED, derivatives, literal_pair};
 
-/// Small motions and a blurred image: within a pixel's motion the intensity is nearly linear.
+/// Small motions of blurred images, whose intensity is nearly linear over the displacement.
 fn gentle() -> SceneOptions {
     SceneOptions { width: 200, height: 150, speed: Speed::SubPixel, noise: 0.3, blur: 1.0, ..SceneOptions::default() }
 }
@@ -31,8 +31,8 @@ fn one_motion_is_found_on_the_strongest_pixels() {
 }
 
 #[test]
-fn two_objects_before_a_static_background_come_apart() {
-    // One of the scenes on which it works; on most the border pixels, which follow no motion, spoil the fit.
+fn two_objects_on_a_static_background_are_separated() {
+    // One of the few scenes on which it works. On most, border pixels, which follow no motion, spoil the fit.
     let options = SceneOptions { background: Background::Static, seed: 4, ..gentle() };
     let scene = scene::generate(&options).unwrap();
     let keep = KeptPixels::Strongest(0.0665);

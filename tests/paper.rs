@@ -1,5 +1,5 @@
-//! The paper's claims, one by one: Lemma 1, Example 1, Appendix A, Theorem 1, the five steps, the refinement, and the open
-//! problem that differentiation solves.
+//! The statements of the paper one by one: Lemma 1, Example 1, Appendix A, Theorem 1, the five steps, the refinement, and the open problem
+//! that differentiation solves.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
@@ -40,7 +40,7 @@ fn lemma_1_the_constraint_is_bilinear_in_the_embedded_data() {
         let motions = random_motions(n, &mut random);
         let multibody = MultibodyMotion::from_motions(&motions);
         for _ in 0..20 {
-            // z need not be 1.
+            // The identity also holds for z ≠ 1.
             let x: [f64; 3] = std::array::from_fn(|_| random.uniform(-1.0, 1.0));
             let y: [f64; 3] = std::array::from_fn(|_| random.uniform(-1.0, 1.0));
             let factor = |a: &AffineMotion| {
@@ -94,7 +94,7 @@ fn appendix_a_the_numbers_of_monomials_zeros_and_unknowns() {
         let pairs = kept_pairs(n);
         assert_eq!((unknowns(n), pairs.len()), (expected, expected), "n = {n}");
         assert_eq!(pairs.last(), Some(&(count(n) - 1, count(n) - 1)));
-        // The sum by degrees in (I_x, I_y): (m + 1)²(m + 2)/2.
+        // The sum over the degree m in (I_x, I_y) of (m + 1)²(m + 2)/2.
         assert_eq!((0..=n).map(|m| (m + 1) * (m + 1) * (m + 2) / 2).sum::<usize>(), expected);
     }
 }
@@ -144,7 +144,7 @@ fn the_triangle_has_the_singular_values_of_the_embedded_matrix() {
 
 #[test]
 fn theorem_1_the_ranks_below_at_and_above_the_number_of_motions() {
-    // Exact data: what counts as zero is rounding, not κ.
+    // For exact data the tolerance is rounding, not κ.
     const ROUNDING: f64 = 1e-11;
     let mut random = Random::from_seed(6);
     for n in 1..=3 {
@@ -218,7 +218,7 @@ fn the_whole_paper_recovers_motions_and_segmentation_in_pixels() {
                 .iter()
                 .enumerate()
                 .filter(|&(j, &label)| truth[j % n].relative_error(&motions[usize::from(label)]) > 1e-6);
-            // A measurement may by chance lie on two motions: their planes meet in a line.
+            // A measurement may satisfy the constraints of two motions: their planes intersect in a line.
             assert!(wrong.count() <= data.len() / 100);
             assert!(found.motions.iter().all(|m| m.determined == 6));
         }
@@ -264,7 +264,7 @@ fn labels_are_numbered_by_decreasing_count() {
     }
 }
 
-/// How many of 20 trials fail: the worst motion is wrong by more than `limit`.
+/// Number of 20 trials in which a motion is wrong by more than `limit`.
 fn failures(special: fn(&mut [AffineMotion]), n: usize, noise: f64, limit: f64, by: Solver) -> usize {
     let failed = |seed: u64| {
         let mut random = Random::from_seed(7000 + seed);
@@ -311,7 +311,7 @@ fn every_special_configuration_is_recovered_with_noise() {
     }
 }
 
-/// P̃_3 of two motions has many null vectors; each is the product of the two constraints and another one.
+/// P̃_3 of two motions has many null vectors. Each is the product of the two constraints and a third one.
 #[test]
 fn the_true_motions_are_among_those_of_a_number_that_is_too_large() {
     for seed in 0..10 {
@@ -336,7 +336,7 @@ fn taubins_motion_is_exact_without_noise() {
 }
 
 #[test]
-fn the_five_steps_have_the_limits_that_they_are_said_to_have() {
+fn the_five_steps_have_their_documented_limits() {
     let mut table = Vec::new();
     for (name, special) in CONFIGURATIONS {
         table.push((name, [2, 3].map(|n| 20 - failures(special, n, 0.0, 1e-4, by_the_five_steps))));
@@ -345,7 +345,7 @@ fn the_five_steps_have_the_limits_that_they_are_said_to_have() {
     assert_eq!(recovered("generic"), [20, 20]);
     assert_eq!(recovered("rank 2"), [20, 20]);
     assert_eq!(recovered("all similarities"), [20, 20]);
-    // Step 5 has nothing to go by, and guesses.
+    // Step 5 is ambiguous, so it is right in some of the trials.
     assert!(recovered("equal (1,3)").iter().all(|&r| (1..20).contains(&r)));
     assert!(recovered("equal (2,3)").iter().all(|&r| (1..20).contains(&r)));
     // Zero rows.
@@ -438,7 +438,7 @@ fn fingerprint(values: impl Iterator<Item = f64>) -> u64 {
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
-/// The same constants for both targets: a change of the numerics changes them, and then must change them for both alike.
+/// The constants hold natively and in WebAssembly (see CONTRIBUTING.md, "Golden hashes").
 #[test]
 fn the_results_have_the_same_bits_natively_and_in_webassembly() {
     let mut random = Random::from_seed(62);
@@ -476,7 +476,7 @@ fn too_few_measurements_are_an_error_that_says_how_many_are_needed() {
 }
 
 #[test]
-fn numbers_of_motions_outside_one_to_ten_are_refused() {
+fn numbers_of_motions_outside_one_to_ten_are_rejected() {
     let data = Measurements::new(vec![[0.0; 2]; 10], vec![[1.0; 3]; 10]).unwrap();
     for n in [0, 11, usize::MAX] {
         for method in [Method::Paper, Method::Best] {
@@ -486,10 +486,10 @@ fn numbers_of_motions_outside_one_to_ten_are_refused() {
 }
 
 #[test]
-fn data_without_information_give_a_finite_answer_that_says_so() {
+fn data_without_information_give_a_finite_result_of_low_rank() {
     let grid: Vec<[f64; 2]> = (0..400).map(|j| [f64::from(j % 20), f64::from(j / 20)]).collect();
     let mut random = Random::from_seed(80);
-    // Name, positions, derivatives, and how many entries of a motion they can determine at most.
+    // Name, positions, derivatives, and the largest number of entries of a motion that they determine.
     type Case = (&'static str, Vec<[f64; 2]>, Vec<[f64; 3]>, usize);
     let cases: [Case; 5] = [
         ("all derivatives zero", grid.clone(), vec![[0.0; 3]; 400], 0),

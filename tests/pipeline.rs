@@ -1,4 +1,4 @@
-//! Two frames in, masks out: generated scenes with known masks and motions, frames that cannot tell, and the same bits everywhere.
+//! The image pipeline: generated scenes with known masks and motions, ambiguous frames, and the same bits on all targets.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
@@ -20,7 +20,7 @@ fn segment(first: &Frame, second: &Frame, options: SegmentOptions) -> Segmentati
     result
 }
 
-/// Root mean square of the intensity difference along a motion over its pixels that land inside the second frame.
+/// Root mean square of the motion-compensated intensity difference over the pixels of a motion that move to the inside of the second frame.
 fn residual(motion: &SegmentedMotion, labels: &[u8], first: &Plane, second: &Plane) -> f64 {
     let (width, height) = (first.width(), first.height());
     let (mut sum, mut count) = (0.0, 0.0);
@@ -40,7 +40,7 @@ fn residual(motion: &SegmentedMotion, labels: &[u8], first: &Plane, second: &Pla
     (sum / f64::max(count, 1.0)).sqrt()
 }
 
-/// What holds for every answer.
+/// Asserts what holds for every result.
 fn check(result: &Segmentation, options: &SegmentOptions) {
     let pixels = result.width * result.height;
     assert_eq!(result.labels.len(), pixels);
@@ -83,7 +83,7 @@ fn check(result: &Segmentation, options: &SegmentOptions) {
     assert!(sure.filter(|&(_, &l)| l == UNLABELLED).all(|(&c, _)| c == 0), "what has no label is not sure");
 }
 
-/// Intersection over union of each true label with the found label that overlaps it best.
+/// Intersection over union of each true label with the best found label.
 fn overlaps(scene: &Scene, labels: &[u8]) -> Vec<f64> {
     let found = 1 + usize::from(*labels.iter().filter(|&&l| l != UNLABELLED).max().unwrap());
     (0..scene.motions.len())
@@ -147,9 +147,9 @@ fn motions_are_measured_to_a_fraction_of_a_pixel() {
     }
 }
 
-/// The scene of the paper's Figures 2 and 3: two small robots with nearly the same motion over a background that stands still.
+/// The scene of Figures 2 and 3 of the paper: two small robots with nearly the same motion on a static background.
 #[test]
-fn the_leader_and_the_follower_are_two() {
+fn the_leader_and_the_follower_are_separate_motions() {
     let mut told_apart = 0;
     for seed in 1..=5 {
         let scene = scene::leader_follower(seed).unwrap();
@@ -159,7 +159,7 @@ fn the_leader_and_the_follower_are_two() {
     assert!(told_apart >= 4, "{told_apart} of 5");
 }
 
-/// One motion bent over all cars explains more than the bare ground does at rest, until the cars have motions of their own.
+/// A single motion fitted to all cars explains more than a static ground, until the cars have motions of their own.
 #[test]
 fn a_bare_ground_is_left_at_rest_by_the_cars_on_it() {
     for seed in [1, 2] {
@@ -187,7 +187,7 @@ fn constant(width: usize, height: usize, value: u8) -> Frame {
 }
 
 #[test]
-fn frames_that_cannot_tell_are_one_motion_that_stands_still() {
+fn ambiguous_frames_are_one_static_motion() {
     let (frame, flat) = (textured(64, 48, 0.0), constant(64, 48, 90));
     for (first, second) in [(&frame, &frame), (&flat, &flat), (&flat, &constant(64, 48, 97))] {
         for motions in [MotionCount::Auto, MotionCount::Given(3)] {
@@ -200,7 +200,7 @@ fn frames_that_cannot_tell_are_one_motion_that_stands_still() {
 }
 
 #[test]
-fn one_motion_of_the_whole_frame_is_one() {
+fn a_motion_of_the_whole_frame_is_the_only_one() {
     let result = segment(&textured(120, 90, 0.0), &textured(120, 90, 2.3), SegmentOptions::default());
     assert_eq!(result.count, 1);
     let [u, v] = result.motions[0].matrix.flow(60.0, 45.0);
@@ -258,7 +258,7 @@ fn the_motion_of_narrow_frames_is_found() {
 }
 
 #[test]
-fn frames_that_share_nothing_are_an_answer_too() {
+fn unrelated_frames_give_a_valid_result() {
     let other = scene::generate(&SceneOptions { width: 96, height: 72, seed: 77, ..SceneOptions::default() }).unwrap();
     for options in [
         SegmentOptions::default(),
@@ -302,12 +302,12 @@ fn unknown_pixels_are_marked_on_request_only() {
 }
 
 #[test]
-fn where_there_is_no_texture_nothing_is_known() {
+fn pixels_without_texture_are_unknown() {
     let marked = SegmentOptions { mark_unknown: true, ..SegmentOptions::default() };
     let flat = constant(64, 48, 90);
     let result = segment(&flat, &flat, marked);
     assert_eq!((result.count, result.unlabelled), (1, 64 * 48));
-    // Half of the frame is a wall without texture: its inside is unknown, the other half is not.
+    // Half of the frame is a wall without texture. Its inside is unknown, the other half is not.
     let half = |shift: f64| {
         let picture = textured(120, 90, shift);
         let rgba: Vec<u8> = (0..120 * 90)
@@ -330,14 +330,14 @@ fn where_there_is_no_texture_nothing_is_known() {
     assert_eq!((unknown(0..45), unknown(70..120)), (45 * 90, 0));
 }
 
-/// Number and rightness of the pixels of each of five ranges of confidence, from unsure to sure, over some scenes.
+/// Number of pixels and number of right labels in five ranges of confidence, lowest first, over several scenes.
 fn calibration(quality: Quality) -> [(usize, usize); 5] {
     let mut bins = [(0, 0); 5];
     for options in SceneOptions::series(1200, &[(200, 150)]) {
         let scene = scene::generate(&options).unwrap();
         let options = SegmentOptions { confidence: true, quality, ..SegmentOptions::default() };
         let result = segment(scene.first(), scene.second(), options);
-        // A label means the layer that most of its pixels show.
+        // The meaning of a label is the layer that most of its pixels show.
         let meaning: Vec<u8> = (0..result.count)
             .map(|k| {
                 let mut votes = [0usize; 16];
@@ -356,7 +356,7 @@ fn calibration(quality: Quality) -> [(usize, usize); 5] {
 }
 
 #[test]
-fn the_surer_a_label_the_more_often_it_is_right() {
+fn more_confident_labels_are_more_often_right() {
     for quality in [Quality::Fast, Quality::Best] {
         let bins = calibration(quality);
         let right = bins.map(|(all, right)| right as f64 / all as f64);
@@ -367,7 +367,7 @@ fn the_surer_a_label_the_more_often_it_is_right() {
 }
 
 #[test]
-fn confidence_changes_nothing_else_and_fewer_and_more_motions_cost_more() {
+fn confidence_changes_nothing_else_and_other_numbers_of_motions_score_worse() {
     let scene =
         scene::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
     let plain = segment(scene.first(), scene.second(), SegmentOptions::default());
@@ -381,7 +381,7 @@ fn confidence_changes_nothing_else_and_fewer_and_more_motions_cost_more() {
 }
 
 #[test]
-fn a_third_view_is_taken_and_checked() {
+fn a_frame_before_is_accepted_and_its_size_is_checked() {
     let scene =
         scene::generate(&SceneOptions { width: 200, height: 150, seed: 21, ..SceneOptions::default() }).unwrap();
     let options = SegmentOptions::default();
@@ -396,7 +396,8 @@ fn a_third_view_is_taken_and_checked() {
     );
 }
 
-/// Of the pixels that the second frame hides or leaves out, the share whose label is the one that most of their object has.
+/// The share of right labels among the pixels that are hidden or outside in the second frame. The right label is the most frequent one of
+/// the layer.
 fn right_where_hidden(scene: &Scene, before: Option<&Frame>) -> f64 {
     let result = segment_pair(scene.first(), scene.second(), before, &SegmentOptions::default(), &mut |_| {}).unwrap();
     let found = result.count;
@@ -410,7 +411,7 @@ fn right_where_hidden(scene: &Scene, before: Option<&Frame>) -> f64 {
     right.count() as f64 / hidden.count().max(1) as f64
 }
 
-/// Two objects that move far, so that they occlude much.
+/// Two objects with large motions, which occlude much.
 fn large_motions(seed: u64) -> SceneOptions {
     SceneOptions {
         width: 200,
@@ -424,7 +425,7 @@ fn large_motions(seed: u64) -> SceneOptions {
 }
 
 #[test]
-fn a_frame_before_tells_what_the_second_hides() {
+fn a_frame_before_improves_the_labels_of_occluded_pixels() {
     let mut with = Vec::new();
     let mut without = Vec::new();
     for seed in 400..406 {
@@ -436,7 +437,7 @@ fn a_frame_before_tells_what_the_second_hides() {
     assert!(mean(&with) > 0.96 && mean(&with) > mean(&without) + 0.01, "with {with:.3?}, without {without:.3?}");
 }
 
-/// Clouds and automatic exposure change the frame before as much as the second one.
+/// Clouds and automatic exposure change the frame before as much as the second frame.
 #[test]
 fn a_frame_before_helps_as_much_when_the_brightness_changes() {
     let mut with = Vec::new();
@@ -455,7 +456,7 @@ fn a_frame_before_helps_as_much_when_the_brightness_changes() {
     assert!(mean(&with) > mean(&constant) - 0.02, "with a change {with:.3?}, without {constant:.3?}");
 }
 
-/// The frame before must not affect the motion of the background: bare ground looks alike in any two frames.
+/// The frame before must not affect the motion of the background, because bare ground looks alike in all frames.
 #[test]
 fn a_frame_before_leaves_a_bare_ground_at_rest() {
     for seed in [1, 2] {
@@ -490,7 +491,7 @@ fn stages_are_reported_in_order() {
     assert!(seen.iter().all(|s| s.index < s.of));
 }
 
-/// FNV-1a over all bits of an answer.
+/// FNV-1a over all bits of the labels and motions.
 fn fingerprint(result: &Segmentation) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
     let mut take = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
@@ -503,7 +504,7 @@ fn fingerprint(result: &Segmentation) -> u64 {
     hash
 }
 
-/// The same constants hold natively and in WebAssembly: a change of the numerics changes both.
+/// The constants hold natively and in WebAssembly (see CONTRIBUTING.md, "Golden hashes").
 #[test]
 fn the_same_bits_on_every_target() {
     let expected: [u64; 3] = [0x8498_03c1_b4dc_e57b, 0x3909_ae44_4e13_0b17, 0xb5dd_b702_a0a8_c679];

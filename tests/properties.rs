@@ -1,4 +1,4 @@
-//! Properties of the algebra on arbitrary input.
+//! Properties of the algebra for random inputs.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]
 
@@ -8,7 +8,7 @@ use veronese::embedding::{MultibodyMotion, veronese as map};
 use veronese::factorisation::ternary::factorise;
 use veronese::refinement::product;
 
-/// Step of central differences; their error is about its square.
+/// Step of central differences. Their error is about its square.
 const STEP: f64 = 1e-5;
 
 fn vector() -> impl Strategy<Value = [f64; 3]> {
@@ -28,9 +28,9 @@ fn power(value: f64, exponent: usize) -> f64 {
     (0..exponent).map(|_| value).product()
 }
 
-/// Coefficients of Π b_iᵀz, from the motions whose rows are b: the row form of a multibody motion at y = e_1 plus e_3.
+/// Coefficients of Π b_iᵀz, as 𝒜ᵀν_n(y) of motions with y = (1, 0, 1).
 fn expanded(forms: &[[f64; 3]]) -> Vec<f64> {
-    // y = (1, 0, 1) makes the factor of (a11, a12, a13) the form (a11, a12, a13 + 1).
+    // For y = (1, 0, 1), A_iᵀy is (a11, a12, a13 + 1).
     let motions: Vec<AffineMotion> =
         forms.iter().map(|b| AffineMotion::new([b[0], b[1], b[2] - 1.0, 0.0, 0.0, 0.0])).collect();
     MultibodyMotion::from_motions(&motions).multibody_row([1.0, 0.0, 1.0]).as_slice().to_vec()
@@ -125,7 +125,7 @@ proptest! {
     }
 }
 
-/// A root at infinity (no second entry) and one at zero (no third): the leading and the last coefficient vanish.
+/// A form without second entry has its root at infinity, and one without third entry at zero: the leading and the last coefficient vanish.
 #[test]
 fn forms_without_second_or_third_entry_are_found() {
     let forms = [[0.5, 0.0, 1.0], [-1.0, 2.0, 0.0], [0.3, 1.0, 1.0]];

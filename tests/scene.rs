@@ -1,4 +1,4 @@
-//! The truth of generated scenes agrees with their pictures, and the same options give the same bytes everywhere.
+//! Generated scenes: the ground truth agrees with the frames, and the same options give the same bytes on every platform.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
@@ -7,7 +7,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
 use veronese::{AffineMotion, Plane};
 
-/// Cubic convolution (Catmull-Rom) at (x, y); none within two pixels of the border.
+/// Cubic convolution (Catmull–Rom) at (x, y); `None` within two pixels of the border.
 fn sample(plane: &Plane, x: f64, y: f64) -> Option<f64> {
     let (column, row) = (x.floor(), y.floor());
     if column < 1.0 || row < 1.0 || column + 2.0 >= plane.width() as f64 || row + 2.0 >= plane.height() as f64 {
@@ -27,8 +27,8 @@ fn sample(plane: &Plane, x: f64, y: f64) -> Option<f64> {
     Some(sum)
 }
 
-/// Root mean square of (second, warped back by the motions and with its brightness restored) − first, over the pixels of
-/// each label that are three pixels or more from other labels and from occluded pixels.
+/// For each label, the root mean square difference between `first` and `second`, warped back and with its brightness restored, and the
+/// number of pixels: those at least three pixels away from other labels and from occluded pixels.
 fn residuals(scene: &Scene, motions: &[AffineMotion]) -> Vec<(f64, usize)> {
     let (width, height) = (scene.options.width, scene.options.height);
     let mut sums = vec![(0.0, 0usize); motions.len()];
@@ -55,7 +55,7 @@ fn residuals(scene: &Scene, motions: &[AffineMotion]) -> Vec<(f64, usize)> {
 }
 
 #[test]
-fn the_true_motions_bring_the_second_frame_back() {
+fn warping_by_the_true_motions_restores_the_first_frame() {
     for (k, mut options) in SceneOptions::series(40, &[(200, 150)]).into_iter().enumerate() {
         options.noise = 0.0;
         options.colour = k % 2 == 1;
@@ -73,14 +73,14 @@ fn the_true_motions_bring_the_second_frame_back() {
         let shifted = residuals(&scene, &wrong);
         for (label, (&(rms, count), &(other, _))) in truth.iter().zip(&shifted).enumerate() {
             assert!(count > 100, "scene {k}, label {label}: {count} pixels");
-            // What remains is the interpolation of the test itself and the rounding to eight bits.
+            // The rest is interpolation by the test and rounding to eight bits.
             assert!(rms < 2.0 && rms < 0.4 * other, "scene {k}, label {label}: rms {rms}, wrong motion {other}");
         }
     }
 }
 
 #[test]
-fn what_remains_with_the_true_motions_is_the_noise() {
+fn the_residual_of_the_true_motions_is_the_noise() {
     let mut options = SceneOptions { width: 160, height: 120, objects: 1, noise: 0.0, seed: 3, ..Default::default() };
     options.background = Background::Static;
     let clean = residuals(&scene::generate(&options).unwrap(), &[AffineMotion::STATIC; 2])[0].0;
@@ -94,7 +94,7 @@ fn what_remains_with_the_true_motions_is_the_noise() {
 }
 
 #[test]
-fn speeds_and_backgrounds_are_what_was_asked_for() {
+fn speeds_and_backgrounds_match_the_options() {
     for (speed, low, high) in [(Speed::SubPixel, 0.5, 1.5), (Speed::Medium, 1.5, 5.0), (Speed::Large, 5.0, 20.0)] {
         for seed in 0..3 {
             let options = SceneOptions { speed, background: Background::Static, seed, ..Default::default() };
@@ -108,7 +108,7 @@ fn speeds_and_backgrounds_are_what_was_asked_for() {
                     let flow = motion.flow((p % 320) as f64, (p / 320) as f64);
                     mean = [mean[0] + flow[0] / pixels.len() as f64, mean[1] + flow[1] / pixels.len() as f64];
                 }
-                // At its centre an object has the asked speed; the mean over a cut-off object may differ a little.
+                // An object has the given speed at its centre. The mean over an object cut by the frame may differ a little.
                 let speed = (mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
                 assert!(speed > 0.7 * low && speed < 1.2 * high, "seed {seed}: {speed} px");
             }
@@ -139,7 +139,7 @@ fn a_bare_ground_is_nearly_even_and_its_cars_are_not() {
         let (width, height) = (scene.first().width(), scene.first().height());
         assert_eq!((width, height, scene.motions.len()), (384, 216, 3 + (seed % 2) as usize));
         assert_eq!(scene.motions[0], AffineMotion::STATIC);
-        // Share of the pixels of a label with a step of more than twelve grey levels beside them: ten standard deviations of the noise.
+        // Share of the pixels of a label with a step of more than twelve grey levels, ten standard deviations of the noise.
         let luminance = scene.first().luminance();
         let steep = |label: u8| {
             let inner = |p: usize| (scene.labels[p], scene.labels[p + 2]) == (label, label);
@@ -161,7 +161,7 @@ fn occluded_pixels_are_those_hidden_or_outside() {
         SceneOptions { speed: Speed::Large, background: Background::Static, seed: 5, ..Default::default() };
     options.noise = 0.0;
     let scene = scene::generate(&options).unwrap();
-    // Pixels of the static background: what is visible in both frames is the same in both, away from blurred borders.
+    // Static background, away from blurred borders: pixels that are visible in both frames are equal in both.
     let (mut seen, mut hidden) = ((0.0, 0), (0.0, 0));
     for y in 3..237 {
         for x in 3..317 {
@@ -181,7 +181,7 @@ fn occluded_pixels_are_those_hidden_or_outside() {
     }
     assert!(seen.1 > 20_000 && seen.0 < 0.01 * f64::from(seen.1), "{seen:?}");
     assert!(hidden.1 > 100 && hidden.0 > 10.0 * f64::from(hidden.1), "{hidden:?}");
-    // A camera that moves loses a strip of the background at the border of the frame.
+    // With a moving camera, a strip of the background leaves the frame.
     let moving = scene::generate(&SceneOptions { objects: 0, speed: Speed::Large, ..Default::default() }).unwrap();
     for y in 0..240 {
         for x in 0..320 {
@@ -194,7 +194,7 @@ fn occluded_pixels_are_those_hidden_or_outside() {
 }
 
 #[test]
-fn options_out_of_range_are_refused() {
+fn options_out_of_range_are_rejected() {
     let ok = SceneOptions { width: 32, height: 32, ..Default::default() };
     let code = |o: SceneOptions| scene::generate(&o).map(|_| ()).unwrap_err().code();
     assert_eq!(code(SceneOptions { width: 15, ..ok }), "frame-size-unsupported");

@@ -1,4 +1,4 @@
-//! The figures of the mask benchmark, on labellings whose figures are known.
+//! The scores of the mask benchmark, on labellings with known scores.
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
@@ -17,7 +17,7 @@ fn paint(labels: &mut [u8], rows: std::ops::Range<usize>, columns: std::ops::Ran
     }
 }
 
-/// Two rectangles before a background.
+/// Two rectangles in front of a background.
 fn truth() -> Vec<u8> {
     let mut labels = vec![0; WIDTH * HEIGHT];
     paint(&mut labels, 30..80, 40..100, 1);
@@ -30,7 +30,7 @@ fn close(found: f64, expected: f64) -> bool {
 }
 
 #[test]
-fn other_numbers_for_the_same_labels_are_perfect() {
+fn renumbered_labels_score_perfectly() {
     let renumbered: Vec<u8> = truth().iter().map(|l| (l + 3) % 7).collect();
     let s = scores(&truth(), &renumbered, WIDTH);
     assert!(close(s.miou, 1.0) && close(s.accuracy, 1.0) && close(s.rand, 1.0), "{s:?}");
@@ -52,21 +52,21 @@ fn half_an_object_overlaps_by_half() {
     let mut found = vec![0; WIDTH * HEIGHT];
     paint(&mut found, 30..80, 40..70, 1);
     let s = scores(&truth(), &found, WIDTH);
-    // Object 1 by half, object 2 not at all; of the background's pixels none is lost.
+    // Half of object 1, nothing of object 2, and the whole background.
     let background = 15200.0;
     assert!(close(s.miou, (0.5 + 0.0 + background / (background + 1500.0 + 1000.0)) / 3.0), "{s:?}");
     assert_eq!((s.j_oracle, s.j_background), (Some(1500.0 / 4000.0), Some(1500.0 / 4000.0)));
 }
 
 #[test]
-fn parts_count_for_the_user_who_joins_them_only() {
+fn parts_of_an_object_count_together_for_the_oracle_only() {
     let mut found = truth();
     paint(&mut found, 30..80, 70..100, 3);
     paint(&mut found, 0..20, 0..WIDTH, 4);
     let s = scores(&truth(), &found, WIDTH);
     assert_eq!((s.found_count, s.j_oracle), (5, Some(1.0)));
     assert_eq!(s.j_background, Some(4000.0 / 7200.0));
-    // The strip along the border has fewer of the ring's pixels than the background.
+    // The strip at the border has fewer pixels of the ring than the background has.
     assert_eq!(s.j_auto, s.j_background);
 }
 
@@ -82,7 +82,7 @@ fn unknown_pixels_do_not_count_and_unlabelled_ones_match_nothing() {
     assert!(close(s.miou, 2.0 / 3.0) && s.found_count == 2, "{s:?}");
 }
 
-/// The pairs of pixels counted one by one.
+/// Compared with a count of all pairs of pixels.
 #[test]
 fn the_rand_index_is_that_of_all_pairs() {
     let mut random = Random::from_seed(3);
@@ -116,7 +116,7 @@ fn a_border_counts_within_its_tolerance_and_not_beyond() {
 }
 
 #[test]
-fn the_error_of_a_flow_is_the_median_over_what_is_known() {
+fn the_flow_error_is_the_median_over_known_pixels() {
     let flow = [[1.0, 0.0], [f32::NAN, 0.0], [3.0, 4.0], [1.0, 2.0]];
     let still = flow_error(&flow, &[0, 0, 0, 0], 2, |_, _, _| Some([0.0, 0.0]));
     assert!(close(still, 5f64.sqrt()));

@@ -1,5 +1,5 @@
-//! Buffers outlive a call: one like the call before it asks the allocator for its result and for short lists, whatever the size of
-//! the frames. A program of its own, because the allocator counts for the whole program.
+//! Reuse of buffers: a call like the previous one allocates its result and short lists only, for frames of any size. This is a separate
+//! program because the allocator counts for the whole program.
 
 #![cfg(not(target_arch = "wasm32"))]
 
@@ -12,7 +12,7 @@ use veronese::{Quality, SegmentOptions, segment_pair};
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Lists and small matrices of one call, in bytes.
+/// Allowance for lists and small matrices of a call, bytes.
 const SHORT_LISTS: usize = 384 << 10;
 
 #[test]

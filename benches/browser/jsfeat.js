@@ -1,4 +1,4 @@
-// jsfeat: no dense flow, so corners followed by Lucas and Kanade's method, the nearest that it has.
+// jsfeat has no dense flow. The nearest it has is tracking of corners by the method of Lucas and Kanade.
 
 const CORNERS = 500;
 const LEVELS = 3;
@@ -18,7 +18,7 @@ export async function loadJsfeat() {
   jsfeat = globalThis.jsfeat;
 }
 
-/** Corners of the first frame found in the second: their number, no labels. */
+/** The number of corners of the first frame that are found in the second; no labels. */
 export function trackCorners({ first, second }) {
   const { width, height } = first;
   const pyramid = ({ data }) => {

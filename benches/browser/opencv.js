@@ -1,14 +1,15 @@
-// OpenCV.js as somebody would use it who wants masks of what moves: dense flow by Farneback's method with the parameters of
-// OpenCV's own tutorial; then affine motions one after another by RANSAC on the flow of a grid of pixels; then every pixel
-// to the motion that is nearest to its flow.
+// Motion masks with OpenCV.js: dense flow by Farneback's method with the parameters of OpenCV's tutorial, affine motions one by one by
+// RANSAC on the flow at a grid of pixels, then the label of the motion nearest to the flow for every pixel, and a median filter.
 
+/** Spacing of the grid, pixels. */
 const GRID = 8;
+/** Maximum number of motions. */
 const MOST = 6;
-/** A grid pixel belongs to a motion that comes this near to its flow, pixels. */
+/** Inlier threshold of RANSAC, pixels. */
 const NEAR = 1;
-/** A motion of fewer grid pixels than this share is none. */
+/** Smallest share of grid pixels of a motion. */
 const SMALLEST_SHARE = 0.02;
-/** Side of the median filter over the labels. */
+/** Side of the median filter, pixels. */
 const MEDIAN = 13;
 
 let cv;
@@ -25,7 +26,7 @@ export async function loadOpenCv() {
   cv = await globalThis.cv;
 }
 
-/** The flow alone. */
+/** Computes the flow only. */
 export function farneback(pair) {
   flowOf(pair).delete();
 }
@@ -45,7 +46,7 @@ function flowOf({ first, second }) {
   return flow;
 }
 
-/** From two frames to labels. */
+/** The labels of the first frame. */
 export function openCvPipeline(pair) {
   const { width, height } = pair.first;
   const flow = flowOf(pair);
@@ -55,7 +56,7 @@ export function openCvPipeline(pair) {
   return { labels: smoothed(labels, width, height), count: motions.length };
 }
 
-/** Affine motions [a b c; d e f] of x to x + flow, each found on what the earlier ones leave over. */
+/** Affine maps [a b c; d e f] from x to x + flow, each fitted to the grid pixels that the earlier ones leave over. */
 function sequentialAffine(flow, width, height) {
   let points = [];
   for (let y = GRID / 2; y < height; y += GRID) for (let x = GRID / 2; x < width; x += GRID) points.push(y * width + x);

@@ -1,4 +1,4 @@
-// The page of `npm run bench:browser`: everything that is timed runs here, on the main thread, and is called from outside.
+// The page of `npm run bench:browser`. Everything timed runs here on the main thread; the script calls it from outside.
 
 import { farneback, loadOpenCv, openCvPipeline } from './opencv.js';
 import { loadJsfeat, trackCorners } from './jsfeat.js';
@@ -6,7 +6,7 @@ import { loadJsfeat, trackCorners } from './jsfeat.js';
 const frames = new Map();
 let veronese;
 
-/** What can be timed: `load` readies it, `run` is one call. */
+/** The cases: `load` prepares one, `run` is a call. */
 const CASES = {
   fast: { load: loadVeronese, run: ({ first, second }) => veronese.segmentPair(first, second, { quality: 'fast' }) },
   best: { load: loadVeronese, run: ({ first, second }) => veronese.segmentPair(first, second, { quality: 'best' }) },
@@ -31,7 +31,7 @@ globalThis.bench = {
     frames.set(size, { first: await image('first'), second: await image('second'), truth: await bytes('labels') });
   },
 
-  /** The frames of one size at another, smoothly scaled: the same scene with more or fewer pixels. */
+  /** Scales the frames of one size to another. */
   resize(from, to) {
     const [width, height] = to.split('x').map(Number);
     const scaled = (frame) => {
@@ -55,7 +55,7 @@ globalThis.bench = {
     return { milliseconds: performance.now() - start, count };
   },
 
-  /** One call: its milliseconds, what the call itself says of its stages, how well its labels overlap the true ones. */
+  /** A call: its milliseconds, the stages that it reports, and the mean overlap of its labels with the true ones. */
   async run(name, size) {
     const pair = frames.get(size);
     const start = performance.now();
@@ -65,7 +65,7 @@ globalThis.bench = {
     return { milliseconds, stages: result?.milliseconds, count: result?.count, overlap };
   },
 
-  /** Milliseconds of the first call in a worker that was told to warm up before. */
+  /** Milliseconds of the first call in a worker that has been warmed up. */
   async warmedUp(quality, size) {
     await loadVeronese();
     const { first, second } = frames.get(size);
@@ -78,7 +78,7 @@ globalThis.bench = {
     return milliseconds;
   },
 
-  /** Bytes of memory of a fresh instance after one call. */
+  /** Memory of a new instance after one call, bytes. */
   async memory(quality, size) {
     const { glue } = await import('/pkg/build/module/glue.js');
     const response = await fetch('/pkg/wasm/veronese_bg.wasm');
@@ -88,13 +88,13 @@ globalThis.bench = {
     return memory.buffer.byteLength;
   },
 
-  /** Pairs per second of `workers` instances in workers of their own that do `pairs` pairs in all. */
+  /** Pairs per second of `workers` workers that process `pairs` pairs in total. */
   async throughput(workers, pairs, size) {
     await loadVeronese();
     const { first, second } = frames.get(size);
     const segmenters = Array.from({ length: workers }, () => new veronese.Segmenter());
     const once = (segmenter) => segmenter.segmentPair(first, second, { quality: 'fast' });
-    // Ready and compiled to the end before the clock starts.
+    // Load and compile everything before the clock starts.
     for (let k = 0; k < 3; k += 1) await Promise.all(segmenters.map(once));
     const start = performance.now();
     await Promise.all(Array.from({ length: pairs }, (_, k) => once(segmenters[k % workers])));
@@ -109,7 +109,7 @@ async function loadVeronese() {
   await veronese.init();
 }
 
-/** Intersection over union of each true label with the label that overlaps it best, averaged over the true labels. */
+/** Intersection over union of each true label with the best found label, averaged over the true labels. */
 function meanOverlap(truth, labels) {
   const both = new Map();
   const [ofTruth, ofLabels] = [new Map(), new Map()];

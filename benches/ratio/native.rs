@@ -1,6 +1,6 @@
-//! The native half of `npm run bench:ratio`: `native inputs DIR` writes the inputs of every case to files that both halves
-//! read, `native times DIR` prints how many milliseconds each took, as JSON. `native scenes DIR 640x480 …` writes the pairs of
-//! frames of `npm run bench:browser`, and `native stages DIR 640x480 …` prints how long each stage takes on them.
+//! The native part of two benchmarks. For `npm run bench:ratio`, `native inputs DIR` writes the inputs of all cases to files, and `native
+//! times DIR` prints the time of each in milliseconds as JSON. For `npm run bench:browser`, `native scenes DIR 640x480 …` writes pairs of
+//! frames, and `native stages DIR 640x480 …` prints the time of each stage on them.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../../tests/support/protocol.rs"]
@@ -17,10 +17,10 @@ use veronese::{
     FitOptions, Frame, Measurements, MotionCount, Quality, SegmentOptions, Stage, fit_motions, segment_pair,
 };
 
-/// Problems of each number of motions.
+/// Problems per number of motions.
 const PROBLEMS: u64 = 8;
 const MOTIONS: [usize; 3] = [2, 3, 4];
-/// Seed of the scenes that the browser sees.
+/// Seed of the scenes of the browser benchmark.
 const SCENE: u64 = 7;
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;
@@ -54,7 +54,7 @@ fn write_inputs(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// RGBA bytes of both frames and one label per pixel of the first.
+/// Writes the RGBA bytes of both frames, and one label per pixel of the first.
 fn write_scene(folder: &Path, size: &str) -> Result<(), Box<dyn Error>> {
     let (width, height) = sides(size)?;
     let scene = generate(&SceneOptions { width, height, seed: SCENE, ..SceneOptions::default() })?;
@@ -69,7 +69,7 @@ fn sides(size: &str) -> Result<(usize, usize), Box<dyn Error>> {
     Ok((width.parse()?, height.parse()?))
 }
 
-/// Milliseconds of one call for each size and quality: in all, and of each stage (one that is entered again goes on).
+/// Prints the milliseconds of a call for each size and quality, in total and per stage. Times of a stage entered several times add up.
 fn print_stages(folder: &Path, sizes: &[&str]) -> Result<(), Box<dyn Error>> {
     let mut rows = Vec::new();
     for size in sizes {

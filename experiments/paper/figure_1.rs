@@ -1,4 +1,4 @@
-//! Figure 1: the error of the motions against the noise, for two, three and four motions in 600 measurements.
+//! Figure 1: the error of the motions as a function of the noise, for two, three and four motions and 600 measurements.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -12,10 +12,10 @@ use crate::protocol::{Problem, Protocol};
 /// The methods compared, in the order of [`Cell::methods`].
 pub(crate) const METHODS: [&str; 4] = ["paper, factorisation", "paper, nonlinear", "ours", "oracle"];
 
-/// A motion that is wrong by more than this (eq. 20) is not found.
+/// A motion with a larger relative error (eq. 20) counts as not found.
 const GROSS: f64 = 0.2;
 
-/// What was measured at one number of motions and one noise level.
+/// Results for one number of motions and one noise level.
 pub(crate) struct Cell {
     /// Number of motions.
     pub(crate) motions: usize,
@@ -23,7 +23,7 @@ pub(crate) struct Cell {
     pub(crate) noise: usize,
     /// The errors of each of [`METHODS`].
     pub(crate) methods: [Errors; METHODS.len()],
-    /// Shares of trials, per cent, in which the number of motions is right: by the paper's rule (12), and by ours.
+    /// Share of the trials, per cent, in which the number of motions is right: with the paper's rule (12), and with ours.
     pub(crate) count_right: [f64; 2],
 }
 
@@ -49,7 +49,7 @@ pub(crate) fn measure(trials: usize, seed: u64) -> Vec<Cell> {
     for motions in [2, 3, 4] {
         for noise in 0..=5 {
             let start = Instant::now();
-            // Every trial has a seed of its own, so that the threads have no influence.
+            // Every trial has its own seed, so results do not depend on the threads.
             let first_seed = (seed << 32) + ((motions * 10 + noise) as u64) * 1_000_000;
             let results = in_parallel(trials, |k| trial(motions, 0.01 * noise as f64, first_seed + k as u64));
             let seconds = start.elapsed().as_secs_f64();
@@ -104,7 +104,7 @@ fn summary(motions: usize, noise: usize, trials: &[Trial]) -> Cell {
     }
 }
 
-/// `work(0)` … `work(count − 1)`, in that order, on all cores.
+/// The results of `work(0)` … `work(count − 1)`, in that order, computed on all cores.
 fn in_parallel<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let worker = || {

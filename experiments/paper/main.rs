@@ -1,4 +1,4 @@
-//! The paper's experiments: Figure 1 as tables and a plot, Figures 2 and 3 as pictures. `npm run paper` runs it.
+//! The paper's experiments: Figure 1 as tables and a plot, Figures 2 and 3 as pictures. Run it with `npm run paper`.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../../tests/support/protocol.rs"]
@@ -41,7 +41,7 @@ fn stop(message: &str, code: i32) {
     std::process::exit(code);
 }
 
-/// What was asked for; `None` where help was.
+/// The options; `None` if help was requested.
 fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options>, String> {
     let mut options = Options { trials: 1000, seed: 1, out: PathBuf::from("out/paper") };
     while let Some(name) = arguments.next() {

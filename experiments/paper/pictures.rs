@@ -1,7 +1,7 @@
-//! Figures 2 and 3: the paper's own pipeline beside ours, on a real pair and on a generated scene like the paper's.
+//! Figures 2 and 3: the paper's pipeline and ours on a real pair and on a generated scene like that of the paper.
 //!
-//! A picture shows panels on a grid: the first frame, the paper's pipeline, ours, and the truth where it is known. Pixels
-//! without a label are grey and dark, those with one have its colour.
+//! A picture is a grid of panels: the first frame, the paper's pipeline, ours, and the ground truth, if known. Pixels without a label are
+//! dark grey, others have the colour of their label.
 
 use std::error::Error;
 use std::fs;
@@ -12,14 +12,15 @@ use veronese::{Frame, KeptPixels, MotionCount, SegmentOptions, Segmentation, UNL
 
 /// Share of the pixels that the paper keeps: 1995 of 150 × 200.
 const KEPT: KeptPixels = KeptPixels::Strongest(0.0665);
-/// In both scenes two things move before a background that stands still, whose pixels the paper leaves out. Both
-/// pipelines are told so for the pictures; what they find by themselves is printed.
+/// Number of motions for the paper's pipeline. Both scenes show two moving objects on a static background, whose pixels the paper does not
+/// keep. The pictures use given numbers of motions; the estimated numbers are printed.
 const MOVING: MotionCount = MotionCount::Given(2);
+/// Number of motions for our pipeline.
 const WITH_BACKGROUND: MotionCount = MotionCount::Given(3);
 
-/// Colours of the moving things: orange, blue.
+/// Colours of the moving objects: orange, blue.
 const COLOURS: [[u8; 3]; 2] = [[255, 140, 0], [60, 150, 255]];
-/// Steps of grey; with the plain greys, the dark ones and the colours they fill a palette.
+/// Grey levels per group of the palette: plain grey, dark grey, and each colour.
 const STEPS: usize = 51;
 /// Width of the white lines between panels, pixels.
 const GAP: usize = 4;
@@ -34,7 +35,7 @@ enum Look {
 
 struct Panel(Vec<Look>);
 
-/// A file's name and what is in it.
+/// Name and content of a file.
 type File = (&'static str, Vec<u8>);
 
 /// The pictures as PNG files.
@@ -50,14 +51,14 @@ pub(crate) fn pictures(seed: u64) -> Result<[File; 2], Box<dyn Error>> {
     Ok([("two-cars.png", cars), ("leader-follower.png", robots)])
 }
 
-/// A frame of the pair that the project brings.
+/// A frame of the bundled pair.
 fn bundled(name: &str) -> Result<Frame, Box<dyn Error>> {
     let path = format!("{}/www/public/samples/intel-two-cars/{name}.png", env!("CARGO_MANIFEST_DIR"));
     let bytes = fs::read(&path).map_err(|error| format!("{path} cannot be read: {error}"))?;
     Ok(decode_image(&bytes)?.frame()?)
 }
 
-/// What the panels show. `truth` has label 0 for the background.
+/// The panels of a pair. `truth` has label 0 for the background.
 fn panels(
     name: &str,
     first: &Frame,
@@ -93,13 +94,13 @@ fn look(label: Option<u8>) -> Look {
     label.map_or(Look::Dark, |label| Look::Coloured(usize::from(label).min(COLOURS.len() - 1)))
 }
 
-/// Everything but the largest motion has a colour.
+/// A panel in which every motion but the largest has a colour.
 fn moving(found: &Segmentation) -> Panel {
     Panel(found.labels.iter().map(|label| look(label.checked_sub(1).filter(|_| *label != UNLABELLED))).collect())
 }
 
-/// How far labels agree with the truth: of the pixels that the paper's pipeline keeps on the things that move, and the
-/// overlap of our masks with those things; labels of things may be numbered either way.
+/// Agreement with the ground truth: the share of right labels among the pixels that the paper's pipeline keeps on moving objects, and the
+/// overlap of our masks with these objects. The objects may be numbered either way.
 fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> String {
     let of = |labels: &[u8], label: u8, thing: u8| {
         labels.iter().zip(truth).filter(|&(&l, &t)| l == label && t == thing).count() as f64
@@ -124,12 +125,12 @@ fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> String {
     )
 }
 
-/// How panels are put together.
+/// The layout of a picture.
 struct Layout {
     columns: usize,
-    /// Picture pixels for a frame pixel, on each side.
+    /// Factor by which frames are enlarged.
     enlargement: usize,
-    /// Frame pixels for a picture pixel, on each side; their luminance is averaged.
+    /// Factor by which frames are reduced, averaging their luminance.
     reduction: usize,
 }
 

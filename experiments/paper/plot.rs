@@ -1,4 +1,4 @@
-//! Figure 1 as a picture: a panel for each number of motions, the error on a logarithmic scale.
+//! Figure 1 as a plot: a panel for each number of motions, errors on a logarithmic scale.
 
 use std::error::Error;
 
@@ -9,13 +9,13 @@ use crate::figure_1::{Cell, METHODS};
 
 const SIZE: (u32, u32) = (1080, 440);
 const LEGEND: i32 = 64;
-/// Range of the errors shown, per cent. Without noise the errors are below it.
+/// Range of the errors, per cent. Errors without noise are below it.
 const RANGE: std::ops::Range<f64> = 0.1..1000.0;
-/// Colours that are told apart with any colour vision (Okabe and Ito), one for each method.
+/// A colour for each method, from the palette of Okabe and Ito for all kinds of colour vision.
 const COLOURS: [RGBColor; METHODS.len()] =
     [RGBColor(213, 94, 0), RGBColor(230, 159, 0), RGBColor(0, 114, 178), RGBColor(0, 0, 0)];
 const GRID: RGBColor = RGBColor(215, 215, 215);
-/// What the paper states at 5 % noise: number of motions, method, error in per cent.
+/// Errors stated in the paper for 5 % noise: number of motions, method, error in per cent.
 const STATED: [(usize, usize, f64); 4] = [(2, 0, 6.0), (2, 1, 2.1), (3, 1, 8.2), (4, 1, 13.3)];
 
 /// The plot as an SVG file.

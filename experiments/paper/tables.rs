@@ -1,10 +1,10 @@
-//! The figures of Figure 1 as text: one row for each number of motions and noise level.
+//! The data of Figure 1 as text, a row for each number of motions and noise level.
 
 use std::fmt::Write;
 
 use crate::figure_1::{Cell, METHODS};
 
-/// Comma separated values with a header line.
+/// Comma-separated values with a header line.
 pub(crate) fn csv(cells: &[Cell]) -> String {
     let mut text = String::from("motions,noise %");
     for method in METHODS {
@@ -22,7 +22,7 @@ pub(crate) fn csv(cells: &[Cell]) -> String {
     text
 }
 
-/// The same for people.
+/// A Markdown table.
 pub(crate) fn markdown(cells: &[Cell], trials: usize, seed: u64) -> String {
     let mut text = format!(
         "Error (20), %: mean / median over {trials} trials [share of trials with a motion wrong by more than 20 %, %]; \
@@ -45,7 +45,7 @@ pub(crate) fn markdown(cells: &[Cell], trials: usize, seed: u64) -> String {
     text
 }
 
-/// Three digits, whatever the size.
+/// A number with about three significant digits.
 fn short(value: f64) -> String {
     match value {
         value if value == 0.0 || !value.is_finite() => value.to_string(),

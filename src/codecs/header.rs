@@ -1,5 +1,5 @@
-//! The sides of an image as the header of its file says them, read before a decoder is asked. A decoder that opens a file may
-//! already unpack what it finds on the way, and refuses sides that overflow its own arithmetic as damage.
+//! The size of an image according to the header of its file, read before a decoder opens it. Some decoders unpack metadata when they open
+//! a file, and report sizes that overflow their arithmetic as damage.
 
 use image::ImageFormat;
 
@@ -7,11 +7,11 @@ use super::unreadable;
 use crate::error::{Error, Result};
 use crate::frame::MAX_SIDE;
 
-/// Passes what has supported sides, and what has no whole header: that is for the decoder to complain about.
+/// Checks the size. A file without a complete header passes; the decoder rejects it.
 ///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`] for a side of 0 or above 4096, [`Error::UnreadableImage`] for a WebP file with a chunk of
-/// metadata that is longer than the file.
+/// [`Error::FrameSizeUnsupported`] for a side of 0 or above 4096; [`Error::UnreadableImage`] for a WebP file with a metadata chunk that is
+/// longer than the file.
 pub(super) fn check(format: ImageFormat, bytes: &[u8]) -> Result<()> {
     let sides = match format {
         ImageFormat::Png => png(bytes),
@@ -24,8 +24,10 @@ pub(super) fn check(format: ImageFormat, bytes: &[u8]) -> Result<()> {
     sides.map_or(Ok(()), supported)
 }
 
+/// Checks a width and a height.
+///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`].
+/// [`Error::FrameSizeUnsupported`] for a side of 0 or above 4096.
 pub(super) fn supported((width, height): (usize, usize)) -> Result<()> {
     if (1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height) {
         return Ok(());
@@ -39,7 +41,7 @@ fn png(bytes: &[u8]) -> Option<(usize, usize)> {
     Some((side(16)?, side(20)?))
 }
 
-/// From the frame header, which stands somewhere before the first scan.
+/// The size in the frame header, which is somewhere before the first scan.
 fn jpeg(bytes: &[u8]) -> Option<(usize, usize)> {
     let short = |at| Some(usize::from(u16::from_be_bytes(array(bytes, at)?)));
     let mut at = 2;
@@ -48,7 +50,7 @@ fn jpeg(bytes: &[u8]) -> Option<(usize, usize)> {
             // Fill bytes, and markers without a segment.
             [0xff, 0xff] => at += 1,
             [0xff, 0x01 | 0xd0..=0xd8] => at += 2,
-            // Tables are numbered among the frame headers, too.
+            // Frame headers; the markers missing here are tables.
             [0xff, 0xc0..=0xc3 | 0xc5..=0xc7 | 0xc9..=0xcb | 0xcd..=0xcf] => {
                 return Some((short(at + 7)?, short(at + 5)?));
             }
@@ -59,7 +61,7 @@ fn jpeg(bytes: &[u8]) -> Option<(usize, usize)> {
     }
 }
 
-/// A negative height says that the rows go from the top down.
+/// The height is negative if rows are stored from the top down.
 fn bmp(bytes: &[u8]) -> Option<(usize, usize)> {
     const CORE_HEADER: u32 = 12;
     if u32::from_le_bytes(array(bytes, 14)?) == CORE_HEADER {
@@ -92,18 +94,18 @@ fn words(line: &[u8]) -> impl Iterator<Item = &[u8]> {
     line.split(|byte| b" \t\r\x0b\x0c".contains(byte)).filter(|word| !word.is_empty())
 }
 
-/// The largest number there is in the place of those beyond it.
+/// A decimal number, saturating; `None` if there is another character.
 fn number(digits: &[u8]) -> Option<usize> {
     digits.iter().try_fold(0_usize, |value, digit| {
         digit.is_ascii_digit().then(|| value.saturating_mul(10).saturating_add(usize::from(digit - b'0')))
     })
 }
 
-/// Sides stand in the file's header and again in each frame, and the decoder makes room for those of the frame.
+/// Checks the size in the header of the file and in each frame, because the decoder allocates memory for the latter.
 fn webp(bytes: &[u8]) -> Result<()> {
     for chunk in webp_chunks(bytes.get(12..).unwrap_or_default()) {
         if chunk.kind == *b"ANMF" {
-            // The first frame is the one that is taken.
+            // Only the first frame is decoded.
             let parts = webp_chunks(chunk.content.get(16..).unwrap_or_default());
             return parts.map(|part| part.check()).chain([chunk.check()]).collect();
         }
@@ -114,15 +116,15 @@ fn webp(bytes: &[u8]) -> Result<()> {
 
 struct WebpChunk<'a> {
     kind: [u8; 4],
-    /// What it claims.
+    /// Length according to its header, bytes.
     length: usize,
-    /// As much of it as there is.
+    /// The content, cut at the end of the file.
     content: &'a [u8],
 }
 
 impl WebpChunk<'_> {
     fn check(&self) -> Result<()> {
-        // The decoder makes room for the claimed length before it reads.
+        // The decoder allocates this length before it reads.
         if self.kind == *b"EXIF" && self.length > self.content.len() {
             return Err(unreadable("its Exif data end after the file"));
         }

@@ -1,11 +1,11 @@
-//! Sums over the measurements that many entries share: moments instead of products of columns.
+//! Gram matrices of the embedded data from moments.
 //!
-//! An entry of the Gram matrix P̃_nᵀ W P̃_n is `Σ_j w_j y_j^(a+b) x_j^(i+k)`: it depends only on the sums of the exponents of its
-//! row and its column. So its entries are the moments of degree 2n, which are as many as P̃_2n has columns: 25, 140, 462
-//! different ones for n = 1, 2, 3, instead of 28, 325, 2145 products. The Gram matrices of derivatives of P̃_n consist of moments too.
+//! An entry of the Gram matrix P̃_nᵀ W P̃_n is `Σ_j w_j y_j^(a+b) x_j^(i+k)`, which depends only on the sums of the exponents of its row
+//! and its column. The entries are therefore moments of degree 2n, of which there are as many as P̃_2n has columns: 25, 140, 462 for
+//! n = 1, 2, 3, instead of 28, 325, 2145 products of columns. Gram matrices of derivatives of P̃_n consist of moments too.
 //!
-//! **Pitfall**: a Gram matrix squares the condition number. It serves where the polynomial is a start and not a result, and only
-//! in normalised coordinates; [`EmbeddedData`](super::EmbeddedData) avoids it.
+//! **Pitfall.** A Gram matrix squares the condition number. Use it only in normalised coordinates, and for a starting point rather than
+//! a result. [`EmbeddedData`](super::EmbeddedData) avoids it.
 
 use super::embedded::homogeneous;
 use super::monomials::{Exponents, count, exponents, index, kept_pairs, unknowns};
@@ -16,8 +16,8 @@ use crate::linear::kernels::{add_multiple, dot};
 use crate::measurements::Measurements;
 use crate::workspace::{Buffer, kept};
 
-/// The share of its diagonal that is added to a Gram matrix: directions with smaller squares are lost in its rounding. Among several
-/// null vectors this chooses the one with the largest last entry, as [`NullVector`](crate::linear::NullVector) does.
+/// Share of its diagonal that is added to a Gram matrix; smaller squares are lost in rounding. Among several null vectors, this chooses
+/// the one with the largest last entry, like [`NullVector`](crate::linear::NullVector).
 const RIDGE: f64 = 1e-13;
 
 /// `Σ_j w_j y_j^a x_j^i` for all monomials of given degrees.
@@ -27,8 +27,8 @@ struct Moments {
 }
 
 impl Moments {
-    /// From the columns of the monomials of y and of x (see [`embed_columns`]), one factor per measurement. What is zero by
-    /// structure in 𝒜 (a power of z below that of I_t) is left out.
+    /// From the monomials of y and of x, with one weight per measurement. Structural zeros of 𝒜 (a power of z below that of I_t) are
+    /// skipped.
     fn new([of_y, of_x]: [&Monomials; 2], weights: &[f64]) -> Self {
         let columns = count(of_x.degree);
         let mut values = Buffer::filled(count(of_y.degree) * columns, 0.0);
@@ -54,7 +54,7 @@ fn sum(a: Exponents, b: Exponents) -> Exponents {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// A symmetric matrix over the kept pairs of monomials, column-major, from the entry of two pairs `(y, x)`.
+/// A symmetric matrix over the kept pairs of monomials, column-major; `entry` gives the entry of two pairs `(y, x)`.
 fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f64) -> Buffer<f64> {
     let all = exponents(degree);
     let pairs: Vec<[Exponents; 2]> =
@@ -70,7 +70,7 @@ fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f6
     matrix
 }
 
-/// All monomials of one degree at many points: column-major, [`count`] columns.
+/// All monomials of one degree at many points, column-major with [`count`] columns.
 struct Monomials {
     degree: usize,
     rows: usize,
@@ -107,17 +107,17 @@ pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Buffe
     })
 }
 
-/// Measurements to which polynomials of one degree are fitted again and again, with other weights.
+/// Measurements prepared for repeated fits of polynomials of one degree with different weights.
 pub(crate) struct Refitting {
     degree: usize,
     derivatives: [Buffer<f64>; 3],
-    /// Of the derivatives: degrees n − 1 and 2n.
+    /// Monomials of the derivatives, of degrees n − 1 and 2n.
     of_y: [Monomials; 2],
-    /// Of the pixels: degree 2n. Because their third coordinate is 1, lower degrees are among them.
+    /// Monomials of the positions, of degree 2n. They include lower degrees, because the third coordinate is 1.
     of_x: Monomials,
 }
 
-/// What a polynomial is at one measurement: its value, and its gradient ∂p/∂y.
+/// A polynomial at one measurement: its value, and its gradient ∂p/∂y.
 pub(crate) type Reading = [f64; 4];
 
 kept!(Reading);
@@ -141,7 +141,7 @@ impl Refitting {
         MultibodyMotion::from_triangle(self.degree, Triangle::of_gram(unknowns(self.degree), gram, RIDGE))
     }
 
-    /// The polynomial and its gradient at every measurement.
+    /// The polynomial and its gradient ∂p/∂y at every measurement.
     pub(crate) fn read(&self, polynomial: &MultibodyMotion) -> Buffer<Reading> {
         let rows = self.of_x.rows;
         let mut gradient = [0, 1, 2].map(|_| Buffer::filled(rows, 0.0));
@@ -164,7 +164,7 @@ impl Refitting {
         }
         let of = |j: usize| {
             let g = [0, 1, 2].map(|v| gradient[v][j]);
-            // Euler: a form of degree n is yᵀ∂p/∂y / n.
+            // Euler: a form p of degree n in y is yᵀ(∂p/∂y) / n.
             let value: f64 = (0..3).map(|v| self.derivatives[v][j] * g[v]).sum();
             [value / self.degree as f64, g[0], g[1], g[2]]
         };
@@ -179,7 +179,7 @@ mod tests {
     use crate::motion::AffineMotion;
     use crate::random::Random;
 
-    /// Measurements of as many motions as `degree`, with noise.
+    /// Noisy measurements of `degree` motions.
     fn some(degree: usize) -> Measurements {
         let mut random = Random::from_seed(5);
         let motions: Vec<AffineMotion> =
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn moments_are_the_products_of_the_embedded_matrix() {
+    fn the_gram_matrix_from_moments_is_that_of_the_embedded_matrix() {
         for degree in 1..=3 {
             let data = some(degree);
             let weights: Vec<f64> = (0..200).map(|j| 1.0 + f64::from(j % 7)).collect();

@@ -1,4 +1,4 @@
-//! The Veronese map ν_n : R³ → R^{M_n} (7): all monomials of degree n, and its Jacobian.
+//! The Veronese map ν_n : R³ → R^{M_n} of (7), which takes a vector to all its monomials of degree n, and its Jacobian.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,7 +6,7 @@ use super::monomials::{count, exponents};
 use crate::options::MAX_MOTIONS;
 use crate::workspace::Buffer;
 
-/// Powers 0…n of one number; those beyond n are not meant.
+/// Powers 0…`degree` of a number. Entries beyond `degree` are 1 and have no meaning.
 fn powers(value: f64, degree: usize) -> [f64; MAX_MOTIONS + 1] {
     let mut all = [1.0; MAX_MOTIONS + 1];
     for k in 0..degree.min(MAX_MOTIONS) {
@@ -16,12 +16,36 @@ fn powers(value: f64, degree: usize) -> [f64; MAX_MOTIONS + 1] {
 }
 
 /// ν_n(v), length M_n, in the order of [`exponents`].
+///
+/// # Panics
+/// For a degree above [`MAX_MOTIONS`].
+///
+/// # Examples
+/// ```
+/// use veronese::embedding::veronese::embed;
+///
+/// // x², xy, xz, y², yz, z²
+/// assert_eq!(embed(2, [2.0, 3.0, 5.0]).as_slice(), [4.0, 6.0, 10.0, 9.0, 15.0, 25.0]);
+/// ```
 pub fn embed(degree: usize, v: [f64; 3]) -> DVector<f64> {
     let [p, q, r] = v.map(|value| powers(value, degree));
     DVector::from_iterator(count(degree), exponents(degree).into_iter().map(|[a, b, c]| p[a] * q[b] * r[c]))
 }
 
-/// The Jacobian of ν_n at v, M_n×3: column k holds the derivatives by the k-th variable.
+/// The Jacobian of ν_n at v, M_n × 3: column k holds the derivatives with respect to variable k.
+///
+/// # Panics
+/// For a degree above [`MAX_MOTIONS`].
+///
+/// # Examples
+/// ```
+/// use veronese::embedding::veronese::{embed, jacobian};
+///
+/// // Euler's theorem for homogeneous functions: the Jacobian times v is n times ν_n(v).
+/// let v = [2.0, 3.0, 5.0];
+/// let product = jacobian(2, v) * nalgebra::Vector3::from(v);
+/// assert_eq!(product, 2.0 * embed(2, v));
+/// ```
 pub fn jacobian(degree: usize, v: [f64; 3]) -> DMatrix<f64> {
     let p = v.map(|value| powers(value, degree));
     let all = exponents(degree);
@@ -34,8 +58,8 @@ pub fn jacobian(degree: usize, v: [f64; 3]) -> DMatrix<f64> {
     })
 }
 
-/// ν_n of many vectors, column-major: `result[monomial * vectors.len() + j]` belongs to vector j. The same bits as [`embed`], for
-/// any degree.
+/// ν_n of many vectors, column-major: `result[monomial * vectors.len() + j]` belongs to vector j. Works for any degree, and gives the
+/// same bits as [`embed`].
 pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Buffer<f64> {
     let rows = vectors.len();
     // Powers 0…n of each variable, as columns.

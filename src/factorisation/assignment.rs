@@ -1,9 +1,15 @@
-//! The cheapest one-to-one assignment of n rows to n columns, in O(n³).
+//! The linear assignment problem: the cheapest one-to-one assignment of n rows to n columns, in O(n³).
 
-/// For each row of a square table of costs the column assigned to it, such that the sum of the costs is smallest.
+/// For each row of an n × n table of costs, the column assigned to it, such that the sum of the costs is smallest.
 ///
-/// Shortest augmenting paths with potentials (Kuhn 1955; Jonker and Volgenant, Computing 38, 1987). Costs that are not finite
-/// count as 10⁹⁰. Rows shorter than the number of rows are filled up with such costs.
+/// Shortest augmenting paths with potentials (Kuhn, Naval Research Logistics Quarterly 2, 1955; Jonker and Volgenant, Computing 38,
+/// 1987). Costs that are not finite, and entries missing in short rows, count as 10⁹⁰.
+///
+/// ```
+/// use veronese::factorisation::assignment::assign;
+///
+/// assert_eq!(assign(&[vec![1.0, 2.0], vec![1.0, 4.0]]), [1, 0]); // 2 + 1 is less than 1 + 4
+/// ```
 pub fn assign(costs: &[Vec<f64>]) -> Vec<usize> {
     const FORBIDDEN: f64 = 1e90;
     let n = costs.len();
@@ -11,7 +17,7 @@ pub fn assign(costs: &[Vec<f64>]) -> Vec<usize> {
         Some(c) if c.is_finite() => c.min(FORBIDDEN),
         _ => FORBIDDEN,
     };
-    // Column n is the virtual column from which each search starts.
+    // Column n is a virtual column, from which each search starts.
     let mut row_of = vec![n; n + 1];
     let mut row_potential = vec![0.0; n + 1];
     let mut column_potential = vec![0.0; n + 1];
@@ -21,7 +27,7 @@ pub fn assign(costs: &[Vec<f64>]) -> Vec<usize> {
         let mut previous = vec![n; n];
         let mut visited = vec![false; n + 1];
         let mut current = n;
-        // Each turn visits one more column, so n + 1 turns reach a free one.
+        // Each iteration visits one more column, so n + 1 iterations reach a free one.
         for _ in 0..=n {
             visited[current] = true;
             let row = row_of[current];
@@ -91,7 +97,7 @@ mod tests {
         let mut random = Random::from_seed(8);
         for trial in 0..60 {
             let n = 1 + trial % 6;
-            // Small whole numbers give many ties.
+            // Small integers give many ties.
             let costs: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| random.below(5) as f64 - 1.0).collect()).collect();
             let chosen = assign(&costs);
             let mut sorted = chosen.clone();

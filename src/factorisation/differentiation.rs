@@ -1,18 +1,49 @@
-//! The motions by differentiating the multibody polynomial p(x, y) = ν_n(y)ᵀ𝒜ν_n(x) at points: the paper's open problem solved.
+//! The motions by differentiating the multibody polynomial p(x, y) = ν_n(y)ᵀ𝒜ν_n(x) at points. This solves the problem that the paper
+//! leaves open: motions with equal entries in the third column.
 //!
 //! At a pixel x_0 and a direction (cos θ, sin θ) of the image gradient, p(x_0; cos θ, sin θ, t) is a polynomial in t with leading
-//! coefficient 1, whose n roots are the I_t that the n motions predict. At a root of motion i all other factors are constants
-//! to first order, so that (with u_i = A_i x_0)
+//! coefficient 1. Its n roots are the temporal derivatives I_t that the n motions predict. At a root of motion i, only the factor of
+//! motion i vanishes, so with u_i = A_i x_0:
 //!
-//! * ∂p/∂y is parallel to u_i: divided by its third entry it is the flow (u, v, 1);
-//! * at y = (1, 0, −u), which is on motion i again, ∂p/∂x is parallel to A_iᵀy = first row − u·(0, 0, 1), and ∂p/∂I_t gives the
-//!   factor, since the third entry of A_i x_0 is 1; likewise (0, 1, −v) for the second row.
+//! * ∂p/∂y is parallel to u_i. Divided by its third entry it is the flow (u, v, 1).
+//! * y = (1, 0, −u) satisfies the constraint of motion i too. There, ∂p/∂x is parallel to A_iᵀy = first row − u·(0, 0, 1). The factor is
+//!   ∂p/∂I_t, because the third entry of A_i x_0 is 1. Likewise, y = (0, 1, −v) gives the second row.
 //!
-//! Both rows come from the same root and with their scales, so nothing has to be associated: equal entries, zero rows, pure
-//! translations need no special care. All it takes is that the n flows differ at some x_0.
+//! Both rows come from the same root and have their scales, so there is nothing to associate. Equal entries, zero rows and pure
+//! translations are no special cases, as long as the n flows differ in both components at some x_0.
 //!
-//! With noise single points are poor (where two flows nearly meet, it divides by almost zero); many points and the choice
-//! by residuals ([`choose`]) are what makes it good.
+//! **Limit.** If two motions have the same first row (the same u everywhere), both satisfy the constraint at y = (1, 0, −u); the gradients
+//! vanish there, and the row is a quotient of rounding errors, wrong by about 1 % even without noise. The same holds for the second row.
+//! Two horizontal translations are an example. [`fit_motions`](crate::fit_motions) refines such hypotheses and is not affected.
+//!
+//! **Pitfall.** On noisy data, single points are unreliable: where two flows nearly agree, the method divides by almost zero. Use many
+//! points, and [`choose`] the motions with the smallest residuals.
+//!
+//! ```
+//! use veronese::embedding::MultibodyMotion;
+//! use veronese::factorisation::differentiation::{POINTS, motions_from_points};
+//! # use veronese::Measurements;
+//! use veronese::{AffineMotion, Random};
+//!
+//! # fn main() -> veronese::Result<()> {
+//! let truth = [AffineMotion::translation(0.3, 0.5), AffineMotion::new([0.1, -0.2, 0.3, 0.2, 0.1, -0.5])]; // equal (1,3) entries
+//! let mut random = Random::from_seed(1);
+//! # let positions: Vec<_> = (0..300).map(|_| [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)]).collect();
+//! # let derivative = |(j, &[x, y]): (usize, &[f64; 2])| {
+//! #     let ([u, v], [ix, iy]) = (truth[j % 2].flow(x, y), [random.normal(), random.normal()]);
+//! #     [ix, iy, -ix * u - iy * v]
+//! # };
+//! # let derivatives = positions.iter().enumerate().map(derivative).collect();
+//! # let data = Measurements::new(positions, derivatives)?;
+//! // `data` are 300 measurements of the two motions, without noise.
+//! let multibody = MultibodyMotion::estimate(&data, 2)?;
+//! let found = motions_from_points(&multibody, &data, POINTS, &mut random);
+//! for motion in &truth {
+//!     assert!(found.iter().any(|a| motion.relative_error(a) < 1e-9));
+//! }
+//! # Ok(())
+//! # }
+//! ```
 
 use super::greedy::choose;
 use super::roots::roots;
@@ -23,15 +54,26 @@ use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 use crate::random::Random;
 
-/// Number of points for [`motions_from_points`] that we measured to be enough.
+/// Recommended number of points for [`motions_from_points`]. More do not improve the measured accuracy.
 pub const POINTS: usize = 60;
-/// Largest size of an entry of a hypothesis in normalised coordinates: beyond, a division by almost zero went wrong.
+/// Largest absolute entry of a hypothesis in normalised coordinates. Larger entries come from divisions by almost zero.
 const LARGEST_ENTRY: f64 = 50.0;
-/// Measurements on which hypotheses are compared.
+/// Largest number of measurements on which hypotheses are compared.
 const COMPARED: usize = 1500;
 
-/// One hypothesis for each of the n motions, from the pixel `position` and the gradient direction `angle` (radians). Those
-/// that are not finite are left out.
+/// A hypothesis for each of the n motions, from the pixel `position` and the gradient direction `angle` (radians). Hypotheses that are
+/// not finite are left out.
+///
+/// ```
+/// use veronese::AffineMotion;
+/// use veronese::embedding::MultibodyMotion;
+/// use veronese::factorisation::motions_at;
+///
+/// let truth = [AffineMotion::STATIC, AffineMotion::new([0.1, -0.2, 0.5, 0.2, 0.1, -0.3])];
+/// let found = motions_at(&MultibodyMotion::from_motions(&truth), [0.3, -0.4], 0.7);
+/// assert_eq!(found.len(), 2);
+/// assert!(truth.iter().all(|motion| found.iter().any(|a| motion.relative_error(a) < 1e-12)));
+/// ```
 pub fn motions_at(multibody: &MultibodyMotion, position: [f64; 2], angle: f64) -> Vec<AffineMotion> {
     let x = [position[0], position[1], 1.0];
     let direction = [libm::cos(angle), libm::sin(angle)];
@@ -40,7 +82,7 @@ pub fn motions_at(multibody: &MultibodyMotion, position: [f64; 2], angle: f64) -
     motions.filter(AffineMotion::is_finite).collect()
 }
 
-/// The coefficients of p(x; c, s, t) as a polynomial in t, ascending.
+/// The coefficients of p(x; c, s, t) as a polynomial in t, lowest power first.
 fn along_direction(multibody: &MultibodyMotion, x: [f64; 3], direction: [f64; 2]) -> Vec<f64> {
     let degree = multibody.degree();
     let mut coefficients = vec![0.0; degree + 1];
@@ -69,8 +111,8 @@ fn motion_at_root(multibody: &MultibodyMotion, x: [f64; 3], y: [f64; 3]) -> Affi
     AffineMotion::new([first[0], first[1], first[2], second[0], second[1], second[2]])
 }
 
-/// Hypotheses from `points` random pixels of the measurements, each with a random direction: at most n for each. Those with
-/// an entry beyond 50 (normalised coordinates) are left out.
+/// Hypotheses from [`motions_at`] for `points` random positions among the measurements, each with a random direction: at most n per
+/// position. Those with an entry of absolute value above 50 are left out; `measurements` should be normalised.
 pub fn hypotheses(
     multibody: &MultibodyMotion,
     measurements: &Measurements,
@@ -90,8 +132,8 @@ pub fn hypotheses(
     pool
 }
 
-/// The n motions of a multibody motion by differentiation at `points` random pixels and the choice of those hypotheses that
-/// explain the (normalised) measurements best. Fewer than n where not even n hypotheses were finite.
+/// The n motions of a multibody motion: [`hypotheses`] at `points` random positions ([`POINTS`] is recommended), of which [`choose`]
+/// selects those that explain the measurements best. `measurements` should be normalised. Empty if no hypothesis is usable.
 pub fn motions_from_points(
     multibody: &MultibodyMotion,
     measurements: &Measurements,
@@ -108,11 +150,11 @@ pub fn motions_from_points(
     choice.indices.into_iter().map(|k| pool[k]).collect()
 }
 
-/// The algebraic start for noisy data: Taubin's multibody motion of degree `motions` and hypotheses from it at `points` pixels
-/// ([`POINTS`] is a good number). `measurements` must be normalised; choose among the result with [`choose`].
+/// Hypotheses for n = `motions` motions from noisy data: [`hypotheses`] at `points` random positions ([`POINTS`] is recommended) from
+/// the multibody motion of [`taubin_motion`]. `measurements` should be normalised. Select from the result with [`choose`].
 ///
 /// # Errors
-/// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) where N < M_n² − Z_n − 1.
+/// [`Error::TooFewMeasurements`](crate::Error::TooFewMeasurements) if N < M_n² − Z_n − 1.
 pub fn algebraic_start(
     measurements: &Measurements,
     motions: usize,

@@ -1,29 +1,43 @@
-//! Choosing n motions out of many hypotheses.
+//! The choice of n motions from many hypotheses.
 
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 
-/// Bound of the passes that replace single members.
+/// Maximum number of passes of replacing single hypotheses.
 const MAX_PASSES: usize = 3;
-/// A replacement must lower the cost by this share, so that rounding cannot make it go in circles.
+/// A replacement must lower the cost by this share, so that rounding cannot cause cycles.
 const LEAST_GAIN: f64 = 1e-9;
 
-/// Which hypotheses were chosen, and how well they explain the measurements.
+/// The result of [`choose`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
     /// Indices of the chosen hypotheses, in the order in which they were added.
     pub indices: Vec<usize>,
-    /// Σ_j min_i min(|d_ij|, cap), with d_ij the distance of measurement j to motion i.
+    /// Σ_j min_i min(|d_ij|, cap), with d_ij the distance of measurement j from motion i.
     pub cost: f64,
 }
 
-/// The `motions` hypotheses that together explain the measurements best: each measurement costs its distance to the nearest
-/// of them, at most `cap` (infinite for none).
+/// The n = `motions` hypotheses that together explain the measurements best. The cost of a measurement is its distance
+/// ([`AffineMotion::distance`]) from the nearest of them, at most `cap` (infinity for no limit).
 ///
-/// Greedy: the hypothesis that lowers the sum most is added, n times; then members are replaced one by one as long as that helps,
-/// in at most three passes. The same hypothesis may be chosen twice where there is nothing better. Cost: hypotheses
-/// × measurements × at most 4n. With fewer measurements than a motion needs the answer is still defined, only arbitrary;
-/// without hypotheses it is empty.
+/// The method is greedy: n times, the hypothesis that lowers the total cost most is added; then single hypotheses are replaced while
+/// that lowers the cost, in at most three passes. A hypothesis may be chosen twice if none lowers the cost. The time is proportional to
+/// n times the number of hypotheses times the number of measurements. Without hypotheses, the result is empty.
+///
+/// ```
+/// use veronese::factorisation::choose;
+/// use veronese::{AffineMotion, Measurements};
+///
+/// // Measurements of the displacements (1, 0) and (0, 2).
+/// let positions = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+/// let derivatives = vec![[1.0, 1.0, -1.0], [1.0, 0.5, -1.0], [1.0, 1.0, -2.0], [0.5, 1.0, -2.0]];
+/// let data = Measurements::new(positions, derivatives)?;
+/// let hypotheses = [[1.0, 2.0], [1.0, 0.0], [5.0, 5.0], [0.0, 2.0]].map(|[u, v]| AffineMotion::translation(u, v));
+/// let mut choice = choose(&hypotheses, &data, 2, f64::INFINITY);
+/// choice.indices.sort_unstable();
+/// assert_eq!((choice.indices, choice.cost), (vec![1, 3], 0.0));
+/// # Ok::<(), veronese::Error>(())
+/// ```
 pub fn choose(hypotheses: &[AffineMotion], measurements: &Measurements, motions: usize, cap: f64) -> Choice {
     if hypotheses.is_empty() || motions == 0 {
         return Choice { indices: Vec::new(), cost: f64::INFINITY };
@@ -60,7 +74,7 @@ pub fn choose(hypotheses: &[AffineMotion], measurements: &Measurements, motions:
     Choice { indices, cost }
 }
 
-/// The hypothesis that gives the smallest sum of distances beside those that give `nearest`, and that sum.
+/// The hypothesis with the smallest sum of distances if the others leave the distances `nearest`, and that sum.
 fn best_addition(distances: &[Vec<f64>], nearest: &[f64]) -> (usize, f64) {
     let mut best = (0, f64::INFINITY);
     for (index, row) in distances.iter().enumerate() {

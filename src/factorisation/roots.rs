@@ -1,32 +1,41 @@
-//! The roots of a real polynomial in one variable, all at once, by the Ehrlich-Aberth iteration.
+//! All roots of a real polynomial in one variable by the Ehrlich–Aberth iteration (Aberth, Mathematics of Computation 27, 1973).
 
 use nalgebra::Complex;
 
 use crate::order::sort_few;
 
-/// Bound of the iteration; typical polynomials of degree 10 need 10 to 20 steps.
+/// Maximum number of iterations. Polynomials of degree 10 typically need 10 to 20.
 const MAX_STEPS: usize = 100;
-/// A leading or last coefficient below this share of the largest counts as zero: the root is at infinity or at zero.
+/// Leading and trailing coefficients below this share of the largest count as zero: their roots are at infinity or at zero.
 const NEGLIGIBLE: f64 = 1e-15;
-/// A root is settled when its correction is below this share of its size.
+/// A root has converged when its correction is below this share of its absolute value.
 const SETTLED: f64 = 4.0 * f64::EPSILON;
-/// Imaginary parts beyond this share of the size mark a root as one of a conjugate pair.
+/// A root is real if its imaginary part is below this share of its absolute value.
 const COMPLEX: f64 = 1e-7;
 
 /// The roots of a polynomial, counted with multiplicity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Roots {
-    /// The finite roots. The polynomial is real, so they are real or come in conjugate pairs, whose real parts are equal to
-    /// the last bit.
+    /// The finite roots: real, or in exactly conjugate pairs.
     pub finite: Vec<Complex<f64>>,
-    /// Number of roots at infinity: leading coefficients that vanish.
+    /// Number of roots at infinity, which is the number of vanishing leading coefficients.
     pub infinite: usize,
 }
 
 /// The roots of `c[0] + c[1] t + … + c[n] tⁿ`.
 ///
-/// Coefficients that are not finite, or all zero, give no finite roots and n infinite ones. Never more than 100 steps;
-/// multiple roots come out with the accuracy that rounding leaves them (about ε^(1/multiplicity)).
+/// Coefficients that are not finite, or all zero, give no finite roots and n infinite ones. Multiple roots have the accuracy that
+/// rounding permits, about ε^(1/multiplicity). The iteration ends after at most 100 steps.
+///
+/// ```
+/// use veronese::factorisation::roots::roots;
+///
+/// let found = roots(&[6.0, -5.0, 1.0, 0.0]); // 6 − 5t + t² + 0t³
+/// let mut real: Vec<f64> = found.finite.iter().map(|root| root.re).collect();
+/// real.sort_by(f64::total_cmp);
+/// assert!((real[0] - 2.0).abs() < 1e-14 && (real[1] - 3.0).abs() < 1e-14);
+/// assert_eq!(found.infinite, 1);
+/// ```
 pub fn roots(coefficients: &[f64]) -> Roots {
     let degree = coefficients.len().saturating_sub(1);
     let largest = coefficients.iter().fold(0.0, |m: f64, c| if c.is_finite() { m.max(c.abs()) } else { f64::INFINITY });
@@ -41,7 +50,7 @@ pub fn roots(coefficients: &[f64]) -> Roots {
     Roots { finite, infinite: degree - high }
 }
 
-/// The iteration on a polynomial whose first and last coefficients do not vanish.
+/// The iteration for a polynomial whose first and last coefficients do not vanish.
 fn aberth(c: &[f64]) -> Vec<Complex<f64>> {
     let degree = c.len() - 1;
     let mut z = starting_points(c);
@@ -75,7 +84,7 @@ fn aberth(c: &[f64]) -> Vec<Complex<f64>> {
     z
 }
 
-/// p(z) / p'(z), by Horner's rule on the polynomial or, outside the unit circle, on the reversed one, so that powers stay bounded.
+/// p(z) / p'(z) by Horner's rule. Outside the unit circle it uses the reversed polynomial, which keeps powers bounded.
 fn newton_correction(c: &[f64], z: Complex<f64>) -> Complex<f64> {
     let degree = (c.len() - 1) as f64;
     if z.norm_sqr() <= 1.0 {
@@ -89,7 +98,7 @@ fn newton_correction(c: &[f64], z: Complex<f64>) -> Complex<f64> {
     if denominator.norm_sqr() > 0.0 { z * q / denominator } else { Complex::new(0.0, 0.0) }
 }
 
-/// Value and derivative, coefficients from the highest power down.
+/// Value and derivative of a polynomial with the given coefficients, highest power first.
 fn horner<'a>(coefficients: impl Iterator<Item = &'a f64>, z: Complex<f64>) -> (Complex<f64>, Complex<f64>) {
     let mut value = Complex::new(0.0, 0.0);
     let mut derivative = Complex::new(0.0, 0.0);
@@ -100,14 +109,14 @@ fn horner<'a>(coefficients: impl Iterator<Item = &'a f64>, z: Complex<f64>) -> (
     (value, derivative)
 }
 
-/// Points on circles whose radii are read off the Newton polygon of the coefficients (Bini, Numerical Algorithms 13, 1996).
+/// Starting points on circles whose radii come from the Newton polygon of the coefficients (Bini, Numerical Algorithms 13, 1996).
 fn starting_points(c: &[f64]) -> Vec<Complex<f64>> {
     let degree = c.len() - 1;
     let heights: Vec<f64> = c.iter().map(|v| if *v == 0.0 { f64::NEG_INFINITY } else { libm::log(v.abs()) }).collect();
     let mut points = Vec::with_capacity(degree);
     let mut from = 0;
     while from < degree {
-        // The next edge of the upper hull is the steepest one; among equals the longest.
+        // The next edge of the upper hull is the steepest, and the longest of equally steep ones.
         let slope = |to: usize| (heights[to] - heights[from]) / (to - from) as f64;
         let mut to = from + 1;
         for next in from + 2..=degree {
@@ -118,7 +127,7 @@ fn starting_points(c: &[f64]) -> Vec<Complex<f64>> {
         let radius = libm::exp(-slope(to));
         let count = to - from;
         for k in 0..count {
-            // The offset keeps the points off the real axis and off each other's conjugates.
+            // The offset avoids the real axis and conjugate points.
             let angle = std::f64::consts::TAU * (k as f64 / count as f64 + from as f64 / degree as f64) + 0.7;
             points.push(Complex::new(radius * libm::cos(angle), radius * libm::sin(angle)));
         }
@@ -127,13 +136,13 @@ fn starting_points(c: &[f64]) -> Vec<Complex<f64>> {
     points
 }
 
-/// Makes near-real roots real and conjugate pairs exact.
+/// Makes nearly real roots real and conjugate pairs exact.
 fn conjugate_symmetric(mut z: Vec<Complex<f64>>) -> Vec<Complex<f64>> {
     sort_few(&mut z, |a, b| b.im.total_cmp(&a.im).then(a.re.total_cmp(&b.re)));
     let mut result = Vec::with_capacity(z.len());
     while !z.is_empty() {
         let root = z.remove(0);
-        // The partner is the nearest to the conjugate; a real root is its own.
+        // The partner is the root nearest to the conjugate. A real root is its own partner.
         let distance = |other: &Complex<f64>| (other - root.conj()).norm_sqr();
         let partner = (0..z.len()).min_by(|&i, &j| distance(&z[i]).total_cmp(&distance(&z[j])));
         let is_complex = root.im.abs() > COMPLEX * root.norm_sqr().sqrt();
@@ -155,7 +164,7 @@ mod tests {
     use super::*;
     use crate::random::Random;
 
-    /// Ascending coefficients of Π (t − root), real roots.
+    /// Coefficients of Π (t − root) for real roots, lowest power first.
     fn from_roots(values: &[f64]) -> Vec<f64> {
         let mut c = vec![1.0];
         for r in values {

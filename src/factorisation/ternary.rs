@@ -1,11 +1,11 @@
-//! A homogeneous polynomial in three variables into linear forms (after eq. 14): f(z) = γ Π_i b_iᵀz.
+//! Factorisation of a homogeneous polynomial in three variables into linear forms (after eq. 14): f(z) = γ Π_i b_iᵀz.
 //!
-//! Following Vidal, Ma, Sastry, "Generalized Principal Component Analysis" (2002): f(0, z_2, z_3) is a polynomial in one
-//! ratio, whose roots give the second and third entries of every b_i up to scale; the coefficients of the monomials with
-//! z_1 to the power 1 are then linear in the first entries.
+//! The method is that of Vidal, Ma and Sastry, "Generalized Principal Component Analysis" (2002). f(0, z_2, z_3) is a polynomial in
+//! z_2 / z_3, whose roots give the second and third entries of all b_i up to scale. The coefficients of the monomials that are linear in
+//! z_1 are then linear in the first entries.
 //!
-//! **Limits**: f must not vanish for z_1 = 0, and the pairs (b_i2, b_i3) must differ between factors, or the linear
-//! system does not determine the first entries (the solution of least length is taken).
+//! **Limits.** f must not vanish for z_1 = 0. If two forms have the same ratio b_i2 : b_i3, the linear system does not determine their
+//! first entries, and its minimum norm solution is used.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -15,15 +15,29 @@ use crate::linear::least_squares;
 /// Singular values of the linear system below this share of the largest count as zero.
 const RANK_TOLERANCE: f64 = 1e-13;
 
-/// The n linear forms b_i whose product is proportional to the form with the given M_n coefficients (in the monomial
-/// order of [`monomials`](crate::embedding::monomials)). (b_i2, b_i3) has unit length. Roots that noise made complex
-/// enter with their real parts. `None` where f(0, z_2, z_3) vanishes: then the method does not apply.
+/// The n linear forms b_i whose product is proportional to the form f with the given M_n coefficients, in the order of
+/// [`monomials`](crate::embedding::monomials).
+///
+/// (b_i2, b_i3) has unit length. Of complex roots, which occur with noise, the real parts are used. `None` if the number of
+/// coefficients is not M_n, or if f(0, z_2, z_3) vanishes.
+///
+/// ```
+/// use veronese::factorisation::ternary::factorise;
+///
+/// // (z₁ + z₂) (2z₁ + z₃) = 2z₁² + 2z₁z₂ + z₁z₃ + z₂z₃
+/// let mut forms = factorise(&[2.0, 2.0, 1.0, 0.0, 1.0, 0.0], 2).unwrap();
+/// forms.sort_by(|a, b| a[0].abs().total_cmp(&b[0].abs()));
+/// for (form, expected) in forms.iter().zip([[1.0, 1.0, 0.0], [2.0, 0.0, 1.0]]) {
+///     let sign = form[0].signum();
+///     assert!(form.iter().zip(expected).all(|(b, e)| (sign * b - e).abs() < 1e-14));
+/// }
+/// ```
 pub fn factorise(coefficients: &[f64], degree: usize) -> Option<Vec<[f64; 3]>> {
     let length = coefficients.len();
     if degree == 0 || length != crate::embedding::monomials::count(degree) {
         return None;
     }
-    // The last n + 1 coefficients are those of z_2ⁿ, z_2ⁿ⁻¹z_3, …, z_3ⁿ; the n before them have z_1 to the power 1.
+    // The last n + 1 coefficients are those of z_2ⁿ, z_2ⁿ⁻¹z_3, …, z_3ⁿ. The n before them belong to monomials linear in z_1.
     let (rest, binary) = coefficients.split_at(length - degree - 1);
     let linear = &rest[rest.len() - degree..];
     let pairs = binary_factors(binary)?;
@@ -40,13 +54,13 @@ pub fn factorise(coefficients: &[f64], degree: usize) -> Option<Vec<[f64; 3]>> {
     Some(pairs.iter().zip(first.iter()).map(|(b, &b1)| [b1, b[0], b[1]]).collect())
 }
 
-/// The linear forms b_1 s + b_2 t, of unit length, whose product is proportional to
-/// `c[0] sⁿ + c[1] sⁿ⁻¹t + … + c[n] tⁿ`; `None` where all coefficients vanish.
+/// The linear forms b_1 s + b_2 t of unit length whose product is proportional to `c[0] sⁿ + c[1] sⁿ⁻¹t + … + c[n] tⁿ`; `None` if all
+/// coefficients vanish or one is not finite.
 fn binary_factors(c: &[f64]) -> Option<Vec<[f64; 2]>> {
     if c.iter().all(|v| *v == 0.0) || c.iter().any(|v| !v.is_finite()) {
         return None;
     }
-    // With t = 1 a root s = r gives the factor s − r t; a root at infinity gives t.
+    // With t = 1, a root s = r gives the factor s − r t, and a root at infinity the factor t.
     let ascending: Vec<f64> = c.iter().rev().copied().collect();
     let found = roots(&ascending);
     let mut factors: Vec<[f64; 2]> = found

@@ -1,12 +1,12 @@
-//! Inner loops of the QR: dot products and updates over contiguous columns.
+//! Inner loops of the QR decomposition: dot products and updates of contiguous columns.
 //!
-//! Sums of floats are not reordered by the compiler, so a plain loop runs one addition at a time. Here each sum is kept in
-//! two lanes (the width of SSE2 and of WebAssembly's SIMD) and several columns are worked on together, so that a value once
-//! loaded serves many products. The order of the additions is fixed, and with it the bits of the result.
+//! The compiler does not reorder floating-point sums, so a plain loop does one addition at a time. Here each sum has two lanes (the width
+//! of SSE2 and of WebAssembly's SIMD), and several columns are processed together, so that each value loaded is used in several
+//! products. The order of the additions is fixed, which fixes the bits of the result.
 
 use crate::lanes::each_with;
 
-/// Two lanes: one 128-bit register.
+/// The two lanes of a 128-bit register.
 type Pair = [f64; 2];
 
 #[inline(always)]
@@ -14,7 +14,7 @@ fn multiply_add(sum: Pair, a: Pair, b: Pair) -> Pair {
     [sum[0] + a[0] * b[0], sum[1] + a[1] * b[1]]
 }
 
-/// aᵀb over the common length, in eight lanes. As the next one never inlined: it would be in the module at eleven places.
+/// aᵀb over the common length, in eight lanes. Never inlined, like [`add_multiple`], to keep the module small: it has many callers.
 #[inline(never)]
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let length = a.len().min(b.len());
@@ -37,20 +37,20 @@ pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
     each_with(y, [x], |y, [x]| y + factor * x);
 }
 
-/// Scales to unit length; false, and nothing useful in `vector`, where that is not possible (zero or not finite).
+/// Scales a vector to unit length. Returns false, and leaves `vector` unspecified, if it is zero or not finite.
 pub(crate) fn normalise(vector: &mut [f64]) -> bool {
     let largest = vector.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(v.abs()) } else { f64::INFINITY });
     if !(largest > 0.0 && largest.is_finite()) {
         return false;
     }
-    // First by the largest entry: squares of 1e200 would overflow.
+    // Divide by the largest entry first: squares of large entries would overflow.
     vector.iter_mut().for_each(|v| *v /= largest);
     let length = dot(vector, vector).sqrt();
     vector.iter_mut().for_each(|v| *v /= length);
     true
 }
 
-/// |a − (aᵀb) b|² of two unit vectors: how far they are from parallel.
+/// |a − (aᵀb) b|², the squared sine of the angle between two unit vectors.
 pub(crate) fn squared_sine(a: &[f64], b: &[f64]) -> f64 {
     let same = dot(a, b);
     a.iter().zip(b).map(|(a, b)| (a - same * b) * (a - same * b)).sum()

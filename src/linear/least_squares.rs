@@ -1,21 +1,31 @@
-//! The solution of least length of a small linear system, by a one-sided Jacobi singular value decomposition.
+//! Minimum norm least squares for small systems, by a one-sided Jacobi singular value decomposition.
 //!
-//! Written out because a library's decomposition may use `hypot`, which differs in its last bit between platforms; here
-//! there is nothing but + − × ÷ √.
+//! Library decompositions may call `hypot`, whose last bit differs between platforms. This one uses + − × ÷ √ only.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::kernels::{add_multiple, dot};
 
-/// Bound of the sweeps; convergence is quadratic, small matrices need 4 to 8.
+/// Maximum number of sweeps. Convergence is quadratic; small matrices need 4 to 8.
 const MAX_SWEEPS: usize = 40;
-/// Two columns count as orthogonal when the cosine between them is below this.
+/// Two columns count as orthogonal if the cosine of the angle between them is below this.
 const ORTHOGONAL: f64 = 1e-15;
 
-/// The x of least length among those that minimise |A x − b|, with singular values below `tolerance` times the largest taken as
-/// zero. A is m×n, b has length m (both must be finite); meant for n ≤ 10.
+/// The minimum norm solution x of the least squares problem min |A x − b|, with singular values below `tolerance` times the largest
+/// taken as zero.
 ///
-/// Hestenes' method: rotations V from the right make the columns of A V orthogonal; their lengths are the singular values.
+/// A is m × n, b has length m; both must be finite. It is meant for n ≤ 10.
+///
+/// Hestenes' method: rotations V from the right make the columns of A V orthogonal, and their lengths are the singular values.
+///
+/// ```
+/// use nalgebra::{DMatrix, DVector};
+/// use veronese::linear::least_squares;
+///
+/// // One equation, x + 2y = 5: the solution nearest to the origin is (1, 2).
+/// let x = least_squares(&DMatrix::from_row_slice(1, 2, &[1.0, 2.0]), &DVector::from_vec(vec![5.0]), 1e-12);
+/// assert!((x[0] - 1.0).abs() < 1e-15 && (x[1] - 2.0).abs() < 1e-15);
+/// ```
 pub fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>, tolerance: f64) -> DVector<f64> {
     let n = matrix.ncols();
     let mut columns: Vec<Vec<f64>> = matrix.column_iter().map(|c| c.iter().copied().collect()).collect();
@@ -47,7 +57,7 @@ pub fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>, tolerance: f64
     DVector::from_vec(solution)
 }
 
-/// Cosine and sine of the rotation that makes two columns orthogonal; `None` where they are so already.
+/// Cosine and sine of the rotation that makes two columns orthogonal; `None` if they already are.
 fn orthogonalising(a: &[f64], b: &[f64]) -> Option<(f64, f64)> {
     let (alpha, beta, gamma) = (dot(a, a), dot(b, b), dot(a, b));
     if gamma.abs() <= ORTHOGONAL * (alpha * beta).sqrt() {

@@ -1,30 +1,29 @@
-//! The vector that a triangle R maps closest to zero, by inverse iteration.
+//! The right singular vector of the smallest singular value of a triangle, by inverse iteration.
 
 use super::kernels::{normalise, squared_sine};
 use super::{RowQr, Triangle};
 
-/// Bound of the inverse iteration; each step gains the factor (σ_m / σ_{m−1})².
+/// Maximum number of inverse iterations. Each reduces the error by the factor (σ_m / σ_{m−1})².
 const MAX_STEPS: usize = 40;
-/// The iteration ends when the unit vector moves by less than this.
+/// The iteration ends when the unit vector changes by less than this.
 const TOLERANCE: f64 = 1e-14;
-/// A pivot below this share of the largest counts as zero; also the size of the regularisation of a null space of
-/// dimension two or more.
+/// Pivots below this share of the largest count as zero. A null space of two or more dimensions is regularised by as much.
 const NEGLIGIBLE: f64 = 1e-14;
 
-/// An (approximate) null vector of a triangle, that is of the matrix it was decomposed from.
+/// An (approximate) null vector of a triangle R, and of the matrix of which R is the QR factor. See the [module example](super).
 #[derive(Clone, Debug)]
 pub struct NullVector {
     /// Unit vector v.
     pub vector: Vec<f64>,
-    /// |R v|: the smallest singular value where the iteration converged.
+    /// |R v|, the smallest singular value if the iteration has converged.
     pub residual: f64,
 }
 
 impl NullVector {
     /// The right singular vector of the smallest singular value of `triangle`.
     ///
-    /// The iteration starts at the last unit vector: where the null space has several dimensions, this gives the projection of
-    /// that unit vector, the null vector with the largest last entry. A zero matrix gives the last unit vector itself.
+    /// The iteration starts at the last unit vector. If the null space has several dimensions, the result is the projection of that
+    /// vector onto it, scaled to unit length: the null vector with the largest last entry. A zero matrix gives the last unit vector.
     pub fn of(triangle: &Triangle) -> NullVector {
         let largest = triangle.largest_pivot();
         let negligible = triangle.pivots().filter(|&p| p <= NEGLIGIBLE * largest).count();
@@ -36,7 +35,7 @@ impl NullVector {
     }
 }
 
-/// Inverse iteration with `solver`, residual with `triangle`.
+/// Inverse iteration on `solver`; the residual is that of `triangle`.
 fn iterate(solver: &Triangle, triangle: &Triangle, floor: f64) -> NullVector {
     let size = triangle.size();
     let mut vector = vec![0.0; size];
@@ -61,7 +60,7 @@ fn iterate(solver: &Triangle, triangle: &Triangle, floor: f64) -> NullVector {
     NullVector { vector, residual }
 }
 
-/// R of `[R; δI]`: no direction is mapped below δ, so that solving with several zero pivots cannot overflow.
+/// The triangle of `[R; δI]`. No singular value is below δ, so solving with several zero pivots cannot overflow.
 fn regularised(triangle: &Triangle, delta: f64) -> Triangle {
     let size = triangle.size();
     let mut qr = RowQr::new(size);

@@ -1,12 +1,12 @@
-//! QR decomposition of a tall matrix that arrives in blocks of rows, keeping only the triangle R.
+//! QR decomposition of a tall matrix that arrives in blocks of rows; only the triangle R is kept.
 //!
-//! A block B of rows is appended below the present R and `[R; B]` is made triangular again by Householder reflectors
-//! `H = I − τ v vᵀ`. Because R is triangular, v has only one entry beside its part in B (a 1 in R's row k). Reflectors are
-//! gathered by panels of [`PANEL`] columns into the compact form `H_1⋯H_p = I − V T Vᵀ` (Schreiber and Van Loan, SIAM J.
-//! Sci. Stat. Comput. 10(1), 1989), so that the bulk of the work is products of small matrices that stay in the cache.
-//! Cost 2Nm² for N rows and m columns; memory m² + block.
+//! A block B of rows is appended below the current R, and `[R; B]` is made triangular again by Householder reflectors `H = I − τ v vᵀ`.
+//! Because R is triangular, v has a single entry outside B (a 1 in row k of R). The reflectors of [`PANEL`] columns at a time are combined
+//! in the compact form `H_1⋯H_p = I − V T Vᵀ` (Schreiber and Van Loan, SIAM J. Sci. Stat. Comput. 10(1), 1989), so most of the work is
+//! products of small matrices that stay in the cache. The cost is 2Nm² operations for N rows and m columns, and memory for R and one
+//! block.
 //!
-//! R has the singular values of the whole matrix, without its Gram matrix, which would square the condition number.
+//! R has the singular values of the whole matrix. The Gram matrix, which would square the condition number, is never formed.
 
 use super::Triangle;
 use super::kernels::{add_multiple, dot, dot_four_by_two, subtract_four_by_two};
@@ -14,13 +14,13 @@ use super::kernels::{add_multiple, dot, dot_four_by_two, subtract_four_by_two};
 /// Columns of a panel, a multiple of 4.
 const PANEL: usize = 32;
 
-/// A QR decomposition under way: R of all rows absorbed so far.
+/// A QR decomposition in progress: R of all rows absorbed so far. See the [module example](super).
 #[derive(Clone, Debug)]
 pub struct RowQr {
     triangle: Triangle,
 }
 
-/// The reflectors of one panel: `V` (its part in the block), and T of the compact form.
+/// The reflectors of a panel: its columns, and T of the compact form. V takes the place of the columns in the block.
 struct Panel {
     /// First column of the panel.
     first: usize,
@@ -31,22 +31,22 @@ struct Panel {
 }
 
 impl RowQr {
-    /// Number of rows that blocks should have: large enough to amortise the panels, small enough for the cache. Even.
+    /// Recommended number of rows of a block: large enough to amortise the panels, small enough for the cache. Even.
     pub const BLOCK_ROWS: usize = 256;
 
-    /// The decomposition of a matrix with no rows yet.
+    /// The decomposition of a matrix with the given number of columns and no rows.
     pub fn new(columns: usize) -> Self {
         RowQr { triangle: Triangle::zeros(columns) }
     }
 
-    /// Appends rows. `block` is column-major, `rows` × columns (missing values count as zero rows), and is used as work space.
+    /// Appends rows. `block` is `rows` × columns, column-major, and is overwritten. It is cut or filled with zeros to that length.
     pub fn absorb(&mut self, rows: usize, block: &mut Vec<f64>) {
         let columns = self.triangle.size();
         block.resize(rows * columns, 0.0);
         if rows == 0 {
             return;
         }
-        // The kernels take two rows at a time.
+        // The kernels process two rows at a time.
         if rows % 2 == 1 {
             let mut padded = Vec::with_capacity((rows + 1) * columns);
             for column in block.chunks_exact(rows) {
@@ -72,7 +72,7 @@ impl RowQr {
         self.triangle
     }
 
-    /// Reflectors that annul the panel's columns of the block; `v` holds those columns and then V.
+    /// The reflectors that eliminate the panel's columns of the block. `v` holds these columns and is overwritten by V.
     fn factor_panel(&mut self, first: usize, width: usize, rows: usize, v: &mut [f64]) -> Panel {
         let mut panel = Panel { first, width, t: [[0.0; PANEL]; PANEL] };
         for k in 0..width {
@@ -87,7 +87,7 @@ impl RowQr {
                 self.triangle.set(place.0, place.1, self.triangle.at(place.0, place.1) - w);
                 add_multiple(other, -w, column);
             }
-            // T's new column: −τ T (Vᵀ v). The reflectors' entries in R are different unit vectors and do not meet.
+            // The new column of T is −τ T (Vᵀ v). In R, the reflectors are different unit vectors, so these contribute nothing to Vᵀ v.
             let mut products = [0.0; PANEL];
             for (i, earlier) in done.chunks_exact(rows).enumerate() {
                 products[i] = dot(earlier, column);
@@ -115,7 +115,7 @@ impl RowQr {
         }
     }
 
-    /// The update of two columns, on a panel of full width: where the time goes.
+    /// The update of two columns by a panel of full width, which takes most of the time.
     fn update_two(&mut self, panel: &Panel, rows: usize, v: &[f64], columns: &mut [f64], place: usize) {
         let v = v.as_chunks::<2>().0;
         let half = rows / 2;
@@ -161,13 +161,13 @@ impl RowQr {
     }
 }
 
-/// The reflector that maps `(diagonal, column)` to `(β, 0)`: returns τ and β, and leaves v (without its leading 1) in `column`.
+/// The reflector that maps `(diagonal, column)` to `(β, 0)`. Returns τ and β; `column` is overwritten by v without its leading 1.
 fn reflector(diagonal: f64, column: &mut [f64]) -> (f64, f64) {
     let below = dot(column, column);
     if below == 0.0 {
         return (0.0, diagonal);
     }
-    // β has the sign opposite to the diagonal's, so that the subtraction does not cancel.
+    // The sign of β is opposite to that of the diagonal entry, which avoids cancellation.
     let length = (diagonal * diagonal + below).sqrt();
     let beta = if diagonal > 0.0 { -length } else { length };
     let scale = 1.0 / (diagonal - beta);
@@ -183,7 +183,7 @@ mod tests {
     use crate::random::Random;
     use nalgebra::DMatrix;
 
-    /// RᵀR = AᵀA, for sizes around every edge of the blocking.
+    /// RᵀR = AᵀA, for sizes around all block boundaries.
     #[test]
     fn the_triangle_has_the_gram_matrix_of_the_rows() {
         let mut random = Random::from_seed(3);

@@ -1,16 +1,16 @@
-//! Singular values of a square matrix: reduction to a bidiagonal one, then bisection.
+//! Singular values of a square matrix by reduction to bidiagonal form and bisection.
 //!
-//! Bisection on Sturm counts (Golub and Kahan's form of the bidiagonal matrix B: the symmetric tridiagonal matrix with
-//! zero diagonal and the entries of B alternating beside it has the eigenvalues ±σ) cannot fail to converge, needs nothing
-//! but + − × ÷, and finds each value to rounding of the largest.
+//! The symmetric tridiagonal matrix with zero diagonal and the entries of the bidiagonal matrix B alternating next to it has the
+//! eigenvalues ±σ (the Golub–Kahan form). Bisection on its Sturm counts always converges, uses + − × ÷ only, and is accurate to
+//! rounding of the largest singular value.
 
 use nalgebra::DMatrix;
 use nalgebra::linalg::Bidiagonal;
 
-/// Halvings of the interval: to the last bit of the largest value.
+/// Bisection steps: enough for the last bit of the largest value.
 const HALVINGS: usize = 54;
 
-/// All singular values, decreasing. Cost O(m³) with a small factor.
+/// All singular values, decreasing, in O(m³).
 pub(super) fn singular_values(matrix: DMatrix<f64>) -> Vec<f64> {
     let size = matrix.nrows();
     if size == 0 {
@@ -25,29 +25,29 @@ pub(super) fn singular_values(matrix: DMatrix<f64>) -> Vec<f64> {
             squares.push(beside[k] * beside[k]);
         }
     }
-    // Gershgorin: no value exceeds twice the largest entry.
+    // Gershgorin: no singular value exceeds twice the largest entry.
     let bound = 2.0 * squares.iter().copied().fold(0.0, f64::max).sqrt();
     (0..size).map(|rank| bisected(&squares, size, rank, bound)).collect()
 }
 
-/// The singular value with `rank` larger ones.
+/// The singular value of index `rank`, counted from the largest.
 fn bisected(squares: &[f64], size: usize, rank: usize, bound: f64) -> f64 {
     let (mut low, mut high) = (0.0, bound);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        // Of the 2m eigenvalues ±σ, those not below `middle` > 0 are singular values.
+        // Of the 2m eigenvalues ±σ, those at or above `middle` > 0 are singular values.
         if 2 * size - below(squares, middle) > rank { low = middle } else { high = middle }
     }
-    // 0 stays exactly 0: the lower end has never moved.
+    // A singular value of 0 is exactly 0, because the lower end never moves.
     low
 }
 
-/// Number of eigenvalues below x of the tridiagonal matrix with zero diagonal and the given squares beside it.
+/// Number of eigenvalues below x of the symmetric tridiagonal matrix with zero diagonal and the given squared off-diagonal entries.
 fn below(squares: &[f64], x: f64) -> usize {
     let mut pivot = -x;
     let mut count = usize::from(pivot < 0.0);
     for square in squares {
-        // A zero pivot is moved by less than rounding; the count stays right for a nearby matrix.
+        // A zero pivot is perturbed by less than rounding. The count is that of a nearby matrix.
         let safe = if pivot.abs() < f64::MIN_POSITIVE { -f64::MIN_POSITIVE } else { pivot };
         pivot = -x - square / safe;
         count += usize::from(pivot < 0.0);
@@ -61,7 +61,7 @@ mod tests {
     use crate::random::Random;
 
     #[test]
-    fn the_values_are_those_of_the_library() {
+    fn singular_values_agree_with_nalgebra() {
         let mut random = Random::from_seed(13);
         for size in [1, 2, 3, 10, 65] {
             let mut matrix = DMatrix::from_fn(size, size, |_, _| random.uniform(-1.0, 1.0));

@@ -1,4 +1,4 @@
-//! An upper triangular matrix: R of the QR decomposition, its scaling, its singular values.
+//! An upper triangular matrix, R of a QR decomposition: column scaling, solving, singular values.
 
 use nalgebra::DMatrix;
 
@@ -6,7 +6,21 @@ use super::kernels::{add_multiple, dot};
 use super::singular_values::singular_values;
 use crate::workspace::Buffer;
 
-/// An upper triangular m×m matrix, column-major with its zeros.
+/// An upper triangular m × m matrix, stored column-major including its zeros.
+///
+/// ```
+/// use veronese::linear::RowQr;
+///
+/// let mut qr = RowQr::new(2);
+/// qr.absorb(3, &mut vec![1.0, 0.0, 2.0, 0.0, 3.0, 4.0]); // the columns (1, 0, 2) and (0, 3, 4)
+/// let mut triangle = qr.into_triangle();
+/// let values = triangle.singular_values().unwrap();
+/// assert!((values[0] * values[1] - 61.0_f64.sqrt()).abs() < 1e-12); // √det(AᵀA)
+///
+/// assert_eq!(triangle.scale_columns().len(), 2); // the lengths √5 and 5
+/// let gram = triangle.to_matrix().transpose() * triangle.to_matrix();
+/// assert!((gram[(0, 0)] - 1.0).abs() < 1e-14 && (gram[(1, 1)] - 1.0).abs() < 1e-14);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
     size: usize,
@@ -14,15 +28,15 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// Largest m for which [`singular_values`](Self::singular_values) answers: the cost grows with m³ (m = 462: n = 6).
+    /// Largest m for which [`singular_values`](Self::singular_values) are computed; the cost grows with m³. m = 462 for n = 6.
     pub const LARGEST_DECOMPOSED: usize = 500;
 
     pub(super) fn zeros(size: usize) -> Self {
         Triangle { size, values: Buffer::filled(size * size, 0.0) }
     }
 
-    /// R with RᵀR = `gram`, given column-major (only its upper part is read), after `ridge` times its own size was added to each
-    /// diagonal entry. No pivot's square falls below that.
+    /// The Cholesky factor R with RᵀR = `gram` + a ridge of `ridge` times the diagonal of `gram`. `gram` is column-major, and only its
+    /// upper triangle is read. Squared pivots are raised to the ridge.
     pub(crate) fn of_gram(size: usize, mut gram: Buffer<f64>, ridge: f64) -> Self {
         for k in 0..size {
             let (done, rest) = gram.split_at_mut(k * size);
@@ -65,13 +79,13 @@ impl Triangle {
         &self.values[column * self.size..column * self.size + column + 1]
     }
 
-    /// The same as a dense matrix.
+    /// The dense matrix, m × m.
     pub fn to_matrix(&self) -> DMatrix<f64> {
         DMatrix::from_column_slice(self.size, self.size, &self.values)
     }
 
-    /// Divides every column by its length (1 for a zero column); returns the lengths. They are those of the decomposed
-    /// matrix too, so this is the R of the matrix with columns scaled to unit length.
+    /// Scales every column to unit length and returns the lengths (1 for a zero column). They are the lengths of the columns of the
+    /// decomposed matrix, so the result is R of that matrix with columns scaled to unit length.
     pub fn scale_columns(&mut self) -> Vec<f64> {
         let size = self.size;
         let mut lengths = Vec::with_capacity(size);
@@ -86,12 +100,12 @@ impl Triangle {
         lengths
     }
 
-    /// Singular values, decreasing; `None` where m exceeds [`LARGEST_DECOMPOSED`](Self::LARGEST_DECOMPOSED).
+    /// Singular values, decreasing; `None` if m exceeds [`LARGEST_DECOMPOSED`](Self::LARGEST_DECOMPOSED).
     pub fn singular_values(&self) -> Option<Vec<f64>> {
         (self.size <= Self::LARGEST_DECOMPOSED).then(|| singular_values(self.to_matrix()))
     }
 
-    /// The same triangle with every column multiplied by a factor.
+    /// The triangle with each column multiplied by its factor.
     pub(crate) fn with_columns_times(&self, factors: &[f64]) -> Triangle {
         let mut result = self.clone();
         for (column, factor) in result.values.chunks_exact_mut(self.size.max(1)).zip(factors) {
@@ -105,12 +119,12 @@ impl Triangle {
         self.pivots().fold(0.0, f64::max)
     }
 
-    /// Absolute values of the diagonal.
+    /// Absolute values of the diagonal entries.
     pub(super) fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.size).map(|k| self.at(k, k).abs())
     }
 
-    /// Solves Rᵀ R z = b in place, with pivots smaller than `floor` taken as `floor`.
+    /// Solves RᵀR z = b in place, with pivots of absolute value below `floor` replaced by `floor`.
     pub(crate) fn solve_normal(&self, b: &mut [f64], floor: f64) {
         let pivot = |k: usize| {
             let r = self.at(k, k);

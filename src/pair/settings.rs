@@ -7,35 +7,35 @@ use crate::labelling::coherence::Coherence;
 use crate::labelling::solver::Solver;
 use crate::options::{MotionCount, Quality, SegmentOptions};
 
-/// Parts of the pipeline that can be left out one at a time, to measure what each is worth. Only for that: without the feature
-/// `ablation` all are there, and nothing promises that they stay.
+/// A part of the pipeline that can be left out, for ablation studies. Without the feature `ablation` all parts are enabled. Not covered by
+/// semantic versioning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
-    /// Gain and bias between the frames.
+    /// Estimation of gain and bias between the frames.
     Brightness,
-    /// The hypothesis that nothing but objects moves.
+    /// The hypothesis of a static background.
     StaticHypothesis,
-    /// Proposals from the multibody constraint.
+    /// Candidate motions from the multibody constraint.
     Algebra,
-    /// Proposals from single windows.
+    /// Candidate motions from single windows.
     Windows,
-    /// Proposals and selection on levels finer than that of the first selection.
+    /// Candidates and selection on levels finer than that of the first selection.
     FinerLevels,
-    /// Motions refined on the pixels where they win, after each stage of the selection.
+    /// Refinement of motions on the pixels they explain best, after each stage of the selection.
     Refinement,
-    /// Cheaper borders along edges of the image.
+    /// Lower smoothness cost along image edges.
     Edges,
-    /// Borders that cost anything at all.
+    /// The smoothness cost.
     Coherence,
-    /// Costs corrected for occlusion.
+    /// Correction of the costs for occlusion.
     Visibility,
-    /// Regions split into the bodies they consist of.
+    /// Splitting of regions into separate bodies.
     Splitting,
-    /// Motions taken away that do not pay for their description.
+    /// Removal of motions that do not pay for their description.
     ModelSelection,
-    /// What the colours say.
+    /// The colour term.
     Colour,
-    /// Enlarging along the edges of the full frame.
+    /// Upsampling along the edges of the full-size frame.
     GuidedEnlarging,
 }
 

@@ -1,20 +1,19 @@
-//! n motions of the greatest likelihood: many starts, one pool of motions, the best choice out of it.
+//! Global search for the n motions of maximum likelihood: many starts fill a pool of motions, from which the best n are selected.
 //!
-//! EM finds the nearest maximum, so everything depends on where it starts. A round of the search
-//! 1. fills a pool of motions: over-complete EM (six times as many motions as wanted, random, wide σ) in every second
-//!    round; the same on the measurements that the best fit so far leaves unexplained when its weakest motion is taken away;
-//!    and each motion's own measurements tried with several motions, in case it covers two;
-//! 2. chooses from the pool the n motions that explain the most ([`subset::choose`]), at two caps;
-//! 3. runs EM from that choice and keeps the result if it is more likely than the best so far.
+//! Expectation-maximisation (EM) finds a local maximum, so the result depends on its starting point. Each round of the search
+//! 1. adds motions to the pool: over-complete EM (six times as many motions as wanted, random, with a large σ) in every second round;
+//!    the same on the measurements that the best fit does not explain without its weakest motion; and EM with several motions on the
+//!    measurements of each motion, in case it covers two;
+//! 2. selects the n motions of the pool that explain the measurements best ([`subset::choose`]), for two caps of the distance;
+//! 3. runs EM from this selection, and keeps the result if it is more likely than the best so far.
 //!
-//! It ends when rounds stop bringing anything: one where no outliers are left over, three where there are some. Then close
-//! pairs of motions are taken apart anew ([`Search::untangle`](super::untangling)), and the best fit is polished on all measurements.
+//! The search ends after one round without gain, or three if there are outliers. Then pairs of close motions are restarted
+//! ([`Search::untangle`](super::untangling)), and the best fit is refined on all measurements.
 //!
-//! Measured on the paper's experiment (general motions, n = 2…5, up to 30 % outliers, one motion with 5 % of the measurements),
-//! this ends at the maximum that EM reaches from the true motions. Pitfalls found by measurement: a start σ of 0.05 or 0.15
-//! freezes the random assignment; without taking the weakest motion away, a wrong motion hides half of the
-//! measurements of a small one that is missing; the σ from which EM starts must be that of the *worst* chosen motion, or the
-//! exact motions of noise-free data freeze the others.
+//! On the paper's experiment (general motions, n = 2…5, up to 30 % outliers, one motion with 5 % of the measurements), the search reaches
+//! the maximum that EM reaches from the true motions. **Pitfalls**, found by measurement: an initial σ of 0.05 or 0.15 freezes the random
+//! assignment. Unless the weakest motion is removed, a wrong motion hides half of the measurements of a small motion that is missing.
+//! The initial σ of EM must be that of the *worst* selected motion, otherwise the exact motions of noise-free data freeze the others.
 
 use super::mixture::{EmBuffers, Mixture, Normal, Stop, nearest_distances, own_distances};
 use super::samples::Samples;
@@ -23,52 +22,58 @@ use super::subset;
 use crate::order::{median_f64, sort_few};
 use crate::random::Random;
 
-/// The search works on at most this many measurements, the last maximisation on all.
+/// Largest number of measurements used by the search. The final maximisation uses all.
 const SEARCHED: usize = 1000;
-/// Random motions are drawn with this many times the typical normal flow as deviation.
+/// Standard deviation of the entries of random motions, in units of the typical normal flow.
 const SEED_SCALE: f64 = 1.2;
-/// Random motions per wanted motion: on all measurements, on the unexplained ones (more where outliers hide the motion that is
-/// missing), on those of one motion.
+/// Random motions per wanted motion, on all measurements.
 const OVER_COMPLETE: usize = 6;
+/// The same on unexplained measurements.
 const UNEXPLAINED: usize = 6;
+/// The same on unexplained measurements if outliers hide the missing motion.
 const UNEXPLAINED_AMONG_OUTLIERS: usize = 10;
+/// Random motions on the measurements of one motion.
 const SPLIT: usize = 4;
-/// σ at the start from random motions, of splitting one motion, and the largest at the start from a choice, all in units
-/// of the derivatives' root mean square.
+/// Initial σ of random motions. This and the next two are in units of the root mean square length of the derivatives.
 const WIDE: f64 = 0.3;
+/// Initial σ when one motion is split.
 const SPLIT_WIDE: f64 = 0.1;
+/// Largest initial σ of a selection from the pool.
 const CHOICE_WIDE: f64 = 0.1;
-/// Distances count up to this many σ of the best fit in one choice and at this distance in the other.
+/// Cap of distances in the first selection, in units of the best fit's σ.
 const CAP_SIGMAS: f64 = 4.0;
+/// Cap of distances in the second selection.
 const CAP: f64 = 0.1;
-/// A measurement further than this many σ from every motion is unexplained.
+/// A measurement is unexplained if its distance from every motion exceeds this many σ.
 const EXPLAINED_SIGMAS: f64 = 2.5;
-/// No search in fewer measurements than this.
+/// Smallest number of measurements to search in.
 pub(super) const FEWEST: usize = 12;
-/// A gain in log-likelihood that counts.
+/// Smallest significant gain in log-likelihood.
 const GAIN: f64 = 0.5;
-/// Rounds at most, and how many without gain end the search where more or less than `CLEAN` are outliers.
+/// Maximum number of rounds.
 const ROUNDS: usize = 24;
+/// Number of rounds without gain that ends the search if the share of outliers is at least [`CLEAN`].
 const STALE: usize = 3;
+/// The same for fewer outliers.
 const STALE_CLEAN: usize = 1;
 const CLEAN: f64 = 0.02;
-/// Close pairs are taken apart at most so many times.
+/// Maximum number of times that close pairs are restarted.
 const UNTANGLINGS: usize = 3;
-/// By so much less the score must be to win before this is worth while; measured, it lowers the score by 24 at most.
+/// Close pairs are not restarted if the score exceeds that of a rival by this much. Restarting lowers it by at most 24 (measured).
 const HOPELESS: f64 = 40.0;
-/// Motions of the pool with an entry beyond this are nothing any more.
+/// Motions with a larger absolute entry have diverged and are removed from the pool.
 const LARGEST: f64 = 1e3;
 
 const SEARCH: Stop = Stop { iterations: 15, gain: 1e-6, step: 1e-4 };
 const REFINE: Stop = Stop { iterations: 25, gain: 1e-6, step: 1e-4 };
 const POLISH: Stop = Stop { iterations: 60, gain: 1e-9, step: 1e-7 };
 
-/// A search for motions in one set of measurements; what it finds at one n serves at the next.
+/// A search for motions in a set of measurements. Its pool is kept from one n to the next.
 pub(crate) struct Search<'a> {
     all: &'a Samples,
     pub(super) sample: Samples,
     pub(super) random: Random,
-    /// The deviation with which entries of random motions are drawn.
+    /// Standard deviation of the entries of random motions.
     pub(super) scale: f64,
     pool: Vec<[f64; 6]>,
     pub(super) buffers: EmBuffers,
@@ -80,23 +85,23 @@ impl<'a> Search<'a> {
         let mut random = Random::from_seed(seed);
         let sample =
             if all.len() > SEARCHED { all.subset(random.choose(all.len(), SEARCHED).into_iter()) } else { all.clone() };
-        // The smallest scale only keeps the seeds of motionless data apart from zero.
+        // The constant keeps the random motions of motionless data different from zero.
         let scale = SEED_SCALE * sample.typical_flow() + 1e-12;
         Search { all, sample, random, scale, pool: Vec::new(), buffers: EmBuffers::default() }
     }
 
-    /// The likelihood of a fit on all measurements, and the normal equations of its motions.
+    /// Updates the likelihood of a fit on all measurements; returns the normal equations of its motions.
     pub(crate) fn evaluate(&mut self, fit: &mut Mixture) -> Vec<Normal> {
         self.buffers.evaluate(self.all, fit)
     }
 
-    /// The score of a fit on all measurements, smaller is better.
+    /// The score of a fit on all measurements; smaller is better.
     pub(crate) fn score(&mut self, fit: &Mixture) -> f64 {
         score(self.all, self.scale, &mut self.buffers, fit)
     }
 
-    /// The most likely n motions found, on all measurements. `hypotheses` are motions worth trying; there may be none. Where the
-    /// score is far above `rival`, that of another n, the last effort is saved.
+    /// The fit of n motions, on all measurements. `hypotheses` are motions to start from, possibly none. `rival` is the best score of
+    /// another n: if this n is hopeless in comparison, close pairs are not restarted.
     pub(crate) fn fit(&mut self, n: usize, hypotheses: &[[f64; 6]], rival: f64) -> Mixture {
         let mut best = self.start(n, hypotheses);
         let mut stale = 0;
@@ -119,7 +124,7 @@ impl<'a> Search<'a> {
         self.buffers.maximise(self.all, start, POLISH)
     }
 
-    /// The first fit: from the hypotheses where there are enough, else from random motions.
+    /// The first fit: from the hypotheses if there are enough, otherwise from random motions.
     fn start(&mut self, n: usize, hypotheses: &[[f64; 6]]) -> Mixture {
         let known = self.pool.len();
         self.pool.extend(hypotheses.iter().filter(|a| is_usable(a)));
@@ -130,13 +135,13 @@ impl<'a> Search<'a> {
         let mut best = Mixture::new(vec![[0.0; 6]; n], WIDE);
         self.choose_and_refine(n, &mut best);
         if enough {
-            // What was chosen is in the best fit; the rest would only be compared with all measurements in every round.
+            // The selected hypotheses are in the best fit. The others would only slow down every later selection.
             self.pool.truncate(known);
         }
         best
     }
 
-    /// One round: more motions for the pool, then the best choice from it. Returns whether the likelihood has grown.
+    /// One round: more motions for the pool, then a selection from it. Returns whether the likelihood has increased.
     fn round(&mut self, n: usize, round: usize, best: &mut Mixture) -> bool {
         if round.is_multiple_of(2) {
             self.search_everywhere(n);
@@ -154,7 +159,7 @@ impl<'a> Search<'a> {
         self.pool.extend(found.motions);
     }
 
-    /// Over-complete search on what the best fit does not explain without its weakest motion.
+    /// Over-complete search in the measurements that the best fit does not explain without its weakest motion.
     fn search_the_unexplained(&mut self, n: usize, best: &Mixture) {
         let weakest = (0..n).min_by(|&a, &b| best.shares[a].total_cmp(&best.shares[b]));
         let mut kept = best.motions.clone();
@@ -172,7 +177,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Several motions on the measurements of each motion, in case it covers more than one.
+    /// Several motions on the measurements of each motion, in case it covers more than one true motion.
     fn split_motions(&mut self, best: &Mixture) {
         let labels = best.labels(&self.sample);
         for (i, motion) in best.motions.iter().enumerate() {
@@ -184,7 +189,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The best choice from the pool at both caps, refined. Returns whether the best fit has become better.
+    /// Refines the best selection from the pool for both caps. Returns whether the best fit has improved.
     fn choose_and_refine(&mut self, n: usize, best: &mut Mixture) -> bool {
         let mut gained = false;
         let mut last = Vec::new();
@@ -213,7 +218,7 @@ impl<'a> Search<'a> {
         (0..count).map(|_| centre.map(|c| c + scale * random.normal())).collect()
     }
 
-    /// The searched measurements with one of the given labels; `None` where there are too few to search in.
+    /// The measurements of the search with one of the given labels; `None` if they are fewer than [`FEWEST`].
     pub(super) fn labelled(&self, labels: &[Option<usize>], wanted: &[usize]) -> Option<Samples> {
         let own: Vec<usize> =
             (0..labels.len()).filter(|&j| labels[j].is_some_and(|label| wanted.contains(&label))).collect();
@@ -225,7 +230,7 @@ fn is_usable(motion: &[f64; 6]) -> bool {
     motion.iter().all(|a| a.abs() < LARGEST)
 }
 
-/// The largest noise that the measurements nearest to one of the motions suggest: 1.4826 times the median of their distances.
+/// The largest σ among the motions, estimated as 1.4826 times the median distance of the measurements nearest to the motion.
 fn widest_sigma(samples: &Samples, motions: &[[f64; 6]]) -> f64 {
     let typical = |own: &Vec<f64>| 1.4826 * median_f64(own).unwrap_or(0.0);
     own_distances(samples, motions).iter().map(typical).fold(0.0, f64::max)

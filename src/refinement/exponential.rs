@@ -1,13 +1,13 @@
-//! The exponential function for the innermost loop: the same bits everywhere, and simple enough to be vectorised.
+//! The exponential function of the innermost loop: the same bits on every platform, and simple enough to be vectorised.
 //!
-//! To base 2, so that taking the argument apart costs nothing: `2ᵗ = 2ᵏ·2ᶠ` with `k = round(t)` and `f = t − k`, which is exact;
-//! `2ᶠ` by the polynomial of degree 9 with constant term 1 that has the least relative error for `|f| ≤ ½`, 1.6·10⁻¹⁴. Only `+ − ×`
-//! and bit operations are used, each of them exact to the last bit by IEEE 754.
+//! The base is 2, so argument reduction is exact: `2ᵗ = 2ᵏ·2ᶠ` with `k = round(t)` and `f = t − k`. `2ᶠ` is the minimax polynomial of
+//! degree 9 with constant term 1 for `|f| ≤ ½`, with a relative error of 1.6·10⁻¹⁴. Only `+ − ×` and bit operations are used, whose
+//! results IEEE 754 determines to the last bit.
 
-/// Arguments below this give `2^LOWEST`, about 10⁻³⁰⁴: small enough to mean nothing, large enough to stay normal.
+/// Arguments below this give `2^LOWEST`, about 10⁻³⁰⁴, which is negligible but still a normal number.
 pub(crate) const LOWEST: f64 = -1010.0;
 
-/// Adding this to a number of size below 2⁵¹ rounds it to an integer, held in the low bits of the sum.
+/// Adding this to a number of absolute value below 2⁵¹ rounds it to an integer, stored in the low bits of the sum.
 const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²
 
 /// Coefficients of f⁹, f⁸, …, f.
@@ -39,7 +39,7 @@ pub(crate) fn power_of_two(t: f64) -> f64 {
     p = p * f + POLYNOMIAL[7];
     p = p * f + POLYNOMIAL[8];
     p = p * f + 1.0;
-    // The low bits of `shifted` are k in two's complement: moved to the exponent's place they multiply by 2ᵏ.
+    // The low bits of `shifted` are k in two's complement. Added to the exponent, they multiply by 2ᵏ.
     f64::from_bits(p.to_bits().wrapping_add(shifted.to_bits() << 52))
 }
 
@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ends_of_its_range_are_what_they_should_be() {
+    fn the_ends_of_the_range_are_correct() {
         assert_eq!(power_of_two(0.0).to_bits(), 1.0_f64.to_bits());
         assert_eq!(power_of_two(-1e300).to_bits(), power_of_two(LOWEST).to_bits());
         assert!(power_of_two(LOWEST) > 0.0 && power_of_two(LOWEST).is_normal());

@@ -1,5 +1,5 @@
-//! Tests that the search ends where EM ends that starts from the true motions: a lower likelihood would be a loss of the search,
-//! anything else is what the data say.
+//! Tests that the search reaches the likelihood that EM reaches from the true motions. A lower likelihood is a failure of the search; a
+//! higher one, or a wrong motion, is a property of the data.
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -15,7 +15,7 @@ use protocol::{Protocol, Relation, SPECIAL};
 
 const LONG: Stop = Stop { iterations: 100, gain: 1e-9, step: 1e-7 };
 
-/// In how many trials the fit is less likely than what EM reaches from the truth.
+/// Number of trials in which the fit is less likely than the one that EM reaches from the true motions.
 fn losses(protocol: &Protocol, trials: u64) -> u64 {
     let lost = |seed: &u64| {
         let problem = protocol.problem(40_000_000 + seed);

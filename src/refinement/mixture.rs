@@ -1,18 +1,18 @@
-//! The likelihood of n motions and a class of outliers, and its maximisation by expectation-maximisation.
+//! The likelihood of a mixture of n motions and a class of outliers, and its maximisation by expectation-maximisation.
 //!
-//! Model: the noise is equal on all three derivatives, so the distance of a measurement `y` to the plane of its motion,
-//! `d_i = yᵀ A_i x / |A_i x|` (the residual of eq. 5 over `√(u² + v² + 1)`), is normal with deviation σ. An outlier's `y` has any
-//! direction; the distance of such a vector of length 1 to a plane is uniform in [−1, 1] (Archimedes), density ½. Hence
+//! Model: the noise has the same variance on all three derivatives, so the distance of a measurement `y` from the plane of its motion,
+//! `d_i = yᵀ A_i x / |A_i x|` (the residual of eq. 5 divided by `√(u² + v² + 1)`), is normal with standard deviation σ. The `y` of an
+//! outlier has a uniform direction; for unit length, its distance from a plane is uniform in [−1, 1] (Archimedes), with density ½:
 //!
 //! `p(y_j | x_j) = Σ_i π_i N(d_ij; 0, σ²) + π_0 / 2`.
 //!
-//! One iteration computes every measurement's share in every motion, then one Gauss-Newton step per motion on
-//! `Σ_j w_ij d_ij²` with the exact gradient of d (not that of the residual alone: that one is biased), and new π and σ.
+//! An iteration computes the weights w_ij of all measurements, makes one Gauss-Newton step per motion on `Σ_j w_ij d_ij²`, and updates π
+//! and σ. The gradient is that of d; the gradient of the residual alone would give biased motions.
 //!
-//! Pitfalls. (1) Measurements go by in blocks of fixed arrays and every sum has four explicit lanes: the order of additions is part
-//! of the result, and it is what lets the compiler use vector instructions. (2) σ starts wide when motions start at random: a narrow start
-//! freezes the first assignment. (3) The sum of squares after a step is predicted from the quadratic model, which saves
-//! one pass over the data per iteration; near convergence the prediction is exact.
+//! **Pitfalls.** (1) Measurements are processed in blocks of fixed size, and every sum has four explicit lanes. The order of additions
+//! determines the bits of the result, and it lets the compiler use vector instructions. (2) With random motions, σ must start large: a
+//! small σ freezes the first assignment. (3) The sum of squares after a step is predicted from the quadratic model, which saves a pass
+//! over the data per iteration. Near convergence the prediction is exact.
 
 use super::exponential::power_of_two;
 use super::samples::{BLOCK, Block, Row, Samples};
@@ -20,20 +20,20 @@ use super::symmetric::{Matrix6, cholesky, quadratic_form, solve};
 
 /// Density of an outlier's distance, for derivatives of unit length.
 pub(crate) const OUTLIER_DENSITY: f64 = 0.5;
-/// No share falls below this: it keeps every logarithm finite.
+/// Lower bound of all shares, which keeps logarithms finite.
 const LEAST_SHARE: f64 = 1e-6;
-/// Share of outliers assumed at the start.
+/// Initial share of outliers.
 const FIRST_OUTLIERS: f64 = 0.05;
-/// The noise that is never undercut, in units of the derivatives' root mean square.
+/// Lower bound of σ, in units of the root mean square length of the derivatives.
 pub(crate) const LEAST_SIGMA: f64 = 1e-9;
-/// The longest step of one entry in one iteration, in normalised coordinates.
+/// Largest change of an entry in one iteration, in normalised coordinates.
 const LONGEST_STEP: f64 = 1.0;
-/// Independent partial sums.
+/// Number of independent partial sums.
 const LANES: usize = 4;
-/// How many densities are multiplied before one logarithm is taken: each is between 10⁻⁷ and 10¹⁰.
+/// Number of densities that are multiplied before a logarithm is taken. Each is between 10⁻⁷ and 10¹⁰.
 const FACTORS: usize = 16;
 
-/// n motions in normalised coordinates, their shares, the outliers' share, the noise, and how likely all that is.
+/// n motions in normalised coordinates, their shares, the share of outliers, σ, and the likelihood.
 #[derive(Clone, Debug)]
 pub(crate) struct Mixture {
     pub(crate) motions: Vec<[f64; 6]>,
@@ -47,19 +47,19 @@ pub(crate) struct Mixture {
     pub(crate) log_likelihood: f64,
 }
 
-/// When to stop.
+/// When to stop. The iteration has converged if both changes are below their bounds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stop {
-    /// Largest number of iterations.
+    /// Maximum number of iterations.
     pub(crate) iterations: usize,
-    /// Change of the mean log-likelihood, relative to it, below which …
+    /// Bound of the relative change of the mean log-likelihood.
     pub(crate) gain: f64,
-    /// … and longest step below which the iteration has converged.
+    /// Bound of the largest change of an entry.
     pub(crate) step: f64,
 }
 
 impl Mixture {
-    /// Motions with equal shares and a given noise.
+    /// Motions with equal shares and the given σ.
     pub(crate) fn new(motions: Vec<[f64; 6]>, sigma: f64) -> Self {
         let shares = vec![(1.0 - FIRST_OUTLIERS) / motions.len().max(1) as f64; motions.len()];
         Mixture {
@@ -71,7 +71,7 @@ impl Mixture {
         }
     }
 
-    /// The motion of every measurement: the most probable one, or `None` for an outlier; ties go to the first.
+    /// The most probable motion of every measurement, or `None` for an outlier; ties go to the first.
     pub(crate) fn labels(&self, samples: &Samples) -> Vec<Option<usize>> {
         let mut labels = Vec::with_capacity(samples.len());
         let mut scratch = Scratch::default();
@@ -92,23 +92,24 @@ impl Mixture {
         labels
     }
 
-    /// The density of motion i at distance 0.
+    /// The density π_i N(0; 0, σ²) of motion i at distance 0.
     fn peak(&self, i: usize) -> f64 {
         self.shares[i] / (self.sigma * 2.506_628_274_631_000_5) // √(2π)
     }
 
-    /// What the squared distance is multiplied with in the exponent to base 2.
+    /// The factor of the squared distance in the exponent to base 2.
     fn exponent(&self) -> f64 {
         -0.5 * std::f64::consts::LOG2_E / (self.sigma * self.sigma)
     }
 }
 
-/// What one pass knows about one block: a row per motion of everything.
+/// Intermediate values of a pass for one block, a row per motion.
 #[derive(Default)]
 struct Scratch {
     distance: Vec<Row>,
-    /// Derivative of the distance by the flow's first and second component.
+    /// Derivative of the distance with respect to the first component of the flow.
     by_u: Vec<Row>,
+    /// Derivative of the distance with respect to the second component of the flow.
     by_v: Vec<Row>,
     density: Vec<Row>,
 }
@@ -131,13 +132,13 @@ impl Scratch {
     }
 }
 
-/// Lanes of a sum.
+/// The lanes of a sum.
 type Sum = [f64; LANES];
 
 /// The weighted sums of one motion over all measurements.
 ///
-/// The gradient of d by the six entries is `(g_u·(x, y, 1), g_v·(x, y, 1))`, so the normal matrix consists of the three 3×3
-/// matrices `Σ w g_u² X`, `Σ w g_u g_v X`, `Σ w g_v² X` with `X = (x, y, 1)ᵀ(x, y, 1)`: 18 different sums, not 21.
+/// The gradient of d with respect to the six entries is `(g_u·(x, y, 1), g_v·(x, y, 1))`, so the normal matrix consists of the 3 × 3
+/// matrices `Σ w g_u² X`, `Σ w g_u g_v X`, `Σ w g_v² X` with `X = (x, y, 1)ᵀ(x, y, 1)`. They have 18 different entries.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     uu: [Sum; 6],
@@ -148,7 +149,7 @@ struct Sums {
     squares: Sum,
 }
 
-/// The normal equations of one motion, summed up.
+/// The normal equations of one motion. J is the gradient of d with respect to the six entries.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Normal {
     /// `Σ w J Jᵀ`.
@@ -161,7 +162,7 @@ pub(crate) struct Normal {
     pub(crate) squares: f64,
 }
 
-/// The buffers of the iteration, kept between calls.
+/// The buffers of the iteration, reused between calls.
 #[derive(Default)]
 pub(crate) struct EmBuffers {
     scratch: Scratch,
@@ -170,7 +171,7 @@ pub(crate) struct EmBuffers {
 }
 
 impl EmBuffers {
-    /// Maximises the likelihood from `start` on. The returned likelihood is that of the last completed pass.
+    /// Maximises the likelihood, starting from `mixture`. The returned likelihood is that before the last step.
     pub(crate) fn maximise(&mut self, samples: &Samples, mut mixture: Mixture, stop: Stop) -> Mixture {
         let mut previous = f64::NEG_INFINITY;
         let count = samples.len().max(1) as f64;
@@ -186,13 +187,13 @@ impl EmBuffers {
         mixture
     }
 
-    /// The likelihood of `mixture` as it is, and the normal equations of its motions.
+    /// Updates the likelihood of `mixture`; returns the normal equations of its motions.
     pub(crate) fn evaluate(&mut self, samples: &Samples, mixture: &mut Mixture) -> Vec<Normal> {
         self.pass(samples, mixture);
         self.sums.iter().map(Sums::total).collect()
     }
 
-    /// One pass over the data: fills the sums, sets the likelihood, returns the outliers' total weight.
+    /// A pass over the data: fills the sums, sets the likelihood, and returns the total weight of the outliers.
     fn pass(&mut self, samples: &Samples, mixture: &mut Mixture) -> f64 {
         self.sums.clear();
         self.sums.resize(mixture.motions.len(), Sums::default());
@@ -227,7 +228,7 @@ impl EmBuffers {
         add_up(&outlier_weight)
     }
 
-    /// One Gauss-Newton step per motion, new shares and noise. Returns the longest change of an entry.
+    /// Makes a Gauss-Newton step per motion and updates shares and σ. Returns the largest change of an entry.
     fn step(&self, count: f64, outlier_weight: f64, mixture: &mut Mixture) -> f64 {
         let (mut longest, mut squares, mut weight) = (0.0_f64, 0.0, 0.0);
         mixture.outliers = (outlier_weight / count).max(LEAST_SHARE);
@@ -248,7 +249,7 @@ impl EmBuffers {
 }
 
 impl Normal {
-    /// The Gauss-Newton step, bounded, and the sum of squares that the quadratic model promises after it.
+    /// The Gauss-Newton step, bounded by [`LONGEST_STEP`], and the sum of squares after it as predicted by the quadratic model.
     fn step(&self) -> ([f64; 6], f64) {
         let right: [f64; 6] = std::array::from_fn(|k| -self.gradient[k]);
         let mut step = solve(&cholesky(&self.ridged()), &right);
@@ -258,11 +259,11 @@ impl Normal {
         }
         let slope: f64 = (0..6).map(|k| self.gradient[k] * step[k]).sum();
         let left = self.squares + 2.0 * slope + quadratic_form(&self.matrix, &step);
-        // The model is not to be trusted with more than two digits at once.
+        // The prediction is not accurate enough for a reduction of d by more than two digits.
         (step, left.max(1e-4 * self.squares))
     }
 
-    /// The normal matrix with what makes it positive definite whatever the data.
+    /// The normal matrix with a ridge that makes it positive definite for all data.
     pub(crate) fn ridged(&self) -> Matrix6 {
         let mut matrix = self.matrix;
         let trace: f64 = (0..6).map(|k| matrix[k][k]).sum();
@@ -273,7 +274,7 @@ impl Normal {
     }
 }
 
-/// What the coordinates of each measurement of a block are multiplied with in the sums of one motion.
+/// The factors of the coordinates of a block's measurements in the sums of one motion.
 struct Factors {
     uu: Row,
     uv: Row,
@@ -292,7 +293,7 @@ impl Default for Factors {
 }
 
 impl Factors {
-    /// `inverse[j]` is what turns the densities of measurement j into weights.
+    /// `inverse[j]` is the factor that converts densities of measurement j into weights.
     fn fill(&mut self, scratch: &Scratch, i: usize, inverse: &Row) {
         let [density, by_u, by_v, distance] =
             [&scratch.density, &scratch.by_u, &scratch.by_v, &scratch.distance].map(|rows| &rows[i]);
@@ -311,8 +312,8 @@ impl Factors {
     }
 }
 
-/// The first `length` entries of a row, by lanes. A length that the compiler does not know keeps it from unrolling the loops over
-/// a whole block, for which there are not enough registers.
+/// The first `length` entries of a row, in lanes. Because the length is unknown at compile time, the compiler does not unroll loops over
+/// a whole block, which would need too many registers.
 #[inline(always)]
 fn by_lanes(row: &Row, length: usize) -> &[Sum] {
     row[..length.min(BLOCK)].as_chunks().0
@@ -347,7 +348,7 @@ impl Sums {
 
     fn total(&self) -> Normal {
         let [uu, uv, vv] = [&self.uu, &self.uv, &self.vv].map(|part| part.map(|sum| add_up(&sum)));
-        // Where in the six sums (xx, xy, x, yy, y, 1) the entry (row, column) of a 3×3 part is.
+        // Index in the six sums (xx, xy, x, yy, y, 1) of the entry (row, column) of a 3 × 3 matrix.
         const PLACE: [[usize; 3]; 3] = [[0, 1, 2], [1, 3, 4], [2, 4, 5]];
         let mut matrix = [[0.0; 6]; 6];
         for r in 0..3 {
@@ -390,7 +391,7 @@ fn add_products(sums: &mut [Sum; 6], factor: &Row, block: &Block, length: usize)
     *sums = s;
 }
 
-/// The flow at measurement j of a block, `1/√(u² + v² + 1)`, and its distance to the motion.
+/// The flow at measurement j of a block, `1/√(u² + v² + 1)`, and the distance of the measurement from the motion.
 #[inline(always)]
 fn distance(block: &Block, a: &[f64; 6], j: usize) -> ([f64; 2], f64, f64) {
     let (x, y) = (block.x[j], block.y[j]);
@@ -401,12 +402,12 @@ fn distance(block: &Block, a: &[f64; 6], j: usize) -> ([f64; 2], f64, f64) {
     ([u, v], shrink, r * shrink)
 }
 
-/// Distances of a block's measurements to a motion.
+/// Distances of a block's measurements from a motion.
 fn distances(block: &Block, a: &[f64; 6]) -> Row {
     std::array::from_fn(|j| distance(block, a, j).2)
 }
 
-/// The same, and their derivatives by the flow.
+/// [`distances`], and their derivatives with respect to the flow.
 fn gradients(block: &Block, a: &[f64; 6], out: &mut Row, by_u: &mut Row, by_v: &mut Row) {
     for j in 0..BLOCK {
         let ([u, v], shrink, d) = distance(block, a, j);
@@ -417,7 +418,7 @@ fn gradients(block: &Block, a: &[f64; 6], out: &mut Row, by_u: &mut Row, by_v: &
     }
 }
 
-/// The smallest absolute distance of every measurement to any of the motions.
+/// The absolute distance of every measurement from its nearest motion.
 pub(crate) fn nearest_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<f64> {
     let mut nearest = Vec::with_capacity(samples.len());
     for (b, block) in samples.blocks().iter().enumerate() {
@@ -432,7 +433,7 @@ pub(crate) fn nearest_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<
     nearest
 }
 
-/// For each motion the absolute distances of the measurements that are nearest to it.
+/// For each motion, the absolute distances of the measurements to which it is the nearest.
 pub(crate) fn own_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<Vec<f64>> {
     let mut own = vec![Vec::new(); motions.len()];
     for (b, block) in samples.blocks().iter().enumerate() {
@@ -454,7 +455,7 @@ pub(crate) fn own_distances(samples: &Samples, motions: &[[f64; 6]]) -> Vec<Vec<
     own
 }
 
-/// Appends the squared distances of all measurements to one motion, cut at `cap²`; single precision is enough to compare by.
+/// Appends the squared distances of all measurements from one motion, at most `cap²`. Single precision is enough for comparisons.
 pub(crate) fn capped_squares(samples: &Samples, motion: &[f64; 6], cap: f64, out: &mut Vec<f32>) {
     let most = cap * cap;
     for (b, block) in samples.blocks().iter().enumerate() {
@@ -462,7 +463,7 @@ pub(crate) fn capped_squares(samples: &Samples, motion: &[f64; 6], cap: f64, out
     }
 }
 
-/// The smaller of two numbers: one instruction, other than `min`, which asks whether one is NaN.
+/// The smaller of two numbers in one instruction; `f64::min` would also handle NaN.
 #[inline(always)]
 fn smaller(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }

@@ -1,4 +1,5 @@
-//! From a start to the statistical limit: the paper's nonlinear refinement ([`product`]), and the likelihood of a mixture of motions.
+//! Statistical estimation: the paper's nonlinear refinement ([`product`]), and the maximum likelihood fit of a mixture of motions, which
+//! [`fit_motions`](crate::fit_motions) uses with [`Method::Best`](crate::Method::Best).
 
 mod estimator;
 mod exponential;

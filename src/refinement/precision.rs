@@ -1,26 +1,26 @@
-//! How well a motion is known: the covariance of its entries, and how many of them its measurements determine at all.
+//! The precision of a motion: the covariance of its entries, and the rank of their constraints.
 
 use super::mixture::Normal;
 use super::samples::Samples;
 use super::symmetric::{Matrix6, cholesky, inverse};
 
-/// A direction of the six entries counts as determined if the gradients along it are stronger than this many noise variances …
+/// A direction in the space of the six entries is determined if the mean squared gradient along it exceeds this multiple of σ² …
 const ABOVE_NOISE: f64 = 2.0;
-/// … and than this, where there is no noise (derivatives have unit root mean square).
+/// … plus this constant, for data without noise (derivatives have unit root mean square length).
 const ABOVE_ROUNDING: f64 = 1e-9;
-/// Positions whose spread in a direction is below this share of the whole lie in line.
+/// Positions are collinear if their second moment in some direction is below this share of the total.
 const IN_LINE: f64 = 1e-10;
-/// Sweeps of Jacobi's method: convergence is quadratic, 6×6 matrices need about five.
+/// Sweeps of Jacobi's method. Convergence is quadratic; 6 × 6 matrices need about five.
 const SWEEPS: usize = 12;
 
-/// `σ² H⁻¹` with `H = Σ w J Jᵀ`: the covariance of the entries where the labels are taken as known. What nothing determines has a
-/// huge but finite variance.
+/// `σ² H⁻¹` with `H = Σ w J Jᵀ`, the covariance of the entries with the labels taken as known. Directions that are not determined have a
+/// large but finite variance.
 pub(crate) fn covariance(normal: &Normal, sigma: f64) -> Matrix6 {
     inverse(&cholesky(&normal.ridged())).map(|row| row.map(|entry| entry * sigma * sigma))
 }
 
-/// The rank of the constraints on the entries, noise taken into account: `H` is compared with the energy `Σ X Xᵀ`, X = (x, y, 1), that
-/// a flow has at the positions of the motion's measurements, so that the ratio is the mean squared gradient along the flow.
+/// The numerical rank of the constraints on the six entries, 0 to 6. The eigenvalues of H relative to the flow energy `Σ X Xᵀ`,
+/// X = (x, y, 1), at the positions of the motion's measurements `own` are mean squared gradients, which are compared with the noise.
 pub(crate) fn determined(normal: &Normal, samples: &Samples, own: impl Iterator<Item = usize>, sigma: f64) -> usize {
     let mut energy = [[0.0; 3]; 3];
     for j in own {
@@ -49,7 +49,7 @@ pub(crate) fn determined(normal: &Normal, samples: &Samples, own: impl Iterator<
     eigen(ratio).0.iter().filter(|&&value| value > threshold).count()
 }
 
-/// Eigenvalues and eigenvectors (columns) of a symmetric matrix by Jacobi's rotations.
+/// Eigenvalues and eigenvectors (columns) of a symmetric matrix by Jacobi's method.
 fn eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
     let mut vectors = [[0.0; N]; N];
     (0..N).for_each(|k| vectors[k][k] = 1.0);
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn eigenvectors_put_the_matrix_together_again() {
+    fn eigenvectors_reconstruct_the_matrix() {
         let matrix: [[f64; 4]; 4] =
             std::array::from_fn(|r| std::array::from_fn(|c| 1.0 / (1.0 + (r + c) as f64) + f64::from(r == c)));
         let (values, vectors) = eigen(matrix);

@@ -1,11 +1,11 @@
-//! The paper's nonlinear refinement (section 3.4): Levenberg-Marquardt on the algebraic error (19),
+//! The paper's nonlinear refinement (section 3.4): the Levenberg–Marquardt method on the algebraic error (19),
 //! `E(A_1 … A_n) = Σ_j (Π_i y_jᵀA_i x_j)²`.
 //!
-//! With r_i = yᵀA_i x and φ = (I_x x, I_x y, I_x, I_y x, I_y y, I_y) the derivative of the product by the six entries of A_i is
-//! (Π_{k≠i} r_k) φ. Products without one factor are formed from products before and after it, never by division.
+//! With r_i = yᵀA_i x and φ = (I_x x, I_x y, I_x, I_y x, I_y y, I_y), the derivative of the product with respect to the six entries of
+//! A_i is (Π_{k≠i} r_k) φ. The products without one factor are computed from the products before and after it, without division.
 //!
-//! **Limit**: (19) weights a measurement by its residuals to all *other* motions, so its minimum is not the most likely
-//! one, however many measurements there are (measured: 6 to 38 times the error of the best estimator at N = 20000).
+//! **Limit.** (19) weights a measurement by its residuals for all *other* motions, so its minimum does not tend to the true motions as the
+//! number of measurements grows (measured: 6 to 38 times the error of the best estimator for N = 20 000).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -13,19 +13,32 @@ use super::report::{Report, Termination};
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 
-/// Bound of the accepted steps.
+/// Maximum number of accepted steps.
 pub const MAX_ITERATIONS: usize = 100;
-/// Bound of the dampings tried for one step.
+/// Maximum number of dampings tried for a step.
 const MAX_DAMPINGS: usize = 12;
-/// Converged when a step lowers the cost by less than this share.
+/// The iteration has converged if a step lowers the cost by less than this share.
 const COST_TOLERANCE: f64 = 1e-10;
-/// The first damping, and the factor by which it changes.
+/// The initial damping.
 const FIRST_DAMPING: f64 = 1e-3;
+/// The factor by which the damping changes.
 const DAMPING_FACTOR: f64 = 6.0;
-/// Smallest damping; also, times the largest, the smallest diagonal entry of the normal equations.
+/// Smallest damping. Also the smallest diagonal entry that damping is proportional to, relative to the largest.
 const SMALLEST: f64 = 1e-12;
 
-/// The residual of (19) on one measurement, Π_i yᵀA_i x, and its gradient by all 6n entries, written to `gradient`.
+/// The residual Π_i yᵀA_i x of (19) on one measurement. Its gradient with respect to all 6n entries is written to `gradient`, whose
+/// length must be 6n.
+///
+/// ```
+/// use veronese::AffineMotion;
+/// use veronese::refinement::product::residual_and_gradient;
+///
+/// let motions = [AffineMotion::translation(1.0, 0.0), AffineMotion::translation(0.0, 2.0)];
+/// let mut gradient = [0.0; 12];
+/// let residual = residual_and_gradient(&motions, [3.0, 4.0], [1.0, 2.0, 0.5], &mut gradient);
+/// assert_eq!(residual, 1.5 * 4.5);
+/// assert_eq!(gradient[..6], [13.5, 18.0, 4.5, 27.0, 36.0, 9.0]); // 4.5 (I_x x, I_x y, I_x, I_y x, I_y y, I_y)
+/// ```
 pub fn residual_and_gradient(
     motions: &[AffineMotion],
     position: [f64; 2],
@@ -34,7 +47,7 @@ pub fn residual_and_gradient(
 ) -> f64 {
     let ([x, y], [ix, iy, _]) = (position, derivatives);
     let features = [ix * x, ix * y, ix, iy * x, iy * y, iy];
-    // Forward: the product of the factors before each; backward: times the product of those after it.
+    // Forward: the products of the factors before each motion. Backward: multiplied by the products of those after it.
     let mut product = 1.0;
     for (motion, part) in motions.iter().zip(gradient.chunks_exact_mut(6)) {
         part[0] = product;
@@ -51,17 +64,51 @@ pub fn residual_and_gradient(
     product
 }
 
-/// E of (19).
+/// The algebraic error E of (19).
+///
+/// ```
+/// use veronese::refinement::product::cost;
+/// use veronese::{AffineMotion, Measurements};
+///
+/// let data = Measurements::new(vec![[0.0, 0.0], [1.0, 1.0]], vec![[1.0, 0.0, -2.0], [0.0, 1.0, 3.0]])?;
+/// assert_eq!(cost(&[AffineMotion::STATIC], &data), 13.0); // 2² + 3²
+/// assert_eq!(cost(&[AffineMotion::STATIC, AffineMotion::translation(2.0, -3.0)], &data), 0.0);
+/// # Ok::<(), veronese::Error>(())
+/// ```
 pub fn cost(motions: &[AffineMotion], measurements: &Measurements) -> f64 {
     let product = |(x, y): ([f64; 2], [f64; 3])| motions.iter().map(|a| a.residual(x, y)).product::<f64>();
     measurements.iter().map(|measurement| product(measurement) * product(measurement)).sum()
 }
 
-/// Minimises (19) from `start` by Levenberg-Marquardt; the motions and how it ended. For one motion this is linear
-/// least squares, reached in one or two steps.
+/// Minimises (19) by the Levenberg–Marquardt method. Returns the motions and a report.
 ///
-/// Expects normalised measurements. At most [`MAX_ITERATIONS`] steps of 2N(6n)² + O(n³) operations each. Where the data
-/// determine nothing (all derivatives zero) the start is returned.
+/// `measurements` should be normalised. For one motion, the problem is linear least squares. There are at most [`MAX_ITERATIONS`] steps
+/// of 2N(6n)² + O(n³) operations. If the data determine nothing (all derivatives are zero), the result is `start`.
+///
+/// ```
+/// use veronese::refinement::product::{cost, refine};
+/// # use veronese::{Measurements, Random};
+/// use veronese::AffineMotion;
+///
+/// # fn main() -> veronese::Result<()> {
+/// let truth = [AffineMotion::translation(0.5, 0.0), AffineMotion::new([0.1, -0.2, -0.5, 0.2, 0.1, 0.3])];
+/// # let mut random = Random::from_seed(1);
+/// # let positions: Vec<_> = (0..200).map(|_| [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)]).collect();
+/// # let derivative = |(j, &[x, y]): (usize, &[f64; 2])| {
+/// #     let ([u, v], [ix, iy]) = (truth[j % 2].flow(x, y), [random.normal(), random.normal()]);
+/// #     [ix, iy, -ix * u - iy * v]
+/// # };
+/// # let derivatives = positions.iter().enumerate().map(derivative).collect();
+/// # let data = Measurements::new(positions, derivatives)?;
+/// // `data` are 200 measurements of the two motions, without noise.
+/// let start = truth.map(|motion| AffineMotion::new(motion.matrix.map(|entry| entry + 0.05)));
+/// let (refined, report) = refine(&start, &data);
+/// assert!(report.was_successful() && report.final_cost < 1e-12 * report.initial_cost);
+/// assert_eq!(report.final_cost, cost(&refined, &data));
+/// assert!(truth.iter().zip(&refined).all(|(motion, found)| motion.relative_error(found) < 1e-6));
+/// # Ok(())
+/// # }
+/// ```
 pub fn refine(start: &[AffineMotion], measurements: &Measurements) -> (Vec<AffineMotion>, Report) {
     let mut motions = start.to_vec();
     let initial_cost = cost(&motions, measurements);
@@ -91,7 +138,7 @@ pub fn refine(start: &[AffineMotion], measurements: &Measurements) -> (Vec<Affin
     (motions, report)
 }
 
-/// JᵀJ and Jᵀr of the residuals at one point, 6n×6n and 6n.
+/// JᵀJ (6n × 6n, lower triangle) and Jᵀr (6n) of the residuals.
 struct NormalEquations {
     matrix: DMatrix<f64>,
     gradient: DVector<f64>,
@@ -107,7 +154,7 @@ impl NormalEquations {
             let residual = residual_and_gradient(motions, x, y, &mut row);
             for (k, &value) in row.iter().enumerate() {
                 gradient[k] += value * residual;
-                // The lower triangle, column by column; it is all that Cholesky reads.
+                // The lower triangle, column by column, which is all that Cholesky reads.
                 let column = &mut matrix.as_mut_slice()[k * size + k..(k + 1) * size];
                 for (sum, other) in column.iter_mut().zip(&row[k..]) {
                     *sum += value * other;
@@ -117,7 +164,7 @@ impl NormalEquations {
         NormalEquations { matrix, gradient }
     }
 
-    /// The first step of growing damping that lowers the cost; `None` where none does.
+    /// The first step that lowers the cost `present`, with increasing damping; `None` if there is none.
     fn lower(
         &self,
         motions: &[AffineMotion],

@@ -1,4 +1,4 @@
-//! How an iterative solver ended: a value, never an error.
+//! The report of an iterative solver.
 
 use serde::Serialize;
 
@@ -6,30 +6,38 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub enum Termination {
-    /// The cost no longer falls by more than the tolerance, or is zero.
+    /// The last step lowered the cost by less than the tolerance, or the cost is zero.
     Converged,
-    /// No step of any damping lowers the cost: a minimum to rounding, or data that determine nothing.
+    /// No damping gives a step that lowers the cost: a minimum to rounding, or data that determine nothing.
     Stalled,
-    /// The bound of the iterations was reached.
+    /// The maximum number of iterations was reached.
     MaxIterations,
 }
 
-/// What an iterative solver did.
+/// The report of an iterative solver. A solver that stops early is not an error.
+///
+/// ```
+/// use veronese::refinement::{Report, Termination};
+///
+/// let report = Report { termination: Termination::Stalled, iterations: 3, initial_cost: 2.0, final_cost: 1.0 };
+/// assert!(report.was_successful());
+/// assert!(!Report { termination: Termination::MaxIterations, ..report }.was_successful());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Report {
     /// Why it stopped.
     pub termination: Termination,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub iterations: usize,
     /// Cost at the start.
     pub initial_cost: f64,
-    /// Cost at the end, never above the initial one.
+    /// Cost at the end, at most the initial cost.
     pub final_cost: f64,
 }
 
 impl Report {
-    /// Whether the solver ended by itself rather than by its bound.
+    /// Whether the solver stopped before the maximum number of iterations.
     pub fn was_successful(&self) -> bool {
         self.termination != Termination::MaxIterations
     }

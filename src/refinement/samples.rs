@@ -1,9 +1,9 @@
-//! Measurements laid out for the inner loops: blocks of plain arrays, one per quantity.
+//! Measurements in the layout of the inner loops: blocks of arrays, one per quantity.
 
 use crate::measurements::Measurements;
 use crate::order::median_f64;
 
-/// Measurements in a block. With 24 motions at once the scratch rows of a block still fit the first-level cache.
+/// Measurements per block. The intermediate rows of a block fit the first-level cache with up to 24 motions.
 pub(crate) const BLOCK: usize = 32;
 
 /// One number per measurement of a block.
@@ -20,7 +20,7 @@ pub(crate) struct Block {
     pub(crate) ix: Row,
     pub(crate) iy: Row,
     pub(crate) it: Row,
-    /// 1 for a measurement, 0 where the last block is filled up.
+    /// 1 for a measurement, 0 for padding in the last block.
     pub(crate) present: Row,
 }
 
@@ -36,7 +36,7 @@ const EMPTY: Block = Block {
     present: [0.0; BLOCK],
 };
 
-/// Measurements in normalised coordinates (see [`Measurements::normalised`]), by blocks.
+/// Measurements in normalised coordinates (see [`Measurements::normalised`]), in blocks.
 #[derive(Clone, Default)]
 pub(crate) struct Samples {
     blocks: Vec<Block>,
@@ -44,7 +44,7 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
-    /// All of the (normalised) measurements, in their order.
+    /// All of the (normalised) measurements, in order.
     pub(crate) fn new(measurements: &Measurements) -> Self {
         let mut samples = Samples::default();
         measurements.iter().for_each(|(position, derivatives)| samples.push(position, derivatives));
@@ -86,7 +86,7 @@ impl Samples {
         [block.x[lane], block.y[lane]]
     }
 
-    /// The blocks; lanes beyond `len` in the last one hold zeros.
+    /// The blocks. The last one is padded with zeros.
     pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
     }
@@ -96,7 +96,7 @@ impl Samples {
         (self.len - b * BLOCK).min(BLOCK)
     }
 
-    /// Median of the normal flow `|I_t| / |(I_x, I_y)|`: the size of the motions before any is known.
+    /// Median of the normal flow `|I_t| / |(I_x, I_y)|`, an estimate of the typical displacement.
     pub(crate) fn typical_flow(&self) -> f64 {
         let mut flows = Vec::with_capacity(self.len);
         for (b, block) in self.blocks.iter().enumerate() {

@@ -1,19 +1,19 @@
-//! The number of motions, by the [`score`](super::score) of the best fit for each n.
+//! Selection of the number of motions by the [`score`](super::score) of the best fit for each n.
 
 use super::estimator::Search;
 use super::mixture::Mixture;
 
-/// So many larger n without a better score end the search.
+/// The search ends after this many larger n without a better score.
 const PATIENCE: usize = 2;
 
-/// The fit of the chosen number of motions, and all that were tried.
+/// The fit of the selected number of motions, and the scores of all numbers tried.
 pub(crate) struct Selection {
     pub(crate) fit: Mixture,
     /// (number of motions, score), by increasing number.
     pub(crate) tried: Vec<(usize, f64)>,
 }
 
-/// Tries 1, 2, … up to `largest` motions. `hypotheses(n)` are motions worth trying at n.
+/// Tries n = 1, 2, … up to `largest`. `hypotheses(n)` are motions to start from.
 pub(crate) fn select(
     search: &mut Search<'_>,
     largest: usize,
@@ -36,7 +36,7 @@ pub(crate) fn select(
     Selection { fit, tried }
 }
 
-/// What was found at the chosen n is in the pool now: perhaps one motion fewer explains the data as well after all.
+/// Tries smaller n again, now that the pool contains the motions found for the selected n.
 fn reconsider(search: &mut Search<'_>, fit: &mut Mixture, tried: &mut [(usize, f64)]) {
     while fit.motions.len() > 1 {
         let n = fit.motions.len() - 1;

@@ -1,19 +1,20 @@
-//! The choice of n motions out of many hypotheses: each measurement pays the square of its distance to the
-//! nearest of them, up to a cap.
+//! Selection of n motions from many hypotheses. The cost of a measurement is its squared distance from the nearest selected motion, up to
+//! a cap.
 //!
-//! Why squares: two motions that share the measurements of one, each nudged a little, shorten many small distances. In the sum of
-//! absolute distances that is worth as much as a motion with a twentieth of the measurements that is missing; in squares it is not.
+//! Squares, not absolute values: two slightly different copies of one motion share its measurements and reduce many small distances. In a
+//! sum of absolute distances, that gains as much as a missing motion with a twentieth of the measurements; in a sum of squares it does
+//! not.
 
 use super::mixture::capped_squares;
 use super::samples::Samples;
 
-/// Passes of exchanging one member at a time; rarely more than two change anything.
+/// Passes of exchanging single hypotheses. More than two rarely change anything.
 const EXCHANGES: usize = 3;
-/// Independent partial sums.
+/// Number of independent partial sums.
 const LANES: usize = 8;
 
-/// The indices of `n` hypotheses (fewer where there are fewer) that together leave the least `Σ_j min(cap², min_i d_ij²)`: one after
-/// another, then every member exchanged for the best other one while that helps.
+/// The indices of the `n` hypotheses (all if there are fewer) with the smallest `Σ_j min(cap², min_i d_ij²)`: greedy selection, then
+/// exchange of single hypotheses while that lowers the cost.
 pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: f64) -> Vec<usize> {
     let width = samples.len();
     let n = n.min(hypotheses.len());
@@ -60,7 +61,7 @@ pub(crate) fn choose(samples: &Samples, hypotheses: &[[f64; 6]], n: usize, cap: 
     chosen
 }
 
-/// `a_j ← min(a_j, b_j)`, without the question of `min` whether one is NaN.
+/// `a_j ← min(a_j, b_j)`; `f32::min` would also handle NaN.
 fn lower(a: &mut [f32], b: &[f32]) {
     a.iter_mut().zip(b).for_each(|(a, &b)| *a = if b < *a { b } else { *a });
 }

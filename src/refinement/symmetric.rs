@@ -1,10 +1,10 @@
-//! Symmetric positive definite 6×6 systems: the normal equations of one affine motion.
+//! Symmetric positive definite 6 × 6 systems: the normal equations of an affine motion.
 
-/// A symmetric 6×6 matrix, all entries stored.
+/// A symmetric 6 × 6 matrix with all entries stored.
 pub(crate) type Matrix6 = [[f64; 6]; 6];
 
-/// The lower triangular L with `L Lᵀ = matrix`; pivots that are not positive are raised to the smallest positive number,
-/// so that the factor always exists (callers add a ridge first, which makes that an exception).
+/// The Cholesky factor, lower triangular L with `L Lᵀ = matrix`. Pivots that are not positive are raised to the smallest positive number,
+/// so the factor always exists.
 #[inline(never)]
 pub(crate) fn cholesky(matrix: &Matrix6) -> Matrix6 {
     let mut l = [[0.0; 6]; 6];

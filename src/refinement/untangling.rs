@@ -1,8 +1,7 @@
-//! Two motions that are close to each other, taken apart anew.
+//! Restarts of pairs of motions that are close to each other.
 //!
-//! Where two motions differ by a few σ only, EM of all n motions ends in one of many maxima that cut their common measurements in
-//! different ways. On these measurements alone two motions are restarted from both sides of their mean: that is cheap, and
-//! finds the better cut.
+//! If two motions differ by only a few σ, the likelihood of all n motions has many local maxima, which divide the measurements of the two
+//! differently. Restarting the two on their own measurements, from both sides of their mean, is cheap and finds a better maximum.
 
 use super::estimator::Search;
 use super::mixture::{Mixture, Stop, nearest_distances};
@@ -11,18 +10,18 @@ use crate::order::median_f64;
 
 /// A pair is close if at least half of its measurements are within this many σ of both motions.
 const CLOSE_SIGMAS: f64 = 8.0;
-/// Restarts of a pair.
+/// Number of restarts of a pair.
 const TRIES: usize = 8;
-/// Half the distance of the restarted motions, per entry, in σ; one after another.
+/// Standard deviation of the offset of a restarted motion from the mean, per entry, in units of σ; used in turn.
 const SPREADS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
-/// σ at a restart, in units of the fit's.
+/// Initial σ of a restart, in units of the σ of the fit.
 const WIDER: f64 = 2.0;
-/// A gain in log-likelihood that counts.
+/// Smallest significant gain in log-likelihood.
 const GAIN: f64 = 0.1;
 const STOP: Stop = Stop { iterations: 40, gain: 1e-6, step: 1e-4 };
 
 impl Search<'_> {
-    /// Restarts close pairs; returns at the first that makes the whole fit more likely, and says whether there was one.
+    /// Restarts close pairs until one makes the whole fit more likely. Returns whether one did.
     pub(super) fn untangle(&mut self, best: &mut Mixture) -> bool {
         let labels = best.labels(&self.sample);
         for i in 0..best.motions.len() {
@@ -44,7 +43,7 @@ impl Search<'_> {
         false
     }
 
-    /// The most likely two motions in the measurements of a pair.
+    /// The most likely two motions found in the measurements of a pair.
     fn restart(&mut self, own: &Samples, pair: [[f64; 6]; 2], sigma: f64) -> [[f64; 6]; 2] {
         let mut best = self.buffers.maximise(own, Mixture::new(pair.to_vec(), sigma), STOP);
         for spread in SPREADS.iter().cycle().take(TRIES) {
@@ -60,7 +59,7 @@ impl Search<'_> {
     }
 }
 
-/// Median over the measurements of the larger of the two distances.
+/// Median over the measurements of the larger of the distances from the two motions.
 fn farther_distance(own: &Samples, pair: &[[f64; 6]; 2]) -> f64 {
     let mut first = nearest_distances(own, &pair[..1]);
     let second = nearest_distances(own, &pair[1..]);

@@ -1,4 +1,4 @@
-//! What a scene is made of.
+//! The layers of a scene.
 
 use super::SceneOptions;
 use super::shape::Shape;
@@ -6,20 +6,20 @@ use super::texture::{Style, Texture};
 use crate::motion::AffineMotion;
 use crate::random::Random;
 
-/// One thing: a texture cut out by a shape, moving. Coordinates are those of the frame `first`.
+/// A moving texture with an outline. Coordinates are those of the frame `first`.
 pub(super) struct Layer {
     pub(super) motion: AffineMotion,
     pub(super) texture: Texture,
-    /// What to add to a pixel to get its place in the texture.
+    /// Added to a pixel, gives its position in the texture.
     pub(super) offset: [f64; 2],
     /// Outline and its centre; none for the background.
     pub(super) shape: Option<(Shape, [f64; 2])>,
 }
 
-/// Contrast of a background that is not to be bare, grey levels.
+/// Minimum contrast of a textured background, grey levels.
 pub(super) const RICH: f64 = 15.0;
 
-/// What is behind everything, with some margin around the frame; of at least some contrast, where its style has it.
+/// The background, with a margin around the frame and, if its style permits, at least the given contrast in grey levels.
 pub(super) fn background(
     random: &mut Random,
     options: &SceneOptions,
@@ -32,7 +32,7 @@ pub(super) fn background(
     Layer { motion, texture, offset: [margin as f64; 2], shape: None }
 }
 
-/// Something in front of it.
+/// An object in front of the background.
 pub(super) fn object(
     random: &mut Random,
     options: &SceneOptions,
@@ -47,7 +47,7 @@ pub(super) fn object(
     Layer { motion, texture, offset: [half - centre[0], half - centre[1]], shape: Some((shape, centre)) }
 }
 
-/// The first of some textures with at least the wanted contrast, or the last.
+/// The first of nine random textures with at least the given contrast, or the last.
 fn textured(random: &mut Random, style: &Style, width: usize, height: usize, colour: bool, contrast: f64) -> Texture {
     let mut texture = Texture::draw(random, style, width, height, colour);
     for _ in 0..8 {

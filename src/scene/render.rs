@@ -1,4 +1,4 @@
-//! From layers to frames and their truth.
+//! Rendering of layers to frames and their ground truth.
 
 use super::layer::Layer;
 use super::{Scene, SceneOptions};
@@ -7,7 +7,7 @@ use crate::frame::Frame;
 use crate::motion::AffineMotion;
 use crate::random::Random;
 
-/// `[a, b, c, d, e, f]` takes (x, y) to (a x + b y + c, d x + e y + f).
+/// `[a, b, c, d, e, f]` maps (x, y) to (a x + b y + c, d x + e y + f).
 type Warp = [f64; 6];
 
 /// x ↦ x + A x.
@@ -16,7 +16,7 @@ fn forward(motion: &AffineMotion) -> Warp {
     [1.0 + a[0], a[1], a[2], a[3], 1.0 + a[4], a[5]]
 }
 
-/// The inverse of [`forward`]; the identity where there is none.
+/// The inverse of [`forward`]; the identity if it has none.
 fn backward(motion: &AffineMotion) -> Warp {
     let [a, b, c, d, e, f] = forward(motion);
     let determinant = a * e - b * d;
@@ -27,7 +27,7 @@ fn backward(motion: &AffineMotion) -> Warp {
     [a, b, -(a * c + b * f), d, e, -(d * c + e * f)]
 }
 
-/// Renders the frames at t = −1, 0, 1 from the layers, the first of which is the background, the last the nearest.
+/// Renders the frames at t = −1, 0, 1. The layers are in order of depth: the first is the background, the last the nearest.
 pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Random) -> Result<Scene> {
     let (width, height) = (options.width, options.height);
     let mut rgba: [Vec<u8>; 3] = Default::default();
@@ -50,7 +50,7 @@ pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Rand
     Ok(Scene { frames: [frame(0)?, frame(1)?, frame(2)?], rgba, labels: truth, motions, occluded, options: *options })
 }
 
-/// The sharp image at time t (0, 1, 2 for before, first, second) and the layer that is seen at every pixel.
+/// The image without blur at time t (0, 1, 2 for before, first, second), and the visible layer at every pixel.
 fn compose(layers: &[Layer], width: usize, height: usize, t: usize) -> (Vec<[f32; 3]>, Vec<u8>) {
     let mut image = vec![[0.0f32; 3]; width * height];
     let mut labels = vec![0u8; width * height];
@@ -92,7 +92,7 @@ fn compose(layers: &[Layer], width: usize, height: usize, t: usize) -> (Vec<[f32
     (image, labels)
 }
 
-/// The point spread of the camera: a Gaussian of standard deviation `sigma` pixels.
+/// The blur of the camera: a Gaussian of standard deviation `sigma` pixels.
 fn blur(image: &mut [[f32; 3]], width: usize, height: usize, sigma: f64) {
     if sigma <= 0.0 {
         return;
@@ -123,7 +123,7 @@ fn blur(image: &mut [[f32; 3]], width: usize, height: usize, sigma: f64) {
     pass(width, height, width, 1);
 }
 
-/// Gain, bias, noise of deviation `noise`·√(I/128), eight bits. The noise is that of the luminance: equal in all channels.
+/// RGBA bytes of an image after gain, bias and noise of standard deviation `noise`·√(I/128), which is equal in all channels.
 fn exposed(image: &[[f32; 3]], gain: f32, bias: f32, noise: f64, random: &mut Random) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(image.len() * 4);
     for pixel in image {
@@ -137,7 +137,7 @@ fn exposed(image: &[[f32; 3]], gain: f32, bias: f32, noise: f64, random: &mut Ra
     bytes
 }
 
-/// Pixels of `first` that leave the image or land where `second` shows another layer.
+/// Whether a pixel of `first` leaves the image or moves to a pixel where `second` shows another layer.
 fn occlusion(motions: &[AffineMotion], first: &[u8], second: &[u8], width: usize, height: usize) -> Vec<bool> {
     (0..first.len())
         .map(|p| {
@@ -150,7 +150,7 @@ fn occlusion(motions: &[AffineMotion], first: &[u8], second: &[u8], width: usize
         .collect()
 }
 
-/// A frame of another size than the options allow, or a number that is none.
+/// Checks the ranges of the options.
 pub(super) fn check(options: &SceneOptions) -> Result<()> {
     let bad = |name, reason: &str| Err(Error::InvalidOption { name, reason: reason.to_owned() });
     let (width, height) = (options.width, options.height);

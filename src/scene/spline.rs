@@ -1,6 +1,6 @@
-//! Cubic B-splines on a raster: a texture that can be asked for its value between the pixels.
+//! Cubic B-splines on a raster: smooth interpolation of textures between pixels.
 
-/// A smooth function of the plane given by coefficients on the integer grid, mirrored at the borders.
+/// A cubic B-spline surface with coefficients on the integer grid, mirrored at the borders.
 #[derive(Clone, Debug)]
 pub(super) struct Spline {
     width: usize,
@@ -9,12 +9,12 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// The spline with the given coefficients: smoother than they are.
+    /// The spline with the given coefficients, which it smooths.
     pub(super) fn smoothing(width: usize, height: usize, coefficients: Vec<f32>) -> Self {
         Spline { width, height, coefficients }
     }
 
-    /// The spline through the given values (Unser, IEEE Signal Processing Magazine 16(6), 1999).
+    /// The spline that interpolates the given values (Unser, IEEE Signal Processing Magazine 16(6), 1999).
     pub(super) fn interpolating(width: usize, height: usize, mut values: Vec<f32>) -> Self {
         let mut line = Vec::new();
         for row in values.chunks_exact_mut(width) {
@@ -52,13 +52,13 @@ impl Spline {
     }
 }
 
-/// The four cubic B-spline weights at a fraction f of a pixel.
+/// The four cubic B-spline weights at the fraction f of a pixel, 0 to 1.
 fn weights(f: f32) -> [f32; 4] {
     let g = 1.0 - f;
     [g * g * g / 6.0, 2.0 / 3.0 - f * f * (1.0 - 0.5 * f), 2.0 / 3.0 - g * g * (1.0 - 0.5 * g), f * f * f / 6.0]
 }
 
-/// Index i of a sequence that is mirrored at its first and last element.
+/// The index of element i of a sequence mirrored at its first and last element.
 fn mirrored(i: i64, length: usize) -> usize {
     let last = length as i64 - 1;
     if last < 1 {
@@ -68,7 +68,7 @@ fn mirrored(i: i64, length: usize) -> usize {
     m.min(2 * last - m) as usize
 }
 
-/// Values of a line to B-spline coefficients, mirrored at the ends.
+/// Converts the values of a line to B-spline coefficients, mirrored at the ends.
 fn prefilter(line: &mut [f64]) {
     let n = line.len();
     if n < 2 {
@@ -76,7 +76,7 @@ fn prefilter(line: &mut [f64]) {
     }
     let pole = 3.0_f64.sqrt() - 2.0;
     line.iter_mut().for_each(|v| *v *= 6.0);
-    // pole^24 < 1e-13: the sum over the mirrored past may end there.
+    // The sum over the mirrored past ends after 24 terms: pole²⁴ < 10⁻¹³.
     let (mut first, mut power) = (0.0, 1.0);
     for k in 0..24 {
         first += power * line[mirrored(k, n)];
@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_goes_through_its_values_and_reproduces_a_parabola() {
+    fn it_interpolates_its_values_and_reproduces_a_parabola() {
         let f = |x: f64, y: f64| 3.0 + 0.5 * x - 0.25 * y + 0.02 * x * x - 0.01 * x * y;
         let values = (0..40 * 30).map(|p| f((p % 40) as f64, (p / 40) as f64) as f32).collect();
         let spline = Spline::interpolating(40, 30, values);

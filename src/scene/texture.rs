@@ -1,5 +1,5 @@
-//! Procedural textures that look like photographs to an algorithm: patches of all sizes that hide each other ("dead
-//! leaves", whose statistics are those of natural images), flat, shaded, rough or striped, under uneven light.
+//! Procedural textures with the statistics of natural images: the dead leaves model (patches of all sizes that occlude each other). Patches
+//! are flat, shaded, rough or striped, under uneven light.
 
 use std::f64::consts::PI;
 
@@ -7,10 +7,11 @@ use super::shape::{Kind, Shape};
 use super::spline::Spline;
 use crate::random::Random;
 
-/// Rec. 601, as [`Frame`](crate::Frame) has it.
+/// Weights of red, green and blue in the luminance (Rec. 601, as in [`Frame`](crate::Frame)).
 const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
+/// Maximum number of patches.
 const MOST_PATCHES: usize = 4000;
-/// Patches of a smaller radius are details of what they lie on.
+/// Patches of a smaller radius, in pixels, are details with a level and a colour near those of the patch below.
 const DETAIL: f64 = 9.0;
 
 /// A texture: one spline per channel (one for grey, three for colour).
@@ -21,33 +22,33 @@ pub(super) struct Texture {
     pub(super) contrast: f64,
 }
 
-/// What a texture is made of.
+/// Parameters of a kind of texture.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Style {
-    /// Area of all patches together over the area of the texture.
+    /// Total area of the patches relative to the area of the texture.
     patches: f64,
-    /// Radius of the smallest patch, pixels, and of the largest, share of the shorter side.
+    /// Radius of the smallest patch in pixels, and of the largest as a share of the shorter side.
     radii: [f64; 2],
-    /// Roughness of rough patches, grey levels.
+    /// Standard deviation of the noise of rough patches, grey levels.
     roughness: f64,
     /// Share of patches without roughness.
     flat: f64,
-    /// How much an octave of the roughness weighs against the next finer one.
+    /// Amplitude of an octave of the roughness relative to the next finer one.
     persistence: f64,
 }
 
 impl Style {
-    /// Things of all sizes, half of them smooth.
+    /// Objects of all sizes, half of them smooth.
     pub(super) const THINGS: Style =
         Style { patches: 2.2, radii: [4.0, 0.35], roughness: 12.0, flat: 0.45, persistence: 1.4 };
     /// Grass, gravel, foliage: rough everywhere, few patches.
     pub(super) const GROUND: Style =
         Style { patches: 0.5, radii: [3.0, 0.2], roughness: 26.0, flat: 0.1, persistence: 1.25 };
-    /// Walls and floors: large even areas with details.
+    /// Walls and floors: large uniform areas with details.
     pub(super) const WALLS: Style =
         Style { patches: 1.2, radii: [6.0, 0.7], roughness: 7.0, flat: 0.5, persistence: 1.6 };
 
-    /// Asphalt from afar: nearly even, with a few small marks.
+    /// Distant asphalt: nearly uniform, with a few small marks.
     pub(super) const BARE: Style =
         Style { patches: 0.006, radii: [1.5, 0.02], roughness: 1.0, flat: 0.0, persistence: 1.25 };
 
@@ -56,14 +57,15 @@ impl Style {
     }
 }
 
-/// How one patch is painted.
+/// The appearance of a patch.
 struct Paint {
+    /// Grey level at the centre.
     level: f64,
     /// Change of the level per pixel.
     shade: [f64; 2],
     roughness: f64,
     tint: [f32; 3],
-    /// Amplitude, phase per pixel in x and y.
+    /// Amplitude in grey levels, and phase per pixel in x and y.
     stripes: [f64; 3],
 }
 
@@ -84,7 +86,7 @@ impl Texture {
             let mut paint = Paint::draw(random, style, &palette, radius, true);
             let centre = [random.uniform(0.0, width as f64), random.uniform(0.0, height as f64)];
             if radius < DETAIL {
-                // Marks and blemishes rather than things of their own: near to what they are on.
+                // Marks rather than objects: near in level and colour to the patch below.
                 let under = canvas[centre[1] as usize * width + centre[0] as usize];
                 let grey: f32 = under.iter().zip(LUMINANCE).map(|(c, l)| c * l).sum();
                 paint.level = f64::from(grey) + 22.0 * random.normal();
@@ -110,7 +112,7 @@ impl Texture {
         for (p, pixel) in canvas.iter_mut().enumerate() {
             let (x, y) = ((p % width) as f64 - 0.5 * width as f64, (p / width) as f64 - 0.5 * height as f64);
             let factor = (1.0 + light[0] * x + light[1] * y) as f32;
-            // Soft toes instead of cut-off lights and shadows: a clipped texture has no gradient.
+            // Compressed rather than clipped: a clipped texture has no gradient.
             *pixel = pixel.map(|v| soft(v * factor));
         }
         Texture::from_canvas(width, height, &canvas, colour)
@@ -130,7 +132,7 @@ impl Texture {
         Texture { channels, contrast: variance.sqrt() }
     }
 
-    /// Red, green, blue at (x, y), grey levels.
+    /// Red, green and blue at (x, y), 0 to 255.
     pub(super) fn at(&self, x: f64, y: f64) -> [f32; 3] {
         match self.channels.as_slice() {
             [red, green, blue] => [red.at(x, y), green.at(x, y), blue.at(x, y)],
@@ -169,14 +171,14 @@ impl Paint {
     }
 }
 
-/// Factors of red, green and blue that leave the luminance of grey alone.
+/// Random factors of red, green and blue that preserve the luminance of grey.
 fn tint(random: &mut Random) -> [f32; 3] {
     let raw: [f32; 3] = std::array::from_fn(|_| random.uniform(0.75, 1.25) as f32);
     let luminance = LUMINANCE[0] * raw[0] + LUMINANCE[1] * raw[1] + LUMINANCE[2] * raw[2];
     raw.map(|c| c / luminance)
 }
 
-/// Radii of the patches in random order: as many of each size as cover the same area (density r⁻³).
+/// Radii of the patches in random order, with density r⁻³: each octave of sizes covers the same area.
 fn radii(random: &mut Random, style: &Style, width: usize, height: usize) -> Vec<f64> {
     let smallest = style.radii[0];
     let largest = (style.radii[1] * width.min(height) as f64).max(2.0 * smallest);
@@ -191,8 +193,8 @@ fn radii(random: &mut Random, style: &Style, width: usize, height: usize) -> Vec
     radii
 }
 
-/// Fractal noise of about unit deviation: six octaves of random splines, each turned against the last so that no lattice
-/// shows.
+/// Fractal noise of about unit standard deviation: six octaves of random splines, each rotated against the last to avoid a visible
+/// lattice.
 fn roughness(random: &mut Random, width: usize, height: usize, persistence: f64) -> Vec<f32> {
     let mut sum = vec![0.0f32; width * height];
     let (mut amplitude, mut power) = (1.0, 0.0);
@@ -201,7 +203,7 @@ fn roughness(random: &mut Random, width: usize, height: usize, persistence: f64)
         let (c, s) = (libm::cos(octave as f64 * 0.7) / cell, libm::sin(octave as f64 * 0.7) / cell);
         let span = ((width as f64 * width as f64 + height as f64 * height as f64).sqrt() / cell) as usize + 6;
         let lattice = Spline::smoothing(span, span, (0..span * span).map(|_| random.normal() as f32).collect());
-        // The smoothing of the spline leaves about a quarter of the lattice's variance.
+        // The spline reduces the variance of the lattice to about a quarter.
         power += 0.23 * amplitude * amplitude;
         for y in 0..height {
             for x in 0..width {
@@ -216,7 +218,7 @@ fn roughness(random: &mut Random, width: usize, height: usize, persistence: f64)
     sum
 }
 
-/// Grey levels of any size into 4…251, unchanged between 30 and 225.
+/// Compresses arbitrary grey levels to 4…251; unchanged between 30 and 225.
 fn soft(v: f32) -> f32 {
     const TOE: f32 = 26.0;
     if v < 30.0 {

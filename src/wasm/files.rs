@@ -1,4 +1,4 @@
-//! Files in and out: only in the build with codecs.
+//! Calls on image files, in the module with codecs only.
 
 use js_sys::{Object, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
@@ -20,7 +20,7 @@ pub fn decode_image(bytes: &[u8]) -> Result<JsValue, JsValue> {
     Ok(pixels.into())
 }
 
-/// An 8-bit indexed PNG of one index per pixel; `palette` holds RGB for index 0, 1, ….
+/// Encodes an 8-bit indexed PNG from one index per pixel; `palette` holds RGB for index 0, 1, ….
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
@@ -29,7 +29,7 @@ pub fn encode_indexed_png(width: u32, height: u32, indices: &[u8], palette: &[u8
     copy(codecs::encode_indexed_png(width as usize, height as usize, indices, palette))
 }
 
-/// An 8-bit grey PNG of one byte per pixel.
+/// Encodes an 8-bit grey PNG from one byte per pixel.
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
@@ -38,7 +38,7 @@ pub fn encode_grey_png(width: u32, height: u32, grey: &[u8]) -> Result<Uint8Arra
     copy(codecs::encode_grey_png(width as usize, height as usize, grey))
 }
 
-/// An RGB PNG of three bytes per pixel, or an RGBA PNG of four.
+/// Encodes an RGB PNG from three bytes per pixel, or an RGBA PNG from four.
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.

@@ -1,4 +1,4 @@
-//! The calls on frames: a segmentation, its correction, labels on a canvas.
+//! Calls on frames: segmentation, correction, painting labels on a canvas.
 
 use js_sys::{Function, Reflect, Uint8Array, Uint8ClampedArray};
 use wasm_bindgen::prelude::*;
@@ -14,11 +14,11 @@ use crate::{
     SegmentedMotion,
 };
 
-/// Segments two frames (and, as a third view, the frame before the first). A frame is anything of the shape of `ImageData`:
-/// `{ data, width, height }` with RGBA bytes. `on_stage(name, index, of)` is called when a stage begins.
+/// Segments two frames, optionally with the frame before the first as a third view. A frame is `{ data, width, height }` with RGBA bytes,
+/// like `ImageData`. `on_stage(name, index, of)` is called at the beginning of every stage.
 ///
-/// Returns the JSON of a pair, without `milliseconds` (the caller has the clock), with `labels: Uint8Array` and, where the
-/// options ask for it, `confidence: Uint8Array`.
+/// Returns the report of a pair as a plain object without `milliseconds`, which the caller measures, with `labels: Uint8Array` and, on
+/// request, `confidence: Uint8Array`.
 ///
 /// # Errors
 /// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape.
@@ -55,7 +55,7 @@ pub fn segment_pair(
     .into_value())
 }
 
-/// [`segment_pair`] for two `ImageData`, as `getImageData` gives them.
+/// [`segment_pair`] for two `ImageData`.
 ///
 /// # Errors
 /// As [`segment_pair`].
@@ -64,13 +64,14 @@ pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsVal
     segment_pair(first, second, &JsValue::UNDEFINED, options, None)
 }
 
-/// Solves the labels of a segmentation again under what is said about single pixels (see [`crate::Correction`]): `matrices` holds
-/// six entries of each motion, `groups` its group, `labels` and `evidence` one entry per pixel; `options` has the `quality`.
+/// Solves the labels of a segmentation again under a correction (see [`crate::Correction`]). `matrices` holds six entries per motion,
+/// `groups` one group per motion, `labels` and `evidence` one entry per pixel; `options` has the `quality` of the labels.
 ///
-/// Returns `{ motions, unlabelled, labels: Uint8Array }`, shaped as in [`segment_pair`].
+/// Returns `{ motions, unlabelled, labels: Uint8Array }` with entries as in [`segment_pair`].
 ///
 /// # Errors
-/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a frame of another shape or matrices of another number.
+/// A `VeroneseError`: the codes of [`Error`], and `invalid-input` for a malformed frame or a number of matrix entries that is not a
+/// multiple of six.
 #[wasm_bindgen]
 #[allow(clippy::too_many_arguments, reason = "flat arrays are copied once; objects entry by entry")]
 pub fn relabel(
@@ -102,8 +103,8 @@ pub fn relabel(
     Ok(report.into_value())
 }
 
-/// Replaces the canvas's top-left width × height pixels by the colours of the labels: `palette` holds RGBA for label 0, 1, …;
-/// labels beyond it are transparent. `opacity`, 0…1, scales every alpha. Lay the canvas over the frame.
+/// Replaces the top-left width × height pixels of a canvas by the colours of the labels, for an overlay on the frame. `palette` holds RGBA
+/// for label 0, 1, …; labels beyond it are transparent. `opacity`, 0 to 1, scales all alpha values.
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
@@ -163,7 +164,7 @@ fn image_from_labels(
     ImageData::new_with_js_u8_clamped_array_and_sh(&Uint8ClampedArray::from(&rgba[..]), width, height)
 }
 
-/// Both frames, and the frame before where there is one.
+/// Both frames, and the frame before, if given.
 fn frames(first: &JsValue, second: &JsValue, before: &JsValue) -> Result<(Frame, Frame, Option<Frame>), Failure> {
     let first = frame_from_pixels("the first frame", first)?;
     let second = frame_from_pixels("the second frame", second)?;
@@ -171,7 +172,7 @@ fn frames(first: &JsValue, second: &JsValue, before: &JsValue) -> Result<(Frame,
     Ok((first, second, before))
 }
 
-/// A frame from `{ data, width, height }`. Sizes are checked before a byte is copied.
+/// A frame from `{ data, width, height }`. The size is checked before bytes are copied.
 fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, Failure> {
     let shape = || Failure::input(format!("{which} must be {{ data, width, height }} with RGBA bytes, like ImageData"));
     let get = |name: &str| Reflect::get(pixels, &name.into()).map_err(|_| shape());
@@ -220,7 +221,7 @@ fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
     value.as_bool().ok_or_else(|| invalid(name, "true or false", value))
 }
 
-/// The entries of a segmentation but its arrays of bytes.
+/// Adds the entries of a segmentation except its byte arrays.
 fn add_segmentation(record: Record, segmentation: &Segmentation) -> Record {
     let Segmentation { width, height, count, motions, labels: _, evidence, unlabelled, confidence: _ } = segmentation;
     let PairEvidence { candidates } = evidence;
@@ -233,7 +234,7 @@ fn add_segmentation(record: Record, segmentation: &Segmentation) -> Record {
         .count("unlabelled", *unlabelled)
 }
 
-/// Motions of a pair.
+/// The motions of a pair as a list of plain objects.
 fn segmented_motions(motions: &[SegmentedMotion]) -> JsValue {
     list(motions, segmented_motion)
 }

@@ -1,14 +1,14 @@
-//! Reports as plain JavaScript objects, entry by entry.
+//! Conversion of reports to plain JavaScript objects, entry by entry.
 //!
-//! By hand, because a serialiser brings three times as much code. Every type is taken apart without `..`, so that a new field cannot
-//! be forgotten here.
+//! A serialiser would need three times as much code. All types are destructured without `..`, so a new field that is not converted is a
+//! compile error.
 
 use js_sys::{Array, Object, Reflect, Uint8Array};
 use wasm_bindgen::JsValue;
 
 use crate::Candidate;
 
-/// A plain object in the making.
+/// A builder of a plain object.
 pub(super) struct Record(Object);
 
 impl Record {
@@ -18,7 +18,7 @@ impl Record {
 
     #[inline(never)]
     pub(super) fn set(self, name: &str, value: &JsValue) -> Record {
-        // Setting a property of an object of our own cannot fail.
+        // Cannot fail: the object is an ordinary one, created here.
         let _ = Reflect::set(&self.0, &name.into(), value);
         self
     }

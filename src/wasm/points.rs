@@ -1,4 +1,4 @@
-//! The call on measurements: the paper's Problem 1.
+//! The call on measurements.
 
 use js_sys::Function;
 use wasm_bindgen::prelude::*;
@@ -9,12 +9,12 @@ use crate::embedding::rank::RankCandidate;
 use crate::refinement::{Report, Termination};
 use crate::{AffineMotion, FitEvidence, FitOptions, FittedMotion, Measurements, Method, MotionFit, PaperStages};
 
-/// Solves the paper's Problem 1 on measurements: `positions` holds x, y of each, `derivatives` I_x, I_y, I_t.
+/// Solves Problem 1 of the paper for measurements: `positions` holds x, y for each, `derivatives` I_x, I_y, I_t.
 ///
-/// Returns the JSON of points, without `milliseconds`, with `labels: Uint8Array`.
+/// Returns the report of points as a plain object without `milliseconds`, which the caller measures, with `labels: Uint8Array`.
 ///
 /// # Errors
-/// A `VeroneseError`: the codes of [`crate::Error`], and `invalid-input` for arrays that do not hold whole measurements.
+/// A `VeroneseError`: the codes of [`crate::Error`], and `invalid-input` for arrays whose length is not a multiple of 2 or 3.
 #[wasm_bindgen(js_name = fitMotions)]
 pub fn fit_motions(
     positions: &[f64],
@@ -67,7 +67,7 @@ fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
     Ok(options)
 }
 
-/// The entries of a fit but its labels.
+/// Adds the entries of a fit except its labels.
 fn add_fit(record: Record, fit: &MotionFit) -> Record {
     let MotionFit { count, motions, labels: _, evidence, stages } = fit;
     let FitEvidence { singular_values, candidates } = evidence;

@@ -1,11 +1,11 @@
-//! The paper's experiment (Figure 1) as problems with known answers, and the oracle that knows the segmentation.
+//! The experiment of the paper's Figure 1 (protocol B1) as problems with known solutions, and the oracle, which knows the labels.
 //!
-//! Positions uniform in [−1, 1]²; the six entries of each motion uniform in [−1, 1]; labels in turn; `y` uniform on the unit circle
-//! orthogonal to `A x`; every component of y gets noise uniform in [−p, p]; an outlier's `y` is uniform on the unit sphere.
+//! Positions are uniform in [−1, 1]², the six entries of each motion uniform in [−1, 1]. Labels alternate. `y` is uniform on the unit
+//! circle orthogonal to `A x`, plus noise uniform in [−p, p] on every component. The `y` of an outlier is uniform on the unit sphere.
 
 use veronese::{AffineMotion, Measurements, Random};
 
-/// What to make.
+/// Parameters of a problem.
 #[derive(Clone, Debug)]
 pub struct Protocol {
     /// Number of motions.
@@ -16,16 +16,16 @@ pub struct Protocol {
     pub noise: f64,
     /// Share of outliers.
     pub outliers: f64,
-    /// Share of the first motion (the others are equal); `None`: all equal.
+    /// Share of the first motion; the others have equal shares. `None` for equal shares of all.
     pub first_share: Option<f64>,
-    /// How the motions are related.
+    /// Configuration of the motions.
     pub relation: Relation,
 }
 
-/// Configurations of motions, general and special.
+/// General and special configurations of motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Relation {
-    /// Entries independent.
+    /// Independent entries.
     General,
     /// The second motion has this Euclidean distance (of the six entries) from the first.
     Near(f64),
@@ -39,9 +39,9 @@ pub enum Relation {
     EqualLinear,
     /// One motion is a translation.
     OneTranslation,
-    /// One motion is none.
+    /// One motion is static.
     Static,
-    /// One motion is none, one a translation.
+    /// One motion is static, one a translation.
     StaticAndTranslation,
     /// One motion has u = 0 and v constant.
     RankOne,
@@ -68,7 +68,7 @@ pub const SPECIAL: [Relation; 11] = [
     Relation::Similarities,
 ];
 
-/// A problem with its answer.
+/// A problem and its solution.
 pub struct Problem {
     pub measurements: Measurements,
     pub motions: Vec<AffineMotion>,
@@ -77,7 +77,7 @@ pub struct Problem {
 }
 
 impl Protocol {
-    /// n motions, N = 600, noise p; no outliers, equal shares, general motions.
+    /// n general motions with equal shares, 600 measurements, noise p, no outliers.
     pub fn new(motions: usize, noise: f64) -> Self {
         Protocol { motions, count: 600, noise, outliers: 0.0, first_share: None, relation: Relation::General }
     }
@@ -150,7 +150,7 @@ impl Protocol {
 }
 
 impl Problem {
-    /// Each motion by maximum likelihood from its own measurements.
+    /// The maximum likelihood estimate of each motion from its own measurements.
     pub fn oracle(&self) -> Vec<AffineMotion> {
         (0..self.motions.len())
             .map(|i| {
@@ -168,7 +168,7 @@ impl Problem {
         let n = found.len();
         let cost: Vec<Vec<f64>> =
             self.motions.iter().map(|a| found.iter().map(|b| a.relative_error(b)).collect()).collect();
-        // The cheapest assignment by dynamic programming over the sets of found motions that are used up.
+        // The best assignment by dynamic programming over sets of assigned motions.
         let mut best = vec![(f64::INFINITY, 0.0_f64); 1 << n];
         best[0] = (0.0, 0.0);
         for used in 0..1_usize << n {
@@ -188,7 +188,7 @@ impl Problem {
     }
 }
 
-/// Gauss-Newton on the orthogonal distances of one motion, from the truth.
+/// Gauss-Newton on the distances of one motion, starting from the true motion.
 fn fit_one(own: &Measurements, start: AffineMotion) -> AffineMotion {
     let mut a = start.matrix;
     for _ in 0..10 {

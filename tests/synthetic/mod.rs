@@ -1,4 +1,4 @@
-//! Measurements with known motions: protocol B1, after the paper's Figure 1.
+//! Measurements of known motions: protocol B1, after Figure 1 of the paper.
 #![allow(dead_code, clippy::unwrap_used, reason = "each test file uses its part; test code may panic")]
 
 use veronese::factorisation::assignment::assign;
@@ -6,8 +6,8 @@ use veronese::{AffineMotion, Measurements, Random};
 
 /// How measurements are drawn.
 pub(crate) enum Protocol {
-    /// Positions uniform in [−1, 1]²; motions in turn; y of unit length, uniform on the circle orthogonal to A x; then uniform
-    /// noise on every component.
+    /// Positions uniform in [−1, 1]², motions in turn, y uniform on the unit circle orthogonal to A x, plus uniform noise on every
+    /// component.
     B1,
 }
 
@@ -41,7 +41,7 @@ impl Protocol {
     }
 }
 
-/// Relative errors of eq. (20) of each true motion, in the order of the best permutation.
+/// Relative errors (eq. 20) of the true motions under the best assignment.
 pub(crate) fn errors(truth: &[AffineMotion], found: &[AffineMotion]) -> Vec<f64> {
     let costs: Vec<Vec<f64>> = truth.iter().map(|a| found.iter().map(|b| a.relative_error(b)).collect()).collect();
     let partner = assign(&costs);
@@ -53,10 +53,10 @@ pub(crate) fn worst_error(truth: &[AffineMotion], found: &[AffineMotion]) -> f64
     errors(truth, found).into_iter().fold(0.0, f64::max)
 }
 
-/// A special configuration of motions, as in the table of degenerate cases: what it is called and how it is made.
+/// A special configuration of motions: its name, and a function that makes it from generic motions.
 pub(crate) type Configuration = (&'static str, fn(&mut [AffineMotion]));
 
-/// The configurations on which the paper's factorisation is undefined, ambiguous or unproven, and the generic one.
+/// The generic configuration, and those for which the paper's factorisation is undefined, ambiguous or unproven.
 pub(crate) const CONFIGURATIONS: [Configuration; 13] = [
     ("generic", |_| {}),
     ("equal (1,3)", |motions| share(motions, &[2])),
@@ -83,7 +83,7 @@ pub(crate) const CONFIGURATIONS: [Configuration; 13] = [
     }),
 ];
 
-/// Gives all motions the entries of the first.
+/// Gives all motions the given entries of the first.
 fn share(motions: &mut [AffineMotion], entries: &[usize]) {
     let first = motions[0].matrix;
     for a in motions {
