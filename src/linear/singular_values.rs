@@ -44,12 +44,12 @@ fn bisected(squares: &[f64], size: usize, rank: usize, bound: f64) -> f64 {
 
 /// Number of eigenvalues below x of the symmetric tridiagonal matrix with zero diagonal and the given squared off-diagonal entries.
 fn below(squares: &[f64], x: f64) -> usize {
-    let mut pivot = -x;
+    // A zero pivot is perturbed by less than rounding, and counts with the sign it then has. The count is that of a nearby matrix.
+    let safe = |pivot: f64| if pivot.abs() < f64::MIN_POSITIVE { -f64::MIN_POSITIVE } else { pivot };
+    let mut pivot = safe(-x);
     let mut count = usize::from(pivot < 0.0);
     for square in squares {
-        // A zero pivot is perturbed by less than rounding. The count is that of a nearby matrix.
-        let safe = if pivot.abs() < f64::MIN_POSITIVE { -f64::MIN_POSITIVE } else { pivot };
-        pivot = -x - square / safe;
+        pivot = safe(-x - square / pivot);
         count += usize::from(pivot < 0.0);
     }
     count
@@ -76,5 +76,12 @@ mod tests {
             }
         }
         assert_eq!(singular_values(DMatrix::zeros(3, 3)), [0.0; 3]);
+    }
+
+    #[test]
+    fn a_pivot_that_vanishes_is_counted() {
+        // The first bisection step meets the largest entry, and a pivot of exactly zero.
+        let found = singular_values(DMatrix::from_row_slice(2, 2, &[1.0, 0.8, 0.0, 0.6]));
+        assert!((found[0] - 1.8f64.sqrt()).abs() < 1e-15 && (found[1] - 0.2f64.sqrt()).abs() < 1e-15, "{found:?}");
     }
 }

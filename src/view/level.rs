@@ -133,7 +133,7 @@ pub(crate) fn levels(first: &[FrameLevel], second: &[FrameLevel], before: Option
     pair.map(|(k, (first, second))| Level::new(k as u32, first, second, before.map(|b| &b[k]))).collect()
 }
 
-/// [`levels`] of luminances that need no blur.
+/// [`levels`] of planes of luminance that need no blur.
 #[cfg(test)]
 pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest: usize) -> Vec<Level> {
     let [first, second] = [first, second].map(|plane| levels_of(plane, smallest));

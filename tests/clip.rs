@@ -1,0 +1,233 @@
+//! Clips: objects keep their number while they move, stop, cross and hide, and the stream keeps its promises.
+#![allow(clippy::unwrap_used, reason = "test code may panic")]
+
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+use veronese::clip::{ClipFrame, ClipOptions, ClipSegmenter, MAX_LOOK_AHEAD};
+use veronese::{Error, Frame, Quality, Random, SegmentOptions};
+
+const SIZE: [usize; 2] = [160, 120];
+
+/// A texture: smooth noise in colour, sampled between its pixels.
+struct Texture(Vec<[f32; 3]>);
+
+impl Texture {
+    const SIDE: usize = 64;
+
+    fn new(seed: u64) -> Texture {
+        let mut random = Random::from_seed(seed);
+        let base: [f64; 3] = std::array::from_fn(|_| random.uniform(60.0, 190.0));
+        let pixel = |_| std::array::from_fn(|c| (base[c] + 45.0 * random.uniform(-1.0, 1.0)) as f32);
+        Texture((0..Self::SIDE * Self::SIDE).map(pixel).collect())
+    }
+
+    fn at(&self, x: f32, y: f32) -> [f32; 3] {
+        // Two pixels of the frame for one of the texture: smooth enough for sub-pixel motion.
+        let (x, y) = (0.5 * x + 640.0, 0.5 * y + 640.0);
+        let texel = |i: usize, j: usize| self.0[(j % Self::SIDE) * Self::SIDE + i % Self::SIDE];
+        let (i, j, f, g) = (x as usize, y as usize, x.fract(), y.fract());
+        let (a, b, c, d) = (texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1));
+        std::array::from_fn(|k| (1.0 - g) * ((1.0 - f) * a[k] + f * b[k]) + g * ((1.0 - f) * c[k] + f * d[k]))
+    }
+}
+
+/// A box with its own texture. Later boxes cover earlier ones.
+struct Thing {
+    texture: Texture,
+    size: [f32; 2],
+    /// Upper left corner in each frame.
+    place: fn(usize) -> [f32; 2],
+}
+
+impl Thing {
+    fn covers(&self, t: usize, x: usize, y: usize) -> bool {
+        let [left, top] = (self.place)(t);
+        let (u, v) = (x as f32 - left, y as f32 - top);
+        (0.0..self.size[0]).contains(&u) && (0.0..self.size[1]).contains(&v)
+    }
+}
+
+fn thing(seed: u64, size: [f32; 2], place: fn(usize) -> [f32; 2]) -> Thing {
+    Thing { texture: Texture::new(seed), size, place }
+}
+
+/// A frame of a scene, and which thing (from 1) is seen at each pixel.
+fn frame(ground: u64, things: &[Thing], t: usize) -> (Frame, Vec<usize>) {
+    let ground = Texture::new(ground);
+    let (mut rgba, mut truth) = (Vec::new(), Vec::new());
+    for y in 0..SIZE[1] {
+        for x in 0..SIZE[0] {
+            let seen = things.iter().rposition(|thing| thing.covers(t, x, y));
+            let colour = match seen {
+                Some(k) => {
+                    let [left, top] = (things[k].place)(t);
+                    things[k].texture.at(x as f32 - left, y as f32 - top)
+                }
+                None => ground.at(x as f32, y as f32),
+            };
+            rgba.extend(colour.map(|c| c.clamp(0.0, 255.0) as u8));
+            rgba.push(255);
+            truth.push(seen.map_or(0, |k| k + 1));
+        }
+    }
+    (Frame::from_rgba(SIZE[0], SIZE[1], rgba).unwrap(), truth)
+}
+
+fn options(quality: Quality, look_ahead: Option<usize>) -> ClipOptions {
+    ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead }
+}
+
+fn segment(frames: &[Frame], options: ClipOptions) -> Vec<ClipFrame> {
+    let mut clip = ClipSegmenter::new(options).unwrap();
+    let mut done: Vec<ClipFrame> = frames.iter().filter_map(|frame| clip.push(frame.clone()).unwrap()).collect();
+    done.extend(clip.finish());
+    assert_eq!(done.iter().map(|frame| frame.index).collect::<Vec<_>>(), (0..frames.len()).collect::<Vec<_>>());
+    for frame in &done {
+        for object in &frame.objects {
+            assert_eq!(object.pixels, frame.labels.iter().filter(|&&label| label == object.id).count());
+            assert!((0.0..=1.0).contains(&object.confidence));
+        }
+        let known = |label: &u8| *label == 0 || frame.objects.iter().any(|object| object.id == *label);
+        assert!(frame.labels.iter().all(known));
+    }
+    done
+}
+
+/// The label that most pixels of a thing have in a frame, and the IoU of both; none where less than 40 pixels of it are in sight.
+fn carrier(labels: &[u8], truth: &[usize], thing: usize) -> Option<(u8, f64)> {
+    let of_thing: Vec<usize> = (0..truth.len()).filter(|&p| truth[p] == thing).collect();
+    if of_thing.len() < 40 {
+        return None;
+    }
+    let count = |label: u8| of_thing.iter().filter(|&&p| labels[p] == label).count();
+    let label = (0..=255u8).max_by_key(|&label| count(label)).unwrap();
+    let all = labels.iter().filter(|&&l| l == label).count();
+    Some((label, count(label) as f64 / (of_thing.len() + all - count(label)) as f64))
+}
+
+/// Asserts that a thing has one number, which is not that of the background, in the frames asked for; returns it.
+fn one_number(done: &[ClipFrame], truths: &[Vec<usize>], thing: usize, frames: std::ops::Range<usize>) -> u8 {
+    let carriers: Vec<(usize, u8, f64)> = frames
+        .filter_map(|t| carrier(&done[t].labels, &truths[t], thing).map(|(label, iou)| (t, label, iou)))
+        .collect();
+    let number = carriers[0].1;
+    assert!(number != 0 && carriers.iter().all(|c| c.1 == number), "thing {thing}: {carriers:?}");
+    let mean = carriers.iter().map(|c| c.2).sum::<f64>() / carriers.len() as f64;
+    assert!(mean > 0.75, "thing {thing}: {carriers:?}");
+    number
+}
+
+fn scene(ground: u64, things: &[Thing], count: usize) -> (Vec<Frame>, Vec<Vec<usize>>) {
+    (0..count).map(|t| frame(ground, things, t)).unzip()
+}
+
+#[test]
+fn two_that_cross_keep_their_numbers() {
+    let things = [
+        thing(2, [36.0, 30.0], |t| [10.0 + 5.0 * t as f32, 40.0]),
+        thing(3, [30.0, 34.0], |t| [115.0 - 5.0 * t as f32, 52.0]),
+    ];
+    let (frames, truths) = scene(1, &things, 20);
+    let done = segment(&frames, options(Quality::Best, None));
+    assert_ne!(one_number(&done, &truths, 1, 0..20), one_number(&done, &truths, 2, 0..20));
+}
+
+#[test]
+fn one_that_stops_is_still_itself() {
+    let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * if t < 6 { t } else { (t - 4).max(6) } as f32, 44.0])];
+    let (frames, truths) = scene(1, &things, 16);
+    for look_ahead in [None, Some(0), Some(4)] {
+        let done = segment(&frames, options(Quality::Best, look_ahead));
+        one_number(&done, &truths, 1, 2..16);
+    }
+}
+
+#[test]
+fn one_that_was_hidden_gets_its_number_back() {
+    // Behind a post that belongs to the background.
+    let things = [thing(2, [24.0, 26.0], |t| [6.0 + 6.0 * t as f32, 46.0]), thing(4, [30.0, 120.0], |_| [64.0, 0.0])];
+    let (frames, truths) = scene(1, &things, 20);
+    assert!((0..20).any(|t| !truths[t].contains(&1)), "it is out of sight for a while");
+    let done = segment(&frames, options(Quality::Best, None));
+    let before = one_number(&done, &truths, 1, 0..8);
+    assert_eq!(one_number(&done, &truths, 1, 17..20), before);
+}
+
+#[test]
+fn a_cut_ends_all_objects() {
+    let one = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 44.0])];
+    let other = [thing(6, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 50.0])];
+    let (mut frames, mut truths) = scene(1, &one, 8);
+    let (after, after_truths) = scene(5, &other, 16);
+    frames.extend(after.into_iter().skip(8));
+    truths.extend(after_truths.into_iter().skip(8));
+    for look_ahead in [None, Some(2)] {
+        let done = segment(&frames, options(Quality::Best, look_ahead));
+        let first = one_number(&done, &truths, 1, 2..8);
+        assert_ne!(one_number(&done, &truths, 1, 10..16), first);
+        assert!(done[7].background.is_none(), "the last frame of a scene has no next one");
+    }
+}
+
+#[test]
+fn a_stream_gives_every_frame_after_its_look_ahead() {
+    let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 44.0])];
+    let (frames, _) = scene(1, &things, 6);
+    for look_ahead in [0, 1, 3] {
+        let mut clip = ClipSegmenter::new(options(Quality::Fast, Some(look_ahead))).unwrap();
+        for (t, frame) in frames.iter().enumerate() {
+            let done = clip.push(frame.clone()).unwrap().map(|frame| frame.index);
+            assert_eq!(done, t.checked_sub(look_ahead), "frame {t}, look-ahead {look_ahead}");
+        }
+        assert_eq!(clip.finish().len(), look_ahead);
+        assert!(clip.finish().is_empty());
+    }
+}
+
+#[test]
+fn few_frames_and_frames_where_nothing_moves_have_no_objects() {
+    let (frames, _) = scene(1, &[], 1);
+    for look_ahead in [None, Some(0), Some(2)] {
+        assert!(segment(&[], options(Quality::Fast, look_ahead)).is_empty());
+        for count in [1, 2, 4] {
+            let same = vec![frames[0].clone(); count];
+            let done = segment(&same, options(Quality::Fast, look_ahead));
+            assert!(done.iter().all(|frame| frame.objects.is_empty() && frame.labels.iter().all(|&l| l == 0)));
+        }
+    }
+}
+
+#[test]
+fn mistakes_have_a_code_and_the_clip_goes_on() {
+    let mistaken = ClipSegmenter::new(options(Quality::Fast, Some(MAX_LOOK_AHEAD + 1)));
+    assert!(matches!(mistaken, Err(Error::InvalidOption { name: "lookAhead", .. })));
+    let (frames, _) = scene(1, &[], 3);
+    let small = Frame::from_rgba(32, 32, vec![0u8; 4 * 32 * 32]).unwrap();
+    let mut clip = ClipSegmenter::new(options(Quality::Fast, Some(0))).unwrap();
+    assert!(clip.push(frames[0].clone()).unwrap().is_some());
+    assert!(matches!(clip.push(small), Err(Error::FrameSizeMismatch { .. })));
+    assert_eq!(clip.push(frames[1].clone()).unwrap().unwrap().index, 1);
+}
+
+#[test]
+fn the_same_bits_on_every_target() {
+    let things = [
+        thing(2, [36.0, 30.0], |t| [10.0 + 5.3 * t as f32, 40.0]),
+        thing(3, [30.0, 34.0], |t| [115.0 - 4.6 * t as f32, 62.0]),
+    ];
+    let (frames, _) = scene(1, &things, 5);
+    let hash = |look_ahead| {
+        let mut hash = 0xcbf2_9ce4_8422_2325u64;
+        let mut add = |value: u64| hash = (hash ^ value).wrapping_mul(0x0000_0100_0000_01b3);
+        for frame in segment(&frames, options(Quality::Fast, look_ahead)) {
+            frame.labels.iter().for_each(|&label| add(u64::from(label)));
+            for object in &frame.objects {
+                add(object.confidence.to_bits());
+                object.matrix.iter().flat_map(|motion| motion.matrix).for_each(|entry| add(entry.to_bits()));
+            }
+        }
+        hash
+    };
+    assert_eq!([hash(None), hash(Some(1))], [0, 0]);
+}
