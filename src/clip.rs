@@ -65,7 +65,8 @@ pub struct ClipFrame {
     pub labels: Vec<u8>,
     /// The objects in sight, by number.
     pub objects: Vec<ClipObject>,
-    /// Motion of the background to the next frame, pixels; none where there is no next frame of the same scene.
+    /// Motion of the background to the next frame, pixels; none where there is no next frame of the same scene. In a stream, the motion with
+    /// which it came to this frame.
     pub background: Option<AffineMotion>,
 }
 
@@ -81,7 +82,7 @@ pub struct ClipObject {
     pub bbox: [usize; 4],
     /// Mean probability, 0…1, that its pixels belong to an object.
     pub confidence: f64,
-    /// Motion of its largest part to the next frame, pixels; none where there is no next frame of the same scene.
+    /// Motion of its largest part, as [`ClipFrame::background`].
     pub matrix: Option<AffineMotion>,
 }
 
@@ -175,8 +176,9 @@ impl ClipSegmenter {
             self.last = Some(newest);
             return None;
         };
-        let onward = self.solve(&last, &newest, None, settings);
-        let back = self.solve(&newest, &last, None, settings);
+        let onward = self.solve(&last, &newest, self.prior.as_ref(), settings);
+        let back = self.solve(&newest, &last, Some(&onward.reversed()), settings);
+        self.prior = Some(back.reversed());
         let [onward, back] = if onward.is_cut() && back.is_cut() {
             [None, None]
         } else {

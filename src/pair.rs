@@ -90,7 +90,7 @@ fn segment_with(
     drop(before);
     stages.begin("dominant");
     let dominant = pair.find_dominant(settings.has(Part::Brightness));
-    let (found, _) = hypothesis::best(&pair, dominant, &settings, &mut random, &mut stages);
+    let (found, _) = hypothesis::best(&pair, dominant, &[], &settings, &mut random, &mut stages);
     stages.begin("refinement");
     let found = hypothesis::refine(&pair, found, &settings);
     stages.begin("labels");

@@ -14,8 +14,13 @@ pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
     })
 }
 
-/// The labels of another frame where the motions of this one's pixels lead; 0 where that is outside.
-pub(crate) fn carried_labels(labels: &[u8], along: &Flow) -> Vec<u8> {
+/// Pixels between a pixel and where its motion and that of the place it leads to bring it, from which it was not in sight there.
+const ROUND_TRIP: f64 = 1.5;
+
+/// The labels of another frame where the motions of this one's pixels lead; `unknown` where that is outside, or something else was in
+/// front. `return_flow` is the other frame's flow to
+/// this one, if it was measured.
+pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&Flow>, unknown: u8) -> Vec<u8> {
     let (width, height) = (along.width, labels.len() / along.width);
     let mut carried = Vec::with_capacity(labels.len());
     for y in 0..height {
@@ -23,7 +28,16 @@ pub(crate) fn carried_labels(labels: &[u8], along: &Flow) -> Vec<u8> {
             let [u, v] = along.at(x, y);
             let (px, py) = (x as f64 + u + 0.5, y as f64 + v + 0.5);
             let inside = px >= 0.0 && py >= 0.0 && px < width as f64 && py < height as f64;
-            carried.push(if inside { labels[py as usize * width + px as usize] } else { 0 });
+            carried.push(if inside {
+                let (qx, qy) = (px as usize, py as usize);
+                let same = return_flow.is_none_or(|flow| {
+                    let [r, s] = flow.at(qx, qy);
+                    (u + r) * (u + r) + (v + s) * (v + s) < ROUND_TRIP * ROUND_TRIP
+                });
+                if same { labels[qy * width + qx] } else { unknown }
+            } else {
+                unknown
+            });
         }
     }
     carried

@@ -22,6 +22,8 @@ pub(crate) struct Flow {
     pub(crate) labels: Buffer<u8>,
     /// Motions, pixels of the working size.
     pub(crate) motions: Vec<AffineMotion>,
+    /// Whether the frames were compared; else everything is taken to keep its motion.
+    pub(crate) measured: bool,
 }
 
 impl Flow {
@@ -34,7 +36,7 @@ impl Flow {
     /// Where the pixels go if they keep the motions with which they came.
     pub(crate) fn continued(&self) -> Flow {
         let motions = self.motions.iter().map(|motion| inverse(motion).unwrap_or(AffineMotion::STATIC)).collect();
-        Flow { motions, ..self.clone() }
+        Flow { motions, measured: false, ..self.clone() }
     }
 }
 
@@ -59,5 +61,5 @@ pub(crate) fn odds(solution: &Solution) -> Plane {
 /// The flow of a solution.
 pub(crate) fn flow(solution: Solution) -> Flow {
     let Solution { labels, motions, probabilities, .. } = solution;
-    Flow { width: probabilities[0].width(), labels, motions }
+    Flow { width: probabilities[0].width(), labels, motions, measured: true }
 }

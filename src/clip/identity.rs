@@ -4,12 +4,15 @@
 //! parts that single frames give motions of their own. Where several lead to one region, they share it. Where none does, the region is
 //! an object, or a part of one, that was hidden; or else a new one. Pieces of an object that move apart are two.
 
+use std::rc::Rc;
+
 use super::carry::carried_labels;
 use super::evidence::Flow;
 use super::record::Record;
 use crate::components::{Connectivity, components};
 use crate::frame::Plane;
 use crate::frame::palette::COLOURS;
+use crate::labelling::is_background;
 use crate::labelling::regions::description::SMALLEST_SHARE;
 use crate::labelling::solver::{MAX_LABELS, Solver};
 use crate::order::descending;
@@ -20,8 +23,12 @@ pub(crate) const MAX_OBJECTS: usize = 254;
 const CLAIM: f64 = 0.2;
 /// … and a region with less than this share of carried pixels is not claimed by what grazes it.
 const GRAZE: f64 = 0.05;
+/// A carried label that is not known: it hid behind something.
+const UNKNOWN: u8 = u8::MAX;
+/// Share of its pixels that must be in sight to tell how it moves.
+const MOVING: f64 = 0.3;
 /// Share of its pixels from which an object is in full sight.
-const WHOLE: f64 = 0.9;
+const WHOLE: f64 = 0.95;
 /// What is left of its full size in every frame in which less is in sight: objects also become smaller by moving away.
 const SHRINKING: f64 = 0.98;
 /// Frames for which an object may be hidden and keep its number.
@@ -34,15 +41,15 @@ const SAME_MOTION: f64 = 1.0;
 const SAME_SPEED: f64 = 0.25;
 /// Overlap of two colour histograms, 0…1, from which they may be of one object.
 const ALIKE: f64 = 0.4;
-/// Largest ratio of the sizes of an object before and after it was hidden.
+/// Largest growth of an object while it was hidden.
 const GROWTH: f64 = 4.0;
 /// Two pieces of an object are two objects when one has moved this far relative to the other, in roots of its size. What covers the
 /// middle of an object leaves its pieces where they are.
 const APART: f64 = 0.5;
 /// Share of an object that a piece must have to be one.
 const SMALLEST_PIECE: f64 = 0.2;
-/// Price of a label that was not carried to a pixel, and of one that few carried pixels of the same motion have.
-const PRICES: [f32; 2] = [1.0, 1.5];
+/// Price of a label other than the one carried to a pixel, and of one that few carried pixels of the same motion have.
+const PRICES: [f32; 2] = [2.0, 1.0];
 /// Price of a border between two objects.
 const SMOOTHNESS: f32 = 3.0;
 
@@ -67,8 +74,8 @@ struct Object {
 #[derive(Debug)]
 pub(crate) struct Identities {
     objects: Vec<Object>,
-    /// Labels of the last frame; empty at the beginning.
-    labels: Vec<u8>,
+    /// The last frame and its labels.
+    last: Option<(Rc<Record>, Vec<u8>)>,
     /// Number of the next new object.
     next: usize,
     /// Objects that got no number.
@@ -77,18 +84,23 @@ pub(crate) struct Identities {
 
 impl Identities {
     pub(crate) fn new() -> Identities {
-        Identities { objects: Vec::new(), labels: Vec::new(), next: 1, dropped: 0 }
+        Identities { objects: Vec::new(), last: None, next: 1, dropped: 0 }
     }
 
     /// The object of every working pixel of the next frame, 0 for the background; `mask` is 1 on its foreground.
-    pub(crate) fn assign(&mut self, record: &Record, mask: &[u8]) -> Vec<u8> {
+    pub(crate) fn assign(&mut self, record: &Rc<Record>, mask: &[u8]) -> Vec<u8> {
         let [width, _] = record.size();
-        let carried = match &record.back {
-            Some(back) if !self.labels.is_empty() => carried_labels(&self.labels, back),
+        let carried = match (&record.back, &self.last) {
+            (Some(back), Some((last, labels))) => {
+                let return_flow = last.onward.as_ref().filter(|flow| flow.measured);
+                let mut carried = carried_labels(labels, back, return_flow, UNKNOWN);
+                self.follow_velocities(labels, mask, width, &mut carried);
+                carried
+            }
             _ => {
                 // A new scene: nothing goes on.
                 self.objects.clear();
-                vec![0; mask.len()]
+                vec![UNKNOWN; mask.len()]
             }
         };
         let mut labels = vec![0u8; mask.len()];
@@ -113,6 +125,21 @@ impl Identities {
         self.part(record, &mut labels);
         self.remember(record, &labels);
         labels
+    }
+
+    /// Foreground that the motions lead to no object, as one of its pairs took it for background, may be where an object's velocity leads.
+    fn follow_velocities(&self, labels: &[u8], mask: &[u8], width: usize, carried: &mut [u8]) {
+        let height = (labels.len() / width) as f64;
+        let lost = |label: u8| label == 0 || label == UNKNOWN;
+        for (p, carried) in carried.iter_mut().enumerate().filter(|(p, carried)| mask[*p] > 0 && lost(**carried)) {
+            let (x, y) = ((p % width) as f64 + 0.5, (p / width) as f64 + 0.5);
+            let leads_here = |object: &&Object| {
+                let (px, py) = (x - object.velocity[0], y - object.velocity[1]);
+                let inside = px >= 0.0 && py >= 0.0 && px < width as f64 && py < height;
+                inside && labels[py as usize * width + px as usize] == object.number
+            };
+            *carried = self.objects.iter().find(leads_here).map_or(*carried, |object| object.number);
+        }
     }
 
     /// The objects that lead to a region, by number.
@@ -141,7 +168,7 @@ impl Identities {
             let moves_alike =
                 ((u - r) * (u - r) + (v - s) * (v - s)).sqrt() < SAME_MOTION + SAME_SPEED * (r * r + s * s).sqrt();
             let grown = size / object.pixels;
-            let may_be = if object.hidden > 0 { grown > 1.0 / GROWTH } else { moves_alike };
+            let may_be = object.hidden > 0 || moves_alike;
             let [dx, dy] = [0, 1].map(|k| object.centre[k] + object.velocity[k] - centre[k]);
             let reach = SEARCH * object.pixels.sqrt() * (1.0 + 0.1 * object.hidden as f64);
             let alike = overlap(&object.colours, &colours);
@@ -191,7 +218,7 @@ impl Identities {
     }
 
     /// Keeps what the next frame needs.
-    fn remember(&mut self, record: &Record, labels: &[u8]) {
+    fn remember(&mut self, record: &Rc<Record>, labels: &[u8]) {
         let mut pixels: Vec<Vec<usize>> = vec![Vec::new(); MAX_OBJECTS + 1];
         labels.iter().enumerate().filter(|(_, l)| **l > 0).for_each(|(p, &l)| pixels[usize::from(l)].push(p));
         for object in &mut self.objects {
@@ -206,7 +233,11 @@ impl Identities {
             };
             match self.objects.iter_mut().find(|object| object.number == number) {
                 Some(object) if size < WHOLE * object.pixels => {
-                    (object.hidden, object.velocity) = (0, velocity);
+                    object.hidden = 0;
+                    // The little that is in sight may pass for background in its pairs.
+                    if size >= MOVING * object.pixels && moves(record, pixels) {
+                        object.velocity = velocity;
+                    }
                     object.pixels *= SHRINKING;
                 }
                 Some(object) => *object = Object { apart: object.apart, ..seen() },
@@ -214,7 +245,7 @@ impl Identities {
             }
         }
         self.objects.retain(|object| object.hidden <= LONGEST_HIDDEN);
-        self.labels = labels.to_vec();
+        self.last = Some((record.clone(), labels.to_vec()));
     }
 }
 
@@ -271,6 +302,12 @@ fn velocity(record: &Record, pixels: &[usize]) -> [f64; 2] {
         (None, Some(back)) => mean_motion(back, pixels, width).map(|v| -v),
         (None, None) => [0.0; 2],
     }
+}
+
+/// Whether most of some pixels have another motion than the background.
+fn moves(record: &Record, pixels: &[usize]) -> bool {
+    let Some(flow) = record.onward.as_ref().or(record.back.as_ref()) else { return false };
+    2 * pixels.iter().filter(|&&p| !is_background(flow.labels[p])).count() > pixels.len()
 }
 
 /// Share of each colour among some pixels.

@@ -41,14 +41,18 @@ pub(super) struct Found {
 pub(super) fn best(
     pair: &Pair<'_>,
     dominant: AffineMotion,
+    likely: &[AffineMotion],
     settings: &Settings,
     random: &mut Random,
     stages: &mut Stages<'_>,
 ) -> (Found, f64) {
-    let (mut winner, mut least) = with_dominant(pair, dominant, None, settings, random, stages);
+    let (mut winner, mut least) = with_dominant(pair, dominant, likely, settings, random, stages);
     let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
     if other && static_is_missing(&pair.levels[pair.selection], &winner.selected) {
-        let (found, cost) = with_dominant(pair, AffineMotion::STATIC, Some(dominant), settings, random, stages);
+        let (found, cost) = {
+            let others: Vec<AffineMotion> = likely.iter().copied().chain([dominant]).collect();
+            with_dominant(pair, AffineMotion::STATIC, &others, settings, random, stages)
+        };
         if cost < CLEARLY_CHEAPER * least {
             (winner, least) = (found, cost);
         }
@@ -83,7 +87,7 @@ fn static_is_missing(level: &Level, selected: &[ScoredMotion]) -> bool {
 fn with_dominant(
     pair: &Pair<'_>,
     dominant: AffineMotion,
-    rival: Option<AffineMotion>,
+    others: &[AffineMotion],
     settings: &Settings,
     random: &mut Random,
     stages: &mut Stages<'_>,
@@ -99,7 +103,7 @@ fn with_dominant(
     if settings.has(Part::Windows) {
         proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
     }
-    proposals.extend(rival);
+    proposals.extend(others);
     stages.begin("selection");
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];

@@ -11,7 +11,7 @@ use crate::labelling::terms::views::{cheapest, costs_where_seen};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::random::Random;
-use crate::view::cost::CostModel;
+use crate::view::cost::{CostModel, inverse};
 use crate::workspace::Buffer;
 
 /// What a pair tells about its first frame. The background has label [`BACKGROUND`](crate::labelling::BACKGROUND).
@@ -47,22 +47,28 @@ impl Solution {
 pub(crate) struct Prior {
     /// Motions, pixels of the working size; the first is that of the background.
     pub(crate) motions: Vec<AffineMotion>,
-    /// Cost of the selected motions.
-    cost: f64,
+    /// Cost up to which these motions are enough. Else a search adds others.
+    enough: f64,
 }
 
-/// Expected motions are enough where they cost no more than this share more than expected. Else a search adds others.
+/// Expected motions are enough where they cost no more than this share more than expected.
 const TOLERANCE: f64 = 0.05;
 
 impl Solution {
-    /// What to expect of a pair in which everything keeps its motion.
+    /// What to expect of a pair in which everything keeps its motion; no search where that explains it about as well.
     pub(crate) fn prior(&self) -> Prior {
-        Prior { motions: self.motions.clone(), cost: self.cost }
+        Prior { motions: self.motions.clone(), enough: (1.0 + TOLERANCE) * self.cost }
+    }
+
+    /// What to expect of the pair the other way round. There is always a search.
+    pub(crate) fn reversed(&self) -> Prior {
+        let motions = self.motions.iter().map(|motion| inverse(motion).unwrap_or(*motion)).collect();
+        Prior { motions, enough: f64::NEG_INFINITY }
     }
 }
 
-/// Solves the pair of a frame and another one, whose pyramid is `second`. With a prior, motions are searched for only where those
-/// expected do not explain the pair.
+/// Solves the pair of a frame and another one, whose pyramid is `second`. The motions of a prior
+/// are candidates, and all there are where they explain the pair.
 pub(crate) fn solve(
     first: &Frame,
     pyramid: &FramePyramid,
@@ -76,19 +82,17 @@ pub(crate) fn solve(
     let mut stages = Stages::new(super::STAGES, &mut ignored);
     let mut pair = Pair::new(first, pyramid, second, None, settings);
     let brightness = settings.has(Part::Brightness);
-    let expected = prior.map(|prior| {
+    let likely = prior.map_or(&[][..], |prior| &prior.motions[BACKGROUND + 1..]);
+    let expected = prior.filter(|prior| prior.enough > 0.0).and_then(|prior| {
         let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], brightness);
-        hypothesis::expected(&pair, dominant, &prior.motions[BACKGROUND + 1..], settings)
+        let (found, cost) = hypothesis::expected(&pair, dominant, likely, settings);
+        (cost < prior.enough + settings.price[0]).then_some((found, cost))
     });
-    let enough = |cost: f64| prior.is_some_and(|prior| cost < (1.0 + TOLERANCE) * prior.cost + settings.price[0]);
-    let (found, cost) = match expected {
-        Some((found, cost)) if enough(cost) => (found, cost),
-        _ => {
-            pair = Pair::new(first, pyramid, second, None, settings);
-            let dominant = pair.find_dominant(brightness);
-            hypothesis::best(&pair, dominant, settings, &mut random, &mut stages)
-        }
-    };
+    let (found, cost) = expected.unwrap_or_else(|| {
+        pair = Pair::new(first, pyramid, second, None, settings);
+        let dominant = pair.find_dominant(brightness);
+        hypothesis::best(&pair, dominant, likely, settings, &mut random, &mut stages)
+    });
     let found = hypothesis::refine(&pair, found, settings);
     let labelled = labels::label(&pair, found, settings);
     let level = pair.finest();
