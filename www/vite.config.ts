@@ -64,7 +64,7 @@ function serviceWorker(): Plugin {
         .sort();
       const hash = createHash('sha256');
       for (const path of paths) hash.update(path).update(readFileSync(join(dir, path)));
-      const template = readFileSync(here('src/service-worker.js'), 'utf8');
+      const template = readFileSync(here('src/offline/service-worker.js'), 'utf8');
       const filled = template.replace('__FILES__', JSON.stringify(paths)).replace('__VERSION__', hash.digest('hex').slice(0, 16));
       writeFileSync(join(dir, 'service-worker.js'), filled);
     },

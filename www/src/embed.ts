@@ -1,7 +1,7 @@
 //! A host that knows nothing of motions: it gives the element two frames and takes its masks as annotations.
 
 import { VeroneseSegmenterElement } from 'veronese/element';
-import { SAMPLES } from './samples.js';
+import { SAMPLES } from './frames/samples.js';
 
 const find = <E extends Element>(selector: string, kind: abstract new (...args: never) => E): E => {
   const element = document.querySelector(selector);

@@ -2,8 +2,8 @@
 
 import { expect, test } from '@playwright/test';
 
-import { type Matrix, partsOf, visibleParts } from '../src/describe.js';
-import { strings } from '../src/strings.js';
+import { strings } from '../src/common/strings.js';
+import { type Matrix, partsOf, visibleParts } from '../src/result/describe.js';
 
 const CENTRE = [120, 80] as const;
 

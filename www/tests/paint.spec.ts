@@ -3,8 +3,8 @@
 import { expect, test } from '@playwright/test';
 import type { Segmentation } from 'veronese';
 
-import { maskOf } from '../src/masks.js';
-import { type Painting, fillOf, outlinesOf } from '../src/paint.js';
+import { type Painting, fillOf, outlinesOf } from '../src/drawing/paint.js';
+import { maskOf } from '../src/result/masks.js';
 
 const WIDTH = 23;
 const HEIGHT = 17;

@@ -7,7 +7,7 @@ import { type Page, test as base, expect } from '@playwright/test';
 import { type Segmentation, type SegmentOptions, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
-import { PALETTE, UNKNOWN_COLOUR } from '../src/palette.js';
+import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
 
 export { expect };
 

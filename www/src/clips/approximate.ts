@@ -1,9 +1,9 @@
 //! Frames of a video by seeking a `<video>`: all that can be had without WebCodecs. Browsers may show a neighbour of the frame
 //! that was asked for, so the clip does not call itself exact.
 
-import { PageError } from '../errors.js';
-import { type LoadedFrame, frameFromBitmap } from '../frames.js';
-import { strings } from '../strings.js';
+import { PageError } from '../common/errors.js';
+import { strings } from '../common/strings.js';
+import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
 import { type Clip, type Picture, knownInFilm } from './clip.js';
 
 /** The file does not tell its frame rate here: steps are of this many a second. */
@@ -46,7 +46,7 @@ class ApproximateClip implements Clip {
     this.height = video.videoHeight;
   }
 
-  async frame(index: number, longestSide: number): Promise<LoadedFrame> {
+  async frame(index: number, longestSide: number): Promise<DecodedFrame> {
     const began = performance.now();
     const bitmap = await this.#at(index, () => createImageBitmap(this.video));
     return frameFromBitmap(bitmap, knownInFilm(this.name, this.fingerprint, index), longestSide, began);

@@ -2,9 +2,9 @@
 //! comes back is checked against the time asked for: a wrong frame is an error, never shown.
 
 import { BlobSource, EncodedPacketSink, Input, type InputVideoTrack, MATROSKA, MP4, QTFF, VideoSampleSink, WEBM } from 'mediabunny';
-import { PageError } from '../errors.js';
-import { type LoadedFrame, frameFromBitmap } from '../frames.js';
-import { strings } from '../strings.js';
+import { PageError } from '../common/errors.js';
+import { strings } from '../common/strings.js';
+import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
 import { type Clip, type Picture, knownInFilm } from './clip.js';
 import { codecName } from './codecs.js';
 
@@ -80,7 +80,7 @@ class ExactClip implements Clip {
     this.#sink = new VideoSampleSink(track);
   }
 
-  async frame(index: number, longestSide: number): Promise<LoadedFrame> {
+  async frame(index: number, longestSide: number): Promise<DecodedFrame> {
     const began = performance.now();
     const sample = await this.#sink.getSample(this.#asked(index));
     try {

@@ -1,11 +1,11 @@
 //! Flow arrows over the picture.
 
-import { type Arrow, arrowsOf } from '../arrows.js';
-import { maskOf } from '../masks.js';
-import { colourOfMask, isShown } from '../paint.js';
-import { cssColour } from '../palette.js';
-import type { State, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import { type Arrow, arrowsOf } from '../drawing/arrows.js';
+import { colourOfMask, isShown } from '../drawing/paint.js';
+import { cssColour } from '../drawing/palette.js';
+import { maskOf } from '../result/masks.js';
+import type { State, Store } from '../state/state.js';
 import { drawn, find } from './markup.js';
 
 /** Shorter than this, pixels of the frame, is a dot. */

@@ -1,6 +1,6 @@
 //! Both frames in turn: for as long as the B key is held, or by themselves.
 
-import type { Store } from '../state.js';
+import type { Store } from '../state/state.js';
 import { find, prefersStillness } from './markup.js';
 
 /** How long each frame is seen, milliseconds. */

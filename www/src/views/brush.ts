@@ -1,12 +1,12 @@
 //! The brush: the circle under the pointer, the stroke being drawn, and the strokes that were drawn.
 
-import { maskWith, strokesOf } from '../edits.js';
-import { colourOfMask } from '../paint.js';
-import { type Colour, cssColour } from '../palette.js';
-import { labellingOf, labelsIn } from '../parts.js';
-import type { Session } from '../session.js';
-import type { State, Store } from '../state.js';
-import { type Stroke, possible } from '../strokes.js';
+import { maskWith, strokesOf } from '../correction/edits.js';
+import { labellingOf, labelsIn } from '../correction/parts.js';
+import { type Stroke, possible } from '../correction/strokes.js';
+import { colourOfMask } from '../drawing/paint.js';
+import { type Colour, cssColour } from '../drawing/palette.js';
+import type { Session } from '../session/session.js';
+import type { State, Store } from '../state/state.js';
 import { drawn, find } from './markup.js';
 
 type Point = readonly [number, number];

@@ -1,7 +1,7 @@
 //! Files and folders dropped anywhere on the page, or pasted.
 
-import { filesOf } from '../dropped.js';
-import type { Session } from '../session.js';
+import { filesOf } from '../frames/dropped.js';
+import type { Session } from '../session/session.js';
 
 export function mountDrop(root: HTMLElement, session: Session): void {
   // Entering a child leaves its parent: count, to know when the files have left the page.

@@ -1,8 +1,8 @@
 //! What the number of motions rests on: the score of each number, smaller is better, and a button to insist on one.
 
-import type { Session } from '../session.js';
-import { type State, type Store, isAwaited } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import { type State, type Store, isAwaited } from '../state/state.js';
 import { drawn, element, find } from './markup.js';
 
 /** The plot's own units. */

@@ -1,10 +1,10 @@
 //! What pointers do on the picture. Looking: a tap chooses the mask, holding shows the other frame, dragging moves the enlarged
 //! picture. Brush and eraser: dragging paints. Always: the wheel and two fingers zoom.
 
-import { inPicture } from '../camera.js';
-import { maskOf } from '../masks.js';
-import type { Session } from '../session.js';
-import type { State, Store } from '../state.js';
+import { inPicture } from '../drawing/viewport.js';
+import { maskOf } from '../result/masks.js';
+import type { Session } from '../session/session.js';
+import type { State, Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import type { Brush } from './brush.js';
 import type { Zoom } from './zoom.js';
@@ -75,7 +75,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     } else if (paints()) {
       if (!dragged || brush.painting) for (const point of coalesced(event)) brush.move(pixelAt(store.get(), inView(point)));
     } else if (dragged || press.moved) {
-      if (!dragged && store.get().camera.zoom > 1) clearTimeout(holding);
+      if (!dragged && store.get().viewport.zoom > 1) clearTimeout(holding);
       dragged = true;
       zoom.pan(dx / box.width, dy / box.height);
     }
@@ -113,7 +113,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     'wheel',
     (event) => {
       // The whole picture cannot become smaller: let the page scroll.
-      if (event.deltaY > 0 && store.get().camera.zoom <= 1 && !event.ctrlKey) return;
+      if (event.deltaY > 0 && store.get().viewport.zoom <= 1 && !event.ctrlKey) return;
       event.preventDefault();
       const pixels = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY : event.deltaY * 33;
       zoom.by(Math.exp(-pixels * WHEEL * (event.ctrlKey ? 4 : 1)), inView(event));
@@ -128,9 +128,9 @@ function coalesced(event: PointerEvent): PointerEvent[] {
 }
 
 /** The place in the frame, its pixels' centres at whole numbers. */
-function pixelAt({ pair, camera }: State, view: readonly [number, number]): [number, number] {
+function pixelAt({ pair, viewport }: State, view: readonly [number, number]): [number, number] {
   const frame = pair.first ?? pair.second;
-  const [x, y] = inPicture(camera, view);
+  const [x, y] = inPicture(viewport, view);
   return [x * (frame?.width ?? 1) - 0.5, y * (frame?.height ?? 1) - 0.5];
 }
 

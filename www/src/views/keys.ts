@@ -1,11 +1,11 @@
 //! Listens to the keys and lists them in a dialogue that `?` opens. Single keys can be switched off there, for those who speak to
 //! their computer.
 
-import type { Key } from '../keys.js';
-import type { Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import { element, find, takesArrows, takesText } from './markup.js';
+import type { Key } from './shortcuts.js';
 
 export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, keys: readonly Key[]): void {
   const single = find(dialog, '#single-keys', HTMLInputElement);
@@ -38,7 +38,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     if (!command && name === '?') return dialog.showModal();
     if (!command && name === 'b') return peek.press();
     const key = keys.find((one) => one.keys.includes(name) && (one.command ?? false) === command && (one.shift ?? event.shiftKey) === event.shiftKey);
-    if (key === undefined || (key.arrows && (store.get().camera.zoom <= 1 || takesArrows(event.target)))) return;
+    if (key === undefined || (key.arrows && (store.get().viewport.zoom <= 1 || takesArrows(event.target)))) return;
     if (name !== 'escape') event.preventDefault();
     key.run();
   });

@@ -1,8 +1,8 @@
 //! The row of controls under the picture: which frame, which masks, how strong, and what else is drawn.
 
-import type { Kind } from '../masks.js';
-import type { Look, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Kind } from '../result/masks.js';
+import type { Look, Store } from '../state/state.js';
 import { find } from './markup.js';
 
 const VIEWS = ['first', 'split', 'second'] as const;

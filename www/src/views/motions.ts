@@ -1,15 +1,15 @@
 //! The list of masks: each in words and numbers, with its colour, name and share, ways to look at it alone, and its motion to copy.
 
-import { isMerged } from '../correcting.js';
-import { centreOf, partsOf, visibleParts } from '../describe.js';
-import { type Mask, UNLABELLED, masksOf } from '../masks.js';
-import { NOTATIONS } from '../matrices.js';
-import { nameOf } from '../naming.js';
-import { colourOfMask, isShown } from '../paint.js';
-import { colourFromHex, cssColour, hexColour } from '../palette.js';
-import type { Session } from '../session.js';
-import { type Look, type Result, type State, type Store, isAwaited } from '../state.js';
-import { strings } from '../strings.js';
+import { nameOf } from '../common/naming.js';
+import { strings } from '../common/strings.js';
+import { colourOfMask, isShown } from '../drawing/paint.js';
+import { colourFromHex, cssColour, hexColour } from '../drawing/palette.js';
+import { centreOf, partsOf, visibleParts } from '../result/describe.js';
+import { UNLABELLED, type Mask, masksOf } from '../result/masks.js';
+import { NOTATIONS } from '../result/matrices.js';
+import { isMerged } from '../session/correcting.js';
+import type { Session } from '../session/session.js';
+import { type Look, type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
 

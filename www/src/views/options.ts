@@ -1,9 +1,9 @@
 //! The settings form, drawn from `controls.ts`.
 
-import { CONTROLS, type Control } from '../controls.js';
-import type { Session } from '../session.js';
-import type { Settings, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import { CONTROLS, type Control, type Settings } from '../state/settings.js';
+import type { Store } from '../state/state.js';
 import { element } from './markup.js';
 
 /** Elements of a field, and how they show what is set. */

@@ -2,10 +2,10 @@
 //! labelled; over the second each is carried along by its motion. Large masks are painted piece by piece, so that the page never
 //! stops answering.
 
-import { fillOf, outlinesOf } from '../paint.js';
-import { Piecewise } from '../piecewise.js';
-import type { Look, Result, Store } from '../state.js';
-import { transformOf } from '../warp.js';
+import { fillOf, outlinesOf } from '../drawing/paint.js';
+import { Piecewise } from '../drawing/piecewise.js';
+import { transformOf } from '../drawing/warp.js';
+import type { Look, Result, Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
 /** One pixel of outline for every so many pixels of the longer side. */

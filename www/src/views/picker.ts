@@ -1,10 +1,10 @@
 //! Ways in: opening files or a folder, samples, the camera; replacing one frame, swapping, and the two thumbnails.
 
-import type { LoadedFrame } from '../frames.js';
-import { SAMPLES } from '../samples.js';
-import type { Session } from '../session.js';
-import type { Slot, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import { SAMPLES } from '../frames/samples.js';
+import type { Session } from '../session/session.js';
+import type { LoadedFrame, Slot } from '../state/pair.js';
+import type { Store } from '../state/state.js';
 import { contextOf, element, find } from './markup.js';
 
 export function mountPicker(root: ParentNode, store: Store, session: Session): void {

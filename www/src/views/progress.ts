@@ -1,11 +1,11 @@
 //! The line under the picture: what is being done, how far it is, and the way to stop it.
 
-import { isPending } from '../correcting.js';
-import { strokesOf } from '../edits.js';
-import type { Session } from '../session.js';
-import type { After, Result, State, Store } from '../state.js';
-import { strings } from '../strings.js';
-import { sayings } from '../strokes.js';
+import { strings } from '../common/strings.js';
+import { strokesOf } from '../correction/edits.js';
+import { sayings } from '../correction/strokes.js';
+import { isPending } from '../session/correcting.js';
+import type { Session } from '../session/session.js';
+import type { After, Result, State, Store } from '../state/state.js';
 import { find } from './markup.js';
 
 /** Work shorter than this shows no bar: a flash tells nobody anything. Milliseconds. */

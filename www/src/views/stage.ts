@@ -1,11 +1,11 @@
 //! The picture: which frame is drawn, the other one beside it in the split view, and what it is called.
 
-import type { LoadedFrame } from '../frames.js';
-import { mainMotion } from '../masks.js';
-import { nameOf } from '../naming.js';
-import type { Slot, State, Store } from '../state.js';
-import { strings } from '../strings.js';
-import { drawHeldStill } from '../warp.js';
+import { nameOf } from '../common/naming.js';
+import { strings } from '../common/strings.js';
+import { drawHeldStill } from '../drawing/warp.js';
+import { mainMotion } from '../result/masks.js';
+import type { LoadedFrame, Slot } from '../state/pair.js';
+import type { State, Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
 export function mountStage(stage: HTMLElement, store: Store): void {

@@ -1,8 +1,9 @@
 //! The timeline of a film: thumbnails, the two chosen frames, steps by one frame.
 
-import type { Session } from '../session.js';
-import type { Film, Slot, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import type { Film, Slot } from '../state/pair.js';
+import type { Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
 /** Width of a thumbnail at least, screen pixels. */

@@ -1,7 +1,7 @@
 //! The notice: an error as a sentence with its code in small, or something that needs saying. It lies over the page, where it is seen; what
 //! is no error goes by itself.
 
-import type { Store } from '../state.js';
+import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
 
 /** How long something that was done is said, milliseconds. */

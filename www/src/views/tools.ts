@@ -1,8 +1,8 @@
 //! The row of tools: look, brush, eraser; the brush's size; undo and redo.
 
-import type { Session } from '../session.js';
-import type { Store, ToolName } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import type { Store, ToolName } from '../state/state.js';
 import { find } from './markup.js';
 
 export const RADII = { least: 2, most: 60 } as const;

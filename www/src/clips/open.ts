@@ -1,0 +1,35 @@
+//! Opens a video file in the most exact way that the browser has.
+
+import { PageError } from '../common/errors.js';
+import { quoted } from '../common/shell.js';
+import { strings } from '../common/strings.js';
+import { fingerprintOfFilm } from '../frames/fingerprints.js';
+import type { Clip } from './clip.js';
+
+/**
+ * Opens a video: with exact frames where the browser has WebCodecs and the codec, else by seeking, which the clip then says.
+ * Throws a {@link PageError} when the browser can do neither: `unsupported-codec` where that is the codec's fault, else `unreadable-video`.
+ */
+export async function openClip(file: File): Promise<Clip> {
+  const fingerprint = await fingerprintOfFilm(file).catch(() => {
+    throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
+  });
+  if (typeof VideoDecoder === 'function') {
+    const { openExact } = await import('./exact.js');
+    const clip = await openExact(file, fingerprint);
+    if (clip !== null) return clip;
+  }
+  const { openApproximate } = await import('./approximate.js');
+  const clip = await openApproximate(file, fingerprint);
+  if (clip !== null) return clip;
+  const { undecodable } = await import('./exact.js');
+  const codec = await undecodable(file);
+  if (codec === null) throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
+  throw new PageError('unsupported-codec', strings.errors.unsupportedCodec(file.name, codec, conversion(file.name)));
+}
+
+/** Converts a video into one that every browser plays; some play no more than eight bits a sample. */
+function conversion(name: string): string {
+  const output = `${name.replace(/\.[^.]*$/, '')}-h264.mp4`;
+  return `ffmpeg -i ${quoted(name)} -c:v libx264 -pix_fmt yuv420p ${quoted(output)}`;
+}

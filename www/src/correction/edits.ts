@@ -1,0 +1,118 @@
+//! What a person did to one pair of frames: strokes, masks merged or taken apart, names and colours. These are the truth; the labels
+//! and groups that are shown follow from them and from what was found.
+
+import type { Segmentation } from 'veronese';
+import type { Colour } from '../drawing/palette.js';
+import { UNLABELLED, type Kind, maskOf, masksOf, regrouped } from '../result/masks.js';
+import { type Part, continuation, labellingOf, labelsIn } from './parts.js';
+import type { Runs } from './runs.js';
+import type { Stroke } from './strokes.js';
+
+/** The group of each motion, by label. */
+export interface Grouping {
+  readonly of: Runs;
+  readonly groups: readonly number[];
+}
+
+/** What is done in one step and undone in one. */
+export type Action = { readonly stroke: Stroke } | { readonly grouping: Grouping };
+
+/** A name or colour given to a mask. */
+export interface Given {
+  readonly kind: Kind;
+  /** The mask's number in the result that was seen … */
+  readonly id: number;
+  /** … and the labels that it had there, to find it in another. */
+  readonly mask: Part;
+  readonly name?: string;
+  readonly colour?: Colour;
+}
+
+export interface Edits {
+  /** In their order, those that were undone and can be done again last. */
+  readonly actions: readonly Action[];
+  /** So many of them count. */
+  readonly done: number;
+  readonly given: readonly Given[];
+  /** The last action that counted, and what was given, when the masks were last saved. */
+  readonly saved: { readonly action: Action | null; readonly given: readonly Given[] };
+}
+
+const NOTHING_GIVEN: readonly Given[] = [];
+
+export const UNTOUCHED: Edits = { actions: [], done: 0, given: NOTHING_GIVEN, saved: { action: null, given: NOTHING_GIVEN } };
+
+export function isTouched({ actions, given }: Edits): boolean {
+  return actions.length > 0 || given.length > 0;
+}
+
+/** One action more; what was undone before it cannot be done again. */
+export function withAction(edits: Edits, action: Action): Edits {
+  const actions = [...edits.actions.slice(0, edits.done), action];
+  return { ...edits, actions, done: actions.length };
+}
+
+/** Every action has its own past: which ones count is told by the last of them. */
+function lastAction({ actions, done }: Edits): Action | null {
+  return actions[done - 1] ?? null;
+}
+
+export function asSaved(edits: Edits): Edits {
+  return { ...edits, saved: { action: lastAction(edits), given: edits.given } };
+}
+
+export function isUnsaved(edits: Edits): boolean {
+  return lastAction(edits) !== edits.saved.action || edits.given !== edits.saved.given;
+}
+
+/** The strokes that count. */
+export function strokesOf({ actions, done }: Edits): Stroke[] {
+  return actions.slice(0, done).flatMap((action) => ('stroke' in action ? [action.stroke] : []));
+}
+
+/** The last stroke that counts tells which strokes do, as {@link lastAction}. */
+export function lastStroke(edits: Edits): Stroke | null {
+  return strokesOf(edits).at(-1) ?? null;
+}
+
+/** The segmentation with the groups that were made; motions that the grouping does not know are groups of their own. */
+export function grouped(segmentation: Segmentation, { actions, done }: Edits, found: Segmentation): Segmentation {
+  const last = actions.slice(0, done).findLast((action) => 'grouping' in action);
+  const groups = last === undefined ? found.motions.map(({ group }) => group) : groupsIn(last.grouping, found);
+  return regrouped(segmentation, ({ label, group }) => groups[label] ?? group);
+}
+
+function groupsIn({ of, groups }: Grouping, found: Segmentation): readonly number[] {
+  const now = labellingOf(found);
+  if (of === now) return groups;
+  const labels = continuation(of, now);
+  let free = Math.max(...groups) + 1;
+  return found.motions.map(({ label }) => groups[labels.get(label) ?? -1] ?? free++);
+}
+
+/** The mask that labels belong to: that of the largest of them; null where there are none. */
+export function maskWith(labels: number, segmentation: Segmentation, kind: Kind): number | null {
+  const motions = segmentation.motions.filter(({ label }) => (labels >> label) & 1);
+  const largest = motions.reduce<(typeof motions)[number] | null>((most, motion) => (motion.pixels > (most?.pixels ?? -1) ? motion : most), null);
+  return largest === null ? null : maskOf(largest.label, segmentation, kind);
+}
+
+/** The number that the mask has now; null where it is gone. */
+export function placeOf({ id, mask, kind }: Pick<Given, 'id' | 'mask' | 'kind'>, segmentation: Segmentation, found: Segmentation): number | null {
+  const now = labellingOf(found);
+  if (id === UNLABELLED || mask.of === now) return masksOf(segmentation, kind).some((other) => other.id === id) ? id : null;
+  return maskWith(labelsIn(mask, now), segmentation, kind);
+}
+
+/** The same edits of frames that are so many times as large. */
+export function scaled(edits: Edits, sx: number, sy: number): Edits {
+  const larger = new Map(edits.actions.map((action) => [action, 'stroke' in action ? { stroke: scaledStroke(action.stroke, sx, sy) } : action]));
+  const saved = edits.saved.action === null ? null : (larger.get(edits.saved.action) ?? edits.saved.action);
+  return { ...edits, actions: [...larger.values()], saved: { ...edits.saved, action: saved } };
+}
+
+/** The centre of the first pixel is 0. */
+function scaledStroke(stroke: Stroke, sx: number, sy: number): Stroke {
+  const points = stroke.points.map((value, i) => (value + 0.5) * (i % 2 === 0 ? sx : sy) - 0.5);
+  return { ...stroke, points, radius: stroke.radius * Math.sqrt(sx * sy) };
+}

@@ -1,0 +1,308 @@
+//! What the page does when it is asked to: open frames, choose them from a clip, segment, correct, cancel. Views call these and read
+//! the state; every failure ends as a notice in the state, and the page goes on working.
+
+import type { Clip } from '../clips/clip.js';
+import { openFolder } from '../clips/folder.js';
+import { openClip } from '../clips/open.js';
+import { PageError, codeOf, sentenceOf } from '../common/errors.js';
+import { strings } from '../common/strings.js';
+import { WHOLE } from '../drawing/viewport.js';
+import { nameOfFile, sortedOut } from '../frames/files.js';
+import { frameFromBlob, frameFromUrl } from '../frames/frame.js';
+import { SAMPLES, type Sample } from '../frames/samples.js';
+import { type Film, type FramePair, type LoadedFrame, type Slot, filmOf } from '../state/pair.js';
+import type { Settings } from '../state/settings.js';
+import { FRESH, type Run, type Store } from '../state/state.js';
+import { Correcting, isCurrent, isPending } from './correcting.js';
+import { LiveView } from './live.js';
+import { Segmenting } from './segmenting.js';
+
+/** A film is opened at its start, with so many frames between the two. */
+const FRAMES_APART = 1;
+
+/** The work on a pair before its first stage. */
+const STARTING: Run = { phase: 'working', work: 'segmenting', stage: '', index: 0, of: 0 };
+
+export class Session {
+  readonly #store: Store;
+  readonly #segmenting = new Segmenting();
+  readonly correcting: Correcting;
+  readonly #live: LiveView;
+  /** Counts what the user opened, so that a slow decoding never overtakes a later one. */
+  #opened = 0;
+
+  constructor(store: Store) {
+    this.#store = store;
+    this.correcting = new Correcting(store, this.#segmenting, (error) => this.#fail(error));
+    this.#live = new LiveView(store, (error) => this.#fail(error));
+  }
+
+  /** Opens a sample, the second frame first where it is `swapped`. */
+  openSample(sample: Sample = SAMPLES[0], swapped = false): Promise<void> {
+    return this.#openFrames(
+      () => Promise.all((swapped ? (['second', 'first'] as const) : (['first', 'second'] as const)).map((slot) => this.#frameOfSample(sample, slot))),
+      pairOf,
+    );
+  }
+
+  /**
+   * Opens files. A video, or more than two images, is a film to choose from; two images make a new pair, in the order of their
+   * names; one goes into `slot`, or, where none is named, into the slot that is empty, or begins a new pair.
+   */
+  openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+    return this.#openFrames(
+      async () => {
+        const { film, images } = sortedOut(await files);
+        if (film !== null) return this.#startOf(await openClip(film));
+        if (images.length > 2) return this.#startOf(await openFolder(images));
+        if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
+        const { longestSide } = this.#store.get().settings;
+        return Promise.all(images.map((image) => frameFromBlob(image, nameOfFile(image), longestSide)));
+      },
+      (frames, pair) => {
+        if (frames.length === 2) return pairOf(frames);
+        const [frame] = frames as [LoadedFrame];
+        if (slot !== null) return { ...pair, [slot]: frame };
+        return pair.first !== null && pair.second === null ? { ...pair, second: frame } : { first: frame, second: null };
+      },
+    );
+  }
+
+  /** Chooses a frame of the film that is open; frames outside are the nearest inside. */
+  choose(slot: Slot, index: number): Promise<void> {
+    const { film } = this.#store.get();
+    if (film === null) return Promise.resolve();
+    return this.#goTo({ [slot]: Math.min(Math.max(Math.round(index), 0), film.clip.count - 1) });
+  }
+
+  /** Moves both frames along the film, or the one that is of it. */
+  step(by: number): Promise<void> {
+    const { film } = this.#store.get();
+    if (film === null) return Promise.resolve();
+    const { clip, first, second } = film;
+    const places = [first, second].filter((place) => place !== null);
+    const shift = Math.min(Math.max(by, -Math.min(...places)), clip.count - 1 - Math.max(...places));
+    return this.#goTo({ first: first === null ? null : first + shift, second: second === null ? null : second + shift });
+  }
+
+  /** Switches the camera on or off. */
+  toggleLive(): Promise<void> {
+    if (this.#store.get().live !== null) return Promise.resolve(this.#live.stop());
+    return this.#open(
+      () => this.#live.start(),
+      (show) => {
+        this.correcting.leave();
+        this.#stop();
+        const { film } = this.#store.get();
+        show();
+        film?.clip.close();
+      },
+    );
+  }
+
+  /** The first frame becomes the second. */
+  swap(): void {
+    const { first, second } = this.#store.get().pair;
+    this.#overtake();
+    this.#take({ first: second, second: first });
+  }
+
+  /** Takes other settings and, where there is a pair, segments it again. */
+  change(settings: Partial<Settings>): void {
+    const { settings: before, insisting } = this.#store.get();
+    this.#store.set({ settings: { ...before, ...settings }, insisting: settings.motions === undefined ? insisting : null });
+    if (this.#store.get().live === null) void this.segment();
+  }
+
+  /** So many motions in this pair; in others as many as before. */
+  insist(motions: number): void {
+    const { settings, insisting } = this.#store.get();
+    this.change({ motions });
+    this.#store.set({ insisting: insisting ?? settings.motions });
+  }
+
+  /** Takes up again what was cancelled. */
+  again(): void {
+    if (isCurrent(this.#store.get())) this.correcting.settle(isPending(this.#store.get()) ? 'solved' : 'found');
+    else void this.segment();
+  }
+
+  /** Segments the pair with the settings, or says what is missing. */
+  async segment(): Promise<void> {
+    const { pair, settings } = this.#store.get();
+    const { first, second } = pair;
+    this.correcting.interrupt();
+    if (first === null || second === null) {
+      this.#segmenting.cancel();
+      this.#store.set({ run: { phase: 'idle' } });
+      return;
+    }
+    this.#store.set({ run: STARTING });
+    const began = performance.now();
+    try {
+      // Of a new pair something is seen soon: what fast work finds, until better work is done.
+      if (settings.quality === 'best' && this.#store.get().result === null) {
+        const preview = await this.#segmenting.run({ first, second }, { ...settings, quality: 'fast' });
+        if (preview === null) return;
+        await this.correcting.take(preview, { first, second }, began, false);
+      }
+      const segmentation = await this.#segmenting.run({ first, second }, settings, ({ stage, index, of }) =>
+        this.#store.set({ run: { phase: 'working', work: 'segmenting', stage, index, of } }),
+      );
+      if (segmentation !== null) await this.correcting.take(segmentation, { first, second }, began, true);
+    } catch (error) {
+      this.#fail(error);
+    }
+  }
+
+  /** Chooses the mask that is worked on. */
+  select(mask: number | null): void {
+    this.#store.look({ selected: mask });
+  }
+
+  /** Stops at once; an older result stays. */
+  cancel(): void {
+    const { run, opening } = this.#store.get();
+    if (opening) return this.#giveUp();
+    if (run.phase !== 'working') return;
+    this.#stop();
+    this.#store.set({ run: { phase: 'cancelled' } });
+  }
+
+  #stop(): void {
+    this.#segmenting.cancel();
+    this.correcting.interrupt();
+  }
+
+  /** Says something to the user; with a code it is an error. */
+  say(sentence: string, code: string | null = null): void {
+    this.#store.set({ notice: { sentence, code } });
+  }
+
+  /** The first two frames of a film. */
+  async #startOf(clip: Clip): Promise<LoadedFrame[]> {
+    try {
+      return [await this.#frameOf(clip, 0), await this.#frameOf(clip, Math.min(FRAMES_APART, clip.count - 1))];
+    } catch (error) {
+      clip.close();
+      throw error;
+    }
+  }
+
+  async #frameOf(clip: Clip, index: number): Promise<LoadedFrame> {
+    return { ...(await clip.frame(index, this.#store.get().settings.longestSide)), origin: { clip, index } };
+  }
+
+  async #frameOfSample(sample: Sample, slot: Slot): Promise<LoadedFrame> {
+    return { ...(await frameFromUrl(sample[slot], `${slot}.png`, this.#store.get().settings.longestSide)), origin: { sample, slot } };
+  }
+
+  /** Goes to other places of the film. Its timeline is there at once; the frames that are not shown yet are loaded. */
+  #goTo(places: Partial<Pick<Film, Slot>>): Promise<void> {
+    const { film, pair, opening } = this.#store.get();
+    if (film === null) return Promise.resolve();
+    const { clip } = film;
+    const wanted: Film = { ...film, ...places };
+    const shown = filmOf(pair);
+    const missing = (['first', 'second'] as const).flatMap((slot) => {
+      const index = wanted[slot];
+      return index === null || index === shown?.[slot] ? [] : [{ slot, index }];
+    });
+    if (missing.length === 0) {
+      if (opening) this.#giveUp();
+      return Promise.resolve();
+    }
+    this.#store.set({ film: wanted });
+    return this.#openFrames(
+      async () => {
+        const frames: LoadedFrame[] = [];
+        for (const { index } of missing) frames.push(await this.#frameOf(clip, index));
+        return frames;
+      },
+      (frames, now) => ({ ...now, ...Object.fromEntries(missing.map(({ slot }, k) => [slot, frames[k]])) }),
+    );
+  }
+
+  /** Loads frames and puts them into the pair. */
+  #openFrames(load: () => Promise<LoadedFrame[]>, place: (frames: LoadedFrame[], pair: FramePair) => FramePair): Promise<void> {
+    return this.#open(
+      load,
+      (frames) => {
+        this.#live.stop();
+        this.#take(place(frames, this.#store.get().pair));
+      },
+      (frames) => {
+        for (const { bitmap, origin } of frames) {
+          bitmap.close();
+          if (origin !== undefined && 'clip' in origin && origin.clip !== this.#store.get().film?.clip) origin.clip.close();
+        }
+      },
+    );
+  }
+
+  /**
+   * Opens something: what is there stays as it is, and whatever works on it goes on, until `take` has what replaces it. What was asked for
+   * last wins; the others are discarded.
+   */
+  async #open<T>(load: () => Promise<T>, take: (opened: T) => void, discard: (opened: T) => void = () => undefined): Promise<void> {
+    const turn = this.#overtake();
+    this.#store.set({ opening: true, notice: null });
+    try {
+      const opened = await load();
+      if (turn !== this.#opened) return discard(opened);
+      this.#store.set({ opening: false });
+      take(opened);
+    } catch (error) {
+      if (turn !== this.#opened) return;
+      this.#giveUp();
+      this.say(sentenceOf(error), codeOf(error));
+    }
+  }
+
+  /** Makes whatever is being opened come too late. */
+  #overtake(): number {
+    if (this.#store.get().live === null) this.#live.stop();
+    return ++this.#opened;
+  }
+
+  /** Leaves open what is: the timeline returns to the frames that are shown. */
+  #giveUp(): void {
+    this.#overtake();
+    this.#store.set({ opening: false, film: filmOf(this.#store.get().pair) });
+  }
+
+  #take(pair: FramePair): void {
+    this.correcting.leave();
+    this.#stop();
+    const { look, pair: before, viewport, film: left } = this.#store.get();
+    const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
+    const complete = pair.first !== null && pair.second !== null;
+    const view = complete && look.view === 'split' ? 'split' : only;
+    const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
+    const film = filmOf(pair);
+    const arrival = this.correcting.arrival(pair);
+    const current = isCurrent(arrival);
+    this.#store.set({
+      pair,
+      film,
+      opening: false,
+      ...arrival,
+      run: current ? { phase: 'done', after: 'restored' } : complete ? STARTING : { phase: 'idle' },
+      look: { ...look, ...FRESH, view },
+      viewport: sameSize ? viewport : WHOLE,
+    });
+    // Nobody draws the old frames any more: give their memory back now, not at the next collection.
+    for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
+    if (left !== null && left.clip !== film?.clip) left.clip.close();
+    if (current) this.correcting.settle('restored');
+    else void this.segment();
+  }
+
+  #fail(error: unknown): void {
+    this.#store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
+  }
+}
+
+function pairOf([first, second]: readonly LoadedFrame[]): FramePair {
+  return { first: first ?? null, second: second ?? null };
+}

@@ -1,0 +1,106 @@
+//! The settings as data: what each is called, what it may be, what it does. `views/options.ts` draws a form from it.
+
+import type { SegmentOptions } from 'veronese';
+
+/** What the settings form holds: the options of the package that the page offers. */
+export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'markUnknown' | 'seed'>>> & {
+  /** Frames with a longer side are scaled down to it when they are opened, pixels. Masks are exported at the size of the file. */
+  readonly longestSide: number;
+};
+
+interface Common<K extends keyof Settings> {
+  readonly name: K;
+  readonly label: string;
+  readonly help: string;
+  readonly initial: Settings[K];
+}
+
+/** One of a few values. */
+export interface ChoiceControl<K extends keyof Settings = keyof Settings> extends Common<K> {
+  readonly kind: 'select' | 'radio';
+  readonly choices: readonly { readonly value: Settings[K]; readonly label: string }[];
+}
+
+/** A whole number. */
+export interface NumberControl extends Common<'seed'> {
+  readonly kind: 'number';
+  readonly min: number;
+  readonly max: number;
+}
+
+/** On or off. */
+export interface SwitchControl extends Common<'markUnknown'> {
+  readonly kind: 'switch';
+}
+
+export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | ChoiceControl<'longestSide'> | NumberControl | SwitchControl;
+
+/** The paper's own limit on the number of motions. */
+const MOST_MOTIONS = 10;
+
+const MOTIONS: ChoiceControl<'motions'> = {
+  kind: 'select',
+  name: 'motions',
+  label: 'Number of motions',
+  help: 'Found from the frames, or as many as you say, in every pair.',
+  initial: 'auto',
+  choices: [
+    { value: 'auto', label: 'Automatic' },
+    ...Array.from({ length: MOST_MOTIONS }, (_, i) => ({ value: i + 1, label: String(i + 1) })),
+  ],
+};
+
+const QUALITY: ChoiceControl<'quality'> = {
+  kind: 'radio',
+  name: 'quality',
+  label: 'Quality',
+  help: 'Fast is for trying things out, best is for keeping.',
+  initial: 'best',
+  choices: [
+    { value: 'fast', label: 'Fast' },
+    { value: 'best', label: 'Best' },
+  ],
+};
+
+const LONGEST_SIDE: ChoiceControl<'longestSide'> = {
+  kind: 'select',
+  name: 'longestSide',
+  label: 'Working size',
+  help: 'Larger frames are worked on at this size, for the next that are opened; masks are saved at full size.',
+  initial: 2048,
+  choices: [
+    { value: 640, label: '640 pixels' },
+    { value: 1024, label: '1024 pixels' },
+    { value: 2048, label: '2048 pixels' },
+    { value: 4096, label: '4096 pixels' },
+  ],
+};
+
+const MARK_UNKNOWN: SwitchControl = {
+  kind: 'switch',
+  name: 'markUnknown',
+  label: 'Mark what cannot be told',
+  help: 'Leaves pixels without a label where no motion explains them.',
+  initial: false,
+};
+
+const SEED: NumberControl = {
+  kind: 'number',
+  name: 'seed',
+  label: 'Seed',
+  help: 'The same seed gives the same masks, everywhere.',
+  initial: 1,
+  min: 0,
+  max: 0xffff_ffff,
+};
+
+/** In the order in which they are shown. */
+export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, MARK_UNKNOWN, LONGEST_SIDE, SEED];
+
+export const DEFAULT_SETTINGS: Settings = {
+  motions: MOTIONS.initial,
+  quality: QUALITY.initial,
+  markUnknown: MARK_UNKNOWN.initial,
+  seed: SEED.initial,
+  longestSide: LONGEST_SIDE.initial,
+};
