@@ -12,7 +12,7 @@ async function stroke(page: Page, from: readonly [number, number], to: readonly 
   await page.mouse.down();
   await page.mouse.move(...at(to), { steps: 8 });
   await page.mouse.up();
-  await expect(page.locator('#status')).toHaveText(/^Solved again/);
+  await expect(page.locator('#status')).toHaveText(/^Labels updated/);
   await done(page);
 }
 
@@ -68,7 +68,7 @@ test('masks are merged into one and taken apart again', async ({ page }) => {
   expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   await page.locator('#redo').click();
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).getByRole('button', { name: 'Take apart' }).click();
+  await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
   expect(await rows.count()).toBeGreaterThan(count - 1);
 });
 
@@ -96,7 +96,7 @@ test('a stroke is drawn by keyboard alone', async ({ page }) => {
   await page.keyboard.press('Space');
   for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
   await page.keyboard.press('Space');
-  await expect(page.locator('#status')).toHaveText(/^Solved again/);
+  await expect(page.locator('#status')).toHaveText(/^Labels updated/);
   const painted = await labelsOnCanvas(page);
   // From the middle 20 radii of 8 pixels to the right, then 6.
   for (let x = 384 + 160; x <= 384 + 208; x++) expect(painted[216 * 768 + x]).toBe(1);

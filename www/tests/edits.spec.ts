@@ -77,7 +77,7 @@ async function openFilm(page: Page, files: Upload[]): Promise<void> {
 
 /** Steps both frames of a film and waits for the masks of the new pair. */
 async function step(page: Page, by: 1 | -1, second: string): Promise<void> {
-  await page.getByRole('button', { name: by > 0 ? 'Both one on' : 'Both one back' }).click();
+  await page.getByRole('button', { name: by > 0 ? 'Step both forward' : 'Step both back' }).click();
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText(second);
   await done(page);
 }
@@ -145,7 +145,7 @@ test('a stroke drawn while the frames are segmented again counts afterwards', as
   await expect(strokes(page)).toHaveCount(1);
   await done(page);
   await expect(page.getByLabel('Best')).toBeChecked();
-  await expect(page.locator('#status')).toHaveText(/motions found in .* Your stroke holds\.$/);
+  await expect(page.locator('#status')).toHaveText(/motions found in .* Your stroke is applied\.$/);
   // The better result numbers its motions otherwise, and may see two in what was one: the stroke means the mask that it was drawn for,
   // in whichever of its parts, which is still chosen.
   const now = await labelsOnCanvas(page);
@@ -161,7 +161,7 @@ test('cancelling keeps the strokes', async ({ page }) => {
   await open(page);
   await brush(page, 1);
   await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#cancel' });
-  await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are solved.');
+  await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are applied yet.');
   await expect(strokes(page)).toHaveCount(1);
   await page.locator('#again').click();
   await done(page);
@@ -188,7 +188,7 @@ test('strokes, names, colours, merges and undo come back with their frames', asy
   await expect(page.locator('#undo')).toBeDisabled();
   await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Motion 1');
   await step(page, -1, 'f1.png');
-  await expect(page.locator('#status')).toHaveText('Your corrections of these frames are back.');
+  await expect(page.locator('#status')).toHaveText('Restored your corrections of these frames.');
   await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Square');
   await expect(rows.nth(0).locator('.swatch')).toHaveValue('#112233');
   await rows.nth(0).locator('.swatch').fill(`#${PALETTE[0]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
@@ -321,10 +321,10 @@ test('another setting keeps strokes and names, by what their masks are', async (
   await done(page);
   const painted = await labelsOnCanvas(page);
 
-  await page.getByLabel('Mark what cannot be told').check();
+  await page.getByLabel('Leave unexplained pixels unlabelled').check();
   await done(page);
   await expect(strokes(page)).toHaveCount(1);
-  await expect(page.locator('#status')).toHaveText(/Your stroke holds\.$/);
+  await expect(page.locator('#status')).toHaveText(/Your stroke is applied\.$/);
   expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
   expect(await page.locator('.motion-name').evaluateAll((inputs) => inputs.filter((input) => (input as HTMLInputElement).value === 'Car').length)).toBe(1);
 
@@ -332,9 +332,9 @@ test('another setting keeps strokes and names, by what their masks are', async (
   await page.getByLabel('Number of motions').selectOption('1');
   await done(page);
   await expect(rows).toHaveCount(1 + (await page.locator('#motions > [data-mask="255"]').count()));
-  await expect(page.locator('#status')).toHaveText(/Your stroke has no say: its mask is not among these\.$/);
+  await expect(page.locator('#status')).toHaveText(/Your stroke has no effect: its mask is not in this result\.$/);
   await page.getByLabel('Number of motions').selectOption('auto');
-  await page.getByLabel('Mark what cannot be told').uncheck();
+  await page.getByLabel('Leave unexplained pixels unlabelled').uncheck();
   await done(page);
   await expect(rows).toHaveCount(count);
   expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
@@ -416,7 +416,7 @@ test('a stroke that can say nothing is refused with a word', async ({ page }) =>
   await page.locator('#tools [value=eraser]').check();
   await page.locator('#motions > li').first().locator('.motion-words').click();
   await draw(page, [0.7, 0.2], [0.8, 0.2]);
-  await expect(page.locator('#notice')).toContainText('There is no other mask that it could belong to.');
+  await expect(page.locator('#notice')).toContainText('There is no other mask that these pixels could belong to.');
   await expect(strokes(page)).toHaveCount(0);
 });
 
@@ -435,17 +435,17 @@ test('the status says what happened', async ({ page }) => {
 
   await brush(page, 1);
   await draw(page, [0.7, 0.2], [0.8, 0.2]);
-  await expect(status).toHaveText(/^Solved again under your stroke in [\d,]+ ms\.$/);
+  await expect(status).toHaveText(/^Labels updated with your stroke in [\d,]+ ms\.$/);
   await page.locator('#undo').click();
   await expect(status).toHaveText('Undone.');
   await page.locator('#redo').click();
-  await expect(status).toHaveText('Done again.');
+  await expect(status).toHaveText('Redone.');
   await rows.nth(1).getByText('More', { exact: true }).click();
   await rows.nth(1).locator('[data-action=merge]').selectOption('2');
   await expect(status).toHaveText('Merged.');
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).getByRole('button', { name: 'Take apart' }).click();
-  await expect(status).toHaveText('Taken apart.');
+  await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
+  await expect(status).toHaveText('Ungrouped.');
 });
 
 test('fewer motions than asked for are said to be fewer', async ({ page }) => {
@@ -457,10 +457,10 @@ test('fewer motions than asked for are said to be fewer', async ({ page }) => {
   await done(page);
   const count = await page.locator('#motions > li').count();
   expect(count).toBeLessThan(10);
-  await expect(page.locator('#status')).toHaveText(/, fewer than the 10 asked for: no more could be told apart\.$/);
+  await expect(page.locator('#status')).toHaveText(/, fewer than the 10 requested: no more could be distinguished\.$/);
   await page.getByLabel('Number of motions').selectOption('2');
   await done(page);
-  await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d,]+ ms, as many as asked for\.$/);
+  await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d,]+ ms, as requested\.$/);
 });
 
 test('what is insisted on for a pair belongs to it', async ({ page }) => {
@@ -482,14 +482,14 @@ test('what is insisted on for a pair belongs to it', async ({ page }) => {
   await done(page);
   await step(page, 1, 'f2.png');
   await expect(setting).toHaveValue('2');
-  await expect(page.locator('#status')).toHaveText(/, as many as asked for\.$/);
+  await expect(page.locator('#status')).toHaveText(/, as requested\.$/);
 });
 
 test('no masks are promised after a failure', async ({ page }) => {
   await open(page);
   await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
-  await expect(page.locator('#motions-empty')).toHaveText('There are none: nothing was segmented.');
+  await expect(page.locator('#motions-empty')).toHaveText('No masks: the segmentation failed.');
   await upload(page, [await sample('first'), await sample('second')]);
   await done(page);
   await expect(page.locator('#motions-empty')).toBeHidden();

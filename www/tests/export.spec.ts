@@ -21,7 +21,7 @@ async function saved(page: Page, name: string): Promise<{ name: string; bytes: B
 }
 
 async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
-  await page.getByLabel('Format of the file').selectOption({ label: format });
+  await page.getByLabel('File format').selectOption({ label: format });
   return saved(page, 'Save');
 }
 
@@ -50,7 +50,7 @@ test('the chosen mask and the overlay are pictures', async ({ page }) => {
   await open(page, 'groups');
   const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
   await page.locator('#motions > li').nth(2).locator('.motion-words').click();
-  const mask = await savedAs(page, 'The chosen mask');
+  const mask = await savedAs(page, 'Selected mask');
   expect(mask.name).toBe('mask.png');
   expect(differences(await reds(mask.bytes), groups.map((group) => (group === 2 ? 255 : 0)))).toBe(0);
 
@@ -87,7 +87,7 @@ test('the copied command and script give the same result', async ({ page, contex
     for (const slot of ['first', 'second'] as const) await writeFile(join(folder, `${slot}.png`), (await sample(slot)).buffer);
 
     await page.getByRole('button', { name: 'Copy command' }).click();
-    await expect(page.locator('#notice')).toContainText('The command is on the clipboard.');
+    await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
     const command = await page.evaluate(() => navigator.clipboard.readText());
     const program = fileURLToPath(new URL('../../pkg/bin/veronese.js', import.meta.url));
     const words = command.split(' ');
@@ -99,7 +99,7 @@ test('the copied command and script give the same result', async ({ page, contex
     expect(differences(written.data, (await decodeImage(bytes)).data)).toBe(0);
 
     await page.getByRole('button', { name: 'Copy JavaScript' }).click();
-    await expect(page.locator('#notice')).toContainText('The JavaScript is on the clipboard.');
+    await expect(page.locator('#notice')).toContainText('Copied the JavaScript to the clipboard.');
     const script = (await page.evaluate(() => navigator.clipboard.readText()))
       .replaceAll(/from '(veronese[^']*)'/g, (_, name: string) => `from '${import.meta.resolve(name)}'`)
       .concat('process.stdout.write(Buffer.from(masks));\n');
@@ -116,7 +116,7 @@ test('the picture is copied', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
   await page.getByRole('button', { name: 'Copy picture' }).click();
-  await expect(page.locator('#notice')).toContainText('The picture is on the clipboard.');
+  await expect(page.locator('#notice')).toContainText('Copied the picture to the clipboard.');
   const size = await page.evaluate(async () => {
     const [item] = await navigator.clipboard.read();
     const bitmap = await createImageBitmap(await item!.getType('image/png'));
@@ -131,7 +131,7 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   await page.getByLabel('Number of motions').selectOption('2');
   await done(page);
   await page.getByRole('button', { name: 'Copy link' }).click();
-  await expect(page.locator('#notice')).toContainText('The link with the settings is on the clipboard.');
+  await expect(page.locator('#notice')).toContainText('Copied the link with the settings to the clipboard.');
   const link = await page.evaluate(() => navigator.clipboard.readText());
   expect(new URL(link).hash).toBe('#motions=2&quality=fast&masks=motions');
   const other = await context.newPage();
@@ -186,11 +186,11 @@ test('the command names the frames of the result, also where one was replaced', 
   await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
   await done(page);
-  await page.getByRole('button', { name: 'Both one on' }).click();
+  await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);
   await page.getByRole('button', { name: 'Copy command' }).click();
-  await expect(page.locator('#notice')).toContainText('The command is on the clipboard.');
+  await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
   expect((await page.evaluate(() => navigator.clipboard.readText())).split('\n')).toEqual([
     "ffmpeg -i film.webm -vf 'select=eq(n\\,1)' -frames:v 1 frame-1.png",
     'veronese pair frame-1.png other.png --quality fast --out masks --overlay',
@@ -205,7 +205,7 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
     const notice = page.locator('#notice');
     for (const name of ['Copy picture', 'Copy command', 'Copy JavaScript', 'Copy link']) {
       await page.getByRole('button', { name }).click();
-      await expect(notice).toContainText('is on the clipboard.');
+      await expect(notice).toContainText('to the clipboard.');
       await expect(notice).toBeInViewport({ ratio: 1 });
       await page.getByRole('button', { name: 'Dismiss' }).click();
       await expect(notice).toBeHidden();
@@ -256,7 +256,7 @@ test('annotation tools get the masks under their names', async ({ page }) => {
   const mask = (id: number): Uint8Array => groups.map((group) => (group === id ? 255 : 0));
   const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
 
-  const coco = (await json('COCO, run lengths')) as {
+  const coco = (await json('COCO, RLE')) as {
     categories: { id: number; name: string }[];
     annotations: { category_id: number; area: number; segmentation: { counts: string; size: number[] } }[];
   };

@@ -48,7 +48,7 @@ test('a WebM film gives exactly the frames that are asked for', async ({ page })
     expect(await numbers(page)).toEqual([first, second]);
   }
 
-  await page.getByRole('button', { name: 'First frame: one on' }).click();
+  await page.getByRole('button', { name: 'First frame: step forward' }).click();
   await done(page);
   expect(await numbers(page)).toEqual([17, 38]);
   await page.keyboard.press('.');
@@ -152,7 +152,7 @@ test('the camera is segmented live and its last pair stays', async ({ page, cont
   await context.grantPermissions(['camera']);
   await open(page);
   await page.getByRole('button', { name: 'Camera' }).click();
-  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ per second, .*motion/, { timeout: 20_000 });
+  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ pairs per second, .*motion/, { timeout: 20_000 });
   await expect(page.locator('#caption')).toHaveText('Camera');
   await page.getByRole('button', { name: 'Stop camera' }).click();
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
@@ -179,7 +179,7 @@ test('corrections of a film are there when it is opened again', async ({ page })
     await done(page);
   };
   await opened('film.webm');
-  await page.getByRole('button', { name: 'Both one on' }).click();
+  await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);
   const name = page.locator('#motions > li').first().locator('.motion-name');
@@ -191,7 +191,7 @@ test('corrections of a film are there when it is opened again', async ({ page })
   await expect(name).toHaveValue('Motion 0');
   await opened('again.webm');
   await expect(name).toHaveValue('Motion 0'); // the first pair
-  await page.getByRole('button', { name: 'Both one on' }).click();
+  await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);
   await expect(name).toHaveValue('Wall');

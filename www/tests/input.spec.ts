@@ -116,7 +116,7 @@ test('a dropped folder with a video opens it, one of two frames is a pair, an em
     await expect(page.locator('#film-name')).toHaveText('film.webm, 4 frames, 192 × 128');
     await done(page);
     await dropPaths(page, [join(root, 'empty')]);
-    await expect(page.getByRole('alert')).toContainText('There was no image or video in what you gave.');
+    await expect(page.getByRole('alert')).toContainText('There is no image or video among these files.');
     await expect(page.locator('#timeline')).toBeVisible();
     await dropPaths(page, [join(root, 'pair')]);
     await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');

@@ -37,7 +37,7 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
     if (screen === 'phone') await page.locator('.film-both').scrollIntoViewIfNeeded();
     const shift = await watchShifts(page);
     for (let k = 1; k <= 3; k++) {
-      await page.getByRole('button', { name: 'Both one on' }).click();
+      await page.getByRole('button', { name: 'Step both forward' }).click();
       await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`#${k},`);
       await done(page);
     }

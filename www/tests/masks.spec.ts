@@ -116,7 +116,7 @@ test('the second frame is shown by switch and while a key is held', async ({ pag
   expect(await shows(second)).toBe(0);
 
   // What stands still lies where it lay in the first frame: warped by nothing where the largest motion is none.
-  await page.getByRole('button', { name: 'with Motion 0 held still' }).click();
-  await expect(page.locator('#caption')).toHaveText(/frame, Motion 0 held still$/);
+  await page.getByRole('button', { name: 'Stabilise on Motion 0' }).click();
+  await expect(page.locator('#caption')).toHaveText(/frame, stabilised on Motion 0$/);
   await expect(page.getByRole('button', { name: 'Blink' })).toHaveAttribute('aria-pressed', 'true');
 });

@@ -18,7 +18,7 @@ test('without a camera the film stays open', async ({ page, context }) => {
   await expect(page.locator('#timeline')).toBeVisible();
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
   await expect(page.locator('#motions > li').first()).toBeVisible();
-  await page.getByRole('button', { name: 'Both one on' }).click();
+  await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);
   await expect(page.getByRole('alert')).toBeHidden();

@@ -91,9 +91,9 @@ test('videos cost nothing until one is opened', async ({ page }) => {
 test('keys are listed on ?, and single keys can be switched off', async ({ page }) => {
   await open(page);
   await page.keyboard.press('?');
-  const dialog = page.getByRole('dialog', { name: 'Keys' });
-  await expect(dialog).toContainText('Both frames in turn');
-  await dialog.getByLabel('Single keys are commands').uncheck();
+  const dialog = page.getByRole('dialog', { name: 'Keyboard shortcuts' });
+  await expect(dialog).toContainText('Alternate between the frames');
+  await dialog.getByLabel('Enable single-key shortcuts').uncheck();
   await dialog.getByRole('button', { name: 'Close' }).click();
   await page.keyboard.press('s');
   await expect(page.locator('#look [value=first]')).toBeChecked();

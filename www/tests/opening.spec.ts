@@ -15,7 +15,7 @@ async function openFilm(page: Page, count: number): Promise<void> {
 
 /** The film still gives frames. */
 async function expectToStep(page: Page, first: number): Promise<void> {
-  await page.getByRole('button', { name: 'Both one on' }).click();
+  await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`#${first},`);
   await done(page);
 }
@@ -39,7 +39,7 @@ test('a replaced frame is not called a frame of the film', async ({ page }) => {
   await expect(page.locator('#film-first-at')).toHaveText('#0, 0.000 s');
   await expect(page.locator('#film-second-at')).toHaveText('another file');
   // The frame that is left moves on, the other stays.
-  await page.getByRole('button', { name: 'Both one on' }).click();
+  await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('#film-first-at')).toHaveText('#1, 0.033 s');
   await done(page);
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
@@ -49,7 +49,7 @@ test('a replaced frame is not called a frame of the film', async ({ page }) => {
   await expect(page.locator('#film-second-at')).toHaveText('#1, 0.033 s');
   await done(page);
   // A row that is used is of the film again.
-  await page.getByRole('button', { name: 'First frame: one on' }).click();
+  await page.getByRole('button', { name: 'First frame: step forward' }).click();
   await expect(page.locator('#film-first-at')).toHaveText('#2, 0.067 s');
   await done(page);
   // Once neither frame is of the film, it is put away.
@@ -65,7 +65,7 @@ test('a frame that cannot be read leaves the film where it was', async ({ page }
   await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
   await expect(page.locator('#film-name')).toHaveText('f0.png, 3 frames, 96 × 64');
   await done(page);
-  await page.getByRole('button', { name: 'Second frame: one on' }).click();
+  await page.getByRole('button', { name: 'Second frame: step forward' }).click();
   await expect(page.getByRole('alert')).toContainText('“f2.png” is not an image');
   await expect(page.locator('#film-second-at')).toHaveText('#1');
   await expect(page.locator('[name=film-second]')).toHaveValue('1');
@@ -167,7 +167,7 @@ test('what is drawn while a film is stepped on belongs to the frames that are sh
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);
   await expect(strokes).toHaveCount(0);
-  await page.getByRole('button', { name: 'Both one back' }).click();
+  await page.getByRole('button', { name: 'Step both back' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#0,');
   await done(page);
   await expect(strokes).toHaveCount(1);

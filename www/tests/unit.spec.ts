@@ -8,14 +8,14 @@ import { codecName } from '../src/clips/codecs.js';
 import { UNTOUCHED, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/correction/edits.js';
 import { labellingOf, labelsIn } from '../src/correction/parts.js';
 import { type Runs, packed, unpacked } from '../src/correction/runs.js';
-import { type Stroke, evidenceOf, possible, sayings } from '../src/correction/strokes.js';
+import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../src/correction/strokes.js';
 import { arrowsOf } from '../src/drawing/arrows.js';
 import { residualOf } from '../src/drawing/residual.js';
 import { atSize } from '../src/export/full-size.js';
 import { linkFor, settingsFromHash } from '../src/export/link.js';
 import { commandFor, scriptFor } from '../src/export/reproduce.js';
 import type { Matrix } from '../src/result/describe.js';
-import { labelSet, masksOf, merged, takenApart } from '../src/result/masks.js';
+import { labelSet, masksOf, merged, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
@@ -51,7 +51,7 @@ test('masks are groups or motions, merged and taken apart', () => {
   expect(found.motions.map(({ group }) => group)).toEqual([0, 1, 1, 2]);
   // Single motions of different groups: only they are joined.
   expect(merged(found, 'motions', 0, 3).motions.map(({ group }) => group)).toEqual([0, 1, 1, 0]);
-  expect(takenApart(joined, 1).motions.map(({ group }) => group)).toEqual([0, 1, 2, 3]);
+  expect(ungrouped(joined, 1).motions.map(({ group }) => group)).toEqual([0, 1, 2, 3]);
 });
 
 test('a stroke covers the pixels under it and later strokes prevail', () => {
@@ -193,13 +193,13 @@ test('a stroke that speaks of nothing there is left out, and is not lost', () =>
   const path = { points: [1, 1, 6, 1], radius: 1 };
   const brush = { ...path, tool: 'brush', mask: { of: here, labels: 0b0110 } } as const;
   const eraser = { ...path, tool: 'eraser', mask: { of: here, labels: 0b0110 } } as const;
-  expect(sayings([brush, eraser], found).map(({ labels }) => labels)).toEqual([0b0110, 0b1001]);
+  expect(constraintsFrom([brush, eraser], found).map(({ labels }) => labels)).toEqual([0b0110, 0b1001]);
   const gone = { of: drawing('5554....', '555.....', '555.....', '555.....'), labels: 0b1_0000 };
-  expect(sayings([{ ...brush, mask: gone }, { ...eraser, mask: gone }], found)).toEqual([]);
+  expect(constraintsFrom([{ ...brush, mask: gone }, { ...eraser, mask: gone }], found)).toEqual([]);
   // What cannot be told is no motion: not that is any of them, and to paint it says nothing.
   const unknown = { of: here, labels: 0 };
-  expect(possible({ tool: 'eraser', mask: unknown }, found)).toBe(0b1111);
-  expect(possible({ tool: 'brush', mask: unknown }, found)).toBe(0);
+  expect(allowedLabels({ tool: 'eraser', mask: unknown }, found)).toBe(0b1111);
+  expect(allowedLabels({ tool: 'brush', mask: unknown }, found)).toBe(0);
 });
 
 test('edits know what counts, what was saved, and fit frames of another size', () => {

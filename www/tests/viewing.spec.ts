@@ -79,7 +79,7 @@ test('the split view shows both frames and its line moves', async ({ page }) => 
   await open(page);
   await page.locator('#look [value=split]').check();
   await expect(page.locator('#other')).toBeVisible();
-  const line = page.getByRole('slider', { name: 'Where the first frame ends' });
+  const line = page.getByRole('slider', { name: 'Position of the split' });
   await line.fill('250');
   await expect(page.locator('#other')).toHaveCSS('clip-path', /25%/);
   await line.focus();

@@ -1,4 +1,4 @@
-//! Every sentence that the code says, in one place. What never changes stands in `index.html`.
+//! Every text that the code shows, in one place. Static text is in `index.html`.
 
 import type { MotionParts } from '../result/describe.js';
 import type { Kind } from '../result/masks.js';
@@ -11,7 +11,7 @@ const whole = decimals(0);
 /** Keeps a number and its unit on one line. */
 const NBSP = '\u00a0';
 
-/** Two digits below one, one digit above: as exact as anybody reads. */
+/** Two decimals below one, one decimal above. */
 function amount(value: number): string {
   const size = Math.abs(value);
   return (size < 1 ? hundredths : tenths).format(size);
@@ -19,16 +19,16 @@ function amount(value: number): string {
 
 const STAGES: Readonly<Record<string, string>> = {
   frames: 'Reading the frames',
-  dominant: 'Finding the largest motion',
-  measurements: 'Measuring',
-  algebra: 'Solving the multibody polynomial',
-  selection: 'Choosing the motions',
+  dominant: 'Estimating the dominant motion',
+  measurements: 'Measuring derivatives',
+  algebra: 'Fitting the multibody polynomial',
+  selection: 'Selecting the motions',
   refinement: 'Refining the motions',
   labels: 'Labelling the pixels',
-  masks: 'Enlarging the masks',
+  masks: 'Upsampling the masks',
 };
 
-/** A stage's name in words; one not in the table has its camelCase name taken apart. */
+/** A stage's name in words. One that is not in the table gets its camelCase name split into words. */
 function stage(name: string): string {
   const words = name.replace(/([a-z0-9])([A-Z])/g, '$1 $2').toLowerCase();
   return STAGES[name] ?? words.charAt(0).toUpperCase() + words.slice(1);
@@ -49,6 +49,7 @@ function motion(parts: MotionParts): string {
 
 const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
 const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
+const scoreAbove = (above: number): string => (above === 0 ? 'lowest score' : `score ${whole.format(above)} above the lowest`);
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
 
 export const strings = {
@@ -62,12 +63,12 @@ export const strings = {
   percent,
   milliseconds: (ms: number): string => `${ms < 10 ? tenths.format(ms) : whole.format(ms)} ms`,
   stage,
-  zoomValue: (value: string): string => `Size ${value}: show at 100 %`,
+  zoomValue: (value: string): string => `Zoom ${value}: set to 100 %`,
   magnified: (times: number): string => `arrows ×${times}`,
 
   empty: 'none yet',
   frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
-  heldStill: (name: string): string => `, ${name} held still`,
+  stabilised: (name: string): string => `, stabilised on ${name}`,
 
   film: (name: string, count: number, width: number, height: number): string => `${name}, ${whole.format(count)} frames, ${size(width, height)}`,
   anotherFile: 'another file',
@@ -75,37 +76,37 @@ export const strings = {
 
   motion,
   maskName: (kind: Kind, id: number): string => `${kind === 'groups' ? 'Group' : 'Motion'} ${id}`,
-  noMasksYet: 'They are listed here as soon as they are found.',
-  noMasks: { failed: 'There are none: nothing was segmented.', cancelled: 'There are none: the work was cancelled.' },
-  liveMasks: (count: number): string => `${motions(count)} at the moment. They are listed when the camera stops.`,
+  noMasksYet: 'Masks appear here once they are found.',
+  noMasks: { failed: 'No masks: the segmentation failed.', cancelled: 'No masks: the segmentation was cancelled.' },
+  liveMasks: (count: number): string => `${motions(count)} at the moment. Stop the camera to list them.`,
   residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
-  severalMotions: (count: number): string => `${count} motions that continue each other`,
-  groupWith: (labels: readonly number[]): string => `one surface with ${labels.map((label) => `Motion ${label}`).join(', ')}`,
-  unknownName: 'Cannot tell',
+  severalMotions: (count: number): string => `${count} motions in one group`,
+  groupWith: (labels: readonly number[]): string => `grouped with ${labels.map((label) => `Motion ${label}`).join(', ')}`,
+  unknownName: 'Unlabelled',
   unknownWords: 'no motion explains these pixels',
   entry: (value: number): string => (Math.abs(value) < 1 ? value.toFixed(6) : value.toFixed(3)),
   show: (name: string): string => `Show ${name}`,
   colourOf: (name: string): string => `Colour of ${name}`,
   nameOf: (name: string): string => `Name of ${name}`,
   soloOf: (name: string): string => `Solo: show only ${name}`,
-  stillOf: (name: string): string => `Hold still: both frames in turn with ${name} held still`,
-  mergeOf: (name: string): string => `Merge ${name} with another`,
-  copied: (what: string, name: string): string => `The motion of ${name} is on the clipboard as ${what}.`,
-  copiedText: (what: string): string => `The ${what} is on the clipboard.`,
+  stabiliseOf: (name: string): string => `Stabilise on ${name}: alternate between the frames with ${name} held in place`,
+  mergeOf: (name: string): string => `Merge ${name} with another mask`,
+  copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
+  copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
-  insistOn: (count: number, above: number): string => `${count} ${count === 1 ? 'motion' : 'motions'}: insist on it; its score is ${whole.format(above)} above the lowest`,
-  scoreAbove: (above: number): string => (above === 0 ? 'lowest score' : `${whole.format(above)} above the lowest`),
+  forceNumber: (count: number, above: number): string => `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair: ${scoreAbove(above)}`,
+  scoreAbove,
 
   toolHelp: {
     look: '',
-    brush: 'Paint what belongs to the chosen mask; the rest follows.',
-    eraser: 'Paint what does not belong to the chosen mask.',
+    brush: 'Paint pixels that belong to the selected mask; the labels around them adapt.',
+    eraser: 'Paint pixels that do not belong to the selected mask.',
   },
 
   timings: {
     decode: (name: string): string => `Decoding ${name}`,
     total: 'All stages',
-    waited: 'Request to answer',
+    waited: 'Including transfers',
   },
 
   status: {
@@ -113,40 +114,41 @@ export const strings = {
     opening: 'Opening…',
     waiting: (slot: 'first' | 'second'): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
     working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
-    /** `asked`: the number that was set, null where it was to be found. */
-    found: (count: number, groups: number, asked: number | null, waited: number): string => {
+    /** `requested`: the number of motions in the settings; null for automatic. */
+    found: (count: number, groups: number, requested: number | null, waited: number): string => {
       const among = groups === count ? '' : groups === 1 ? ' in one group' : ` in ${groups} groups`;
-      const set = asked === null ? '' : count < asked ? `, fewer than the ${asked} asked for: no more could be told apart` : ', as many as asked for';
+      const set = requested === null ? '' : count < requested ? `, fewer than the ${requested} requested: no more could be distinguished` : ', as requested';
       return `${motions(count)}${among} found in ${whole.format(waited)} ms${set}.`;
     },
-    /** So many of all strokes speak of masks that are there. */
-    held: (held: number, all: number): string => {
-      if (held === all) return all === 1 ? 'Your stroke holds.' : `Your ${all} strokes hold.`;
-      if (all === 1) return 'Your stroke has no say: its mask is not among these.';
-      const others = all - held === 1 ? 'mask of the other is' : 'masks of the others are';
-      return held === 0 ? `Your ${all} strokes have no say: their masks are not among these.` : `${held} of your ${all} strokes ${held > 1 ? 'hold' : 'holds'}: the ${others} not among these.`;
+    /** How many of all strokes have an effect on this result. */
+    applied: (applied: number, all: number): string => {
+      if (applied === all) return all === 1 ? 'Your stroke is applied.' : `Your ${all} strokes are applied.`;
+      if (all === 1) return 'Your stroke has no effect: its mask is not in this result.';
+      if (applied === 0) return `Your ${all} strokes have no effect: their masks are not in this result.`;
+      const others = all - applied === 1 ? 'mask of the other is' : 'masks of the others are';
+      return `${applied} of your ${all} strokes ${applied > 1 ? 'are' : 'is'} applied: the ${others} not in this result.`;
     },
-    solved: (strokes: number, waited: number): string => `Solved again under your ${strokes === 1 ? 'stroke' : 'strokes'} in ${whole.format(waited)} ms.`,
+    solved: (strokes: number, waited: number): string => `Labels updated with your ${strokes === 1 ? 'stroke' : 'strokes'} in ${whole.format(waited)} ms.`,
     undone: 'Undone.',
-    redone: 'Done again.',
+    redone: 'Redone.',
     merged: 'Merged.',
-    apart: 'Taken apart.',
-    restored: 'Your corrections of these frames are back.',
-    live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} per second, ${motions(count).toLowerCase()}.`,
+    ungrouped: 'Ungrouped.',
+    restored: 'Restored your corrections of these frames.',
+    live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} pairs per second, ${motions(count).toLowerCase()}.`,
     cancelled: 'Cancelled.',
-    cancelledBefore: 'Cancelled. The masks are the last that were found.',
-    cancelledStrokes: 'Cancelled. Your strokes are kept, but not all are solved.',
-    failed: 'Nothing was segmented.',
-    failedBefore: 'That failed. The masks are the last that were found.',
-    failedStrokes: 'That failed. Your strokes are kept, but not all are solved.',
+    cancelledBefore: 'Cancelled. The masks are from the last result.',
+    cancelledStrokes: 'Cancelled. Your strokes are kept, but not all are applied yet.',
+    failed: 'The segmentation failed.',
+    failedBefore: 'The segmentation failed. The masks are from the last result.',
+    failedStrokes: 'The update failed. Your strokes are kept, but not all are applied yet.',
   },
 
   notices: {
-    noFiles: 'There was no image or video in what you gave.',
+    noFiles: 'There is no image or video among these files.',
     noMasks: 'There are no masks to paint yet.',
-    chooseMask: 'Choose a mask in the list first: the brush paints it.',
-    nothingElse: 'There is no other mask that it could belong to.',
-    notPainted: 'The brush paints motions: choose one of them in the list, or erase this.',
+    chooseMask: 'Select a mask in the list first.',
+    nothingElse: 'There is no other mask that these pixels could belong to.',
+    notPainted: 'The brush cannot make pixels unlabelled. Select another mask, or use the eraser.',
   },
 
   errors: {
@@ -157,41 +159,41 @@ export const strings = {
     unreadableFolder: (name: string): string => `The folder “${name}” cannot be read.`,
     unsupportedCodec: (name: string, codec: string, command: string): string =>
       `“${name}” is ${codec}, which this browser cannot decode. Convert it to H.264 or VP9, e.g. with \`${command}\`, or open it in a browser that plays it.`,
-    slowVideo: 'The video does not answer.',
+    slowVideo: 'Reading the video timed out.',
     inexactFrame: (name: string, index: number): string => `Frame ${index} of “${name}” cannot be read exactly.`,
-    noCamera: 'There is no camera, or the page may not use it.',
-    noCanvas: 'This browser gives no canvas to read pixels from.',
-    noClipboard: 'The browser did not let the page write to the clipboard.',
-    notWritten: (what: string): string => `${what} could not be made.`,
+    noCamera: 'There is no camera, or the page has no permission to use it.',
+    noCanvas: 'This browser cannot read pixels from a canvas.',
+    noClipboard: 'The browser did not allow writing to the clipboard.',
+    notWritten: (what: string): string => `${what} could not be exported.`,
     wholeNumber: (name: string, min: number, max: number): string => `${name} must be a whole number from ${min} to ${max}.`,
   },
 
   keys: {
     look: {
-      peek: 'The other frame, while held',
-      blink: 'Both frames in turn',
-      split: 'Both frames side by side, with a line to move',
-      kind: 'Groups or single motions',
+      peek: 'Show the other frame while held',
+      blink: 'Alternate between the frames',
+      split: 'Split view',
+      kind: 'Switch between groups and motions',
       outlines: 'Outlines',
-      arrows: 'Arrows of the flow',
-      residual: 'What the motions leave unexplained',
-      zoomIn: 'Larger',
-      zoomOut: 'Smaller',
-      whole: 'The whole picture',
-      actual: 'At 100 %: one pixel of the frame on one of the screen',
-      pan: 'Move the enlarged picture',
-      stepBack: 'Film: both frames one back',
-      stepOn: 'Film: both frames one on',
-      look: 'Look',
-      brush: 'Brush: this mask',
-      eraser: 'Eraser: not this mask',
-      stroke: 'With the picture in focus: begin or end a stroke; arrow keys move the brush',
+      arrows: 'Flow arrows',
+      residual: 'Residual: what the motions do not explain',
+      zoomIn: 'Zoom in',
+      zoomOut: 'Zoom out',
+      whole: 'Fit the picture',
+      actual: 'Zoom to 100 %',
+      pan: 'Pan the enlarged picture',
+      stepBack: 'Step both frames back',
+      stepOn: 'Step both frames forward',
+      look: 'View',
+      brush: 'Brush: add to the selected mask',
+      eraser: 'Eraser: remove from the selected mask',
+      stroke: 'With the picture focused: start or end a stroke; arrow keys move the brush',
       thinner: 'Smaller brush',
       thicker: 'Larger brush',
       undo: 'Undo',
       redo: 'Redo',
-      cancel: 'Cancel what is under way',
-      keys: 'This list',
+      cancel: 'Cancel',
+      keys: 'Show this list',
     },
   },
 } as const;

@@ -18,7 +18,7 @@ export interface Grouping {
 export type Action = { readonly stroke: Stroke } | { readonly grouping: Grouping };
 
 /** A name or colour given to a mask. */
-export interface Given {
+export interface Appearance {
   readonly kind: Kind;
   /** The mask's number in the result that was seen … */
   readonly id: number;
@@ -33,17 +33,17 @@ export interface Edits {
   readonly actions: readonly Action[];
   /** So many of them count. */
   readonly done: number;
-  readonly given: readonly Given[];
+  readonly appearances: readonly Appearance[];
   /** The last action that counted, and what was given, when the masks were last saved. */
-  readonly saved: { readonly action: Action | null; readonly given: readonly Given[] };
+  readonly saved: { readonly action: Action | null; readonly appearances: readonly Appearance[] };
 }
 
-const NOTHING_GIVEN: readonly Given[] = [];
+const NO_APPEARANCES: readonly Appearance[] = [];
 
-export const UNTOUCHED: Edits = { actions: [], done: 0, given: NOTHING_GIVEN, saved: { action: null, given: NOTHING_GIVEN } };
+export const UNTOUCHED: Edits = { actions: [], done: 0, appearances: NO_APPEARANCES, saved: { action: null, appearances: NO_APPEARANCES } };
 
-export function isTouched({ actions, given }: Edits): boolean {
-  return actions.length > 0 || given.length > 0;
+export function isTouched({ actions, appearances }: Edits): boolean {
+  return actions.length > 0 || appearances.length > 0;
 }
 
 /** One action more; what was undone before it cannot be done again. */
@@ -58,11 +58,11 @@ function lastAction({ actions, done }: Edits): Action | null {
 }
 
 export function asSaved(edits: Edits): Edits {
-  return { ...edits, saved: { action: lastAction(edits), given: edits.given } };
+  return { ...edits, saved: { action: lastAction(edits), appearances: edits.appearances } };
 }
 
 export function isUnsaved(edits: Edits): boolean {
-  return lastAction(edits) !== edits.saved.action || edits.given !== edits.saved.given;
+  return lastAction(edits) !== edits.saved.action || edits.appearances !== edits.saved.appearances;
 }
 
 /** The strokes that count. */
@@ -98,7 +98,7 @@ export function maskWith(labels: number, segmentation: Segmentation, kind: Kind)
 }
 
 /** The number that the mask has now; null where it is gone. */
-export function placeOf({ id, mask, kind }: Pick<Given, 'id' | 'mask' | 'kind'>, segmentation: Segmentation, found: Segmentation): number | null {
+export function maskIdOf({ id, mask, kind }: Pick<Appearance, 'id' | 'mask' | 'kind'>, segmentation: Segmentation, found: Segmentation): number | null {
   const now = labellingOf(found);
   if (id === UNLABELLED || mask.of === now) return masksOf(segmentation, kind).some((other) => other.id === id) ? id : null;
   return maskWith(labelsIn(mask, now), segmentation, kind);

@@ -22,7 +22,7 @@ export function labellingOf(found: Segmentation): Runs {
 }
 
 /** A result that was remembered: its labelling stays the one that parts refer to. */
-export function knownAs(found: Segmentation, runs: Runs): Segmentation {
+export function withLabelling(found: Segmentation, runs: Runs): Segmentation {
   labellings.set(found, runs);
   return found;
 }

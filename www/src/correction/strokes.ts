@@ -18,13 +18,13 @@ export interface Stroke extends Path {
 }
 
 /** What a stroke says about the labels of one result. */
-export interface Saying extends Path {
+export interface Constraint extends Path {
   /** The labels that are possible here, one bit each. */
   readonly labels: number;
 }
 
 /** The labels that a stroke leaves possible in this result; 0 where it has no say: its mask is gone, or there is nothing else. */
-export function possible({ tool, mask }: Pick<Stroke, 'tool' | 'mask'>, found: Segmentation): number {
+export function allowedLabels({ tool, mask }: Pick<Stroke, 'tool' | 'mask'>, found: Segmentation): number {
   const own = labelsIn(mask, labellingOf(found));
   if (tool === 'brush') return own;
   // Without a label of its own is what cannot be told: not that is any motion.
@@ -32,12 +32,12 @@ export function possible({ tool, mask }: Pick<Stroke, 'tool' | 'mask'>, found: S
 }
 
 /** What the strokes say about this result; those without a say are left out. */
-export function sayings(strokes: readonly Stroke[], found: Segmentation): Saying[] {
-  return strokes.map((stroke) => ({ points: stroke.points, radius: stroke.radius, labels: possible(stroke, found) })).filter(({ labels }) => labels !== 0);
+export function constraintsFrom(strokes: readonly Stroke[], found: Segmentation): Constraint[] {
+  return strokes.map((stroke) => ({ points: stroke.points, radius: stroke.radius, labels: allowedLabels(stroke, found) })).filter(({ labels }) => labels !== 0);
 }
 
 /** What all strokes say, as `relabel` takes it: a set of labels for each pixel, 0 where nothing is said. */
-export function evidenceOf(strokes: readonly Saying[], width: number, height: number): Uint16Array<ArrayBuffer> {
+export function evidenceOf(strokes: readonly Constraint[], width: number, height: number): Uint16Array<ArrayBuffer> {
   const evidence = new Uint16Array(width * height);
   for (const stroke of strokes) {
     eachPixel(stroke, width, height, (p) => {

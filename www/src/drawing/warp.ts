@@ -8,7 +8,7 @@ export function transformOf(matrix: readonly number[]): DOMMatrix {
 }
 
 /** Draws the second frame so that what moves with the motion stands where it stood in the first. */
-export function drawHeldStill(context: CanvasRenderingContext2D, second: ImageBitmap, matrix: readonly number[]): void {
+export function drawStabilised(context: CanvasRenderingContext2D, second: ImageBitmap, matrix: readonly number[]): void {
   const back = transformOf(matrix).inverse();
   if (!Number.isFinite(back.a)) return; // a motion that flattens the frame cannot be undone
   context.setTransform(back);

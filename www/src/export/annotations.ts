@@ -7,7 +7,7 @@ import { zipped } from './zip.js';
 type Encoders = typeof import('veronese/formats');
 
 /** What the encoders take of a result: the largest mask, mostly the background, is a label like any other. */
-function given({ labels, segmentation: { width, height }, masks, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
+function argumentsFor({ labels, segmentation: { width, height }, masks, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
   const names = Object.fromEntries(masks.map(({ id, name }) => [id, name]));
   const motions = masks.map(({ id, motions: [main], pixels, share }) => ({ ...main!, label: id, pixels, share }));
   return [labels, width, height, { image, names, motions, labels: masks.map(({ id }) => id) }];
@@ -36,23 +36,23 @@ function entry(
 }
 
 export const ANNOTATIONS: readonly Format[] = [
-  entry('coco-rle', 'COCO, run lengths', 'coco.json', 'Instances with compressed run lengths: exact, also with holes.', ({ encodeCoco }, exported) =>
-    encodeCoco(...given(exported), { shape: 'rle' }),
+  entry('coco-rle', 'COCO, RLE', 'coco.json', 'Instances as compressed run lengths: exact, holes included.', ({ encodeCoco }, exported) =>
+    encodeCoco(...argumentsFor(exported), { shape: 'rle' }),
   ),
-  entry('coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances with polygons.', ({ encodeCoco }, exported) =>
-    encodeCoco(...given(exported), { shape: 'polygon' }),
+  entry('coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances as polygons.', ({ encodeCoco }, exported) =>
+    encodeCoco(...argumentsFor(exported), { shape: 'polygon' }),
   ),
   entry('cvat', 'CVAT', 'annotations.xml', 'CVAT for images 1.1, with masks.', ({ encodeCvatXml }, exported) =>
-    encodeCvatXml(...given(exported), { shape: 'mask' }),
+    encodeCvatXml(...argumentsFor(exported), { shape: 'mask' }),
   ),
-  entry('label-studio', 'Label Studio', 'label-studio.json', 'A task with predictions of brush labels, to import into a project.', ({ encodeLabelStudio }, exported) => [
-    encodeLabelStudio(...given(exported), { shape: 'brush' }),
+  entry('label-studio', 'Label Studio', 'label-studio.json', 'A task with brush labels as predictions, to import into a project.', ({ encodeLabelStudio }, exported) => [
+    encodeLabelStudio(...argumentsFor(exported), { shape: 'brush' }),
   ]),
-  entry('labelme', 'LabelMe', 'labelme.json', 'Mask shapes, to lie beside the image.', ({ encodeLabelMe }, exported) =>
-    encodeLabelMe(...given(exported), { shape: 'mask' }),
+  entry('labelme', 'LabelMe', 'labelme.json', 'Mask shapes; save the file next to the image.', ({ encodeLabelMe }, exported) =>
+    encodeLabelMe(...argumentsFor(exported), { shape: 'mask' }),
   ),
-  entry('yolo', 'YOLO segmentation', 'yolo.zip', 'One line for each mask, and the names of the classes.', ({ encodeYolo }, exported) => {
-    const { text, names } = encodeYolo(...given(exported));
+  entry('yolo', 'YOLO segmentation', 'yolo.zip', 'A text file with one line per mask, and the class names.', ({ encodeYolo }, exported) => {
+    const { text, names } = encodeYolo(...argumentsFor(exported));
     const list = names.map((name, k) => `  ${k}: ${JSON.stringify(name)}\n`).join('');
     const bytes = (content: string): Uint8Array => new TextEncoder().encode(content);
     const stem = exported.image.replace(/\.[^.]*$/, '').replace(/[\\/:*?"<>|#]/g, '_');

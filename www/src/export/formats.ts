@@ -19,7 +19,7 @@ export const LABELS: Format = {
   title: 'Labels PNG',
   file: 'labels.png',
   type: PNG,
-  hint: 'Indexed, palette index = mask, in the colours of DAVIS.',
+  hint: 'Indexed: the palette index is the number of the mask. DAVIS palette.',
   make: ({ labels, segmentation }) => pngFromLabels(labels, segmentation.width, segmentation.height),
 };
 
@@ -37,7 +37,7 @@ export const MASKS: Format = {
   title: 'All masks',
   file: 'masks.zip',
   type: 'application/zip',
-  hint: 'A grey PNG for each mask, the labels and the result.',
+  hint: 'A greyscale PNG of each mask, the labels and the result.',
   async make(exported) {
     const { labels, segmentation, masks } = exported;
     const { width, height } = segmentation;
@@ -51,10 +51,10 @@ export const MASKS: Format = {
 
 export const MASK: Format = {
   id: 'mask',
-  title: 'The chosen mask',
+  title: 'Selected mask',
   file: 'mask.png',
   type: PNG,
-  hint: 'A grey PNG: white where the mask is that is chosen in the list.',
+  hint: 'A greyscale PNG: the mask selected in the list is white.',
   make: ({ labels, segmentation, look, masks }) => {
     const id = look.selected ?? masks[1]?.id ?? 0;
     return pngFromGrey(grey(labels, id), segmentation.width, segmentation.height);
@@ -66,7 +66,7 @@ export const OVERLAY: Format = {
   title: 'Overlay',
   file: 'overlay.png',
   type: PNG,
-  hint: 'The first frame with its masks as they are shown.',
+  hint: 'The first frame with its masks as shown.',
   make: ({ result, look }) => overlayPicture(result, look),
 };
 

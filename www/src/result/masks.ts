@@ -75,7 +75,7 @@ export function merged(segmentation: Segmentation, kind: Kind, one: number, othe
 }
 
 /** A group taken apart: its largest motion keeps the number, each other gets one that nobody has. */
-export function takenApart(segmentation: Segmentation, group: number): Segmentation {
+export function ungrouped(segmentation: Segmentation, group: number): Segmentation {
   const used = new Set(segmentation.motions.map((motion) => motion.group));
   let first = true;
   return regrouped(segmentation, (motion) => {

@@ -6,25 +6,25 @@ import type { Segmentation } from 'veronese';
 import { strings } from '../common/strings.js';
 import {
   UNTOUCHED,
-  type Given,
+  type Appearance,
   asSaved,
   grouped,
   isTouched,
   lastStroke,
+  maskIdOf,
   maskWith,
-  placeOf,
   scaled,
   strokesOf,
   withAction,
 } from '../correction/edits.js';
-import { type Part, knownAs, labellingOf, labelsIn } from '../correction/parts.js';
+import { type Part, labellingOf, labelsIn, withLabelling } from '../correction/parts.js';
 import { Solutions, packedResult, unpackedResult } from '../correction/solutions.js';
-import { type Stroke, evidenceOf, possible, sayings } from '../correction/strokes.js';
+import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../correction/strokes.js';
 import type { Colour } from '../drawing/palette.js';
-import { UNLABELLED, type Kind, keyOf, labelSet, merged, takenApart } from '../result/masks.js';
+import { UNLABELLED, type Kind, keyOf, labelSet, merged, ungrouped } from '../result/masks.js';
 import type { Kept } from '../state/kept.js';
 import { type FramePair, keyOfPair } from '../state/pair.js';
-import { FRESH, type After, type Look, type Result, type State, type Store } from '../state/state.js';
+import { FRESH, type Cause, type Look, type Result, type State, type Store } from '../state/state.js';
 import type { Segmenting } from './segmenting.js';
 
 export class Correcting {
@@ -35,7 +35,7 @@ export class Correcting {
   /** The solving that is under way. */
   #solving: symbol | null = null;
   /** What the answer that is waited for comes from. */
-  #after: After = 'solved';
+  #cause: Cause = 'solved';
   /** Ends the stroke that is being drawn, as if the brush was lifted. */
   finishStroke: () => void = () => undefined;
 
@@ -53,12 +53,12 @@ export class Correcting {
     this.#regroup(joined, 'merged');
     // What was merged is one mask only among groups.
     const selected = maskWith(labels, this.#store.get().result!.segmentation, 'groups');
-    this.#store.look({ kind: 'groups', selected, hidden: new Set(), solo: null, still: null });
+    this.#store.look({ kind: 'groups', selected, hidden: new Set(), solo: null, stabilised: null });
   }
 
-  takeApart(group: number): void {
+  ungroup(group: number): void {
     const { result } = this.#store.get();
-    if (result !== null) this.#regroup(takenApart(result.segmentation, group), 'apart');
+    if (result !== null) this.#regroup(ungrouped(result.segmentation, group), 'ungrouped');
   }
 
   /** The mask that a stroke begun now is about; null, with a word to the user, where it could say nothing. */
@@ -70,7 +70,7 @@ export class Correcting {
     if (result === null || found === null) return refuse(noMasks);
     if (look.selected === null) return refuse(chooseMask);
     const mask = { of: labellingOf(found), labels: labelSet(result.segmentation, look.kind, look.selected) };
-    return possible({ tool, mask }, found) === 0 ? refuse(tool === 'eraser' ? nothingElse : notPainted) : mask;
+    return allowedLabels({ tool, mask }, found) === 0 ? refuse(tool === 'eraser' ? nothingElse : notPainted) : mask;
   }
 
   stroke(stroke: Stroke): void {
@@ -87,17 +87,17 @@ export class Correcting {
   }
 
   /** An empty name gives the mask its own again. */
-  give(id: number, what: { name: string } | { colour: Colour }): void {
+  setAppearance(id: number, what: { name: string } | { colour: Colour }): void {
     const { result, found, look, edits } = this.#store.get();
     if (result === null || found === null) return;
     const { kind } = look;
     const [property] = Object.keys(what) as ['name' | 'colour'];
-    const others = edits.given.filter((one) => !(property in one && one.kind === kind && placeOf(one, result.segmentation, found) === id));
+    const others = edits.appearances.filter((one) => !(property in one && one.kind === kind && maskIdOf(one, result.segmentation, found) === id));
     const taken = 'name' in what && what.name === '';
-    if (taken && others.length === edits.given.length) return;
+    if (taken && others.length === edits.appearances.length) return;
     const mask = { of: labellingOf(found), labels: labelSet(result.segmentation, kind, id) };
-    const given = taken ? others : [...others, { kind, id, mask, ...what }];
-    this.#store.set({ edits: { ...edits, given }, look: { ...look, ...appearance(given, result.segmentation, found) } });
+    const appearances = taken ? others : [...others, { kind, id, mask, ...what }];
+    this.#store.set({ edits: { ...edits, appearances }, look: { ...look, ...namesAndColours(appearances, result.segmentation, found) } });
   }
 
   /** The masks were saved as `edits` made them. */
@@ -121,7 +121,7 @@ export class Correcting {
   }
 
   /** Takes what was found in a pair: what was done to it so far is carried over. `final` unless a better result follows. */
-  async take(found: Segmentation, pair: Result['pair'], began: number, final: boolean): Promise<void> {
+  async accept(found: Segmentation, pair: Result['pair'], began: number, final: boolean): Promise<void> {
     const under = lastStroke(this.#store.get().edits);
     const solved = await this.#solved(pair, found);
     if (solved === null) return;
@@ -131,37 +131,37 @@ export class Correcting {
     this.#store.set({
       found,
       result: { segmentation, pair, waited: performance.now() - began, under },
-      run: final ? { phase: 'done', after: 'found' } : before.run,
-      look: { ...before.look, ...carried(before, segmentation, found), ...appearance(before.edits.given, segmentation, found) },
+      run: final ? { phase: 'done', cause: 'found' } : before.run,
+      look: { ...before.look, ...carried(before, segmentation, found), ...namesAndColours(before.edits.appearances, segmentation, found) },
     });
     if (isPending(this.#store.get())) this.settle('solved'); // drawn meanwhile
   }
 
   /** What was done to the pair that is open is kept for when it comes again. */
-  leave(): void {
+  keep(): void {
     this.finishStroke();
-    const { pair, edits, found, result, kept, settings, insisting } = this.#store.get();
+    const { pair, edits, found, result, kept, settings, motionsElsewhere } = this.#store.get();
     const key = keyOfPair(pair);
     if (key === null || pair.first === null) return;
-    const insisted = insisting === null ? null : settings.motions;
-    if (!isTouched(edits) && insisted === null) return;
+    const ownMotions = motionsElsewhere === null ? null : settings.motions;
+    if (!isTouched(edits) && ownMotions === null) return;
     const packed = found === null ? null : { packed: packedResult(found, labellingOf(found)), waited: result?.waited ?? 0 };
     const { width, height } = pair.first;
     this.#store.set({
-      kept: new Map(kept).set(key, { edits, insisted, width, height, found: packed }),
-      ...(insisting === null ? {} : { settings: { ...settings, motions: insisting }, insisting: null }),
+      kept: new Map(kept).set(key, { edits, ownMotions, width, height, found: packed }),
+      ...(motionsElsewhere === null ? {} : { settings: { ...settings, motions: motionsElsewhere }, motionsElsewhere: null }),
     });
   }
 
   /** What of the state is another with this pair: empty, or what was done to it before. */
-  arrival(pair: FramePair): Pick<State, 'found' | 'result' | 'edits' | 'kept' | 'settings' | 'insisting'> {
-    const { kept, settings, insisting } = this.#store.get();
+  stateFor(pair: FramePair): Pick<State, 'found' | 'result' | 'edits' | 'kept' | 'settings' | 'motionsElsewhere'> {
+    const { kept, settings, motionsElsewhere } = this.#store.get();
     const key = keyOfPair(pair) ?? '';
     const known = kept.get(key);
-    if (known === undefined) return { found: null, result: null, edits: UNTOUCHED, kept, settings, insisting };
+    if (known === undefined) return { found: null, result: null, edits: UNTOUCHED, kept, settings, motionsElsewhere };
     const others = new Map(kept);
     others.delete(key);
-    const number = known.insisted === null ? { settings, insisting } : { settings: { ...settings, motions: known.insisted }, insisting: settings.motions };
+    const number = known.ownMotions === null ? { settings, motionsElsewhere } : { settings: { ...settings, motions: known.ownMotions }, motionsElsewhere: settings.motions };
     return { ...this.#restored(known, pair as Result['pair']), ...number, kept: others };
   }
 
@@ -171,7 +171,7 @@ export class Correcting {
       return { found: null, result: null, edits: scaled(edits, first.width / width, first.height / height) };
     }
     if (known === null) return { found: null, result: null, edits };
-    const found = knownAs(unpackedResult(known.packed), known.packed.runs);
+    const found = withLabelling(unpackedResult(known.packed), known.packed.runs);
     const last = lastStroke(edits);
     const solved = last === null ? undefined : this.#solutions.get(last, found);
     const segmentation = grouped(solved ?? found, edits, found);
@@ -184,13 +184,13 @@ export class Correcting {
   }
 
   /** Shows what follows from the edits, as soon as it is known. */
-  settle(after: After): void {
+  settle(cause: Cause): void {
     const { result, found, edits, run } = this.#store.get();
     if (result === null || found === null) return;
-    this.#after = after;
+    this.#cause = cause;
     const last = lastStroke(edits);
     const known = last === result.under ? result.segmentation : last === null ? found : this.#solutions.get(last, found);
-    if (known !== undefined) this.#show(known, last, after);
+    if (known !== undefined) this.#show(known, last, cause);
     else {
       const { motions } = grouped(result.segmentation, edits, found);
       const regrouped = motions.some(({ group }, k) => group !== result.segmentation.motions[k]!.group);
@@ -200,26 +200,26 @@ export class Correcting {
     }
   }
 
-  #go(by: 1 | -1, after: After): void {
+  #go(by: 1 | -1, cause: Cause): void {
     const { edits } = this.#store.get();
     const done = edits.done + by;
     if (done < 0 || done > edits.actions.length) return;
     this.#store.set({ edits: { ...edits, done } });
-    this.settle(after);
+    this.settle(cause);
   }
 
-  #regroup({ motions }: Segmentation, after: After): void {
+  #regroup({ motions }: Segmentation, cause: Cause): void {
     const { edits, found } = this.#store.get();
     if (found === null) return;
     const grouping = { of: labellingOf(found), groups: motions.map(({ group }) => group) };
     this.#store.set({ edits: withAction(edits, { grouping }) });
-    this.settle(after);
+    this.settle(cause);
   }
 
   /** Solves until the answer is that to the newest strokes. */
   async #solve(): Promise<void> {
     this.#store.set({ run: { phase: 'working', work: 'solving', stage: 'labels', index: 0, of: 1 } });
-    if (this.#solving !== null) return; // the newest strokes are taken up after those that are being solved
+    if (this.#solving !== null) return; // the newest strokes come next
     const own = (this.#solving = Symbol());
     try {
       for (;;) {
@@ -232,7 +232,7 @@ export class Correcting {
         this.#solutions.add(last, found, solved);
         const now = strokesOf(this.#store.get().edits);
         // With strokes missing it is better than nothing; with strokes too many it is wrong.
-        if (now.includes(last)) this.#show(solved, last, now.at(-1) === last ? this.#after : null, performance.now() - began);
+        if (now.includes(last)) this.#show(solved, last, now.at(-1) === last ? this.#cause : null, performance.now() - began);
       }
     } catch (error) {
       if (this.#solving === own) this.#fail(error);
@@ -243,20 +243,20 @@ export class Correcting {
 
   /** The labels of what was found under the strokes that count; null when the work was ended. */
   async #solved(pair: Result['pair'], found: Segmentation): Promise<Segmentation | null> {
-    const said = sayings(strokesOf(this.#store.get().edits), found);
-    return said.length === 0 ? found : this.#segmenting.relabel(pair, found, evidenceOf(said, found.width, found.height));
+    const constraints = constraintsFrom(strokesOf(this.#store.get().edits), found);
+    return constraints.length === 0 ? found : this.#segmenting.relabel(pair, found, evidenceOf(constraints, found.width, found.height));
   }
 
   /** `after` is null while a better answer is waited for. */
-  #show(solved: Segmentation, under: Stroke | null, after: After | null, waited?: number): void {
+  #show(solved: Segmentation, under: Stroke | null, cause: Cause | null, waited?: number): void {
     const before = this.#store.get();
     const { result, found, edits, run, look } = before;
     if (result === null || found === null) return;
     const segmentation = grouped(solved, edits, found);
     this.#store.set({
       result: { ...result, segmentation, under, waited: waited ?? result.waited },
-      run: after === null || isSegmenting(run) ? run : { phase: 'done', after },
-      look: { ...look, ...carried(before, segmentation, found), ...appearance(edits.given, segmentation, found) },
+      run: cause === null || isSegmenting(run) ? run : { phase: 'done', cause },
+      look: { ...look, ...carried(before, segmentation, found), ...namesAndColours(edits.appearances, segmentation, found) },
     });
   }
 }
@@ -281,10 +281,10 @@ function isSegmenting(run: State['run']): boolean {
 }
 
 /** Names and colours by the numbers that their masks have now. */
-function appearance(given: readonly Given[], segmentation: Segmentation, found: Segmentation): Pick<Look, 'names' | 'colours'> {
+function namesAndColours(appearances: readonly Appearance[], segmentation: Segmentation, found: Segmentation): Pick<Look, 'names' | 'colours'> {
   const [names, colours]: [Record<string, string>, Record<string, Colour>] = [{}, {}];
-  for (const one of given) {
-    const id = placeOf(one, segmentation, found);
+  for (const one of appearances) {
+    const id = maskIdOf(one, segmentation, found);
     if (id === null) continue;
     if (one.name !== undefined) names[keyOf(one.kind, id)] = one.name;
     if (one.colour !== undefined) colours[keyOf(one.kind, id)] = one.colour;
@@ -293,15 +293,15 @@ function appearance(given: readonly Given[], segmentation: Segmentation, found: 
 }
 
 /** What was chosen by the numbers of masks, by the numbers that these masks have now. */
-function carried({ look, result, found }: State, now: Segmentation, foundNow: Segmentation): Pick<Look, 'hidden' | 'solo' | 'still' | 'selected'> {
+function carried({ look, result, found }: State, now: Segmentation, foundNow: Segmentation): Pick<Look, 'hidden' | 'solo' | 'stabilised' | 'selected'> {
   const { hidden: none } = FRESH;
-  if (result === null || found === null) return { hidden: none, solo: null, still: null, selected: null };
-  const { kind, hidden, solo, still, selected } = look;
+  if (result === null || found === null) return { hidden: none, solo: null, stabilised: null, selected: null };
+  const { kind, hidden, solo, stabilised, selected } = look;
   const place = (id: number | null): number | null => {
     if (id === null) return null;
     const labels = labelSet(result.segmentation, kind, id);
     if (id === UNLABELLED) return now.unlabelled > 0 ? id : null;
     return maskWith(found === foundNow ? labels : labelsIn({ of: labellingOf(found), labels }, labellingOf(foundNow)), now, kind);
   };
-  return { hidden: new Set([...hidden].map(place).filter((id) => id !== null)), solo: place(solo), still: place(still), selected: place(selected) };
+  return { hidden: new Set([...hidden].map(place).filter((id) => id !== null)), solo: place(solo), stabilised: place(stabilised), selected: place(selected) };
 }

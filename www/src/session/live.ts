@@ -72,7 +72,7 @@ export class LiveView {
     this.#stream = null;
     const { live, result } = this.#store.get();
     if (live === null) return;
-    const run = result === null ? ({ phase: 'idle' } as const) : ({ phase: 'done', after: 'found' } as const);
+    const run = result === null ? ({ phase: 'idle' } as const) : ({ phase: 'done', cause: 'found' } as const);
     this.#store.set({ live: null, run, found: result?.segmentation ?? null });
   }
 

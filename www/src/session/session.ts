@@ -91,7 +91,7 @@ export class Session {
     return this.#open(
       () => this.#live.start(),
       (show) => {
-        this.correcting.leave();
+        this.correcting.keep();
         this.#stop();
         const { film } = this.#store.get();
         show();
@@ -104,21 +104,21 @@ export class Session {
   swap(): void {
     const { first, second } = this.#store.get().pair;
     this.#overtake();
-    this.#take({ first: second, second: first });
+    this.#setPair({ first: second, second: first });
   }
 
   /** Takes other settings and, where there is a pair, segments it again. */
   change(settings: Partial<Settings>): void {
-    const { settings: before, insisting } = this.#store.get();
-    this.#store.set({ settings: { ...before, ...settings }, insisting: settings.motions === undefined ? insisting : null });
+    const { settings: before, motionsElsewhere } = this.#store.get();
+    this.#store.set({ settings: { ...before, ...settings }, motionsElsewhere: settings.motions === undefined ? motionsElsewhere : null });
     if (this.#store.get().live === null) void this.segment();
   }
 
   /** So many motions in this pair; in others as many as before. */
-  insist(motions: number): void {
-    const { settings, insisting } = this.#store.get();
+  forceMotions(motions: number): void {
+    const { settings, motionsElsewhere } = this.#store.get();
     this.change({ motions });
-    this.#store.set({ insisting: insisting ?? settings.motions });
+    this.#store.set({ motionsElsewhere: motionsElsewhere ?? settings.motions });
   }
 
   /** Takes up again what was cancelled. */
@@ -144,12 +144,12 @@ export class Session {
       if (settings.quality === 'best' && this.#store.get().result === null) {
         const preview = await this.#segmenting.run({ first, second }, { ...settings, quality: 'fast' });
         if (preview === null) return;
-        await this.correcting.take(preview, { first, second }, began, false);
+        await this.correcting.accept(preview, { first, second }, began, false);
       }
       const segmentation = await this.#segmenting.run({ first, second }, settings, ({ stage, index, of }) =>
         this.#store.set({ run: { phase: 'working', work: 'segmenting', stage, index, of } }),
       );
-      if (segmentation !== null) await this.correcting.take(segmentation, { first, second }, began, true);
+      if (segmentation !== null) await this.correcting.accept(segmentation, { first, second }, began, true);
     } catch (error) {
       this.#fail(error);
     }
@@ -229,7 +229,7 @@ export class Session {
       load,
       (frames) => {
         this.#live.stop();
-        this.#take(place(frames, this.#store.get().pair));
+        this.#setPair(place(frames, this.#store.get().pair));
       },
       (frames) => {
         for (const { bitmap, origin } of frames) {
@@ -271,8 +271,8 @@ export class Session {
     this.#store.set({ opening: false, film: filmOf(this.#store.get().pair) });
   }
 
-  #take(pair: FramePair): void {
-    this.correcting.leave();
+  #setPair(pair: FramePair): void {
+    this.correcting.keep();
     this.#stop();
     const { look, pair: before, viewport, film: left } = this.#store.get();
     const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
@@ -280,14 +280,14 @@ export class Session {
     const view = complete && look.view === 'split' ? 'split' : only;
     const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
     const film = filmOf(pair);
-    const arrival = this.correcting.arrival(pair);
+    const arrival = this.correcting.stateFor(pair);
     const current = isCurrent(arrival);
     this.#store.set({
       pair,
       film,
       opening: false,
       ...arrival,
-      run: current ? { phase: 'done', after: 'restored' } : complete ? STARTING : { phase: 'idle' },
+      run: current ? { phase: 'done', cause: 'restored' } : complete ? STARTING : { phase: 'idle' },
       look: { ...look, ...FRESH, view },
       viewport: sameSize ? viewport : WHOLE,
     });

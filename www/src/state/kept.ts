@@ -10,7 +10,7 @@ export interface Kept {
   /** As it was found and how long that took; null where it was not found again before the pair was left. */
   readonly found: { readonly packed: Packed; readonly waited: number } | null;
   /** The number of motions insisted on for this pair. */
-  readonly insisted: Settings['motions'] | null;
+  readonly ownMotions: Settings['motions'] | null;
   /** Size of the first frame. */
   readonly width: number;
   readonly height: number;

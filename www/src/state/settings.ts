@@ -42,7 +42,7 @@ const MOTIONS: ChoiceControl<'motions'> = {
   kind: 'select',
   name: 'motions',
   label: 'Number of motions',
-  help: 'Found from the frames, or as many as you say, in every pair.',
+  help: 'Estimated for each pair, or the same for all pairs.',
   initial: 'auto',
   choices: [
     { value: 'auto', label: 'Automatic' },
@@ -54,7 +54,7 @@ const QUALITY: ChoiceControl<'quality'> = {
   kind: 'radio',
   name: 'quality',
   label: 'Quality',
-  help: 'Fast is for trying things out, best is for keeping.',
+  help: 'Fast for a quick look, Best for final masks.',
   initial: 'best',
   choices: [
     { value: 'fast', label: 'Fast' },
@@ -66,7 +66,7 @@ const LONGEST_SIDE: ChoiceControl<'longestSide'> = {
   kind: 'select',
   name: 'longestSide',
   label: 'Working size',
-  help: 'Larger frames are worked on at this size, for the next that are opened; masks are saved at full size.',
+  help: 'Larger frames are scaled down to this size when opened. Masks are exported at full size.',
   initial: 2048,
   choices: [
     { value: 640, label: '640 pixels' },
@@ -79,8 +79,8 @@ const LONGEST_SIDE: ChoiceControl<'longestSide'> = {
 const MARK_UNKNOWN: SwitchControl = {
   kind: 'switch',
   name: 'markUnknown',
-  label: 'Mark what cannot be told',
-  help: 'Leaves pixels without a label where no motion explains them.',
+  label: 'Leave unexplained pixels unlabelled',
+  help: 'Pixels that no motion explains get no label.',
   initial: false,
 };
 
@@ -88,7 +88,7 @@ const SEED: NumberControl = {
   kind: 'number',
   name: 'seed',
   label: 'Seed',
-  help: 'The same seed gives the same masks, everywhere.',
+  help: 'The same seed always gives the same masks.',
   initial: 1,
   min: 0,
   max: 0xffff_ffff,

@@ -10,12 +10,12 @@ import type { Film, FramePair, LoadedFrame, Slot } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 
 /** What the masks that are shown come from. */
-export type After = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'apart' | 'restored';
+export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'restored';
 
 /** What the work is doing. `index` counts stages from 0; `of` is 0 while the number of stages is not known. */
 export type Run =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'live' }
-  | { readonly phase: 'done'; readonly after: After }
+  | { readonly phase: 'done'; readonly cause: Cause }
   | { readonly phase: 'working'; readonly work: 'segmenting' | 'solving'; readonly stage: string; readonly index: number; readonly of: number };
 
 /** A segmentation together with the frames it was made from, so that late views never mix two requests. */
@@ -43,7 +43,7 @@ export interface Look extends Painting {
   /** The mask that is worked on, and that the brush paints. */
   readonly selected: number | null;
   /** The second frame is drawn warped by this mask's motion, so that its pixels stand still. */
-  readonly still: number | null;
+  readonly stabilised: number | null;
   /** Names that the user gave to masks, by `keyOf`. Like the colours, they follow from the edits. */
   readonly names: Readonly<Record<string, string>>;
 }
@@ -76,7 +76,7 @@ export interface State {
   readonly opening: boolean;
   readonly settings: Settings;
   /** The number of motions that was set before somebody insisted on another for this pair alone; null where nobody did. */
-  readonly insisting: Settings['motions'] | null;
+  readonly motionsElsewhere: Settings['motions'] | null;
   readonly run: Run;
   readonly result: Result | null;
   /** As it was found, before anybody touched it. */
@@ -97,7 +97,7 @@ export function isAwaited({ result, run }: State): boolean {
 }
 
 /** What of a look belongs to one result. */
-export const FRESH = { hidden: new Set<number>(), solo: null, still: null, selected: null, blinking: false, names: {}, colours: {} } as const;
+export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, blinking: false, names: {}, colours: {} } as const;
 
 export const INITIAL: State = {
   pair: { first: null, second: null },
@@ -105,7 +105,7 @@ export const INITIAL: State = {
   live: null,
   opening: false,
   settings: DEFAULT_SETTINGS,
-  insisting: null,
+  motionsElsewhere: null,
   run: { phase: 'idle' },
   result: null,
   found: null,

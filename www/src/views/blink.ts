@@ -16,7 +16,7 @@ export function mountBlink(root: ParentNode, store: Store): void {
     button.setAttribute('aria-pressed', String(look.blinking));
     clearInterval(timer);
     if (look.blinking) timer = window.setInterval(() => flip(store), PERIOD);
-    else if (before.look.view !== 'split' && look.still === null) store.look({ view: 'first' });
+    else if (before.look.view !== 'split' && look.stabilised === null) store.look({ view: 'first' });
   });
 }
 

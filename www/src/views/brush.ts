@@ -2,7 +2,7 @@
 
 import { maskWith, strokesOf } from '../correction/edits.js';
 import { labellingOf, labelsIn } from '../correction/parts.js';
-import { type Stroke, possible } from '../correction/strokes.js';
+import { type Stroke, allowedLabels } from '../correction/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { type Colour, cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
@@ -141,7 +141,7 @@ export class Brush {
       ...strokesOf(edits).map((stroke) => {
         const mask = stroke.tool === 'brush' ? maskWith(labelsIn(stroke.mask, labellingOf(found)), segmentation, look.kind) : null;
         const colour = mask === null ? COLOURLESS : colourOfMask(mask, look);
-        const heard = possible(stroke, found) === 0 ? 'stroke unheard' : 'stroke';
+        const heard = allowedLabels(stroke, found) === 0 ? 'stroke ineffective' : 'stroke';
         return drawn('path', { class: heard, d: pathOf(stroke.points), 'stroke-width': 2 * stroke.radius, stroke: cssColour(colour) });
       }),
     );

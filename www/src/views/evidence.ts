@@ -34,9 +34,9 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
         button.type = 'button';
         button.setAttribute('aria-pressed', String(settings.motions === motions));
         button.classList.toggle('found', motions === found.count);
-        button.setAttribute('aria-label', strings.insistOn(motions, score - least));
+        button.setAttribute('aria-label', strings.forceNumber(motions, score - least));
         button.title = strings.scoreAbove(score - least);
-        button.addEventListener('click', () => session.insist(motions));
+        button.addEventListener('click', () => session.forceMotions(motions));
         return button;
       }),
     );

@@ -41,5 +41,5 @@ export function mountLook(form: HTMLFormElement, store: Store): void {
 /** Numbers of masks mean something else then: what was chosen by them is forgotten. */
 export function showKind(store: Store, kind: Kind): void {
   if (store.get().look.kind === kind) return;
-  store.look({ kind, hidden: new Set(), solo: null, still: null, selected: null });
+  store.look({ kind, hidden: new Set(), solo: null, stabilised: null, selected: null });
 }

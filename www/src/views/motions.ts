@@ -76,7 +76,7 @@ function fillList(list: HTMLElement, template: HTMLTemplateElement, { look }: St
     const [main] = mask.motions;
     if (main === undefined) {
       find(row, '.motion-words', HTMLElement).textContent = strings.unknownWords;
-      for (const selector of ['.motion-facts', '[data-action=still]', '.more']) find(row, selector, HTMLElement).remove();
+      for (const selector of ['.motion-facts', '[data-action=stabilise]', '.more']) find(row, selector, HTMLElement).remove();
     } else {
       const [, , width, height] = main.bbox;
       const parts = visibleParts(partsOf(main.matrix, centreOf(segmentation, main.label)), Math.hypot(width, height) / 2);
@@ -103,7 +103,7 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
   const colour = find(row, '[data-action=colour]', HTMLInputElement);
   const name = find(row, '.motion-name', HTMLInputElement);
   const solo = find(row, '[data-action=solo]', HTMLButtonElement);
-  const still = row.querySelector<HTMLButtonElement>('[data-action=still]');
+  const stabilise = row.querySelector<HTMLButtonElement>('[data-action=stabilise]');
 
   shown.addEventListener('change', () => {
     const { look } = store.get();
@@ -113,16 +113,16 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
     store.look({ hidden, solo: null });
   });
   colour.addEventListener('input', () => {
-    session.correcting.give(id, { colour: colourFromHex(colour.value) });
+    session.correcting.setAppearance(id, { colour: colourFromHex(colour.value) });
   });
   name.addEventListener('change', () => {
-    session.correcting.give(id, { name: name.value.trim() });
+    session.correcting.setAppearance(id, { name: name.value.trim() });
   });
   name.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') name.blur();
   });
   solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
-  still?.addEventListener('click', () => toggleStill(store, id));
+  stabilise?.addEventListener('click', () => toggleStabilised(store, id));
   row.addEventListener('focusin', () => session.select(id));
   row.addEventListener('pointerdown', () => session.select(id));
 
@@ -136,20 +136,20 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
     row.classList.toggle('away', !shown.checked);
     row.classList.toggle('selected', look.selected === id);
     solo.setAttribute('aria-pressed', String(look.solo === id));
-    still?.setAttribute('aria-pressed', String(look.still === id));
+    stabilise?.setAttribute('aria-pressed', String(look.stabilised === id));
     shown.setAttribute('aria-label', strings.show(called));
     colour.setAttribute('aria-label', strings.colourOf(called));
     name.setAttribute('aria-label', strings.nameOf(called));
     solo.setAttribute('aria-label', strings.soloOf(called));
-    still?.setAttribute('aria-label', strings.stillOf(called));
+    stabilise?.setAttribute('aria-label', strings.stabiliseOf(called));
   };
 }
 
 /** The second frame in the first's place under this mask's motion, both in turn: what stands still belongs to it. */
-export function toggleStill(store: Store, id: number): void {
+export function toggleStabilised(store: Store, id: number): void {
   const { look } = store.get();
-  if (look.still === id) store.look({ still: null, blinking: false, view: 'first' });
-  else store.look({ still: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !matchMedia('(prefers-reduced-motion: reduce)').matches });
+  if (look.stabilised === id) store.look({ stabilised: null, blinking: false, view: 'first' });
+  else store.look({ stabilised: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !matchMedia('(prefers-reduced-motion: reduce)').matches });
 }
 
 /** The matrix, ways to copy it, and what to merge with. */
@@ -180,9 +180,9 @@ function fillMore(row: HTMLElement, mask: Mask, masks: readonly Mask[], store: S
   merge.hidden = merge.options.length < 2;
   merge.setAttribute('aria-label', strings.mergeOf(nameOf(look, mask.id)));
   merge.addEventListener('change', () => session.correcting.merge(mask.id, Number(merge.value)));
-  const apart = find(row, '[data-action=apart]', HTMLButtonElement);
-  apart.hidden = !isMerged(look.kind, mask.motions);
-  apart.addEventListener('click', () => session.correcting.takeApart(mask.id));
+  const ungroup = find(row, '[data-action=ungroup]', HTMLButtonElement);
+  ungroup.hidden = !isMerged(look.kind, mask.motions);
+  ungroup.addEventListener('click', () => session.correcting.ungroup(mask.id));
 }
 
 function nameOption(option: Element, look: Look): void {

@@ -34,7 +34,7 @@ export function mountOverlay(stage: HTMLElement, store: Store): void {
 
 /** Whether masks lie where they are in the first frame, so that both frames show the same. */
 function inPlace(look: Look): boolean {
-  return look.view !== 'second' || look.still !== null;
+  return look.view !== 'second' || look.stabilised !== null;
 }
 
 function repaints(now: Look, before: Look): boolean {

@@ -2,10 +2,10 @@
 
 import { strings } from '../common/strings.js';
 import { strokesOf } from '../correction/edits.js';
-import { sayings } from '../correction/strokes.js';
+import { constraintsFrom } from '../correction/strokes.js';
 import { isPending } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
-import type { After, Result, State, Store } from '../state/state.js';
+import type { Cause, Result, State, Store } from '../state/state.js';
 import { find } from './markup.js';
 
 /** Work shorter than this shows no bar: a flash tells nobody anything. Milliseconds. */
@@ -53,7 +53,7 @@ function sentenceFor(state: State): string {
     case 'working':
       return status.working(run.stage, run.index, run.of);
     case 'done':
-      return result === null ? '' : sentenceAfter(run.after, state, result);
+      return result === null ? '' : sentenceAbout(run.cause, state, result);
     case 'live':
       return status.live(live?.rate ?? 0, result?.segmentation.count ?? 0);
     case 'idle':
@@ -69,13 +69,13 @@ function sentenceFor(state: State): string {
 }
 
 /** What the masks that are shown come from. */
-function sentenceAfter(after: After, { look, found, edits }: State, { segmentation, waited }: Result): string {
+function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentation, waited }: Result): string {
   const { status } = strings;
   const strokes = strokesOf(edits);
-  if (after === 'solved') return status.solved(strokes.length, waited);
-  if (after !== 'found') return status[after];
+  if (cause === 'solved') return status.solved(strokes.length, waited);
+  if (cause !== 'found') return status[cause];
   const { count, motions, settings } = segmentation;
   const groups = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size : count;
   const answer = status.found(count, groups, settings.motions === 'auto' ? null : settings.motions, waited);
-  return found === null || strokes.length === 0 ? answer : `${answer} ${status.held(sayings(strokes, found).length, strokes.length)}`;
+  return found === null || strokes.length === 0 ? answer : `${answer} ${status.applied(constraintsFrom(strokes, found).length, strokes.length)}`;
 }

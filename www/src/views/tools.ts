@@ -49,7 +49,7 @@ export function chooseTool(store: Store, name: ToolName): void {
   const { motions } = result?.segmentation ?? { motions: [] };
   const second = motions[1] ?? motions[0];
   const selected = look.selected ?? (second === undefined ? null : look.kind === 'groups' ? second.group : second.label);
-  store.look({ view: 'first', blinking: false, still: null, selected });
+  store.look({ view: 'first', blinking: false, stabilised: null, selected });
 }
 
 export function changeRadius(store: Store, factor: number): void {
