@@ -1,4 +1,4 @@
-//! Wires the page together: one store, one session, and the views on their markup.
+//! Wires the page together: one store, one session, and the views mounted on their markup.
 
 import { settingsFromHash } from './export/link.js';
 import { SAMPLES } from './frames/samples.js';

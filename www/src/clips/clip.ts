@@ -1,4 +1,4 @@
-//! Films: a video file or a folder of frames, from which two frames are chosen by number.
+//! A clip: a video or a folder of frames, from which two frames are chosen by index.
 
 import type { DecodedFrame } from '../frames/frame.js';
 
@@ -6,24 +6,24 @@ export interface Clip {
   readonly name: string;
   /** Number of frames. */
   readonly count: number;
-  /** When each frame is shown, seconds; none for a folder. */
+  /** Presentation time of each frame, seconds; `null` for a folder. */
   readonly times: Float64Array | null;
-  /** Whether frame `i` certainly is the `i`-th of the file. */
+  /** Whether frame `i` is guaranteed to be the `i`-th of the file. */
   readonly exact: boolean;
-  /** Size of a frame as it is shown. */
+  /** Display size of a frame, pixels. */
   readonly width: number;
   readonly height: number;
   frame(index: number, longestSide: number): Promise<DecodedFrame>;
-  /** Small pictures of the frames named, in this order, for a timeline; `draw` puts one into a canvas of any size. */
+  /** Calls `draw` with a thumbnail of each of these frames, in this order. */
   thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void>;
-  /** Gives back decoders and memory. */
+  /** Releases decoders and memory. */
   close(): void;
 }
 
-/** Draws itself into the rectangle. */
+/** Draws the thumbnail into the rectangle. */
 export type Picture = (context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number) => void;
 
-/** The name of a frame in lists and files, "clip.mp4 #12", and what it is known by. */
+/** The name of a frame of a video, "clip.mp4 #12", and its fingerprint. */
 export function knownInFilm(name: string, fingerprint: string, index: number): Pick<DecodedFrame, 'name' | 'fingerprint'> {
   return { name: `${name} #${index}`, fingerprint: `${fingerprint} ${index}` };
 }

@@ -1,4 +1,4 @@
-//! Opens a video file in the most exact way that the browser has.
+//! Opens a video with the most exact reader that the browser supports.
 
 import { PageError } from '../common/errors.js';
 import { quoted } from '../common/shell.js';
@@ -7,8 +7,8 @@ import { fingerprintOfFilm } from '../frames/fingerprints.js';
 import type { Clip } from './clip.js';
 
 /**
- * Opens a video: with exact frames where the browser has WebCodecs and the codec, else by seeking, which the clip then says.
- * Throws a {@link PageError} when the browser can do neither: `unsupported-codec` where that is the codec's fault, else `unreadable-video`.
+ * Opens a video: with exact frames if the browser has WebCodecs and the codec, else by seeking, and `exact` of the clip is false. Throws a
+ * {@link PageError} if neither works: `unsupported-codec` if the browser lacks the codec, else `unreadable-video`.
  */
 export async function openClip(file: File): Promise<Clip> {
   const fingerprint = await fingerprintOfFilm(file).catch(() => {
@@ -28,7 +28,7 @@ export async function openClip(file: File): Promise<Clip> {
   throw new PageError('unsupported-codec', strings.errors.unsupportedCodec(file.name, codec, conversion(file.name)));
 }
 
-/** Converts a video into one that every browser plays; some play no more than eight bits a sample. */
+/** The command that converts a video to one that every browser plays. Some browsers play only 8 bits per sample. */
 function conversion(name: string): string {
   const output = `${name.replace(/\.[^.]*$/, '')}-h264.mp4`;
   return `ffmpeg -i ${quoted(name)} -c:v libx264 -pix_fmt yuv420p ${quoted(output)}`;

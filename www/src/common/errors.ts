@@ -1,4 +1,4 @@
-//! Errors that the page itself raises. They look like the package's, a stable code and a sentence, and use its codes where they fit.
+//! Errors that the page raises. Like the package's, they have a stable code and a sentence; they use the package's codes where they fit.
 
 export class PageError extends Error {
   override readonly name = 'PageError';
@@ -11,7 +11,7 @@ export class PageError extends Error {
   }
 }
 
-/** The code of any error thrown at us; the package's and the page's carry one. */
+/** The code of an error; `unexpected` if it comes from neither the package nor the page. */
 export function codeOf(error: unknown): string {
   return error instanceof Error && 'code' in error && typeof error.code === 'string' ? error.code : 'unexpected';
 }

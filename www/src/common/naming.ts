@@ -1,4 +1,4 @@
-//! What masks are called: as somebody named them, or by kind and number.
+//! The name of a mask: the user's, or its kind and number.
 
 import { UNLABELLED, type Kind, keyOf } from '../result/masks.js';
 import { strings } from './strings.js';

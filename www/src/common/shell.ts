@@ -1,6 +1,6 @@
-//! Words on a command line.
+//! Quoting for command lines.
 
-/** The word as a shell takes it. */
+/** The word, quoted if a POSIX shell needs that. */
 export function quoted(word: string): string {
   return /^[\w./-]+$/.test(word) && !word.startsWith('-') ? word : `'${word.replaceAll("'", "'\\''")}'`;
 }

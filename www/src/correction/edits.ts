@@ -1,5 +1,5 @@
-//! What a person did to one pair of frames: strokes, masks merged or taken apart, names and colours. These are the truth; the labels
-//! and groups that are shown follow from them and from what was found.
+//! The edits of a pair of frames: strokes, merged and ungrouped masks, names and colours. Labels and groups on screen are derived from
+//! the edits and from the segmentation found.
 
 import type { Segmentation } from 'veronese';
 import type { Colour } from '../drawing/palette.js';
@@ -14,27 +14,27 @@ export interface Grouping {
   readonly groups: readonly number[];
 }
 
-/** What is done in one step and undone in one. */
+/** One step of undo and redo. */
 export type Action = { readonly stroke: Stroke } | { readonly grouping: Grouping };
 
-/** A name or colour given to a mask. */
+/** A name or colour that the user gave to a mask. */
 export interface Appearance {
   readonly kind: Kind;
-  /** The mask's number in the result that was seen … */
+  /** The number of the mask in the result on screen at the time … */
   readonly id: number;
-  /** … and the labels that it had there, to find it in another. */
+  /** … and its labels there, to find it in another result. */
   readonly mask: Part;
   readonly name?: string;
   readonly colour?: Colour;
 }
 
 export interface Edits {
-  /** In their order, those that were undone and can be done again last. */
+  /** All actions in order; those that were undone and can be redone are at the end. */
   readonly actions: readonly Action[];
-  /** So many of them count. */
+  /** The number of actions in effect. */
   readonly done: number;
   readonly appearances: readonly Appearance[];
-  /** The last action that counted, and what was given, when the masks were last saved. */
+  /** The last action in effect, and the appearances, when the masks were last exported. */
   readonly saved: { readonly action: Action | null; readonly appearances: readonly Appearance[] };
 }
 
@@ -46,13 +46,13 @@ export function isTouched({ actions, appearances }: Edits): boolean {
   return actions.length > 0 || appearances.length > 0;
 }
 
-/** One action more; what was undone before it cannot be done again. */
+/** Adds an action; what was undone can no longer be redone. */
 export function withAction(edits: Edits, action: Action): Edits {
   const actions = [...edits.actions.slice(0, edits.done), action];
   return { ...edits, actions, done: actions.length };
 }
 
-/** Every action has its own past: which ones count is told by the last of them. */
+/** The last action in effect. It identifies all before it, because actions are compared by identity. */
 function lastAction({ actions, done }: Edits): Action | null {
   return actions[done - 1] ?? null;
 }
@@ -65,17 +65,17 @@ export function isUnsaved(edits: Edits): boolean {
   return lastAction(edits) !== edits.saved.action || edits.appearances !== edits.saved.appearances;
 }
 
-/** The strokes that count. */
+/** The strokes in effect. */
 export function strokesOf({ actions, done }: Edits): Stroke[] {
   return actions.slice(0, done).flatMap((action) => ('stroke' in action ? [action.stroke] : []));
 }
 
-/** The last stroke that counts tells which strokes do, as {@link lastAction}. */
+/** The last stroke in effect. It identifies all before it, as with {@link lastAction}. */
 export function lastStroke(edits: Edits): Stroke | null {
   return strokesOf(edits).at(-1) ?? null;
 }
 
-/** The segmentation with the groups that were made; motions that the grouping does not know are groups of their own. */
+/** The segmentation with the user's groups. Motions that the grouping does not know get a group of their own. */
 export function grouped(segmentation: Segmentation, { actions, done }: Edits, found: Segmentation): Segmentation {
   const last = actions.slice(0, done).findLast((action) => 'grouping' in action);
   const groups = last === undefined ? found.motions.map(({ group }) => group) : groupsIn(last.grouping, found);
@@ -90,28 +90,28 @@ function groupsIn({ of, groups }: Grouping, found: Segmentation): readonly numbe
   return found.motions.map(({ label }) => groups[labels.get(label) ?? -1] ?? free++);
 }
 
-/** The mask that labels belong to: that of the largest of them; null where there are none. */
+/** The mask of the largest of these labels; `null` if there are none. */
 export function maskWith(labels: number, segmentation: Segmentation, kind: Kind): number | null {
   const motions = segmentation.motions.filter(({ label }) => (labels >> label) & 1);
   const largest = motions.reduce<(typeof motions)[number] | null>((most, motion) => (motion.pixels > (most?.pixels ?? -1) ? motion : most), null);
   return largest === null ? null : maskOf(largest.label, segmentation, kind);
 }
 
-/** The number that the mask has now; null where it is gone. */
+/** The current number of the mask; `null` if it no longer exists. */
 export function maskIdOf({ id, mask, kind }: Pick<Appearance, 'id' | 'mask' | 'kind'>, segmentation: Segmentation, found: Segmentation): number | null {
   const now = labellingOf(found);
   if (id === UNLABELLED || mask.of === now) return masksOf(segmentation, kind).some((other) => other.id === id) ? id : null;
   return maskWith(labelsIn(mask, now), segmentation, kind);
 }
 
-/** The same edits of frames that are so many times as large. */
+/** The edits scaled to frames of another size. */
 export function scaled(edits: Edits, sx: number, sy: number): Edits {
   const larger = new Map(edits.actions.map((action) => [action, 'stroke' in action ? { stroke: scaledStroke(action.stroke, sx, sy) } : action]));
   const saved = edits.saved.action === null ? null : (larger.get(edits.saved.action) ?? edits.saved.action);
   return { ...edits, actions: [...larger.values()], saved: { ...edits.saved, action: saved } };
 }
 
-/** The centre of the first pixel is 0. */
+/** Coordinates are those of pixel centres: 0 is half a pixel from the corner. */
 function scaledStroke(stroke: Stroke, sx: number, sy: number): Stroke {
   const points = stroke.points.map((value, i) => (value + 0.5) * (i % 2 === 0 ? sx : sy) - 0.5);
   return { ...stroke, points, radius: stroke.radius * Math.sqrt(sx * sy) };

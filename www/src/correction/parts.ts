@@ -1,10 +1,10 @@
-//! What a person means by a mask: labels of the result that was seen. Another run of the same frames may number its motions
-//! otherwise; a part is found again there by the pixels it covers.
+//! References to masks that outlive a result. Another segmentation of the same frames may number its motions differently, so a mask is
+//! stored as labels of the result in which it was seen, and found again by the pixels that it covers.
 
 import type { Segmentation } from 'veronese';
 import { type Runs, continued, packed } from './runs.js';
 
-/** Labels, one bit each, of the labelling that they were chosen in. */
+/** Labels, one bit each, and the labelling they belong to. */
 export interface Part {
   readonly of: Runs;
   readonly labels: number;
@@ -12,7 +12,7 @@ export interface Part {
 
 const labellings = new WeakMap<Segmentation, Runs>();
 
-/** The labels of a result as it was found, packed once. */
+/** The labelling of a result before corrections, packed once. */
 export function labellingOf(found: Segmentation): Runs {
   const known = labellings.get(found);
   if (known !== undefined) return known;
@@ -21,7 +21,7 @@ export function labellingOf(found: Segmentation): Runs {
   return runs;
 }
 
-/** A result that was remembered: its labelling stays the one that parts refer to. */
+/** Gives a restored result the labelling that parts already refer to. */
 export function withLabelling(found: Segmentation, runs: Runs): Segmentation {
   labellings.set(found, runs);
   return found;
@@ -29,7 +29,7 @@ export function withLabelling(found: Segmentation, runs: Runs): Segmentation {
 
 const continuations = new WeakMap<Runs, WeakMap<Runs, ReadonlyMap<number, number>>>();
 
-/** {@link continued}, worked out once. */
+/** {@link continued}, computed once. */
 export function continuation(before: Runs, now: Runs): ReadonlyMap<number, number> {
   const known = continuations.get(before) ?? new WeakMap<Runs, ReadonlyMap<number, number>>();
   continuations.set(before, known);
@@ -38,7 +38,7 @@ export function continuation(before: Runs, now: Runs): ReadonlyMap<number, numbe
   return labels;
 }
 
-/** The labels of `now` that the part's labels go on in, one bit each; 0 where they are gone. */
+/** The labels of `now` that correspond to the part, one bit each; 0 if there are none. */
 export function labelsIn({ of, labels }: Part, now: Runs): number {
   if (of === now) return labels;
   let set = 0;

@@ -1,9 +1,8 @@
-//! Labels in little memory: each run of pixels with the same label is one entry. What a person corrected is remembered so, and two
-//! labellings are compared so.
+//! Run-length encoded labels: they store corrections in little memory and compare two labellings quickly.
 
 import { UNLABELLED } from '../result/masks.js';
 
-/** Row by row; run k has the pixels from `ends[k - 1]` up to `ends[k]`. */
+/** Row-major; run k covers the pixels from `ends[k - 1]` up to, but not including, `ends[k]`. */
 export interface Runs {
   readonly width: number;
   readonly height: number;
@@ -29,17 +28,17 @@ export function unpacked({ width, height, ends, labels }: Runs): Uint8Array<Arra
   return pixels;
 }
 
-/** Bytes that the entries take. */
+/** Size of the runs in memory, bytes. */
 export function sizeOf({ ends, labels }: Runs): number {
   return ends.byteLength + labels.byteLength;
 }
 
-/** Less common to two labels than this share of what either covers is chance. */
+/** Labels correspond only if their intersection over union reaches this: a smaller overlap is chance. */
 const LEAST_COMMON = 0.1;
 
 /**
- * For each label of `now` the label of `before` that it continues: the one it has most in common with, intersection over union; none
- * where that is next to nothing. Several labels may continue one that fell apart.
+ * For each label of `now` the label of `before` with the largest intersection over union, if that reaches {@link LEAST_COMMON}. Several
+ * labels may continue the same one, if it was split.
  */
 export function continued(before: Runs, now: Runs): ReadonlyMap<number, number> {
   const [old, areasBefore] = [before.width === now.width && before.height === now.height ? before : resized(before, now), new Map<number, number>()];
@@ -66,7 +65,7 @@ export function continued(before: Runs, now: Runs): ReadonlyMap<number, number> 
   return new Map([...best].map(([is, { was }]) => [is, was]));
 }
 
-/** The same labels at another size: every pixel has the label of the place it lies at. */
+/** The labels at another size, by nearest neighbour. */
 function resized(runs: Runs, { width, height }: Pick<Runs, 'width' | 'height'>): Runs {
   const [labels, sx, sy] = [unpacked(runs), runs.width / width, runs.height / height];
   const pixels = new Uint8Array(width * height);

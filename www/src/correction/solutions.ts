@@ -1,12 +1,12 @@
-//! Labels that were solved under strokes, so that undoing and stepping back need not solve them again. Strokes alone decide the
-//! answer: what is forgotten here is solved anew.
+//! A cache of labels solved with strokes, so that undo, redo and stepping need not solve them again. The strokes determine the labels, so
+//! entries can be dropped at any time.
 
 import type { Segmentation } from 'veronese';
 import { labellingOf } from './parts.js';
 import { type Runs, packed, sizeOf, unpacked } from './runs.js';
 import type { Stroke } from './strokes.js';
 
-/** A result without its labels, and these apart. */
+/** A result with its labels run-length encoded. */
 export interface Packed {
   readonly report: Omit<Segmentation, 'labels'>;
   readonly runs: Runs;
@@ -20,15 +20,15 @@ export function unpackedResult({ report, runs }: Packed): Segmentation {
   return { ...report, labels: unpacked(runs) };
 }
 
-/** Bytes; some hundred answers for frames of 4096 pixels. */
+/** Capacity of the cache, bytes: some hundred labellings of frames of 4096 pixels. */
 const MOST = 64 * 2 ** 20;
 
 export class Solutions {
-  /** By the last stroke, the oldest first. */
+  /** By the last stroke, oldest first. */
   readonly #answers = new Map<Stroke, { readonly of: Runs; readonly packed: Packed }>();
   #bytes = 0;
 
-  /** The answer to these strokes, by the last of them, of what was found; undefined where it is not known (any more). */
+  /** The labels solved with the strokes up to `last`; undefined if they are not in the cache. */
   get(last: Stroke, found: Segmentation): Segmentation | undefined {
     const answer = this.#answers.get(last);
     return answer?.of === labellingOf(found) ? unpackedResult(answer.packed) : undefined;

@@ -1,54 +1,54 @@
-//! Brush strokes: paths that say which labels are possible where they go.
+//! Brush strokes: paths that restrict which labels are allowed along them.
 
 import type { Segmentation } from 'veronese';
 import { type Part, labellingOf, labelsIn } from './parts.js';
 
 /** A path over the first frame. */
 export interface Path {
-  /** x, y of one point after another, pixels of the frame. */
+  /** x, y of each point in turn, pixels of the frame. */
   readonly points: readonly number[];
   /** Pixels. */
   readonly radius: number;
 }
 
-/** What a person drew: "this mask" (`brush`) or "not this mask" (`eraser`). It is never changed, so that it can be told from others. */
+/** A stroke as drawn: "this mask" (`brush`) or "not this mask" (`eraser`). Never changed: strokes are compared by identity. */
 export interface Stroke extends Path {
   readonly tool: 'brush' | 'eraser';
   readonly mask: Part;
 }
 
-/** What a stroke says about the labels of one result. */
+/** A stroke as a restriction of the labels of one result. */
 export interface Constraint extends Path {
-  /** The labels that are possible here, one bit each. */
+  /** The allowed labels, one bit each. */
   readonly labels: number;
 }
 
-/** The labels that a stroke leaves possible in this result; 0 where it has no say: its mask is gone, or there is nothing else. */
+/** The labels that a stroke allows in this result, one bit each; 0 if it has no effect, because its mask or any other is missing. */
 export function allowedLabels({ tool, mask }: Pick<Stroke, 'tool' | 'mask'>, found: Segmentation): number {
   const own = labelsIn(mask, labellingOf(found));
   if (tool === 'brush') return own;
-  // Without a label of its own is what cannot be told: not that is any motion.
+  // A mask without labels is the unlabelled one: erasing it allows any motion.
   return own === 0 && mask.labels !== 0 ? 0 : ((1 << found.motions.length) - 1) & ~own;
 }
 
-/** What the strokes say about this result; those without a say are left out. */
+/** The constraints of the strokes on this result, without those that have no effect. */
 export function constraintsFrom(strokes: readonly Stroke[], found: Segmentation): Constraint[] {
   return strokes.map((stroke) => ({ points: stroke.points, radius: stroke.radius, labels: allowedLabels(stroke, found) })).filter(({ labels }) => labels !== 0);
 }
 
-/** What all strokes say, as `relabel` takes it: a set of labels for each pixel, 0 where nothing is said. */
+/** All constraints as `relabel` expects them: the allowed labels of each pixel, one bit each, 0 for no constraint. */
 export function evidenceOf(strokes: readonly Constraint[], width: number, height: number): Uint16Array<ArrayBuffer> {
   const evidence = new Uint16Array(width * height);
   for (const stroke of strokes) {
     eachPixel(stroke, width, height, (p) => {
-      // Two strokes that contradict each other: the later one is meant.
+      // If two strokes contradict each other, the later one counts.
       evidence[p] = evidence[p] === 0 ? stroke.labels : evidence[p]! & stroke.labels || stroke.labels;
     });
   }
   return evidence;
 }
 
-/** Calls `visit` for every pixel whose centre lies under a stroke; for some more than once. */
+/** Calls `visit` for each pixel whose centre lies under the stroke, for some more than once. */
 function eachPixel({ points, radius }: Path, width: number, height: number, visit: (pixel: number) => void): void {
   for (let i = 0; i < points.length; i += 2) {
     const [x0, y0] = [points[Math.max(0, i - 2)]!, points[Math.max(1, i - 1)]!];

@@ -1,4 +1,4 @@
-//! Arrows from where pixels are in the first frame to where they are in the second.
+//! Flow arrows, from positions in the first frame to positions in the second.
 
 import type { Segmentation } from 'veronese';
 
@@ -8,12 +8,12 @@ export interface Arrow {
   readonly to: readonly [number, number];
 }
 
-/** Arrows along the longer side. */
+/** Number of arrows along the longer side. */
 const ACROSS = 24;
-/** The longest arrow is drawn at least so long, as a share of the distance between two, so that slow motions are seen. */
+/** Arrows are magnified until the longest is about this long, in cells of the grid, so that slow motions are visible. */
 const LONGEST = 1.2;
 
-/** One arrow per cell of a grid, for the label in its middle; all of them `magnified` so many times. */
+/** One arrow per grid cell, for the label at its centre, and the factor by which all are magnified. */
 export function arrowsOf({ labels, width, height, motions }: Segmentation): { arrows: Arrow[]; magnified: number } {
   const cell = Math.max(width, height) / ACROSS;
   const starts: { label: number; x: number; y: number; u: number; v: number }[] = [];

@@ -1,5 +1,5 @@
-//! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. No canvas here, so that it can be tested
-//! and done piece by piece.
+//! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. It needs no canvas, so it can be tested in Node
+//! and done in pieces.
 
 import type { Segmentation } from 'veronese';
 import { UNLABELLED, type Kind, keyOf, maskTable } from '../result/masks.js';
@@ -19,12 +19,12 @@ export function isShown(mask: number, { hidden, solo }: Pick<Painting, 'hidden' 
   return solo === null ? !hidden.has(mask) : solo === mask;
 }
 
-/** The colour of a mask: the one it was given, or its own of the palette. */
+/** The colour of a mask: the user's, or that of the palette. */
 export function colourOfMask(mask: number, { kind, colours }: Pick<Painting, 'kind' | 'colours'>): Colour {
   return colours[keyOf(kind, mask)] ?? (mask === UNLABELLED ? UNKNOWN_COLOUR : colourOf(mask));
 }
 
-/** The RGBA word of every label; 0, transparent, for one that is not shown. */
+/** The RGBA word of each label; 0 (transparent) if it is hidden. */
 function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Array {
   const masks = maskTable(segmentation, painting.kind);
   const words = new Uint32Array(256);
@@ -35,7 +35,7 @@ function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Arr
   return words;
 }
 
-/** Rows `from` to `to` of a picture in which every pixel has the colour of its label, opaque, or is fully transparent. */
+/** Rows `from` to `to` of the fill: each pixel has the opaque colour of its mask, or is transparent. */
 export function fillOf(segmentation: Segmentation, painting: Painting, from = 0, to = segmentation.height): Uint32Array<ArrayBuffer> {
   const words = wordsByLabel(segmentation, painting);
   const { labels, width } = segmentation;
@@ -44,7 +44,7 @@ export function fillOf(segmentation: Segmentation, painting: Painting, from = 0,
   return pixels;
 }
 
-/** How light an outline is drawn: the mask's colour, this far on the way to white, so that it stands out from the fill. */
+/** Outlines are lighter than the fill: the share of white mixed into the colour of the mask. */
 const LIGHTER = 0.45;
 
 function lighter(word: number): number {
@@ -56,8 +56,8 @@ function lighter(word: number): number {
 }
 
 /**
- * The rim of every shown mask: its pixels that touch, within `thickness` pixels along a row or column, a pixel of another mask;
- * rows `from` to `to`. The largest mask gets none: its rim would run along all the others'.
+ * Rows `from` to `to` of the outlines: the pixels of a mask that have another mask within `thickness` pixels along the row or column. The
+ * largest mask has none: its outline would double all others.
  */
 export function outlinesOf(
   segmentation: Segmentation,
@@ -72,14 +72,14 @@ export function outlinesOf(
   const { labels, width, height } = segmentation;
   const first = from * width;
   const pixels = new Uint32Array((to - from) * width);
-  /** Paints from `start` on, as long as the mask stays and `limit` allows. */
+  /** Paints up to `limit` pixels from `start` on, until the mask ends. */
   const paint = (start: number, step: number, limit: number): void => {
     const own = masks[labels[start]!];
     for (let k = 0, i = start; k < limit && masks[labels[i]!] === own; k++, i += step) {
       if (i >= first && i - first < pixels.length) pixels[i - first] = rims[labels[i]!]!;
     }
   };
-  // Borders a little above and below reach into these rows.
+  // Borders just above and below reach into these rows.
   const [top, bottom] = [Math.max(0, from - thickness), Math.min(height, to + thickness)];
   for (let y = top, i = top * width; y < bottom; y++) {
     for (let x = 0; x < width; x++, i++) {

@@ -1,10 +1,10 @@
-//! The colours of the masks: after Okabe and Ito, told apart by people with any common kind of colour blindness. The largest
-//! motion, mostly the background, gets a quiet grey, so that what moves against it stands out.
+//! The colours of the masks, after Okabe and Ito: distinguishable with any common kind of colour blindness. The largest motion, usually
+//! the background, is grey, so that the others stand out.
 
 /** Red, green, blue, 0…255. */
 export type Colour = readonly [number, number, number];
 
-/** `PALETTE[label]`; all different. A label beyond the end starts again at 1. */
+/** The colour of each label. Labels beyond the end start again at 1. */
 export const PALETTE: readonly Colour[] = [
   [92, 99, 110], // slate
   [240, 160, 0], // orange
@@ -35,7 +35,7 @@ export function wordFromColour([r, g, b]: Colour): number {
   return ((255 << 24) | (b << 16) | (g << 8) | r) >>> 0;
 }
 
-/** `#rrggbb`, as colour inputs have it. */
+/** `#rrggbb`, the value of a colour input. */
 export function hexColour(colour: Colour): string {
   return `#${colour.map((channel) => channel.toString(16).padStart(2, '0')).join('')}`;
 }

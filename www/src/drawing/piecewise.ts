@@ -1,24 +1,24 @@
-//! Work on many rows of pixels in pieces, with the page's other work between them.
+//! Work on many rows of pixels, split into short tasks so that the page stays responsive.
 
 export class Piecewise {
   readonly #piece: number;
   readonly #later: boolean;
   #turn = 0;
 
-  /** `piece`: pixels that are a few milliseconds of work. `later`: the first piece is a task of its own, too. */
+  /** `piece`: pixels per task, a few milliseconds of work. `later`: the first piece is a task of its own as well. */
   constructor(piece: number, later: boolean) {
     this.#piece = piece;
     this.#later = later;
   }
 
-  /** The work under way, if any, is not gone on with. */
+  /** Stops the current work, if any. */
   stop(): void {
     this.#turn += 1;
   }
 
   /**
-   * Calls `work` for all rows, and `done` at the end; where there are more pixels than a piece holds, in several tasks. New work
-   * replaces the old.
+   * Calls `work` for all rows, in several tasks if there are more pixels than a piece has, then `done`. New work replaces work that is
+   * not finished.
    */
   rows(width: number, height: number, work: (from: number, to: number) => void, done: () => void = () => undefined): void {
     const turn = ++this.#turn;

@@ -1,15 +1,15 @@
-//! What the motions leave unexplained: the intensity difference between a pixel and the place its motion carries it to.
+//! The residual: the intensity difference between a pixel and the position to which its motion moves it.
 
 import type { Pixels, Segmentation } from 'veronese';
 
-/** Grey levels that are shown in full. */
+/** The difference drawn as white, grey levels. */
 const FULL = 48;
-const UNKNOWN = 0xff60_3010; // little-endian RGBA: a quiet blue
+const UNKNOWN = 0xff60_3010; // little-endian RGBA: dark blue
 const OUTSIDE = 0xff28_2420;
 
 const grey = (data: Pixels['data'], i: number): number => 0.299 * data[i]! + 0.587 * data[i + 1]! + 0.114 * data[i + 2]!;
 
-/** Rows `from` to `to` of the residual picture: black fits, then red, yellow, white; blue has no label, dark grey leaves the frame. */
+/** Rows `from` to `to` of the picture: black, red, yellow, white by residual; blue without a label; dark grey outside the frame. */
 export function residualOf(segmentation: Segmentation, first: Pixels, second: Pixels, from: number, to: number): Uint32Array<ArrayBuffer> {
   const { labels, width, height, motions } = segmentation;
   const pixels = new Uint32Array((to - from) * width);
@@ -30,7 +30,7 @@ export function residualOf(segmentation: Segmentation, first: Pixels, second: Pi
   return pixels;
 }
 
-/** Grey level between four pixels. */
+/** Grey level by bilinear interpolation. */
 function sample({ data, width, height }: Pixels, x: number, y: number): number {
   const [left, top] = [Math.min(Math.floor(x), width - 2), Math.min(Math.floor(y), height - 2)];
   const [fx, fy] = [x - left, y - top];

@@ -1,4 +1,4 @@
-//! Masks in the forms that annotation tools read. The encoders are the package's own, loaded when one is asked for.
+//! Formats of annotation tools. The encoders are the package's, loaded on first use.
 
 import type { FormatMeta } from 'veronese/formats';
 import type { Export, Format } from './format.js';
@@ -6,7 +6,7 @@ import { zipped } from './zip.js';
 
 type Encoders = typeof import('veronese/formats');
 
-/** What the encoders take of a result: the largest mask, mostly the background, is a label like any other. */
+/** The arguments of the encoders. The largest mask, usually the background, is exported like any other. */
 function argumentsFor({ labels, segmentation: { width, height }, masks, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
   const names = Object.fromEntries(masks.map(({ id, name }) => [id, name]));
   const motions = masks.map(({ id, motions: [main], pixels, share }) => ({ ...main!, label: id, pixels, share }));

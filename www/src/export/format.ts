@@ -1,4 +1,4 @@
-//! A format of the export menu, and what it writes.
+//! A format of the export menu, and the result that it is given.
 
 import { type Segmentation, groupLabels } from 'veronese';
 import { nameOf } from '../common/naming.js';
@@ -12,12 +12,12 @@ import { atSize } from './full-size.js';
 export interface Export {
   readonly result: Result;
   readonly look: Look;
-  /** At the size of the file. */
+  /** At the full size of the frames. */
   readonly segmentation: Segmentation;
   /** The number of each pixel's mask, {@link UNLABELLED} for none. */
   readonly labels: Uint8Array;
   readonly masks: readonly (Mask & { readonly name: string; readonly colour: Colour })[];
-  /** Name of the first frame's file. */
+  /** File name of the first frame. */
   readonly image: string;
 }
 
@@ -26,7 +26,7 @@ export interface Format {
   readonly title: string;
   readonly file: string;
   readonly type: string;
-  /** Who would want it. */
+  /** A sentence about the file. */
   readonly hint: string;
   make(exported: Export): Promise<string | Uint8Array<ArrayBuffer> | Blob>;
 }

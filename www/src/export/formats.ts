@@ -1,4 +1,4 @@
-//! What can be taken away, as data: the menu is drawn from it, and each entry makes its file.
+//! The export formats as data: the menu lists them, and each makes its file.
 
 import { ANNOTATIONS } from './annotations.js';
 import type { Format } from './format.js';
@@ -6,7 +6,7 @@ import { overlayPicture } from './overlay.js';
 import { pngFromGrey, pngFromLabels } from './png.js';
 import { zipped } from './zip.js';
 
-/** 255 where the mask is, 0 elsewhere. */
+/** 255 inside the mask, 0 elsewhere. */
 function grey(labels: Uint8Array, id: number): Uint8Array {
   return labels.map((label) => (label === id ? 255 : 0));
 }

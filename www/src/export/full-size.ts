@@ -1,4 +1,4 @@
-//! Results at the size of the file, where the page worked on a smaller picture.
+//! Results at the full size of frames that were scaled down.
 
 import type { Segmentation } from 'veronese';
 
@@ -7,7 +7,7 @@ interface Size {
   readonly height: number;
 }
 
-/** The segmentation as if it had been made of frames of this size: every pixel takes the label of the one it lies in. */
+/** The segmentation at this size: labels by nearest neighbour, motions and boxes scaled. */
 export function atSize(segmentation: Segmentation, full: Size): Segmentation {
   const { width, height } = segmentation;
   if (full.width === width && full.height === height) return segmentation;
@@ -35,14 +35,14 @@ export function atSize(segmentation: Segmentation, full: Size): Segmentation {
 
 type Motion = Segmentation['motions'][number];
 
-/** Pixel centres lie at whole numbers in both sizes: x = (X + ½) / s − ½. */
+/** Pixel centres have integer coordinates at both sizes: x = (X + ½) / s − ½. */
 function scaled([a11, a12, a13, a21, a22, a23]: Motion['matrix'], sx: number, sy: number): Motion['matrix'] {
   const [kx, ky] = [0.5 / sx - 0.5, 0.5 / sy - 0.5];
   return [a11, (a12 * sx) / sy, sx * (a13 + a11 * kx + a12 * ky), (a21 * sy) / sx, a22, sy * (a23 + a21 * kx + a22 * ky)];
 }
 
 function scaledBox([x, y, width, height]: Motion['bbox'], sx: number, sy: number, full: Size): Motion['bbox'] {
-  // The first pixel whose centre lies in the box, and the first beyond it.
+  // The first pixel whose centre is inside the box, and the first beyond it.
   const start = (value: number, s: number): number => Math.max(0, Math.ceil(value * s - 0.5));
   const [left, top] = [start(x, sx), start(y, sy)];
   return [left, top, Math.min(full.width, start(x + width, sx)) - left, Math.min(full.height, start(y + height, sy)) - top];

@@ -1,4 +1,4 @@
-//! Settings and the sample out of the page's address. What is not one of the choices is left out: a link can set nothing else.
+//! Settings and the sample in the page's address, read and written. Values that are not among the choices are ignored.
 
 import { SAMPLES, type Sample, sampleCalled } from '../frames/samples.js';
 import type { Kind } from '../result/masks.js';
@@ -38,7 +38,7 @@ export function settingsFromHash(hash: string): Linked {
   };
 }
 
-/** The page's address with the sample and the settings behind the `#`, where no server sees them. */
+/** The page's address with the sample and the settings after the `#`, which is never sent to a server. */
 export function linkFor({ settings, look: { kind }, pair }: Pick<State, 'settings' | 'look' | 'pair'>, address: string): string {
   const values = new URLSearchParams();
   const shown = sampleOf(pair);

@@ -1,4 +1,4 @@
-//! The first frame with its masks, as a picture of its own.
+//! The first frame with its masks as a PNG.
 
 import { fillOf, outlinesOf } from '../drawing/paint.js';
 import type { Look, Result } from '../state/state.js';

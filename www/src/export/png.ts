@@ -1,5 +1,4 @@
-//! PNG files that a canvas cannot write: indexed, as annotation tools read labels (the DAVIS way) and as the command line writes
-//! them, and grey.
+//! PNG files that a canvas cannot write: indexed with the DAVIS palette, as the command line writes labels, and greyscale.
 
 import { davisPalette } from 'veronese';
 
@@ -29,12 +28,12 @@ function chunk(type: string, content: Uint8Array): Uint8Array<ArrayBuffer> {
   return bytes;
 }
 
-/** An indexed PNG: palette index = label, in the colours of DAVIS. */
+/** An indexed PNG: the palette index is the label, the palette that of DAVIS. */
 export function pngFromLabels(labels: Uint8Array, width: number, height: number): Promise<Uint8Array<ArrayBuffer>> {
   return png(labels, width, height, INDEXED, [chunk('PLTE', Uint8Array.from(davisPalette().flat()))]);
 }
 
-/** A grey PNG of one byte per pixel. */
+/** A greyscale PNG with 8 bits per pixel. */
 export function pngFromGrey(grey: Uint8Array, width: number, height: number): Promise<Uint8Array<ArrayBuffer>> {
   return png(grey, width, height, GREY, []);
 }
@@ -49,7 +48,7 @@ async function png(bytes: Uint8Array, width: number, height: number, colourType:
   view.setUint32(0, width);
   view.setUint32(4, height);
   header.set([8, colourType, 0, 0, 0], 8); // bit depth 8, deflate, adaptive filters, not interlaced
-  const rows = new Uint8Array(height * (width + 1)); // each row begins with its filter, 0: none
+  const rows = new Uint8Array(height * (width + 1)); // each row starts with its filter type, 0: none
   for (let y = 0; y < height; y++) rows.set(bytes.subarray(y * width, (y + 1) * width), y * (width + 1) + 1);
   const deflated = new Blob([rows]).stream().pipeThrough(new CompressionStream('deflate'));
   const data = new Uint8Array(await new Response(deflated).arrayBuffer());

@@ -1,4 +1,4 @@
-//! The same result elsewhere: as a command line, as JavaScript, as a link with the settings and the sample. Never the pixels.
+//! The command line and the JavaScript that give the same masks.
 
 import type { Clip } from '../clips/clip.js';
 import { quoted } from '../common/shell.js';
@@ -6,13 +6,13 @@ import type { LoadedFrame } from '../state/pair.js';
 import { DEFAULT_SETTINGS, type Settings } from '../state/settings.js';
 import type { Look, Result } from '../state/state.js';
 
-/** What differs from the defaults, as the package's options. */
+/** Settings that differ from the defaults, as options of the package. */
 function changed(settings: Settings): Partial<Settings> {
   const { longestSide: _, ...options } = settings;
   return Object.fromEntries(Object.entries(options).filter(([name, value]) => value !== DEFAULT_SETTINGS[name as keyof Settings]));
 }
 
-/** Under which name a frame is found, and how to get it out of the film that it is of. */
+/** The file name of a frame, and the command that extracts it from a video first. */
 function found({ name, origin }: LoadedFrame): { name: string; before: string[] } {
   if (origin === undefined || !('clip' in origin) || origin.clip.times === null) return { name, before: [] };
   const { clip, index } = origin;
@@ -20,7 +20,7 @@ function found({ name, origin }: LoadedFrame): { name: string; before: string[] 
   return { name: file, before: [`ffmpeg -i ${quoted(clip.name)} ${selecting(clip, index)} ${file}`] };
 }
 
-/** ffmpeg's options for one frame: by its number or, where that is not known, the last that is shown by the time which the page seeks to. */
+/** The ffmpeg options that select a frame: by index, or for inexact clips the last frame before the time to which the page seeks. */
 function selecting({ exact, times }: Clip, index: number): string {
   if (exact) return `-vf 'select=eq(n\\,${index})' -frames:v 1`;
   const [begun, next] = [times![index]!, times![index + 1] ?? times![index]!];

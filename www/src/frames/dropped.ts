@@ -1,11 +1,11 @@
-//! Files that were dropped or pasted, folders gone through to the bottom.
+//! The files of a drop or a paste, those in folders included.
 
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 
 /**
- * The files of a drop or a paste; those out of a folder carry their path in `webkitRelativePath`, as those of a picker of folders do. To be
- * called while the event is handled: the browser forgets what it carried as soon as that is over.
+ * The files of a drop or a paste. Files of a folder have their path in `webkitRelativePath`, as from a folder picker. Call this while the
+ * event is being handled: the browser clears the transfer afterwards.
  */
 export function filesOf({ items }: DataTransfer): Promise<File[]> {
   const given = [...items].filter(({ kind }) => kind === 'file').map((item): Promise<File | File[] | null> => {
@@ -25,7 +25,7 @@ async function filesIn(folder: FileSystemDirectoryEntry): Promise<File[]> {
   }
 }
 
-/** Browsers hand over some entries at a time, and none after the last. */
+/** Reads all entries: browsers return them in batches, and an empty batch at the end. */
 async function entriesOf(folder: FileSystemDirectoryEntry): Promise<FileSystemEntry[]> {
   const reader = folder.createReader();
   const entries: FileSystemEntry[] = [];

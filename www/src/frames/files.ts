@@ -1,4 +1,4 @@
-//! Which of the files that somebody gives are meant, and in which order.
+//! Which of the given files are opened, and in which order.
 
 const naturally = new Intl.Collator('en', { numeric: true });
 const VIDEO_NAMES = /\.(mp4|m4v|mov|webm|mkv)$/i;
@@ -7,23 +7,23 @@ function isVideo(file: File): boolean {
   return file.type.startsWith('video/') || VIDEO_NAMES.test(file.name);
 }
 
-/** Where a file lay: the folders that were given, and its name. */
+/** The path of a file below the folder that was given, that folder included. */
 function pathOf({ webkitRelativePath, name }: File): string[] {
   return webkitRelativePath === '' ? [name] : webkitRelativePath.split('/');
 }
 
-/** The folder that was given; `null` where the file itself was. */
+/** The folder that was given; `null` if the file itself was. */
 export function folderOf(file: File): string | null {
   const [folder, ...rest] = pathOf(file);
   return rest.length === 0 ? null : folder!;
 }
 
-/** Its name, with the folders between it and the one that was given: names alone may come twice. */
+/** The name of a file, with the path below the folder that was given: names alone may repeat. */
 export function nameOfFile(file: File): string {
   return pathOf(file).slice(folderOf(file) === null ? 0 : 1).join('/');
 }
 
-/** In the order of a film: `frame2.png` before `frame10.png`, folder by folder. */
+/** Frame order: `frame2.png` before `frame10.png`, folder by folder. */
 function byPath(one: File, other: File): number {
   const [a, b] = [pathOf(one), pathOf(other)];
   for (let k = 0; k < Math.min(a.length, b.length); k++) {
@@ -33,15 +33,15 @@ function byPath(one: File, other: File): number {
   return a.length - b.length;
 }
 
-/** A video, or images in the order of their names. */
+/** A video, if there is one, and the images in frame order. */
 export interface Sorted {
   readonly film: File | null;
   readonly images: readonly File[];
 }
 
 /**
- * Sorts out what can be opened. Of a folder only what its name says to be an image or a video, and nothing hidden; one or two files that
- * were named one by one are tried in any case.
+ * Selects what can be opened. Files of a folder must look like images or videos by type or name, and hidden ones are skipped. One or two
+ * files that were given themselves are always tried.
  */
 export function sortedOut(files: Iterable<File>): Sorted {
   const seen = [...files].filter((file) => folderOf(file) === null || !pathOf(file).some((part) => part.startsWith('.'))).sort(byPath);

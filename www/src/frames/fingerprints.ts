@@ -1,21 +1,21 @@
-//! What a frame is known by when it is opened again: the content of its file, not its name or date. Nothing secret depends on it.
+//! Fingerprints recognise a frame that is opened again by the content of its file, not by name or date. They are not cryptographic.
 
-/** Bytes read at the beginning, in the middle and at the end of a film. */
+/** Bytes read at the beginning, in the middle and at the end of a video. */
 const SAMPLE = 1 << 18;
 
-/** The whole content of an image. */
+/** Hashes the whole content of an image. */
 export async function fingerprintOfImage(blob: Blob): Promise<string> {
   return hashOf(await blob.arrayBuffer());
 }
 
-/** Films are large: no two that differ agree in their size and in these parts of them. */
+/** Hashes the size of a video and three samples of its content, because videos are large. */
 export async function fingerprintOfFilm(blob: Blob): Promise<string> {
   const starts = [0, Math.max(0, (blob.size - SAMPLE) / 2), Math.max(0, blob.size - SAMPLE)];
   const parts = starts.map((start) => blob.slice(start, start + SAMPLE));
   return `${blob.size} ${hashOf(await new Blob(parts).arrayBuffer())}`;
 }
 
-/** 64 bits in two independent halves. `crypto.subtle` has better, but not on pages without https. */
+/** A 64-bit hash. `crypto.subtle` is unavailable on pages without https. */
 function hashOf(buffer: ArrayBuffer): string {
   const whole = buffer.byteLength >> 2;
   const words = new Uint32Array(buffer, 0, whole);

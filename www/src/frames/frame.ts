@@ -1,32 +1,32 @@
-//! Files to pixels. The bytes come out as the file has them: no colour conversion, no premultiplication, but turned the way
-//! the camera was held. For opaque PNG files they are the bytes that Node decodes. A canvas keeps colours multiplied by alpha,
-//! so half-transparent pixels come back rounded; and JPEG decoders differ from each other by a grey level here and there.
+//! Files to pixels. Bytes are decoded without colour conversion or premultiplication, and rotated as the EXIF orientation says. For
+//! opaque PNG files they are the same bytes as in Node. A canvas premultiplies by alpha, so half-transparent pixels are rounded, and
+//! JPEG decoders differ by a grey level here and there.
 
 import type { Pixels } from 'veronese';
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { fingerprintOfImage } from './fingerprints.js';
 
-/** A decoded frame. `data` is RGBA, row by row; nobody changes it. */
+/** A decoded frame. `data` is RGBA, row-major, and never changed. */
 export interface DecodedFrame extends Pixels {
   readonly name: string;
-  /** What it is known by: the same when the same frame is opened again, from wherever. */
+  /** Identifies the frame: the same whenever its content is opened again. */
   readonly fingerprint: string;
   readonly data: Uint8ClampedArray<ArrayBuffer>;
   readonly width: number;
   readonly height: number;
-  /** Size of the file's picture, where it was made smaller. */
+  /** Size of the image in the file, before it was scaled down. */
   readonly full: { readonly width: number; readonly height: number };
-  /** The same pixels, ready to draw. */
+  /** The same pixels, for drawing. */
   readonly bitmap: ImageBitmap;
   /** Milliseconds that decoding took. */
   readonly decoded: number;
 }
 
-/** Largest number of pixels the page decodes. */
+/** The page decodes no more pixels than this. */
 const MOST_PIXELS = 16384 * 8192;
 
-/** Decodes an image, no larger than `longestSide`. Throws a {@link PageError} `unreadable-image` when it is none. */
+/** Decodes an image and scales it down to `longestSide`. Throws a {@link PageError} `unreadable-image`. */
 export async function frameFromBlob(blob: Blob, name: string, longestSide: number): Promise<DecodedFrame> {
   let fingerprint: string;
   let began: number;
@@ -41,7 +41,7 @@ export async function frameFromBlob(blob: Blob, name: string, longestSide: numbe
   return frameFromBitmap(bitmap, { name, fingerprint }, longestSide, began);
 }
 
-/** Takes the bitmap over. `began` is when work on it began. */
+/** Takes ownership of the bitmap. `began`: the time at which decoding began, milliseconds. */
 export async function frameFromBitmap(
   given: ImageBitmap,
   { name, fingerprint }: Pick<DecodedFrame, 'name' | 'fingerprint'>,
@@ -66,7 +66,7 @@ export async function frameFromBitmap(
   return { name, fingerprint, data, width, height, full, bitmap, decoded: performance.now() - began };
 }
 
-/** The size that keeps the longer side within `longest`. */
+/** The size scaled down so that the longer side is at most `longest`. */
 export function smaller({ width, height }: { width: number; height: number }, longest: number): { width: number; height: number } {
   const scale = Math.min(1, longest / Math.max(width, height));
   return { width: Math.max(1, Math.round(width * scale)), height: Math.max(1, Math.round(height * scale)) };

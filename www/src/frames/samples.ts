@@ -1,9 +1,9 @@
-//! The pairs that come with the page. Who made them stands in the footer of `index.html`.
+//! The sample pairs that come with the page. Their sources are named in the footer of `index.html`.
 
 export interface Sample {
   readonly id: string;
   readonly title: string;
-  /** Paths beside the page. */
+  /** Paths relative to the page. */
   readonly first: string;
   readonly second: string;
 }
@@ -12,7 +12,7 @@ function sample(id: string, title: string): Sample {
   return { id, title, first: `samples/${id}/first.png`, second: `samples/${id}/second.png` };
 }
 
-/** The first is shown when the page opens. */
+/** The page opens with the first. */
 export const SAMPLES: readonly [Sample, ...Sample[]] = [
   sample('intel-two-cars', 'Two cars'),
   sample('leader-follower', 'Leader and follower'),

@@ -1,4 +1,4 @@
-//! Registers the service worker once the page has shown what it is for: keeping files is not to slow that down.
+//! Registers the service worker after the first result, so that caching does not slow that down.
 
 import type { Store } from '../state/state.js';
 
@@ -13,7 +13,7 @@ export function keepForOffline(store: Store): void {
       .then(() => navigator.serviceWorker.ready)
       .then(
         () => (root.dataset.offline = 'ready'),
-        () => (root.dataset.offline = 'none'), // a private window, for instance: the page works as ever
+        () => (root.dataset.offline = 'none'), // in a private window, for instance: the page works all the same
       );
   });
 }

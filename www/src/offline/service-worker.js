@@ -1,10 +1,10 @@
-// Keeps the page's own files, so that it works without a network after the first visit. The build fills in the list.
+// Caches the page's files, so that it works without a network after the first visit. The build fills in the list.
 
 const FILES = __FILES__;
 const CACHE = 'veronese-__VERSION__';
 
 self.addEventListener('install', (event) => {
-  // Past the browser's own cache: what is kept must be of one version.
+  // Bypasses the HTTP cache: all cached files must be of one version.
   const fresh = ['./', ...FILES].map((path) => new Request(path, { cache: 'reload' }));
   event.waitUntil(caches.open(CACHE).then((cache) => cache.addAll(fresh)).then(() => self.skipWaiting()));
 });
@@ -24,7 +24,7 @@ self.addEventListener('fetch', (event) => {
   event.respondWith(
     caches
       .open(CACHE)
-      // Servers that vary their answers by origin still give the same file.
+      // The files are the same for every origin, whatever the server's Vary header says.
       .then((cache) => cache.match(request, { ignoreSearch: true, ignoreVary: true }))
       .then((kept) => kept ?? fetch(request)),
   );

@@ -1,4 +1,4 @@
-//! An affine motion as a person would say it: where its pixels go, how far they turn, grow and stretch.
+//! An affine motion as displacement, rotation, growth and stretch, to be put into words.
 
 import type { Segmentation } from 'veronese';
 
@@ -9,18 +9,18 @@ export interface MotionParts {
   /** Displacement of the centre, pixels; x right, y down. */
   readonly right: number;
   readonly down: number;
-  /** Degrees, clockwise as seen. */
+  /** Degrees, clockwise on the screen. */
   readonly turn: number;
   /** Relative growth of lengths; 0.01 is one per cent. */
   readonly growth: number;
-  /** Longest over shortest side of what a square becomes, minus 1: 0 for a motion without shear. */
+  /** Ratio of the singular values of the linear part, minus 1: 0 if it keeps angles. */
   readonly stretch: number;
 }
 
-/** A tenth of a pixel is about what the estimate is good for: parts that move no pixel of the mask that far go unsaid. */
+/** Parts that move no pixel of the mask this far are left out, pixels: about the accuracy of the estimate. */
 const VISIBLE = 0.1;
 
-/** Splits `x ↦ x + A x` into displacement of `centre`, rotation, growth and stretch (the polar decomposition of its linear part). */
+/** Splits `x ↦ x + A x` into the displacement of `centre`, rotation, growth and stretch (polar decomposition of the linear part). */
 export function partsOf(matrix: Matrix, centre: readonly [number, number]): MotionParts {
   const [a11, a12, a13, a21, a22, a23] = matrix;
   const [x, y] = centre;
@@ -37,7 +37,7 @@ export function partsOf(matrix: Matrix, centre: readonly [number, number]): Moti
   };
 }
 
-/** The parts that matter for a mask of this size; the others are set to 0. `reach` is the distance from centre to corner, pixels. */
+/** The parts that are visible in a mask of this size; the others are 0. `reach`: distance from its centre to a corner, pixels. */
 export function visibleParts(parts: MotionParts, reach: number): MotionParts {
   const keep = (value: number, pixels: number): number => (Math.abs(pixels) >= VISIBLE ? value : 0);
   return {
@@ -49,7 +49,7 @@ export function visibleParts(parts: MotionParts, reach: number): MotionParts {
   };
 }
 
-/** Mean position of a label's pixels; the frame's centre for one without pixels. Looks at its bounding box alone. */
+/** Mean position of a label's pixels; the centre of the frame if it has none. Reads only its bounding box. */
 export function centreOf({ labels, width, height, motions }: Segmentation, label: number): readonly [number, number] {
   const [left, top, across, down] = motions[label]?.bbox ?? [0, 0, 0, 0];
   let [count, sumX, sumY] = [0, 0, 0];

@@ -1,5 +1,5 @@
-//! Masks: what is shown, listed and taken away as one. With the masks' kind "motions" each motion is one; with "groups" the motions
-//! of one surface, or those that somebody merged.
+//! Masks: what is shown, listed and exported as one. A mask is one motion, or a group of them: the motions of one surface, or those
+//! that the user merged.
 
 import type { Segmentation } from 'veronese';
 
@@ -11,9 +11,9 @@ type Motion = Segmentation['motions'][number];
 export const UNLABELLED = 255;
 
 export interface Mask {
-  /** Label of its motion, or number of its group; {@link UNLABELLED} for what has none. */
+  /** The label of its motion or the number of its group; {@link UNLABELLED} for pixels without a label. */
   readonly id: number;
-  /** By decreasing number of pixels. */
+  /** Largest first. */
   readonly motions: readonly Motion[];
   readonly pixels: number;
   readonly share: number;
@@ -51,22 +51,22 @@ export function masksOf(segmentation: Segmentation, kind: Kind): Mask[] {
   return unlabelled > 0 ? [...masks, { id: UNLABELLED, motions: [], pixels: unlabelled, share: unlabelled / total }] : masks;
 }
 
-/** The motion that stands for a mask: its largest. */
+/** The largest motion of a mask. */
 export function mainMotion(segmentation: Segmentation, kind: Kind, id: number): Motion | null {
   return masksOf(segmentation, kind).find((mask) => mask.id === id)?.motions[0] ?? null;
 }
 
-/** The labels of a mask as a set of bits, as `relabel` takes them. */
+/** The labels of a mask, one bit each, as `relabel` expects them. */
 export function labelSet(segmentation: Pick<Segmentation, 'motions'>, kind: Kind, id: number): number {
   return segmentation.motions.reduce((set, { label }) => (maskOf(label, segmentation, kind) === id ? set | (1 << label) : set), 0);
 }
 
-/** The same segmentation with other groups: `group` of each motion by its label. */
+/** The segmentation with other groups: `group` gives the group of each motion. */
 export function regrouped(segmentation: Segmentation, group: (motion: Motion) => number): Segmentation {
   return { ...segmentation, motions: segmentation.motions.map((motion) => ({ ...motion, group: group(motion) })) };
 }
 
-/** Two masks as one, which bears the smaller number. */
+/** The segmentation with two masks merged under the smaller of their numbers. */
 export function merged(segmentation: Segmentation, kind: Kind, one: number, other: number): Segmentation {
   const sets = [labelSet(segmentation, kind, one), labelSet(segmentation, kind, other)];
   const joined = segmentation.motions.filter(({ label }) => ((sets[0]! | sets[1]!) >> label) & 1);
@@ -74,7 +74,7 @@ export function merged(segmentation: Segmentation, kind: Kind, one: number, othe
   return regrouped(segmentation, (motion) => (joined.includes(motion) ? id : motion.group));
 }
 
-/** A group taken apart: its largest motion keeps the number, each other gets one that nobody has. */
+/** The segmentation with a group split into its motions: the largest keeps the number, the others get unused ones. */
 export function ungrouped(segmentation: Segmentation, group: number): Segmentation {
   const used = new Set(segmentation.motions.map((motion) => motion.group));
   let first = true;

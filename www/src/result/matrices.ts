@@ -1,4 +1,4 @@
-//! A motion as other programs write it. Ours is a displacement measured from pixel centres, `x' = x + A x`.
+//! A motion in the notation of other programs. Veronese's is a displacement measured from pixel centres, `x' = x + A x`.
 
 import type { Matrix } from './describe.js';
 
@@ -10,14 +10,14 @@ export interface Notation {
 /** Enough digits for 4096 pixels to a thousandth. */
 const short = (value: number): number => Number(value.toFixed(8));
 
-/** The six numbers as they are. */
+/** The six numbers unchanged. */
 function json(matrix: Matrix): string {
   return JSON.stringify(matrix);
 }
 
 /**
- * `matrix(a, b, c, d, e, f)` of SVG and CSS: x' = a x + c y + e, y' = b x + d y + f. It measures from the corner of the first
- * pixel, half a pixel off.
+ * `matrix(a, b, c, d, e, f)` of SVG and CSS: x' = a x + c y + e, y' = b x + d y + f. The origin is the corner of the first pixel, half
+ * a pixel from its centre.
  */
 function svg([a11, a12, a13, a21, a22, a23]: Matrix): string {
   const numbers = [1 + a11, a21, a12, 1 + a22, a13 - (a11 + a12) / 2, a23 - (a21 + a22) / 2];

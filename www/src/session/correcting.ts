@@ -1,6 +1,6 @@
-//! Correcting the result. What a person does is written down at once and never waits; the labels follow. They are solved from the
-//! result as it was found, so that they depend on the strokes alone and not on the order of undoing, one answer at a time and then
-//! for the strokes that are there by then. What was done to a pair is kept when it is left and is back when it comes again.
+//! Correcting the result. Edits are recorded at once, and the labels are updated in the background. They are always solved from the
+//! original segmentation, so they depend on the strokes alone and not on the order of undo and redo. One request runs at a time; the next
+//! takes all strokes drawn by then. The edits of a pair are kept when it is left, and restored when it is opened again.
 
 import type { Segmentation } from 'veronese';
 import { strings } from '../common/strings.js';
@@ -32,11 +32,11 @@ export class Correcting {
   readonly #segmenting: Segmenting;
   readonly #fail: (error: unknown) => void;
   readonly #solutions = new Solutions();
-  /** The solving that is under way. */
+  /** Identifies the running request. */
   #solving: symbol | null = null;
-  /** What the answer that is waited for comes from. */
+  /** What led to the pending update. */
   #cause: Cause = 'solved';
-  /** Ends the stroke that is being drawn, as if the brush was lifted. */
+  /** Ends the stroke that is being drawn. Set by the brush. */
   finishStroke: () => void = () => undefined;
 
   constructor(store: Store, segmenting: Segmenting, fail: (error: unknown) => void) {
@@ -51,7 +51,7 @@ export class Correcting {
     const joined = merged(result.segmentation, look.kind, one, other);
     const labels = labelSet(result.segmentation, look.kind, one);
     this.#regroup(joined, 'merged');
-    // What was merged is one mask only among groups.
+    // A merged mask exists only as a group.
     const selected = maskWith(labels, this.#store.get().result!.segmentation, 'groups');
     this.#store.look({ kind: 'groups', selected, hidden: new Set(), solo: null, stabilised: null });
   }
@@ -61,7 +61,7 @@ export class Correcting {
     if (result !== null) this.#regroup(ungrouped(result.segmentation, group), 'ungrouped');
   }
 
-  /** The mask that a stroke begun now is about; null, with a word to the user, where it could say nothing. */
+  /** The mask that a new stroke refers to. Returns `null` and tells the user why if the stroke would have no effect. */
   maskFor(tool: Stroke['tool']): Part | null {
     const { result, found, look, live } = this.#store.get();
     if (live !== null) return null;
@@ -86,7 +86,7 @@ export class Correcting {
     this.#go(1, 'redone');
   }
 
-  /** An empty name gives the mask its own again. */
+  /** Sets the name or colour of a mask. An empty name restores the default. */
   setAppearance(id: number, what: { name: string } | { colour: Colour }): void {
     const { result, found, look, edits } = this.#store.get();
     if (result === null || found === null) return;
@@ -100,13 +100,13 @@ export class Correcting {
     this.#store.set({ edits: { ...edits, appearances }, look: { ...look, ...namesAndColours(appearances, result.segmentation, found) } });
   }
 
-  /** The masks were saved as `edits` made them. */
+  /** Records that the masks were exported with these edits. */
   saved({ edits, pair }: State): void {
     const now = this.#store.get();
     if (now.pair === pair) this.#store.set({ edits: { ...now.edits, saved: asSaved(edits).saved } });
   }
 
-  /** The state as soon as no stroke waits for its answer, or nobody works on one. */
+  /** The state once all strokes are applied, or none is being applied. */
   settled(): Promise<State> {
     return new Promise((resolve) => {
       const look = (now: State, before: State): void => {
@@ -120,7 +120,7 @@ export class Correcting {
     });
   }
 
-  /** Takes what was found in a pair: what was done to it so far is carried over. `final` unless a better result follows. */
+  /** Shows a new segmentation of the pair with its edits applied. `final`: false if a better result follows. */
   async accept(found: Segmentation, pair: Result['pair'], began: number, final: boolean): Promise<void> {
     const under = lastStroke(this.#store.get().edits);
     const solved = await this.#solved(pair, found);
@@ -134,10 +134,10 @@ export class Correcting {
       run: final ? { phase: 'done', cause: 'found' } : before.run,
       look: { ...before.look, ...carried(before, segmentation, found), ...namesAndColours(before.edits.appearances, segmentation, found) },
     });
-    if (isPending(this.#store.get())) this.settle('solved'); // drawn meanwhile
+    if (isPending(this.#store.get())) this.settle('solved'); // strokes drawn meanwhile
   }
 
-  /** What was done to the pair that is open is kept for when it comes again. */
+  /** Keeps the edits of the open pair for when it is opened again. */
   keep(): void {
     this.finishStroke();
     const { pair, edits, found, result, kept, settings, motionsElsewhere } = this.#store.get();
@@ -153,7 +153,7 @@ export class Correcting {
     });
   }
 
-  /** What of the state is another with this pair: empty, or what was done to it before. */
+  /** The parts of the state that depend on the pair: empty, or as they were kept. */
   stateFor(pair: FramePair): Pick<State, 'found' | 'result' | 'edits' | 'kept' | 'settings' | 'motionsElsewhere'> {
     const { kept, settings, motionsElsewhere } = this.#store.get();
     const key = keyOfPair(pair) ?? '';
@@ -178,12 +178,12 @@ export class Correcting {
     return { found, edits, result: { segmentation, pair, waited: known.waited, under: solved === undefined ? null : last } };
   }
 
-  /** No answer is waited for any more; strokes without one stay. */
+  /** Ignores the running request. Strokes that are not applied yet stay. */
   interrupt(): void {
     this.#solving = null;
   }
 
-  /** Shows what follows from the edits, as soon as it is known. */
+  /** Shows the labels that follow from the edits, solving them first if necessary. */
   settle(cause: Cause): void {
     const { result, found, edits, run } = this.#store.get();
     if (result === null || found === null) return;
@@ -195,7 +195,7 @@ export class Correcting {
       const { motions } = grouped(result.segmentation, edits, found);
       const regrouped = motions.some(({ group }, k) => group !== result.segmentation.motions[k]!.group);
       if (regrouped) this.#show(result.segmentation, result.under, null);
-      // Another segmentation is coming and will be solved under all strokes.
+      // A segmentation under way will be solved with all strokes.
       if (!isSegmenting(run)) void this.#solve();
     }
   }
@@ -216,10 +216,10 @@ export class Correcting {
     this.settle(cause);
   }
 
-  /** Solves until the answer is that to the newest strokes. */
+  /** Solves until all strokes are applied. */
   async #solve(): Promise<void> {
     this.#store.set({ run: { phase: 'working', work: 'solving', stage: 'labels', index: 0, of: 1 } });
-    if (this.#solving !== null) return; // the newest strokes come next
+    if (this.#solving !== null) return; // the loop below takes the newest strokes next
     const own = (this.#solving = Symbol());
     try {
       for (;;) {
@@ -231,7 +231,7 @@ export class Correcting {
         if (solved === null || this.#solving !== own) return;
         this.#solutions.add(last, found, solved);
         const now = strokesOf(this.#store.get().edits);
-        // With strokes missing it is better than nothing; with strokes too many it is wrong.
+        // A result that lacks strokes is shown meanwhile; one with a stroke that was undone is not.
         if (now.includes(last)) this.#show(solved, last, now.at(-1) === last ? this.#cause : null, performance.now() - began);
       }
     } catch (error) {
@@ -241,13 +241,13 @@ export class Correcting {
     }
   }
 
-  /** The labels of what was found under the strokes that count; null when the work was ended. */
+  /** The segmentation solved with the strokes in effect; `null` if the request was cancelled. */
   async #solved(pair: Result['pair'], found: Segmentation): Promise<Segmentation | null> {
     const constraints = constraintsFrom(strokesOf(this.#store.get().edits), found);
     return constraints.length === 0 ? found : this.#segmenting.relabel(pair, found, evidenceOf(constraints, found.width, found.height));
   }
 
-  /** `after` is null while a better answer is waited for. */
+  /** `cause` is `null` while a newer result is pending. */
   #show(solved: Segmentation, under: Stroke | null, cause: Cause | null, waited?: number): void {
     const before = this.#store.get();
     const { result, found, edits, run, look } = before;
@@ -261,17 +261,17 @@ export class Correcting {
   }
 }
 
-/** Whether what was found is what the settings give, so that the frames need not be segmented again. */
+/** Whether the segmentation was made with the current settings. */
 export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>): boolean {
   return found !== null && (['motions', 'quality', 'markUnknown', 'seed'] as const).every((name) => found.settings[name] === settings[name]);
 }
 
-/** Whether strokes wait for their answer. */
+/** Whether some strokes are not applied yet. */
 export function isPending({ result, edits }: Pick<State, 'result' | 'edits'>): boolean {
   return result !== null && lastStroke(edits) !== result.under;
 }
 
-/** Whether a mask of this kind can be taken apart. */
+/** Whether a mask of this kind can be ungrouped. */
 export function isMerged(kind: Kind, motions: readonly unknown[]): boolean {
   return kind === 'groups' && motions.length > 1;
 }
@@ -280,7 +280,7 @@ function isSegmenting(run: State['run']): boolean {
   return run.phase === 'working' && run.work === 'segmenting';
 }
 
-/** Names and colours by the numbers that their masks have now. */
+/** Names and colours by the current numbers of their masks. */
 function namesAndColours(appearances: readonly Appearance[], segmentation: Segmentation, found: Segmentation): Pick<Look, 'names' | 'colours'> {
   const [names, colours]: [Record<string, string>, Record<string, Colour>] = [{}, {}];
   for (const one of appearances) {
@@ -292,7 +292,7 @@ function namesAndColours(appearances: readonly Appearance[], segmentation: Segme
   return { names, colours };
 }
 
-/** What was chosen by the numbers of masks, by the numbers that these masks have now. */
+/** Choices that refer to masks by number, with the numbers of these masks in the new result. */
 function carried({ look, result, found }: State, now: Segmentation, foundNow: Segmentation): Pick<Look, 'hidden' | 'solo' | 'stabilised' | 'selected'> {
   const { hidden: none } = FRESH;
   if (result === null || found === null) return { hidden: none, solo: null, stabilised: null, selected: null };

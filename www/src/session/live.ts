@@ -1,4 +1,4 @@
-//! The camera: one frame after another segmented against the one before, fast, with the rate shown.
+//! The camera: each frame is segmented with the one before, at quality `fast`.
 
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
@@ -8,18 +8,18 @@ import type { LoadedFrame } from '../state/pair.js';
 import { FRESH, type Result, type State, type Store } from '../state/state.js';
 import { Segmenting } from './segmenting.js';
 
-/** Longer side of what is worked on: more is not seen at this speed. */
+/** Longer side of the frames, pixels: small enough for a high rate. */
 const LONGEST_SIDE = 480;
-/** Weight of the newest time in the rate. */
+/** Weight of the newest time in the moving average. */
 const NEWEST = 0.15;
 
-/** The frames of the camera are known by a number: none comes a second time. */
+/** Camera frames are fingerprinted by a counter, because none recurs. */
 let seen = 0;
 
-/** A pair of the camera, segmented. */
+/** One segmented pair of the camera. */
 interface View {
   readonly result: Result;
-  /** Segmentations per second, lately. */
+  /** Segmentations per second, a moving average. */
   readonly rate: number;
 }
 
@@ -27,7 +27,7 @@ export class LiveView {
   readonly #store: Store;
   readonly #fail: (error: unknown) => void;
   readonly #segmenting = new Segmenting();
-  /** Changes with every start and stop: a view goes on as long as it is its own. */
+  /** Incremented by each start and stop, which ends earlier loops. */
   #turn = 0;
   #stream: MediaStream | null = null;
 
@@ -37,8 +37,8 @@ export class LiveView {
   }
 
   /**
-   * Switches the camera on and waits until its first pair is segmented; until then nothing in the state changes. What it gives shows that
-   * pair and those that follow.
+   * Switches the camera on and waits for its first result; the state does not change until then. Returns a function that shows this
+   * result and those that follow.
    */
   async start(): Promise<() => void> {
     const turn = ++this.#turn;
@@ -64,7 +64,7 @@ export class LiveView {
     }
   }
 
-  /** Switches the camera off; what was seen last stays. */
+  /** Switches the camera off; the last result stays. */
   stop(): void {
     this.#turn += 1;
     this.#segmenting.close();
@@ -89,7 +89,7 @@ export class LiveView {
     }
   }
 
-  /** What the camera sees, each frame segmented with the one before. */
+  /** Segments each frame of the camera with the one before. */
   async *#views(video: HTMLVideoElement, current: () => boolean): AsyncGenerator<View, void> {
     let before: LoadedFrame | null = null;
     let milliseconds = 0;

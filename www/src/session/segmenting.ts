@@ -1,5 +1,5 @@
-//! The one place that talks to the worker. The latest request wins: a new one ends the one before, and so does `cancel`, by the
-//! package's own means (a worker is ended and the next request starts a fresh one).
+//! The only access to the worker. The latest request wins: a new request aborts the one before, as `cancel` does. The package then ends
+//! the worker, and the next request starts a new one.
 
 import { type Pixels, type Progress, type Segmentation, Segmenter } from 'veronese';
 import type { Settings } from '../state/settings.js';
@@ -13,7 +13,7 @@ export class Segmenting {
   readonly #segmenter = new Segmenter();
   #current: AbortController | null = null;
 
-  /** The segmentation; `null` when the request was cancelled or overtaken by another. Throws the package's errors. */
+  /** Segments a pair; `null` if the request was cancelled or replaced by another. Throws the package's errors. */
   run(pair: Pair, settings: Settings, onProgress: (progress: Progress) => void = () => undefined): Promise<Segmentation | null> {
     const { longestSide: _, ...options } = settings;
     return this.#request((signal) =>
@@ -27,7 +27,7 @@ export class Segmenting {
     );
   }
 
-  /** The labels solved again under evidence, as {@link run} otherwise. */
+  /** Solves the labels again given evidence; otherwise like {@link run}. */
   relabel(pair: Pair, segmentation: Segmentation, evidence: Uint16Array): Promise<Segmentation | null> {
     return this.#request((signal) =>
       this.#segmenter.relabel(pixelsOf(pair.first), pixelsOf(pair.second), segmentation, evidence, { signal }),
@@ -62,7 +62,7 @@ export class Segmenting {
   }
 }
 
-/** Only the pixels: what else a frame holds need not be copied to the worker. */
+/** Only the pixels are copied to the worker. */
 function pixelsOf({ data, width, height }: Pixels): Pixels {
   return { data, width, height };
 }

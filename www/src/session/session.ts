@@ -1,5 +1,5 @@
-//! What the page does when it is asked to: open frames, choose them from a clip, segment, correct, cancel. Views call these and read
-//! the state; every failure ends as a notice in the state, and the page goes on working.
+//! What the page does: open frames, choose them from a clip, segment, correct, cancel. Views call these methods and read the state. Every
+//! failure ends as a notice in the state, and the page stays usable.
 
 import type { Clip } from '../clips/clip.js';
 import { openFolder } from '../clips/folder.js';
@@ -17,10 +17,10 @@ import { Correcting, isCurrent, isPending } from './correcting.js';
 import { LiveView } from './live.js';
 import { Segmenting } from './segmenting.js';
 
-/** A film is opened at its start, with so many frames between the two. */
+/** Distance between the two frames when a clip is opened. */
 const FRAMES_APART = 1;
 
-/** The work on a pair before its first stage. */
+/** The state of a run before its first stage. */
 const STARTING: Run = { phase: 'working', work: 'segmenting', stage: '', index: 0, of: 0 };
 
 export class Session {
@@ -28,7 +28,7 @@ export class Session {
   readonly #segmenting = new Segmenting();
   readonly correcting: Correcting;
   readonly #live: LiveView;
-  /** Counts what the user opened, so that a slow decoding never overtakes a later one. */
+  /** Incremented by each opening, so that a slow one never replaces a later one. */
   #opened = 0;
 
   constructor(store: Store) {
@@ -37,7 +37,7 @@ export class Session {
     this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
-  /** Opens a sample, the second frame first where it is `swapped`. */
+  /** Opens a sample; `swapped`: with the second frame first. */
   openSample(sample: Sample = SAMPLES[0], swapped = false): Promise<void> {
     return this.#openFrames(
       () => Promise.all((swapped ? (['second', 'first'] as const) : (['first', 'second'] as const)).map((slot) => this.#frameOfSample(sample, slot))),
@@ -46,8 +46,8 @@ export class Session {
   }
 
   /**
-   * Opens files. A video, or more than two images, is a film to choose from; two images make a new pair, in the order of their
-   * names; one goes into `slot`, or, where none is named, into the slot that is empty, or begins a new pair.
+   * Opens files. A video or more than two images is a clip to choose frames from. Two images make a new pair, in the order of their
+   * names. One image goes into `slot`; without a slot, it becomes the missing second frame or the first of a new pair.
    */
   openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
     return this.#openFrames(
@@ -68,14 +68,14 @@ export class Session {
     );
   }
 
-  /** Chooses a frame of the film that is open; frames outside are the nearest inside. */
+  /** Chooses a frame of the open clip; the index is clamped. */
   choose(slot: Slot, index: number): Promise<void> {
     const { film } = this.#store.get();
     if (film === null) return Promise.resolve();
     return this.#goTo({ [slot]: Math.min(Math.max(Math.round(index), 0), film.clip.count - 1) });
   }
 
-  /** Moves both frames along the film, or the one that is of it. */
+  /** Steps all frames that are of the clip. */
   step(by: number): Promise<void> {
     const { film } = this.#store.get();
     if (film === null) return Promise.resolve();
@@ -100,34 +100,34 @@ export class Session {
     );
   }
 
-  /** The first frame becomes the second. */
+  /** Swaps the two frames. */
   swap(): void {
     const { first, second } = this.#store.get().pair;
     this.#overtake();
     this.#setPair({ first: second, second: first });
   }
 
-  /** Takes other settings and, where there is a pair, segments it again. */
+  /** Changes settings and segments the pair again. */
   change(settings: Partial<Settings>): void {
     const { settings: before, motionsElsewhere } = this.#store.get();
     this.#store.set({ settings: { ...before, ...settings }, motionsElsewhere: settings.motions === undefined ? motionsElsewhere : null });
     if (this.#store.get().live === null) void this.segment();
   }
 
-  /** So many motions in this pair; in others as many as before. */
+  /** Sets the number of motions for this pair alone. */
   forceMotions(motions: number): void {
     const { settings, motionsElsewhere } = this.#store.get();
     this.change({ motions });
     this.#store.set({ motionsElsewhere: motionsElsewhere ?? settings.motions });
   }
 
-  /** Takes up again what was cancelled. */
+  /** Resumes what was cancelled. */
   again(): void {
     if (isCurrent(this.#store.get())) this.correcting.settle(isPending(this.#store.get()) ? 'solved' : 'found');
     else void this.segment();
   }
 
-  /** Segments the pair with the settings, or says what is missing. */
+  /** Segments the pair with the current settings; idle if a frame is missing. */
   async segment(): Promise<void> {
     const { pair, settings } = this.#store.get();
     const { first, second } = pair;
@@ -140,7 +140,7 @@ export class Session {
     this.#store.set({ run: STARTING });
     const began = performance.now();
     try {
-      // Of a new pair something is seen soon: what fast work finds, until better work is done.
+      // A fast preview of a new pair, shown until the best result is ready.
       if (settings.quality === 'best' && this.#store.get().result === null) {
         const preview = await this.#segmenting.run({ first, second }, { ...settings, quality: 'fast' });
         if (preview === null) return;
@@ -155,12 +155,12 @@ export class Session {
     }
   }
 
-  /** Chooses the mask that is worked on. */
+  /** Selects a mask. */
   select(mask: number | null): void {
     this.#store.look({ selected: mask });
   }
 
-  /** Stops at once; an older result stays. */
+  /** Stops at once; the last result stays. */
   cancel(): void {
     const { run, opening } = this.#store.get();
     if (opening) return this.#giveUp();
@@ -174,12 +174,12 @@ export class Session {
     this.correcting.interrupt();
   }
 
-  /** Says something to the user; with a code it is an error. */
+  /** Shows a notice; with a code it is an error. */
   say(sentence: string, code: string | null = null): void {
     this.#store.set({ notice: { sentence, code } });
   }
 
-  /** The first two frames of a film. */
+  /** The first two frames of a clip. */
   async #startOf(clip: Clip): Promise<LoadedFrame[]> {
     try {
       return [await this.#frameOf(clip, 0), await this.#frameOf(clip, Math.min(FRAMES_APART, clip.count - 1))];
@@ -197,7 +197,7 @@ export class Session {
     return { ...(await frameFromUrl(sample[slot], `${slot}.png`, this.#store.get().settings.longestSide)), origin: { sample, slot } };
   }
 
-  /** Goes to other places of the film. Its timeline is there at once; the frames that are not shown yet are loaded. */
+  /** Goes to other frames of the clip. The timeline moves at once; the pair changes when the frames are loaded. */
   #goTo(places: Partial<Pick<Film, Slot>>): Promise<void> {
     const { film, pair, opening } = this.#store.get();
     if (film === null) return Promise.resolve();
@@ -241,8 +241,8 @@ export class Session {
   }
 
   /**
-   * Opens something: what is there stays as it is, and whatever works on it goes on, until `take` has what replaces it. What was asked for
-   * last wins; the others are discarded.
+   * Opens something. The current pair stays, and work on it continues, until `take` is called with its replacement. The last request wins;
+   * earlier ones are discarded.
    */
   async #open<T>(load: () => Promise<T>, take: (opened: T) => void, discard: (opened: T) => void = () => undefined): Promise<void> {
     const turn = this.#overtake();
@@ -259,13 +259,13 @@ export class Session {
     }
   }
 
-  /** Makes whatever is being opened come too late. */
+  /** Invalidates whatever is being opened. */
   #overtake(): number {
     if (this.#store.get().live === null) this.#live.stop();
     return ++this.#opened;
   }
 
-  /** Leaves open what is: the timeline returns to the frames that are shown. */
+  /** Stops opening: the timeline returns to the frames on screen. */
   #giveUp(): void {
     this.#overtake();
     this.#store.set({ opening: false, film: filmOf(this.#store.get().pair) });
@@ -280,18 +280,18 @@ export class Session {
     const view = complete && look.view === 'split' ? 'split' : only;
     const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
     const film = filmOf(pair);
-    const arrival = this.correcting.stateFor(pair);
-    const current = isCurrent(arrival);
+    const restored = this.correcting.stateFor(pair);
+    const current = isCurrent(restored);
     this.#store.set({
       pair,
       film,
       opening: false,
-      ...arrival,
+      ...restored,
       run: current ? { phase: 'done', cause: 'restored' } : complete ? STARTING : { phase: 'idle' },
       look: { ...look, ...FRESH, view },
       viewport: sameSize ? viewport : WHOLE,
     });
-    // Nobody draws the old frames any more: give their memory back now, not at the next collection.
+    // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
     if (left !== null && left.clip !== film?.clip) left.clip.close();
     if (current) this.correcting.settle('restored');

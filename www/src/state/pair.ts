@@ -17,7 +17,7 @@ export interface LoadedFrame extends DecodedFrame {
 /** The two frames; `null` until a frame is opened. */
 export type FramePair = Readonly<Record<Slot, LoadedFrame | null>>;
 
-/** What a pair is remembered under; null where a frame is missing. */
+/** Identifies a pair by its content; `null` if a frame is missing. */
 export function keyOfPair({ first, second }: FramePair): string | null {
   return first === null || second === null ? null : `${first.fingerprint} ${second.fingerprint}`;
 }
@@ -29,14 +29,14 @@ export function sampleOf({ first, second }: FramePair): { readonly sample: Sampl
   return { sample: a.sample, swapped: a.slot === 'second' };
 }
 
-/** A clip that is open, and the frames chosen from it; `null` where the pair's frame is another file. */
+/** The open clip and the indices of the two frames in it; `null` for a frame that is not of the clip. */
 export interface Film {
   readonly clip: Clip;
   readonly first: number | null;
   readonly second: number | null;
 }
 
-/** The film that the frames of a pair are of: it is open for as long as one of them is. */
+/** The clip of a pair's frames: it stays open as long as one of them does. */
 export function filmOf({ first, second }: FramePair): Film | null {
   const [a, b] = [first, second].map((frame) => (frame?.origin && 'clip' in frame.origin ? frame.origin : null));
   const clip = a?.clip ?? b?.clip;

@@ -1,8 +1,8 @@
-//! The settings as data: what each is called, what it may be, what it does. `views/options.ts` draws a form from it.
+//! The settings as data: name, values, help. `views/options.ts` makes the form from them.
 
 import type { SegmentOptions } from 'veronese';
 
-/** What the settings form holds: the options of the package that the page offers. */
+/** The options of the package that the page offers, and the working size. */
 export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'markUnknown' | 'seed'>>> & {
   /** Frames with a longer side are scaled down to it when they are opened, pixels. Masks are exported at the size of the file. */
   readonly longestSide: number;
@@ -35,7 +35,7 @@ export interface SwitchControl extends Common<'markUnknown'> {
 
 export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | ChoiceControl<'longestSide'> | NumberControl | SwitchControl;
 
-/** The paper's own limit on the number of motions. */
+/** The paper's limit on the number of motions. */
 const MOST_MOTIONS = 10;
 
 const MOTIONS: ChoiceControl<'motions'> = {
@@ -94,7 +94,7 @@ const SEED: NumberControl = {
   max: 0xffff_ffff,
 };
 
-/** In the order in which they are shown. */
+/** In the order of the form. */
 export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, MARK_UNKNOWN, LONGEST_SIDE, SEED];
 
 export const DEFAULT_SETTINGS: Settings = {

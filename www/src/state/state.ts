@@ -1,4 +1,4 @@
-//! The page's state: one plain object, replaced as a whole and never changed in place. Views render it; nothing else remembers anything.
+//! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
 import type { Segmentation } from 'veronese';
 import { UNTOUCHED, type Edits } from '../correction/edits.js';
@@ -9,40 +9,40 @@ import type { Kept } from './kept.js';
 import type { Film, FramePair, LoadedFrame, Slot } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 
-/** What the masks that are shown come from. */
+/** What led to the masks on screen. */
 export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'restored';
 
-/** What the work is doing. `index` counts stages from 0; `of` is 0 while the number of stages is not known. */
+/** What is running. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
 export type Run =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'live' }
   | { readonly phase: 'done'; readonly cause: Cause }
   | { readonly phase: 'working'; readonly work: 'segmenting' | 'solving'; readonly stage: string; readonly index: number; readonly of: number };
 
-/** A segmentation together with the frames it was made from, so that late views never mix two requests. */
+/** A segmentation with the frames that it belongs to, so that views never combine two requests. */
 export interface Result {
   readonly segmentation: Segmentation;
   readonly pair: { readonly first: LoadedFrame; readonly second: LoadedFrame };
-  /** Milliseconds from request to answer, as the page saw it: transfer to the worker and back included. */
+  /** Time from request to result, transfers to and from the worker included, milliseconds. */
   readonly waited: number;
-  /** The last stroke that the labels were solved under. */
+  /** The last stroke that the labels take into account. */
   readonly under: Stroke | null;
 }
 
-/** How the result is looked at. Numbers of masks refer to the current result and kind. */
+/** How the result is displayed. Mask numbers refer to the current result and kind. */
 export interface Look extends Painting {
   readonly view: Slot | 'split';
-  /** Where the two frames meet in the split view, 0…1 of the view. */
+  /** Position of the split, 0…1 of the width of the view. */
   readonly divide: number;
-  /** Both frames in turn. */
+  /** Whether the two frames alternate. */
   readonly blinking: boolean;
   /** Opacity of the masks, 0…1. */
   readonly opacity: number;
   readonly outlines: boolean;
   readonly arrows: boolean;
   readonly residual: boolean;
-  /** The mask that is worked on, and that the brush paints. */
+  /** The selected mask, to which brush and eraser refer. */
   readonly selected: number | null;
-  /** The second frame is drawn warped by this mask's motion, so that its pixels stand still. */
+  /** The second frame is drawn warped back by the motion of this mask, so that its pixels stay in place. */
   readonly stabilised: number | null;
   /** Names that the user gave to masks, by `keyOf`. Like the colours, they follow from the edits. */
   readonly names: Readonly<Record<string, string>>;
@@ -56,13 +56,13 @@ export interface Tool {
   readonly radius: number;
 }
 
-/** The camera is on. */
+/** The state of the camera while it is on. */
 export interface Live {
   /** Segmentations per second, lately. */
   readonly rate: number;
 }
 
-/** Something went wrong (`code` set) or needs saying. */
+/** A message to the user; an error if `code` is set. */
 export interface Notice {
   readonly sentence: string;
   readonly code: string | null;
@@ -72,18 +72,18 @@ export interface State {
   readonly pair: FramePair;
   readonly film: Film | null;
   readonly live: Live | null;
-  /** Something is being opened; what is open stays until it is there. */
+  /** Whether something is being opened. The current pair stays until it is ready. */
   readonly opening: boolean;
   readonly settings: Settings;
-  /** The number of motions that was set before somebody insisted on another for this pair alone; null where nobody did. */
+  /** The number of motions set for all other pairs, while this pair has its own; otherwise `null`. */
   readonly motionsElsewhere: Settings['motions'] | null;
   readonly run: Run;
   readonly result: Result | null;
-  /** As it was found, before anybody touched it. */
+  /** The segmentation before corrections. */
   readonly found: Segmentation | null;
-  /** What was done to this pair. */
+  /** The edits of this pair. */
   readonly edits: Edits;
-  /** What was done to others, by `keyOfPair`. */
+  /** The edits of other pairs, by `keyOfPair`. */
   readonly kept: ReadonlyMap<string, Kept>;
   readonly look: Look;
   readonly viewport: Viewport;
@@ -91,12 +91,12 @@ export interface State {
   readonly notice: Notice | null;
 }
 
-/** Whether the result of a new pair is still to come: what shows the last one shows it until then, so that nothing jumps. */
+/** Whether the first result of a new pair is pending. Views keep showing the last one until then, so that the layout does not jump. */
 export function isAwaited({ result, run }: State): boolean {
   return result === null && run.phase === 'working';
 }
 
-/** What of a look belongs to one result. */
+/** The initial values of the parts of a look that belong to one result. */
 export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, blinking: false, names: {}, colours: {} } as const;
 
 export const INITIAL: State = {
@@ -119,7 +119,7 @@ export const INITIAL: State = {
 
 export type Listener = (now: State, before: State) => void;
 
-/** Holds the state and tells everybody who asked when it changes. */
+/** Holds the state and notifies listeners of changes. */
 export class Store {
   #state: State = INITIAL;
   readonly #listeners = new Set<Listener>();
@@ -128,19 +128,19 @@ export class Store {
     return this.#state;
   }
 
-  /** Replaces the named parts and tells the listeners, in the order in which they came. */
+  /** Replaces parts of the state and calls the listeners in the order of their subscription. */
   set(change: Partial<State>): void {
     const before = this.#state;
     this.#state = { ...before, ...change };
     for (const listener of this.#listeners) listener(this.#state, before);
   }
 
-  /** Changes how the result is looked at. */
+  /** Changes how the result is displayed. */
   look(change: Partial<Look>): void {
     this.set({ look: { ...this.#state.look, ...change } });
   }
 
-  /** Calls `listener` at every change; the function returned ends that. */
+  /** Calls `listener` at every change. Returns a function that ends the subscription. */
   subscribe(listener: Listener): () => void {
     this.#listeners.add(listener);
     return () => this.#listeners.delete(listener);

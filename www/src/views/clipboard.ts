@@ -1,4 +1,4 @@
-//! Text to the clipboard, and saying so.
+//! Copies text to the clipboard and reports it.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';

@@ -1,4 +1,4 @@
-//! The split view: the first frame with its masks on the left, the second on the right, and the line between them to be moved.
+//! The split view: the first frame with its masks on the left, the second on the right, and a movable line between them.
 
 import { inPicture } from '../drawing/viewport.js';
 import type { Store } from '../state/state.js';
@@ -8,7 +8,7 @@ export function mountCompare(stage: HTMLElement, store: Store): void {
   const layers = find(stage, '.layers', HTMLElement);
   const line = find(stage, '#divide', HTMLInputElement);
   line.addEventListener('input', () => store.look({ divide: line.valueAsNumber / 1000 }));
-  // The picture under the line is not pressed by moving it.
+  // Moving the line is not a press on the picture.
   line.addEventListener('pointerdown', (event) => event.stopPropagation());
   store.subscribe(({ look, viewport, pair }, before) => {
     if (look === before.look && viewport === before.viewport && pair === before.pair) return;

@@ -1,5 +1,5 @@
-//! Listens to the keys and lists them in a dialogue that `?` opens. Single keys can be switched off there, for those who speak to
-//! their computer.
+//! Handles keyboard shortcuts and lists them in a dialogue that `?` opens. Single-key shortcuts can be disabled there, because speech
+//! input triggers them.
 
 import { strings } from '../common/strings.js';
 import type { Store } from '../state/state.js';
@@ -14,7 +14,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
   const rows = [{ shown: 'B', does: strings.keys.look.peek }, ...keys, { shown: '?', does: strings.keys.look.keys }];
   for (const { shown, does } of rows) {
     if (does === '') {
-      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown)); // the same again, with another key
+      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown)); // another key for the same
       continue;
     }
     const row = element('div');
@@ -27,7 +27,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
   open.addEventListener('click', () => dialog.showModal());
   find(dialog, '[data-action=close]', HTMLButtonElement).addEventListener('click', () => dialog.close());
   dialog.addEventListener('click', (event) => {
-    if (event.target === dialog) dialog.close(); // beside it
+    if (event.target === dialog) dialog.close(); // a click on the backdrop
   });
 
   document.addEventListener('keydown', (event) => {

@@ -1,4 +1,4 @@
-//! The list of masks: each in words and numbers, with its colour, name and share, ways to look at it alone, and its motion to copy.
+//! The list of masks: colour, name, share and motion of each, with its actions.
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
@@ -15,7 +15,7 @@ import { element, find } from './markup.js';
 
 type Segmentation = Result['segmentation'];
 
-/** Brings one row up to date with the state. */
+/** Updates one row. */
 type Refresh = (look: Look) => void;
 
 export function mountMotions(root: ParentNode, store: Store, session: Session): void {
@@ -51,7 +51,7 @@ function whyNone({ phase }: State['run']): string {
   return phase === 'failed' || phase === 'cancelled' ? strings.noMasks[phase] : strings.noMasksYet;
 }
 
-/** A name that is being typed goes on being typed in the new list; null where none is. */
+/** Carries a name that is being typed over to the new list; `null` if none is. */
 function typedName(list: HTMLElement, kind: Look['kind']): ((list: HTMLElement, now: State) => void) | null {
   const field = document.activeElement;
   if (!(field instanceof HTMLInputElement) || !field.matches('.motion-name') || !list.contains(field)) return null;
@@ -97,7 +97,7 @@ function factsOf({ id, motions }: Mask, { kind }: Look, { motions: all }: Segmen
   return facts.join(' · ');
 }
 
-/** Connects what a row shows and is pressed for to the state. */
+/** Connects the controls of a row to the state. */
 function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): Refresh {
   const shown = find(row, '[data-action=show]', HTMLInputElement);
   const colour = find(row, '[data-action=colour]', HTMLInputElement);
@@ -145,14 +145,14 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
   };
 }
 
-/** The second frame in the first's place under this mask's motion, both in turn: what stands still belongs to it. */
+/** Alternates between the first frame and the second warped back by the mask's motion: what stays in place belongs to the mask. */
 export function toggleStabilised(store: Store, id: number): void {
   const { look } = store.get();
   if (look.stabilised === id) store.look({ stabilised: null, blinking: false, view: 'first' });
   else store.look({ stabilised: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !matchMedia('(prefers-reduced-motion: reduce)').matches });
 }
 
-/** The matrix, ways to copy it, and what to merge with. */
+/** Fills in the matrix, the buttons that copy it, and the masks to merge with. */
 function fillMore(row: HTMLElement, mask: Mask, masks: readonly Mask[], store: Store, session: Session): void {
   const matrix = mask.motions[0]!.matrix;
   const body = find(row, 'tbody', HTMLElement);

@@ -1,4 +1,4 @@
-//! Ways in: opening files or a folder, samples, the camera; replacing one frame, swapping, and the two thumbnails.
+//! Opening files, a folder, a sample or the camera; replacing and swapping frames; the two thumbnails.
 
 import { strings } from '../common/strings.js';
 import { SAMPLES } from '../frames/samples.js';
@@ -11,7 +11,7 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
   const listen = (input: HTMLInputElement, slot: Slot | null): void => {
     input.addEventListener('change', () => {
       const files = [...(input.files ?? [])];
-      input.value = ''; // the same file may be chosen again
+      input.value = ''; // so that choosing the same file again is a change
       if (files.length > 0) void session.openFiles(files, slot);
     });
   };
@@ -61,7 +61,7 @@ function sampleButton(sample: (typeof SAMPLES)[number], session: Session): HTMLE
   return button;
 }
 
-/** The whole frame, as large as it fits, in the middle. */
+/** Draws the whole frame, as large as fits, centred. */
 function drawThumb(canvas: HTMLCanvasElement, frame: LoadedFrame | null): void {
   const context = contextOf(canvas);
   context.clearRect(0, 0, canvas.width, canvas.height);

@@ -1,4 +1,4 @@
-//! The line under the picture: what is being done, how far it is, and the way to stop it.
+//! The status line under the picture: what is running, its progress, and buttons to cancel and resume.
 
 import { strings } from '../common/strings.js';
 import { strokesOf } from '../correction/edits.js';
@@ -8,7 +8,7 @@ import type { Session } from '../session/session.js';
 import type { Cause, Result, State, Store } from '../state/state.js';
 import { find } from './markup.js';
 
-/** Work shorter than this shows no bar: a flash tells nobody anything. Milliseconds. */
+/** The progress bar appears after this time, so that it does not flash up, milliseconds. */
 const PATIENCE = 150;
 
 export function mountProgress(root: HTMLElement, store: Store, session: Session): void {
@@ -27,7 +27,7 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
     const { run, opening } = now;
     const busy = run.phase === 'working' || opening;
     root.dataset.phase = opening ? 'opening' : run.phase;
-    // The rate changes many times a second, which nobody wants to hear.
+    // Screen readers should not announce the rate, which changes many times a second.
     status.setAttribute('aria-live', run.phase === 'live' ? 'off' : 'polite');
     status.textContent = sentenceFor(now);
     const stopped = run.phase === 'cancelled' || (run.phase === 'failed' && isPending(now));
@@ -68,7 +68,7 @@ function sentenceFor(state: State): string {
   }
 }
 
-/** What the masks that are shown come from. */
+/** What led to the masks on screen. */
 function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentation, waited }: Result): string {
   const { status } = strings;
   const strokes = strokesOf(edits);

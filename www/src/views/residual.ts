@@ -1,4 +1,4 @@
-//! The residual in place of the picture.
+//! The residual, drawn instead of the picture.
 
 import { Piecewise } from '../drawing/piecewise.js';
 import { residualOf } from '../drawing/residual.js';

@@ -1,4 +1,4 @@
-//! The keys as data: what is pressed, what it does. `views/keys.ts` listens and lists them.
+//! The keyboard shortcuts as data. `keys.ts` handles and lists them.
 
 import { strings } from '../common/strings.js';
 import { ZOOM_STEP } from '../drawing/viewport.js';
@@ -11,21 +11,21 @@ import { changeRadius, chooseTool } from './tools.js';
 import type { Zoom } from './zoom.js';
 
 export interface Key {
-  /** `KeyboardEvent.key`, in lower case; several that do the same. */
+  /** Values of `KeyboardEvent.key` in lower case, all with the same effect. */
   readonly keys: readonly string[];
-  /** As it is written in the list. */
+  /** As shown in the list. */
   readonly shown: string;
   readonly does: string;
   readonly run: () => void;
   /** With Ctrl or the command key. */
   readonly command?: boolean;
-  /** With Shift; others do not mind it. */
+  /** Requires Shift (true) or excludes it (false). */
   readonly shift?: boolean;
-  /** Only where arrow keys mean nothing else, and with the picture enlarged. */
+  /** An arrow key: only while the picture is enlarged, and if the focused element does not use arrow keys. */
   readonly arrows?: boolean;
 }
 
-/** How far an arrow key moves the enlarged picture, share of the view. */
+/** How far an arrow key pans the enlarged picture, share of the view. */
 const PAN = 0.1;
 
 export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Key[] {

@@ -1,4 +1,4 @@
-//! The picture: which frame is drawn, the other one beside it in the split view, and what it is called.
+//! The picture: the frame on screen, the other one in the split view, and the caption.
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
@@ -32,14 +32,14 @@ export function mountStage(stage: HTMLElement, store: Store): void {
   });
 }
 
-/** The frame that is shown; the other one while it is the only one. */
+/** The frame to show; the other one if it is the only one. */
 export function shownSlot({ pair, look }: State): Slot | null {
   const wanted: Slot = look.view === 'second' ? 'second' : 'first';
   const others: Slot[] = [wanted, 'first', 'second'];
   return others.find((slot) => pair[slot] !== null) ?? null;
 }
 
-/** The matrix by which a frame is warped, if it is to be. */
+/** The motion by which a frame is warped back, if any. */
 function stabilisingMotion({ look, result }: State, slot: Slot): readonly number[] | null {
   if (slot !== 'second' || look.stabilised === null || result === null) return null;
   return mainMotion(result.segmentation, look.kind, look.stabilised)?.matrix ?? null;
@@ -55,7 +55,7 @@ function captionOf(state: State): string {
 }
 
 function draw(canvas: HTMLCanvasElement, { bitmap, width, height }: LoadedFrame, held: readonly number[] | null): void {
-  // Setting the size clears the canvas, also where it stays the same.
+  // Setting the size clears the canvas, even if it does not change.
   canvas.width = width;
   canvas.height = height;
   const context = contextOf(canvas);

@@ -1,4 +1,4 @@
-//! The timeline of a film: thumbnails, the two chosen frames, steps by one frame.
+//! The timeline of a clip: thumbnails, the two chosen frames, buttons to step.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
@@ -6,9 +6,9 @@ import type { Film, Slot } from '../state/pair.js';
 import type { Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
-/** Width of a thumbnail at least, screen pixels. */
+/** Smallest width of a thumbnail, screen pixels. */
 const THUMB = 72;
-/** Where a mark is that is not seen, as a part of the strip. */
+/** Position of a hidden mark, share of the strip. */
 const OUTSIDE = '-1';
 
 export function mountTimeline(root: HTMLElement, store: Store, session: Session): void {
@@ -53,7 +53,7 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
   });
 }
 
-/** One frame on or back, for one of the frames or both; from the other's place where the frame is another file. */
+/** Steps one frame or both. A frame that is not of the clip starts from the position of the other. */
 export function stepOne(store: Store, session: Session, which: Slot | 'both', by: number): void {
   const { film } = store.get();
   if (film === null) return;
@@ -81,7 +81,7 @@ async function drawStrip(canvas: HTMLCanvasElement, { clip }: Film, current: () 
     await clip.thumbnails(indices, (_, picture) => {
       const left = k++ * cell;
       if (!current()) return;
-      // The middle of the frame fills the cell.
+      // The frame covers the cell and is cropped at the sides.
       const scale = Math.max(cell / clip.width, canvas.height / clip.height);
       const [width, tall] = [clip.width * scale, clip.height * scale];
       context.save();
@@ -92,6 +92,6 @@ async function drawStrip(canvas: HTMLCanvasElement, { clip }: Film, current: () 
       context.restore();
     });
   } catch {
-    // Pictures are a help; the frames themselves are asked for one by one, and say what is wrong.
+    // Thumbnails are optional; choosing a frame reports the error.
   }
 }

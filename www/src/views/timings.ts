@@ -1,4 +1,4 @@
-//! Where the time went, stage by stage.
+//! The time of each stage.
 
 import { strings } from '../common/strings.js';
 import { type Result, type Store, isAwaited } from '../state/state.js';

@@ -1,4 +1,4 @@
-//! The row of tools: look, brush, eraser; the brush's size; undo and redo.
+//! The tools: view, brush, eraser; the size of the brush; undo and redo.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
@@ -41,7 +41,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   render();
 }
 
-/** Takes a tool up. To paint, a mask must be chosen and the first frame seen: the object that stands out most and that frame. */
+/** Selects a tool. For painting it shows the first frame, and selects the second-largest motion if no mask is selected. */
 export function chooseTool(store: Store, name: ToolName): void {
   const { tool, look, result } = store.get();
   store.set({ tool: { ...tool, name } });

@@ -1,22 +1,22 @@
-//! How large the picture is shown: the transform of its layers, the pixel grid, the buttons.
+//! Zoom and pan: the transform of the picture, the pixel grid, the buttons.
 
 import { strings } from '../common/strings.js';
 import { WHOLE, ZOOM_STEP, type Viewport, panned, within, zoomedAt } from '../drawing/viewport.js';
 import type { Store } from '../state/state.js';
 import { find } from './markup.js';
 
-/** Pixels are drawn as squares from this size on, and with a grid between them from that size on, screen pixels. */
+/** Pixels are drawn as squares from the first size on, and with a grid from the second, screen pixels. */
 const SQUARES_FROM = 3;
 const GRID_FROM = 10;
 
-/** What buttons, keys, wheel and fingers do to the viewport. */
+/** Changes to the viewport by buttons, keys, wheel and fingers. */
 export class Zoom {
   constructor(
     readonly store: Store,
     readonly layers: HTMLElement,
   ) {}
 
-  /** Screen pixels per pixel of the frame while the whole picture is shown. */
+  /** Screen pixels per pixel of the frame at zoom 1. */
   fit(): number {
     const { pair } = this.store.get();
     const frame = pair.first ?? pair.second;
@@ -35,7 +35,7 @@ export class Zoom {
     this.#set(WHOLE);
   }
 
-  /** One pixel of the frame is one of the screen. */
+  /** Shows one pixel of the frame as one pixel of the screen. */
   actual(): void {
     const { viewport } = this.store.get();
     this.#set(within({ ...viewport, zoom: 1 / this.fit() }, this.fit()));
