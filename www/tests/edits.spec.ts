@@ -1,4 +1,4 @@
-//! Nothing that a person did is lost by timing, by stepping through a film or by another setting; what was not saved is warned of.
+//! Edits survive slow results, stepping through a clip and other settings, and leaving the page with unsaved ones asks first.
 
 import { readFile } from 'node:fs/promises';
 
@@ -11,7 +11,7 @@ import { type Upload, differences, done, expect, labelsOnCanvas, open, sample, s
 
 type Place = readonly [number, number];
 
-/** Draws a stroke between two places of the picture, 0…1, and waits for nothing. */
+/** Draws a stroke between two points of the picture, 0…1, without waiting for the result. */
 async function draw(page: Page, from: Place, to: Place): Promise<void> {
   const box = (await page.locator('.layers').boundingBox())!;
   const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
@@ -21,14 +21,14 @@ async function draw(page: Page, from: Place, to: Place): Promise<void> {
   await page.mouse.up();
 }
 
-/** Presses `first`, draws strokes so fast that nothing can be answered before the next, and presses `last`. */
+/** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
 async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
   await page.locator('.layers').evaluate(
     (layers, [lines, first, last]) => {
       const press = (selector: string): void => (selector === '' ? undefined : document.querySelector<HTMLElement>(selector)!.click());
       press(first);
       const box = layers.getBoundingClientRect();
-      layers.setPointerCapture = () => undefined; // these pointers are not real
+      layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
       for (const line of lines) {
         ['pointerdown', 'pointermove', 'pointerup'].forEach((type, k) => {
           const [x, y] = line[Math.min(k, 1)]!;
@@ -42,7 +42,7 @@ async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[
   );
 }
 
-/** Takes the brush and chooses a mask by its place in the list. */
+/** Selects the brush, and a mask by its position in the list. */
 async function brush(page: Page, row: number): Promise<void> {
   await page.locator('#tools [value=brush]').check();
   await page.locator('#motions > li').nth(row).locator('.motion-words').click();
@@ -50,7 +50,7 @@ async function brush(page: Page, row: number): Promise<void> {
 
 const strokes = (page: Page) => page.locator('#strokes g path');
 
-/** The numbers of masks on the canvas between two places of a picture of this size. */
+/** The numbers of the masks along a line of the picture. */
 function along(labels: Int16Array, width: number, height: number, from: Place, to: Place): Set<number> {
   const at = (k: number, axis: 0 | 1): number => from[axis] + ((to[axis] - from[axis]) * k) / 20;
   return new Set(Array.from({ length: 21 }, (_, k) => labels[Math.floor(at(k, 1) * height) * width + Math.floor(at(k, 0) * width)]!));
@@ -62,27 +62,27 @@ function mostCommon(values: readonly number[]): number {
   return [...counts].reduce((most, one) => (one[1] > most[1] ? one : most))[0];
 }
 
-/** Frames of a square that goes right and down. */
+/** Frames of a square that moves right and down. */
 function frames(count: number, width = 160, height = 96): Promise<Upload[]> {
   return Promise.all(Array.from({ length: count }, (_, k) => square(`f${k}.png`, width, height, 3 * k, k)));
 }
 
-/** Opens frames as a film, fast, one mask for each motion. */
-async function openFilm(page: Page, files: Upload[]): Promise<void> {
+/** Opens frames as a clip, with quality `fast` and one mask per motion. */
+async function openClip(page: Page, files: Upload[]): Promise<void> {
   await open(page);
   await upload(page, files);
-  await expect(page.locator('#film-name')).toContainText(`${files.length} frames`);
+  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
   await done(page);
 }
 
-/** Steps both frames of a film and waits for the masks of the new pair. */
+/** Steps both frames of a clip and waits for the masks of the new pair. */
 async function step(page: Page, by: 1 | -1, second: string): Promise<void> {
   await page.getByRole('button', { name: by > 0 ? 'Step both forward' : 'Step both back' }).click();
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText(second);
   await done(page);
 }
 
-/** Tries to leave the page; whether it asks to stay. */
+/** Whether the page asks before it is left. */
 async function warns(page: Page): Promise<boolean> {
   const asked = page.waitForEvent('dialog', { timeout: 3000 }).then(
     async (dialog) => {
@@ -92,12 +92,12 @@ async function warns(page: Page): Promise<boolean> {
     },
     () => false,
   );
-  // From within: a navigation by the test would wait for the page that stays.
+  // A navigation by Playwright would wait for a new page that never comes.
   await page.evaluate(() => setTimeout(() => location.reload()));
   return asked;
 }
 
-test('strokes drawn while others are being solved are all kept', async ({ page }) => {
+test('strokes drawn while others are being applied are all kept', async ({ page }) => {
   await open(page);
   const found = await labelsOnCanvas(page);
   await brush(page, 1);
@@ -120,7 +120,7 @@ test('strokes drawn while others are being solved are all kept', async ({ page }
   expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
 });
 
-test('a stroke that is undone while it is solved stays undone', async ({ page }) => {
+test('a stroke that is undone while it is being applied stays undone', async ({ page }) => {
   await open(page);
   const found = await labelsOnCanvas(page);
   await brush(page, 1);
@@ -128,7 +128,7 @@ test('a stroke that is undone while it is solved stays undone', async ({ page })
   await page.keyboard.press('Control+z');
   await done(page);
   await expect(page.locator('#status')).toHaveText('Undone.');
-  await page.waitForTimeout(1500); // the answer would have come
+  await page.waitForTimeout(1500); // the result would have arrived
   await expect(page.locator('#status')).toHaveText('Undone.');
   expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   await page.keyboard.press('Control+Shift+z');
@@ -136,7 +136,7 @@ test('a stroke that is undone while it is solved stays undone', async ({ page })
   expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
 });
 
-test('a stroke drawn while the frames are segmented again counts afterwards', async ({ page }) => {
+test('a stroke drawn during segmentation is applied afterwards', async ({ page }) => {
   await open(page);
   const found = await labelsOnCanvas(page);
   await brush(page, 1);
@@ -146,8 +146,8 @@ test('a stroke drawn while the frames are segmented again counts afterwards', as
   await done(page);
   await expect(page.getByLabel('Best')).toBeChecked();
   await expect(page.locator('#status')).toHaveText(/motions found in .* Your stroke is applied\.$/);
-  // The better result numbers its motions otherwise, and may see two in what was one: the stroke means the mask that it was drawn for,
-  // in whichever of its parts, which is still chosen.
+  // The better result numbers its motions differently, and may split the mask in two. The stroke applies to one of its parts, which is
+  // still selected.
   const now = await labelsOnCanvas(page);
   const goesOn = (label: number): boolean => mostCommon([...found].filter((_, p) => now[p] === label)) === 1;
   const drawn = [...along(now, 768, 432, [0.7, 0.2], [0.8, 0.2])];
@@ -168,8 +168,8 @@ test('cancelling keeps the strokes', async ({ page }) => {
   expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
 });
 
-test('strokes, names, colours, merges and undo come back with their frames', async ({ page }) => {
-  await openFilm(page, await frames(4));
+test('strokes, names, colours and undo are restored with their frames', async ({ page }) => {
+  await openClip(page, await frames(4));
   const rows = page.locator('#motions > li');
   await rows.nth(1).locator('.motion-name').fill('Square');
   await rows.nth(1).locator('.motion-name').press('Enter');
@@ -202,11 +202,11 @@ test('strokes, names, colours, merges and undo come back with their frames', asy
   await expect(page.locator('#undo')).toBeDisabled();
 });
 
-test('what was drawn just before a step is not lost', async ({ page }) => {
-  await openFilm(page, await frames(4));
+test('a stroke drawn just before a step is kept', async ({ page }) => {
+  await openClip(page, await frames(4));
   await brush(page, 1);
   await draw(page, [0.8, 0.2], [0.9, 0.2]);
-  await page.keyboard.press('.'); // while it is being solved
+  await page.keyboard.press('.'); // while it is being applied
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
   await done(page);
   await expect(strokes(page)).toHaveCount(0);
@@ -215,8 +215,8 @@ test('what was drawn just before a step is not lost', async ({ page }) => {
   expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
 });
 
-test('a stroke under way when the frames change belongs to those it was drawn on', async ({ page }) => {
-  await openFilm(page, await frames(4));
+test('a stroke in progress when the frames change belongs to the old ones', async ({ page }) => {
+  await openClip(page, await frames(4));
   await brush(page, 1);
   const box = (await page.locator('.layers').boundingBox())!;
   await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.2 * box.height);
@@ -231,7 +231,7 @@ test('a stroke under way when the frames change belongs to those it was drawn on
   await expect(strokes(page)).toHaveCount(1);
 });
 
-test('frames that are opened again bring their corrections, whatever came between', async ({ page }) => {
+test('corrections are restored when frames are opened again in any way', async ({ page }) => {
   await open(page);
   const files = await frames(4);
   const pair = async (): Promise<void> => {
@@ -264,22 +264,22 @@ test('frames that are opened again bring their corrections, whatever came betwee
   await done(page);
   await expect(strokes(page)).toHaveCount(1);
 
-  // A sample, and the files again, under another name.
+  // Replaced by a sample and opened again.
   await page.getByRole('button', { name: 'Parallax' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('400 × 300');
   await done(page);
   await pair();
   await expect(strokes(page)).toHaveCount(1);
 
-  // As frames of a film.
+  // Opened as frames of a clip.
   await upload(page, files);
-  await expect(page.locator('#film-name')).toContainText('4 frames');
+  await expect(page.locator('#clip-name')).toContainText('4 frames');
   await done(page);
   await expect(strokes(page)).toHaveCount(1);
   expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
 });
 
-test('the camera does not take corrections away', async ({ page, context }) => {
+test('corrections survive the camera', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
   await open(page);
   await brush(page, 1);
@@ -297,8 +297,8 @@ test('the camera does not take corrections away', async ({ page, context }) => {
   expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
 });
 
-test('corrections fit frames that come back at another working size', async ({ page }) => {
-  await openFilm(page, await frames(3, 800, 480));
+test('corrections are scaled to another working size', async ({ page }) => {
+  await openClip(page, await frames(3, 800, 480));
   await brush(page, 1);
   await draw(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
@@ -310,7 +310,7 @@ test('corrections fit frames that come back at another working size', async ({ p
   expect([...along(await labelsOnCanvas(page), 640, 384, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
 });
 
-test('another setting keeps strokes and names, by what their masks are', async ({ page }) => {
+test('strokes and names follow their masks to a result with other settings', async ({ page }) => {
   await open(page);
   const rows = page.locator('#motions > li');
   const count = await rows.count();
@@ -328,7 +328,7 @@ test('another setting keeps strokes and names, by what their masks are', async (
   expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
   expect(await page.locator('.motion-name').evaluateAll((inputs) => inputs.filter((input) => (input as HTMLInputElement).value === 'Car').length)).toBe(1);
 
-  // One motion: there is nothing left to say, and everything comes back.
+  // With one motion the stroke has no effect. With the first settings everything is as before.
   await page.getByLabel('Number of motions').selectOption('1');
   await done(page);
   await expect(rows).toHaveCount(1 + (await page.locator('#motions > [data-mask="255"]').count()));
@@ -343,8 +343,8 @@ test('another setting keeps strokes and names, by what their masks are', async (
   await expect(page.locator('#undo')).toBeDisabled();
 });
 
-test('leaving warns of corrections that were not saved, and of nothing else', async ({ page }) => {
-  await openFilm(page, await frames(3));
+test('leaving the page asks first only with unsaved corrections', async ({ page }) => {
+  await openClip(page, await frames(3));
   await page.locator('#look [name=outlines]').uncheck();
   await page.locator('#zoom-in').click();
   await page.keyboard.press('0');
@@ -352,22 +352,22 @@ test('leaving warns of corrections that were not saved, and of nothing else', as
   expect(await warns(page)).toBe(false);
   await done(page);
 
-  await openFilm(page, await frames(3));
+  await openClip(page, await frames(3));
   await brush(page, 1);
   await draw(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
   expect(await warns(page)).toBe(true);
   await step(page, 1, 'f2.png');
-  expect(await warns(page)).toBe(true); // of the pair before
+  expect(await warns(page)).toBe(true); // edits of the pair before
   await step(page, -1, 'f1.png');
 
   await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
-  expect(await warns(page)).toBe(true); // no masks in it
+  expect(await warns(page)).toBe(true); // the report has no masks
   await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
   expect(await warns(page)).toBe(false);
 });
 
-test('what is saved holds the strokes that are still being solved', async ({ page }) => {
+test('an exported file includes strokes that are still being applied', async ({ page }) => {
   await open(page);
   await brush(page, 1);
   const [download] = await Promise.all([page.waitForEvent('download'), drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '.export-buttons button' })]);
@@ -376,7 +376,7 @@ test('what is saved holds the strokes that are still being solved', async ({ pag
   expect([...data.subarray(4 * p, 4 * p + 3)]).toEqual([...davisPalette()[1]!]);
 });
 
-test('a name that is being typed survives an answer', async ({ page }) => {
+test('a name that is being typed survives a new result', async ({ page }) => {
   await open(page);
   await brush(page, 1);
   await draw(page, [0.7, 0.2], [0.8, 0.2]);
@@ -391,7 +391,7 @@ test('a name that is being typed survives an answer', async ({ page }) => {
   await expect(page.locator('#motions > li').nth(1).getByRole('checkbox')).toHaveAccessibleName('Show Van 2');
 });
 
-test('a brush stroke is drawn as one, however many motions its mask has', async ({ page }) => {
+test('a stroke has the colour of its mask, also of a merged one', async ({ page }) => {
   await open(page, 'groups');
   const rows = page.locator('#motions > li');
   await rows.nth(1).getByText('More', { exact: true }).click();
@@ -409,7 +409,7 @@ test('a brush stroke is drawn as one, however many motions its mask has', async 
   await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
 });
 
-test('a stroke that can say nothing is refused with a word', async ({ page }) => {
+test('a stroke without effect is rejected with a message', async ({ page }) => {
   await open(page);
   await page.getByLabel('Number of motions').selectOption('1');
   await done(page);
@@ -420,7 +420,7 @@ test('a stroke that can say nothing is refused with a word', async ({ page }) =>
   await expect(strokes(page)).toHaveCount(0);
 });
 
-test('the status says what happened', async ({ page }) => {
+test('the status describes the last action', async ({ page }) => {
   await page.goto('./');
   await done(page);
   const status = page.locator('#status');
@@ -448,7 +448,7 @@ test('the status says what happened', async ({ page }) => {
   await expect(status).toHaveText('Ungrouped.');
 });
 
-test('fewer motions than asked for are said to be fewer', async ({ page }) => {
+test('the status mentions fewer motions than requested', async ({ page }) => {
   await open(page);
   await upload(page, (await frames(2)));
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
@@ -463,8 +463,8 @@ test('fewer motions than asked for are said to be fewer', async ({ page }) => {
   await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d,]+ ms, as requested\.$/);
 });
 
-test('what is insisted on for a pair belongs to it', async ({ page }) => {
-  await openFilm(page, await frames(3));
+test('a number of motions chosen for a pair applies to that pair', async ({ page }) => {
+  await openClip(page, await frames(3));
   const setting = page.getByLabel('Number of motions');
   await page.locator('.numbers button', { hasText: /^1$/ }).click();
   await done(page);
@@ -477,7 +477,7 @@ test('what is insisted on for a pair belongs to it', async ({ page }) => {
   await expect(setting).toHaveValue('1');
   await expect(page.locator('#motions > li')).toHaveCount(1);
 
-  // The setting is for all frames, and each answer says so.
+  // The setting applies to all pairs, and each status says so.
   await setting.selectOption('2');
   await done(page);
   await step(page, 1, 'f2.png');
@@ -485,7 +485,7 @@ test('what is insisted on for a pair belongs to it', async ({ page }) => {
   await expect(page.locator('#status')).toHaveText(/, as requested\.$/);
 });
 
-test('no masks are promised after a failure', async ({ page }) => {
+test('the list of masks reports a failure', async ({ page }) => {
   await open(page);
   await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');

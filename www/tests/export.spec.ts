@@ -1,4 +1,4 @@
-//! What is taken away is what is shown: files are downloaded and read, texts are copied and run.
+//! Exports match what is on screen: files are downloaded and read, commands and scripts are copied and run.
 
 import { spawnSync } from 'node:child_process';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
@@ -11,10 +11,10 @@ import { unzipSync } from 'fflate';
 import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { film } from './film.js';
+import { video } from './video.js';
 import { differences, done, expect, open, sample, segmentedInNode, test, upload, square } from './support.js';
 
-/** Presses a button that saves a file. */
+/** Clicks a button that saves a file. */
 async function saved(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name, exact: true }).click()]);
   return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
@@ -25,13 +25,13 @@ async function savedAs(page: Page, format: string): Promise<{ name: string; byte
   return saved(page, 'Save');
 }
 
-/** Red of every pixel of a PNG. */
+/** The red channel of a PNG. */
 async function reds(bytes: Uint8Array): Promise<Uint8Array> {
   const { data } = await decodeImage(bytes);
   return Uint8Array.from({ length: data.length / 4 }, (_, p) => data[4 * p]!);
 }
 
-test('all masks come as one archive', async ({ page }) => {
+test('all masks are exported as one archive', async ({ page }) => {
   await open(page, 'groups');
   const expected = await segmentedInNode(await sample('first'), await sample('second'));
   const groups = groupLabels(expected);
@@ -46,7 +46,7 @@ test('all masks come as one archive', async ({ page }) => {
   expect(JSON.parse(new TextDecoder().decode(files['result.json']))).toMatchObject({ count: expected.count, width: 768 });
 });
 
-test('the chosen mask and the overlay are pictures', async ({ page }) => {
+test('the selected mask and the overlay are exported as PNG', async ({ page }) => {
   await open(page, 'groups');
   const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
   await page.locator('#motions > li').nth(2).locator('.motion-words').click();
@@ -60,7 +60,7 @@ test('the chosen mask and the overlay are pictures', async ({ page }) => {
   expect(differences(overlay.data, (await decodeImage((await sample('first')).buffer)).data)).toBe(0);
 });
 
-test('masks of frames that were made smaller are saved at their full size', async ({ page }) => {
+test('masks of frames that were scaled down are exported at full size', async ({ page }) => {
   await open(page);
   await page.getByLabel('Working size').selectOption('640');
   await upload(page, [await square('a.png', 960, 540, 0, 0), await square('b.png', 960, 540, 6, 3)]);
@@ -76,7 +76,7 @@ test('masks of frames that were made smaller are saved at their full size', asyn
   expect(a21 * 400 + a22 * 250 + a23).toBeCloseTo(3, 0);
 });
 
-test('the copied command and script give the same result', async ({ page, context }) => {
+test('the copied command and script give the same masks', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page, 'groups');
   await page.getByLabel('Number of motions').selectOption('3');
@@ -143,7 +143,7 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   await expect(other.locator('#look [value=motions]')).toBeChecked();
 });
 
-test('a copied link opens the sample that is shown', async ({ page, context }) => {
+test('a copied link opens the current sample', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
   const copied = async (): Promise<string> => {
@@ -164,24 +164,24 @@ test('a copied link opens the sample that is shown', async ({ page, context }) =
   await done(other);
   await expect(other.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
 
-  // In a page that is open, too.
+  // Also in a page that is open.
   await other.evaluate(() => (location.hash = '#sample=leader-follower&motions=2&masks=groups'));
   await expect(other.locator('.slot-name')).toHaveText(['first.png, 200 × 150', 'second.png, 200 × 150']);
   await done(other);
   await expect(other.locator('#look [value=groups]')).toBeChecked();
   await expect(other.getByLabel('Number of motions')).toHaveValue('2');
 
-  // A pair of which a frame is another file is no sample.
+  // With a replaced frame the pair is no longer a sample.
   await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('other.png');
   expect(new URL(await copied()).hash).toBe('#quality=fast&masks=motions');
 });
 
-test('the command names the frames of the result, also where one was replaced', async ({ page, context }) => {
+test('the command names the frames of the result, also a replaced one', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
-  await upload(page, [await film(page, 8, 'webm', 'vp8')]);
-  await expect(page.locator('#film-name')).toContainText('film.webm');
+  await upload(page, [await video(page, 8, 'webm', 'vp8')]);
+  await expect(page.locator('#clip-name')).toContainText('clip.webm');
   await done(page);
   await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
@@ -192,13 +192,13 @@ test('the command names the frames of the result, also where one was replaced', 
   await page.getByRole('button', { name: 'Copy command' }).click();
   await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
   expect((await page.evaluate(() => navigator.clipboard.readText())).split('\n')).toEqual([
-    "ffmpeg -i film.webm -vf 'select=eq(n\\,1)' -frames:v 1 frame-1.png",
+    "ffmpeg -i clip.webm -vf 'select=eq(n\\,1)' -frames:v 1 frame-1.png",
     'veronese pair frame-1.png other.png --quality fast --out masks --overlay',
   ]);
 });
 
 for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 780]] as const) {
-  test(`what was copied is said where it is seen, ${screen}`, async ({ page, context }) => {
+  test(`a notice confirms a copy in view, ${screen}`, async ({ page, context }) => {
     await context.grantPermissions(['clipboard-read', 'clipboard-write']);
     await page.setViewportSize({ width, height });
     await open(page);
@@ -210,14 +210,14 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
       await page.getByRole('button', { name: 'Dismiss' }).click();
       await expect(notice).toBeHidden();
     }
-    // An error stays, what was done is said for a while.
+    // A notice that is not an error disappears by itself.
     await page.getByRole('button', { name: 'Copy link' }).click();
     await expect(notice).toBeInViewport({ ratio: 1 });
     await expect(notice).toBeHidden({ timeout: 10_000 });
   });
 }
 
-/** Uncompressed COCO run lengths from the compressed, after the description of the format. */
+/** Decodes compressed COCO run lengths, after the description of the format. */
 function countsOf(text: string): number[] {
   const counts: number[] = [];
   for (let i = 0; i < text.length; ) {
@@ -235,7 +235,7 @@ function countsOf(text: string): number[] {
   return counts;
 }
 
-/** Pixels of one mask as a plane of 255 and 0, in rows, from runs down the columns that begin with zeros. */
+/** A mask of 255 and 0, row-major, from column-major runs that start with zeros. */
 function planeFromColumns(counts: readonly number[], width: number, height: number): Uint8Array {
   const plane = new Uint8Array(width * height);
   let at = 0;
@@ -247,7 +247,7 @@ function planeFromColumns(counts: readonly number[], width: number, height: numb
   return plane;
 }
 
-test('annotation tools get the masks under their names', async ({ page }) => {
+test('formats of annotation tools have the masks under their names', async ({ page }) => {
   await open(page, 'groups');
   const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
   const row = page.locator('#motions > li').nth(1);

@@ -1,11 +1,11 @@
-//! Nothing jumps while a film is gone through: what is listed stays where it is until it is replaced.
+//! Stepping through a clip does not shift the layout.
 
 import { type Page } from '@playwright/test';
 
-import { film } from './film.js';
+import { video } from './video.js';
 import { done, expect, test, upload } from './support.js';
 
-/** Counts the layout shifts from here on; also those right after a key, which browsers forgive. */
+/** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
   await page.evaluate(() => {
     const shifts = { sum: 0, what: [] as string[] };
@@ -18,7 +18,7 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
     }).observe({ type: 'layout-shift' });
   });
   return async () => {
-    await page.waitForTimeout(200); // entries are handed over after the frame
+    await page.waitForTimeout(200); // entries are delivered after the frame
     const { sum, what } = await page.evaluate(() => (window as unknown as { shifts: { sum: number; what: string[] } }).shifts);
     console.log(`layout shift ${sum.toFixed(3)}: ${what.join(', ')}`);
     return sum;
@@ -26,15 +26,15 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 }
 
 for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 780]] as const) {
-  test(`three steps of a film move nothing, ${screen}`, async ({ page }) => {
+  test(`three steps through a clip shift nothing, ${screen}`, async ({ page }) => {
     await page.setViewportSize({ width, height });
-    await page.goto('./'); // as visitors have it: a preview, then the best
+    await page.goto('./'); // with the default quality: a preview, then the result
     await done(page);
-    await upload(page, [await film(page, 8, 'webm', 'vp8')]);
-    await expect(page.locator('#film-name')).toContainText('film.webm');
+    await upload(page, [await video(page, 8, 'webm', 'vp8')]);
+    await expect(page.locator('#clip-name')).toContainText('clip.webm');
     await done(page);
-    // As somebody who steps has the page: the timeline in sight, and with it whatever is below.
-    if (screen === 'phone') await page.locator('.film-both').scrollIntoViewIfNeeded();
+    // With the timeline in view, and whatever is below it.
+    if (screen === 'phone') await page.locator('.clip-both').scrollIntoViewIfNeeded();
     const shift = await watchShifts(page);
     for (let k = 1; k <= 3; k++) {
       await page.getByRole('button', { name: 'Step both forward' }).click();

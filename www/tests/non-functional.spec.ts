@@ -1,4 +1,4 @@
-//! Accessibility, policy, offline use, size, memory, and a page that always answers.
+//! Accessibility, content security policy, offline use, size, memory, responsiveness.
 
 import { readFileSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -11,7 +11,7 @@ import { done, expect, labelsOnCanvas, open, test } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 
-/** What axe finds serious or critical. */
+/** The serious and critical violations that axe finds. */
 async function axe(page: Page): Promise<string[]> {
   const source = readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
   await page.evaluate(source);
@@ -40,7 +40,7 @@ for (const scheme of ['light', 'dark'] as const) {
   });
 }
 
-test('the policy is that of the page, without exceptions', async ({ page }) => {
+test('the content security policy has no exceptions', async ({ page }) => {
   const response = await page.goto('./');
   const meta = await page.locator('meta[http-equiv=Content-Security-Policy]').getAttribute('content');
   expect(response?.headers()['content-security-policy']).toBe(meta);
@@ -52,7 +52,7 @@ test('the policy is that of the page, without exceptions', async ({ page }) => {
   await done(page);
 });
 
-unwatched('inline scripts are refused', async ({ page }) => {
+unwatched('inline scripts are blocked', async ({ page }) => {
   await page.goto('./');
   const refused = await page.evaluate(
     () =>
@@ -67,28 +67,28 @@ unwatched('inline scripts are refused', async ({ page }) => {
   expect(await page.evaluate(() => 'reached' in window)).toBe(false);
 });
 
-test('works without cross-origin isolation', async ({ page }) => {
+test('the page works without cross-origin isolation', async ({ page }) => {
   await open(page);
   expect(await page.evaluate(() => crossOriginIsolated)).toBe(false);
 });
 
-test('the script stays within its budget', () => {
-  // The host page is another page.
+test('the scripts stay within their size budget', () => {
+  // The host page has a script of its own.
   const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !name.startsWith('embed-'));
   const sizes = files.map((name) => [name, gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length] as const);
   const [video, own] = [sizes.filter(([name]) => name.startsWith('exact-')), sizes.filter(([name]) => !name.startsWith('exact-'))];
-  expect(video).toHaveLength(1); // mediabunny, in a file of its own
+  expect(video).toHaveLength(1); // mediabunny
   expect(own.reduce((sum, [, size]) => sum + size, 0)).toBeLessThanOrEqual(62 * 1024);
 });
 
-test('videos cost nothing until one is opened', async ({ page }) => {
+test('scripts for videos are loaded only when a video is opened', async ({ page }) => {
   const asked: string[] = [];
   page.on('request', (request) => asked.push(request.url()));
   await open(page);
   expect(asked.filter((url) => /exact-|approximate-|browser-/.test(url))).toEqual([]);
 });
 
-test('keys are listed on ?, and single keys can be switched off', async ({ page }) => {
+test('? lists the shortcuts, and single-key shortcuts can be disabled', async ({ page }) => {
   await open(page);
   await page.keyboard.press('?');
   const dialog = page.getByRole('dialog', { name: 'Keyboard shortcuts' });
@@ -101,7 +101,7 @@ test('keys are listed on ?, and single keys can be switched off', async ({ page 
   await expect(dialog).toBeHidden();
 });
 
-test('the page loads one module, that of frames', async ({ page }) => {
+test('the page loads only the core module', async ({ page }) => {
   const modules: string[] = [];
   page.on('request', (request) => {
     const name = /([a-z_]+_bg)[^/]*\.wasm$/.exec(request.url())?.[1];
@@ -111,7 +111,7 @@ test('the page loads one module, that of frames', async ({ page }) => {
   expect([...new Set(modules)]).toEqual(['veronese_bg']);
 });
 
-test('the page answers while it works', async ({ page }) => {
+test('the page stays responsive while it works', async ({ page }) => {
   await page.addInitScript(() => {
     const longest = { milliseconds: 0 };
     Object.assign(window, { longest });
@@ -124,13 +124,13 @@ test('the page answers while it works', async ({ page }) => {
   await page.keyboard.press('r');
   await page.waitForTimeout(300);
   await page.evaluate(() => ((window as unknown as { longest: { milliseconds: number } }).longest.milliseconds = 0));
-  // Segmenting, painting, arrows and residual, a few times: the best of them is not the machine's fault.
+  // Segmenting, painting, arrows and residual, three times. The best run is the least disturbed by other programs.
   const times: number[] = [];
   for (const seed of [2, 3, 4]) {
     await page.getByLabel('Seed').fill(String(seed));
     await page.getByLabel('Seed').blur();
     await done(page);
-    await page.waitForTimeout(300); // what is drawn later
+    await page.waitForTimeout(300); // for tasks that draw later
     times.push(
       await page.evaluate(() => {
         const { longest } = window as unknown as { longest: { milliseconds: number } };
@@ -144,7 +144,7 @@ test('the page answers while it works', async ({ page }) => {
   expect(Math.min(...times)).toBeLessThanOrEqual(50);
 });
 
-test('200 segmentations in a row take no more memory than twenty', async ({ page }) => {
+test('memory does not grow over 200 segmentations', async ({ page }) => {
   test.setTimeout(180_000);
   await open(page);
   await page.getByRole('button', { name: 'Leader and follower' }).click();
@@ -187,7 +187,7 @@ test('200 segmentations in a row take no more memory than twenty', async ({ page
 test.describe('with a service worker', () => {
   test.use({ serviceWorkers: 'allow' });
 
-  test('the page works without a network after the first visit', async ({ page, context }) => {
+  test('the page works offline after the first visit', async ({ page, context }) => {
     await open(page);
     const labels = await labelsOnCanvas(page);
     await expect(page.locator('html')).toHaveAttribute('data-offline', 'ready', { timeout: 30_000 });

@@ -1,4 +1,4 @@
-//! The page's arithmetic and texts, without a browser.
+//! Functions of the page that need no browser.
 
 import { expect, test } from '@playwright/test';
 import type { Segmentation } from 'veronese';
@@ -23,7 +23,7 @@ import { differences } from './support.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
 
-/** Four motions on 8×4 pixels, one column pair each; 1 and 2 are one group. */
+/** Four motions on 8×4 pixels, two columns each; 1 and 2 are one group. */
 function scene(): Segmentation {
   const labels = Uint8Array.from({ length: 32 }, (_, p) => Math.floor((p % 8) / 2));
   const motions = [0, 1, 2, 3].map((label) => ({
@@ -39,7 +39,7 @@ function scene(): Segmentation {
   return { version: 1, width: 8, height: 4, count: 4, motions, labels, evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
 }
 
-test('masks are groups or motions, merged and taken apart', () => {
+test('masks are groups or motions, and can be merged and ungrouped', () => {
   const found = scene();
   expect(masksOf(found, 'groups').map(({ id, pixels }) => [id, pixels])).toEqual([[0, 8], [1, 16], [2, 8]]);
   expect(masksOf(found, 'motions').map(({ id }) => id)).toEqual([0, 1, 2, 3]);
@@ -49,12 +49,12 @@ test('masks are groups or motions, merged and taken apart', () => {
   const joined = merged(found, 'groups', 2, 1);
   expect(joined.motions.map(({ group }) => group)).toEqual([0, 1, 1, 1]);
   expect(found.motions.map(({ group }) => group)).toEqual([0, 1, 1, 2]);
-  // Single motions of different groups: only they are joined.
+  // Merging single motions leaves the rest of their groups alone.
   expect(merged(found, 'motions', 0, 3).motions.map(({ group }) => group)).toEqual([0, 1, 1, 0]);
   expect(ungrouped(joined, 1).motions.map(({ group }) => group)).toEqual([0, 1, 2, 3]);
 });
 
-test('a stroke covers the pixels under it and later strokes prevail', () => {
+test('a stroke covers the pixels under it, and later strokes win', () => {
   const line = { points: [3, 5, 12, 5], radius: 1.5, labels: 0b01 };
   const evidence = evidenceOf([line], 20, 12);
   for (let p = 0; p < evidence.length; p++) {
@@ -66,11 +66,11 @@ test('a stroke covers the pixels under it and later strokes prevail', () => {
   const dot = { points: [3, 5], radius: 0.5, labels: 0b10 };
   expect(evidenceOf([line, dot], 20, 12)[5 * 20 + 3]).toBe(0b10);
   expect(evidenceOf([{ ...line, labels: 0b011 }, { ...dot, labels: 0b110 }], 20, 12)[5 * 20 + 3]).toBe(0b010);
-  // Outside the frame nothing happens.
+  // Points outside the frame are allowed.
   expect(evidenceOf([{ points: [-50, -50, 300, 300], radius: 4, labels: 1 }], 20, 12).length).toBe(240);
 });
 
-test('a motion is written so that others move pixels the same way', () => {
+test('all notations of a motion move pixels the same way', () => {
   const [json, svg, openCv] = NOTATIONS.map(({ write }) => write(MATRIX));
   expect(JSON.parse(json!)).toEqual(MATRIX);
   const [x, y] = [30, 70];
@@ -78,13 +78,13 @@ test('a motion is written so that others move pixels the same way', () => {
   const moved = [x + a11 * x + a12 * y + a13, y + a21 * x + a22 * y + a23];
   const rows = JSON.parse(openCv!) as number[][];
   rows.forEach(([p, q, r], k) => expect(p! * x + q! * y + r!).toBeCloseTo(moved[k]!, 6));
-  // From the corner of the first pixel a centre lies half a pixel on.
+  // SVG measures from the corner of the first pixel, half a pixel from its centre.
   const [a, b, c, d, e, f] = svg!.match(/-?[\d.]+(e-?\d+)?/g)!.map(Number) as [number, number, number, number, number, number];
   expect(a * (x + 0.5) + c * (y + 0.5) + e - 0.5).toBeCloseTo(moved[0]!, 6);
   expect(b * (x + 0.5) + d * (y + 0.5) + f - 0.5).toBeCloseTo(moved[1]!, 6);
 });
 
-test('a result at full size moves the same places the same way', () => {
+test('a result at full size has the same motions', () => {
   const found = scene();
   const full = atSize(found, { width: 24, height: 12 });
   expect(full.labels.length).toBe(24 * 12);
@@ -92,14 +92,14 @@ test('a result at full size moves the same places the same way', () => {
   expect(full.motions.map(({ pixels }) => pixels)).toEqual([72, 72, 72, 72]);
   expect(full.motions[3]!.bbox).toEqual([18, 0, 6, 12]);
   const flow = ([a11, a12, a13, a21, a22, a23]: Matrix, x: number, y: number): number[] => [a11 * x + a12 * y + a13, a21 * x + a22 * y + a23];
-  // The middle of small pixel (7, 2) is the middle of the large pixels 21…23, 6…8.
+  // Small pixel (7, 2) covers the large pixels 21…23, 6…8.
   const [small, large] = [flow(found.motions[3]!.matrix, 7, 2), flow(full.motions[3]!.matrix, 22, 7)];
   expect(large[0]).toBeCloseTo(3 * small[0]!, 9);
   expect(large[1]).toBeCloseTo(3 * small[1]!, 9);
   expect(atSize(found, { width: 8, height: 4 })).toBe(found);
 });
 
-test('the residual is black where a motion fits and dark grey where it leaves the frame', () => {
+test('the residual is black where a motion fits, and dark grey where it leaves the frame', () => {
   const found: Segmentation = { ...scene(), motions: scene().motions.map((motion) => ({ ...motion, matrix: [0, 0, 1, 0, 0, 0] })) };
   const picture = (shift: number) => ({ width: 8, height: 4, data: Uint8Array.from({ length: 128 }, (_, i) => (i % 4 === 3 ? 255 : 20 * (((i >> 2) % 8) - shift) + 20)) });
   const pixels = residualOf(found, picture(0), picture(1), 0, 4);
@@ -108,7 +108,7 @@ test('the residual is black where a motion fits and dark grey where it leaves th
   expect(worse[0]! & 0xff).toBeGreaterThan(200);
 });
 
-test('arrows point where the motion goes', () => {
+test('arrows point in the direction of the motion', () => {
   const { arrows, magnified } = arrowsOf({ ...scene(), labels: new Uint8Array(32).fill(3) });
   expect(arrows.length).toBeGreaterThan(0);
   for (const { label, from: [x, y], to: [u, v] } of arrows) {
@@ -118,7 +118,7 @@ test('arrows point where the motion goes', () => {
   }
 });
 
-test('a link holds the settings, and nothing that is no choice', () => {
+test('a link holds the settings, and invalid values are ignored', () => {
   const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true, seed: 9 };
   const link = linkFor({ ...INITIAL, settings, look: { ...INITIAL.look, kind: 'motions' } }, 'https://example.org/veronese/?x=1#old');
   expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&seed=9&masks=motions');
@@ -127,14 +127,14 @@ test('a link holds the settings, and nothing that is no choice', () => {
   expect(settingsFromHash('#motions=11&quality=silly&seed=-1&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false });
 });
 
-test('codecs are called what people call them', () => {
+test('codecs have their common names', () => {
   expect(codecName('hevc', 'hvc1')).toBe('HEVC (H.265)');
   expect(codecName(null, 'mp4v')).toBe('MPEG-4 Part 2 (DivX, Xvid)');
   expect(codecName(null, 'SVQ3')).toBe('SVQ3');
   expect(codecName(null, null)).toBeNull();
 });
 
-test('a command and a script say what is not the default', () => {
+test('command and script contain the settings that are not defaults', () => {
   type Frame = Result['pair']['first'];
   const frame = (name: string, origin?: Partial<Frame['origin']>) => ({ name, origin }) as Frame;
   const result = { pair: { first: frame("it's a.png"), second: frame('b.png') } } as Result;
@@ -142,13 +142,13 @@ test('a command and a script say what is not the default', () => {
   expect(commandFor(result, settings, INITIAL.look)).toBe(`veronese pair 'it'\\''s a.png' b.png --motions 2 --grouped --seed 5 --out masks --overlay`);
   expect(scriptFor(result, settings, { ...INITIAL.look, kind: 'motions' })).toContain('segmentPair(first, second, { motions: 2, seed: 5 })');
   const clip = { name: 'my clip.mp4', exact: true, times: Float64Array.from({ length: 9 }, (_, k) => k / 30) } as unknown as Clip;
-  const film = { pair: { first: frame('my clip.mp4 #3', { clip, index: 3 }), second: frame('my clip.mp4 #5', { clip, index: 5 }) } } as Result;
-  expect(commandFor(film, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
+  const inClip = { pair: { first: frame('my clip.mp4 #3', { clip, index: 3 }), second: frame('my clip.mp4 #5', { clip, index: 5 }) } } as Result;
+  expect(commandFor(inClip, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
     `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,3)' -frames:v 1 frame-3.png`,
     `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,5)' -frames:v 1 frame-5.png`,
     'veronese pair frame-3.png frame-5.png --grouped --out masks --overlay',
   ]);
-  // One frame of a film that is read by time, and a file.
+  // A file, and a frame of a video that is read by time.
   const seeking = { ...clip, exact: false };
   const mixed = { pair: { first: frame('b.png'), second: frame('my clip.mp4 #5', { clip: seeking, index: 5 }) } } as Result;
   expect(commandFor(mixed, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
@@ -157,7 +157,7 @@ test('a command and a script say what is not the default', () => {
   ]);
 });
 
-test('labels are packed run by run and come back', () => {
+test('labels survive run-length encoding', () => {
   const [width, height] = [37, 23];
   const labels = Uint8Array.from({ length: width * height }, (_, p) => (p % 11 === 0 ? 255 : Math.floor((p % width) / 9) % 4));
   const runs = packed(labels, width, height);
@@ -165,29 +165,29 @@ test('labels are packed run by run and come back', () => {
   expect(unpacked(packed(new Uint8Array(6).fill(3), 3, 2))).toEqual(new Uint8Array(6).fill(3));
 });
 
-/** Labels of a picture drawn as rows of digits; a dot has none. */
+/** Labels given as rows of digits; a dot is unlabelled. */
 function drawing(...rows: string[]): Runs {
   const labels = Uint8Array.from([...rows.join('')], (digit) => (digit === '.' ? 255 : Number(digit)));
   return packed(labels, rows[0]!.length, rows.length);
 }
 
-test('a label is found again in another labelling by its pixels', () => {
+test('a label is matched to another labelling by its pixels', () => {
   const before = drawing('0000000000', '0011002220', '0011002220', '0000002220');
-  // Numbered otherwise, and in part without a label.
+  // Other numbers, and some pixels unlabelled.
   const renumbered = drawing('0.00000000', '0022001110', '0022001110', '00.000111.');
   expect(labelsIn({ of: before, labels: 0b010 }, renumbered)).toBe(0b100);
   expect(labelsIn({ of: before, labels: 0b101 }, renumbered)).toBe(0b011);
-  // One fell apart, one went under in the ground, something small is new and belongs to nothing.
+  // One label split, one disappeared, and a small new one matches nothing.
   const other = drawing('0000000004', '0000001133', '0000001133', '0000001130');
   expect(labelsIn({ of: before, labels: 0b100 }, other)).toBe(0b1010);
   expect(labelsIn({ of: before, labels: 0b010 }, other)).toBe(0);
   expect(labelsIn({ of: before, labels: 0b001 }, other)).toBe(0b0001);
-  // Larger frames.
+  // A larger frame.
   const large = drawing(...['0000000000', '0022001110', '0022001110', '0000001110'].flatMap((row) => Array<string>(2).fill([...row].map((c) => c + c).join(''))));
   expect(labelsIn({ of: before, labels: 0b010 }, large)).toBe(0b100);
 });
 
-test('a stroke that speaks of nothing there is left out, and is not lost', () => {
+test('a stroke whose mask is missing has no effect', () => {
   const found = scene();
   const here = labellingOf(found);
   const path = { points: [1, 1, 6, 1], radius: 1 };
@@ -196,13 +196,13 @@ test('a stroke that speaks of nothing there is left out, and is not lost', () =>
   expect(constraintsFrom([brush, eraser], found).map(({ labels }) => labels)).toEqual([0b0110, 0b1001]);
   const gone = { of: drawing('5554....', '555.....', '555.....', '555.....'), labels: 0b1_0000 };
   expect(constraintsFrom([{ ...brush, mask: gone }, { ...eraser, mask: gone }], found)).toEqual([]);
-  // What cannot be told is no motion: not that is any of them, and to paint it says nothing.
+  // The unlabelled mask has no motion: erasing it allows all of them, painting it has no effect.
   const unknown = { of: here, labels: 0 };
   expect(allowedLabels({ tool: 'eraser', mask: unknown }, found)).toBe(0b1111);
   expect(allowedLabels({ tool: 'brush', mask: unknown }, found)).toBe(0);
 });
 
-test('edits know what counts, what was saved, and fit frames of another size', () => {
+test('edits track what is in effect and what was saved, and can be scaled', () => {
   const found = scene();
   const of = labellingOf(found);
   const stroke = (x: number): { stroke: Stroke } => ({ stroke: { points: [x, 1, 4, 3], radius: 2, tool: 'brush', mask: { of, labels: 1 } } });
@@ -215,7 +215,7 @@ test('edits know what counts, what was saved, and fit frames of another size', (
   const undone = { ...saved, done: 1 };
   expect(isUnsaved(undone)).toBe(true);
   expect(isUnsaved({ ...undone, done: 2 })).toBe(false);
-  // Another stroke takes the place of what was undone: as many steps, and not what was saved.
+  // A new stroke replaces the undone one: the number of actions is that saved, the actions are not.
   const other = withAction(undone, three);
   expect(strokesOf(other)).toEqual([one.stroke, three.stroke]);
   expect(isUnsaved(other)).toBe(true);
@@ -226,7 +226,7 @@ test('edits know what counts, what was saved, and fit frames of another size', (
 
   const grouping = { grouping: { of, groups: [0, 1, 0, 2] } };
   expect(grouped(found, withAction(drawn, grouping), found).motions.map(({ group }) => group)).toEqual([0, 1, 0, 2]);
-  // Motions 1 and 3 have changed numbers.
+  // Motions 1 and 3 swap numbers.
   const swapped = { ...found, labels: found.labels.map((label) => [0, 3, 2, 1][label]!) };
   expect(grouped(swapped, withAction(drawn, grouping), swapped).motions.map(({ group }) => group)).toEqual([0, 2, 0, 1]);
 });

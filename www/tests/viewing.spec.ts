@@ -1,4 +1,4 @@
-//! Zoom, split view, blinking, arrows, residual, names, colours, evidence: what is seen changes as said.
+//! Zoom, split view, blinking, arrows, residual, names, colours, evidence.
 
 import { type Page } from '@playwright/test';
 
@@ -8,13 +8,13 @@ async function zoomShown(page: Page): Promise<number> {
   return Number((await page.locator('#zoom-value').textContent())!.replace(/[^\d.]/g, ''));
 }
 
-test('wheel, buttons, keys and dragging zoom and move the picture', async ({ page }) => {
+test('wheel, buttons, keys and dragging zoom and pan the picture', async ({ page }) => {
   await open(page);
   const box = (await page.locator('.layers').boundingBox())!;
   const whole = await zoomShown(page);
   const place = async (): Promise<{ x: number; y: number; width: number }> => (await page.locator('#frame').boundingBox())!;
 
-  // What is under the pointer stays under it.
+  // The point under the pointer stays there.
   const [x, y] = [box.x + 0.25 * box.width, box.y + 0.6 * box.height];
   await page.mouse.move(x, y);
   await page.mouse.wheel(0, -300);
@@ -44,7 +44,7 @@ test('wheel, buttons, keys and dragging zoom and move the picture', async ({ pag
   expect((await place()).width).toBeLessThan(before.width);
 });
 
-test('a picture larger than the stage is shown at 100 % on request', async ({ page }) => {
+test('the zoom button shows the picture at 100 %', async ({ page }) => {
   await page.setViewportSize({ width: 600, height: 800 });
   await open(page);
   expect(await zoomShown(page)).toBeLessThan(100);
@@ -62,7 +62,7 @@ test('two fingers zoom', async ({ page }) => {
       const at = { clientX: box.x + x * box.width, clientY: box.y + 0.5 * box.height };
       layers.dispatchEvent(new PointerEvent(type, { pointerId, pointerType: 'touch', isPrimary: pointerId === 1, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
     };
-    layers.setPointerCapture = () => undefined; // these pointers are not real
+    layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
     send('pointerdown', 1, 0.45);
     send('pointerdown', 2, 0.55);
     for (let k = 1; k <= 5; k++) {
@@ -75,7 +75,7 @@ test('two fingers zoom', async ({ page }) => {
   expect(await zoomShown(page)).toBeGreaterThan(2 * whole);
 });
 
-test('the split view shows both frames and its line moves', async ({ page }) => {
+test('the split view shows both frames, and its line moves', async ({ page }) => {
   await open(page);
   await page.locator('#look [value=split]').check();
   await expect(page.locator('#other')).toBeVisible();
@@ -89,7 +89,7 @@ test('the split view shows both frames and its line moves', async ({ page }) => 
   await expect(page.locator('#other')).toBeHidden();
 });
 
-test('blinking shows both frames in turn, and not where less motion is asked for', async ({ page }) => {
+test('blinking alternates between the frames, but not with reduced motion', async ({ page }) => {
   await open(page);
   const seen = new Set<string>();
   await page.getByRole('button', { name: 'Blink' }).click();
@@ -104,7 +104,7 @@ test('blinking shows both frames in turn, and not where less motion is asked for
   await expect(page.locator('#caption')).toHaveText('Second frame');
 });
 
-test('groups are shown first, and single motions on request', async ({ page }) => {
+test('masks are groups by default, and single motions on request', async ({ page }) => {
   await open(page, 'groups');
   const expected = await segmentedInNode(await sample('first'), await sample('second'));
   const groups = expected.labels.map((label) => expected.motions[label]!.group);
@@ -115,7 +115,7 @@ test('groups are shown first, and single motions on request', async ({ page }) =
   await expect(page.locator('#motions > li')).toHaveCount(expected.count);
 });
 
-test('masks are named, coloured and chosen', async ({ page }) => {
+test('masks can be named, coloured and selected', async ({ page }) => {
   await open(page, 'groups');
   const row = page.locator('#motions > li').nth(1);
   await row.locator('.motion-name').fill('White car');
@@ -127,7 +127,7 @@ test('masks are named, coloured and chosen', async ({ page }) => {
   const [px, py] = [0.2, 0.4];
   const p = 4 * (Math.floor(py * fill.height) * fill.width + Math.floor(px * fill.width));
   expect([...fill.data.subarray(p, p + 4)]).toEqual([0x12, 0x34, 0x56, 255]);
-  // A tap on the picture chooses the mask there.
+  // A click on the picture selects the mask there.
   await page.locator('#motions > li').first().locator('.motion-words').click();
   await expect(row).not.toHaveClass(/selected/);
   await page.mouse.click(box.x + px * box.width, box.y + py * box.height);
@@ -141,7 +141,7 @@ test('arrows and the residual are drawn', async ({ page }) => {
   expect(await page.locator('#arrows path.arrow').nth(1).getAttribute('d')).toMatch(/^M[\d.]+ [\d.]+L/);
   await expect(page.locator('#magnified')).toHaveText(/^arrows ×\d/);
   await page.getByLabel('Residual').check();
-  // The motions explain most of it: nearly everything is painted, and dark.
+  // The motions explain most pixels, which are painted dark.
   const dark = async (): Promise<number> => {
     const { data, width, height } = await pixelsOf(page, '#residual');
     let count = 0;
@@ -166,7 +166,7 @@ test('the motion is copied in three notations', async ({ page, context }) => {
   await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^\[\[/);
 });
 
-test('the number of motions is forced from its evidence', async ({ page }) => {
+test('the number of motions can be forced in the evidence plot', async ({ page }) => {
   await open(page);
   const { evidence } = await segmentedInNode(await sample('first'), await sample('second'));
   const numbers = page.locator('#evidence .number');
@@ -175,7 +175,7 @@ test('the number of motions is forced from its evidence', async ({ page }) => {
   await done(page);
   await expect(page.getByLabel('Number of motions')).toHaveValue('2');
   await expect(page.locator('#motions > li')).toHaveCount(2);
-  await expect(numbers).toHaveCount(evidence.candidates.length); // what was known stays known
+  await expect(numbers).toHaveCount(evidence.candidates.length); // the automatic scores stay
   await page.getByRole('button', { name: 'Automatic' }).click();
   await done(page);
   await expect(page.getByLabel('Number of motions')).toHaveValue('auto');

@@ -4,7 +4,7 @@
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
-import { type Clip, type Picture, knownInFilm } from './clip.js';
+import { type Clip, type Picture, identityOf } from './clip.js';
 
 /** A `<video>` element does not tell its frame rate: this one is assumed. */
 const STEPS_PER_SECOND = 30;
@@ -49,7 +49,7 @@ class ApproximateClip implements Clip {
   async frame(index: number, longestSide: number): Promise<DecodedFrame> {
     const began = performance.now();
     const bitmap = await this.#at(index, () => createImageBitmap(this.video));
-    return frameFromBitmap(bitmap, knownInFilm(this.name, this.fingerprint, index), longestSide, began);
+    return frameFromBitmap(bitmap, identityOf(this.name, this.fingerprint, index), longestSide, began);
   }
 
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {

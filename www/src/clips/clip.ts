@@ -24,6 +24,6 @@ export interface Clip {
 export type Picture = (context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number) => void;
 
 /** The name of a frame of a video, "clip.mp4 #12", and its fingerprint. */
-export function knownInFilm(name: string, fingerprint: string, index: number): Pick<DecodedFrame, 'name' | 'fingerprint'> {
+export function identityOf(name: string, fingerprint: string, index: number): Pick<DecodedFrame, 'name' | 'fingerprint'> {
   return { name: `${name} #${index}`, fingerprint: `${fingerprint} ${index}` };
 }

@@ -5,7 +5,7 @@ import { BlobSource, EncodedPacketSink, Input, type InputVideoTrack, MATROSKA, M
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
-import { type Clip, type Picture, knownInFilm } from './clip.js';
+import { type Clip, type Picture, identityOf } from './clip.js';
 import { codecName } from './codecs.js';
 
 /** Times that differ by less are equal, seconds: containers round them to their own time base. */
@@ -91,7 +91,7 @@ class ExactClip implements Clip {
       const context = canvas.getContext('2d', { alpha: false });
       if (context === null) throw new PageError('unsupported-browser', strings.errors.noCanvas);
       sample.draw(context, 0, 0);
-      return await frameFromBitmap(canvas.transferToImageBitmap(), knownInFilm(this.name, this.fingerprint, index), longestSide, began);
+      return await frameFromBitmap(canvas.transferToImageBitmap(), identityOf(this.name, this.fingerprint, index), longestSide, began);
     } finally {
       sample?.close();
     }

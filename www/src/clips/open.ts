@@ -3,7 +3,7 @@
 import { PageError } from '../common/errors.js';
 import { quoted } from '../common/shell.js';
 import { strings } from '../common/strings.js';
-import { fingerprintOfFilm } from '../frames/fingerprints.js';
+import { fingerprintOfVideo } from '../frames/fingerprints.js';
 import type { Clip } from './clip.js';
 
 /**
@@ -11,7 +11,7 @@ import type { Clip } from './clip.js';
  * {@link PageError} if neither works: `unsupported-codec` if the browser lacks the codec, else `unreadable-video`.
  */
 export async function openClip(file: File): Promise<Clip> {
-  const fingerprint = await fingerprintOfFilm(file).catch(() => {
+  const fingerprint = await fingerprintOfVideo(file).catch(() => {
     throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
   });
   if (typeof VideoDecoder === 'function') {

@@ -70,7 +70,7 @@ export const strings = {
   frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
   stabilised: (name: string): string => `, stabilised on ${name}`,
 
-  film: (name: string, count: number, width: number, height: number): string => `${name}, ${whole.format(count)} frames, ${size(width, height)}`,
+  clip: (name: string, count: number, width: number, height: number): string => `${name}, ${whole.format(count)} frames, ${size(width, height)}`,
   anotherFile: 'another file',
   frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
 

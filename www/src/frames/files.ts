@@ -35,7 +35,7 @@ function byPath(one: File, other: File): number {
 
 /** A video, if there is one, and the images in frame order. */
 export interface Sorted {
-  readonly film: File | null;
+  readonly video: File | null;
   readonly images: readonly File[];
 }
 
@@ -45,7 +45,7 @@ export interface Sorted {
  */
 export function sortedOut(files: Iterable<File>): Sorted {
   const seen = [...files].filter((file) => folderOf(file) === null || !pathOf(file).some((part) => part.startsWith('.'))).sort(byPath);
-  const film = seen.find(isVideo) ?? null;
+  const video = seen.find(isVideo) ?? null;
   const images = seen.filter((file) => file.type.startsWith('image/') || (folderOf(file) === null && seen.length <= 2));
-  return { film, images };
+  return { video, images };
 }

@@ -9,7 +9,7 @@ export async function fingerprintOfImage(blob: Blob): Promise<string> {
 }
 
 /** Hashes the size of a video and three samples of its content, because videos are large. */
-export async function fingerprintOfFilm(blob: Blob): Promise<string> {
+export async function fingerprintOfVideo(blob: Blob): Promise<string> {
   const starts = [0, Math.max(0, (blob.size - SAMPLE) / 2), Math.max(0, blob.size - SAMPLE)];
   const parts = starts.map((start) => blob.slice(start, start + SAMPLE));
   return `${blob.size} ${hashOf(await new Blob(parts).arrayBuffer())}`;

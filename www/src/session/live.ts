@@ -79,7 +79,7 @@ export class LiveView {
   async #run(first: IteratorResult<View, void>, views: AsyncIterable<View>, current: () => boolean): Promise<void> {
     if (!current() || first.done) return;
     const { look } = this.#store.get();
-    this.#show(first.value, { film: null, found: null, edits: UNTOUCHED, look: { ...look, ...FRESH, view: 'second' } });
+    this.#show(first.value, { timeline: null, found: null, edits: UNTOUCHED, look: { ...look, ...FRESH, view: 'second' } });
     try {
       for await (const view of views) this.#show(view);
     } catch (error) {

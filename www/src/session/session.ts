@@ -10,7 +10,7 @@ import { WHOLE } from '../drawing/viewport.js';
 import { nameOfFile, sortedOut } from '../frames/files.js';
 import { frameFromBlob, frameFromUrl } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
-import { type Film, type FramePair, type LoadedFrame, type Slot, filmOf } from '../state/pair.js';
+import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import type { Settings } from '../state/settings.js';
 import { FRESH, type Run, type Store } from '../state/state.js';
 import { Correcting, isCurrent, isPending } from './correcting.js';
@@ -52,8 +52,8 @@ export class Session {
   openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
     return this.#openFrames(
       async () => {
-        const { film, images } = sortedOut(await files);
-        if (film !== null) return this.#startOf(await openClip(film));
+        const { video, images } = sortedOut(await files);
+        if (video !== null) return this.#startOf(await openClip(video));
         if (images.length > 2) return this.#startOf(await openFolder(images));
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
         const { longestSide } = this.#store.get().settings;
@@ -70,16 +70,16 @@ export class Session {
 
   /** Chooses a frame of the open clip; the index is clamped. */
   choose(slot: Slot, index: number): Promise<void> {
-    const { film } = this.#store.get();
-    if (film === null) return Promise.resolve();
-    return this.#goTo({ [slot]: Math.min(Math.max(Math.round(index), 0), film.clip.count - 1) });
+    const { timeline } = this.#store.get();
+    if (timeline === null) return Promise.resolve();
+    return this.#goTo({ [slot]: Math.min(Math.max(Math.round(index), 0), timeline.clip.count - 1) });
   }
 
   /** Steps all frames that are of the clip. */
   step(by: number): Promise<void> {
-    const { film } = this.#store.get();
-    if (film === null) return Promise.resolve();
-    const { clip, first, second } = film;
+    const { timeline } = this.#store.get();
+    if (timeline === null) return Promise.resolve();
+    const { clip, first, second } = timeline;
     const places = [first, second].filter((place) => place !== null);
     const shift = Math.min(Math.max(by, -Math.min(...places)), clip.count - 1 - Math.max(...places));
     return this.#goTo({ first: first === null ? null : first + shift, second: second === null ? null : second + shift });
@@ -93,9 +93,9 @@ export class Session {
       (show) => {
         this.correcting.keep();
         this.#stop();
-        const { film } = this.#store.get();
+        const { timeline } = this.#store.get();
         show();
-        film?.clip.close();
+        timeline?.clip.close();
       },
     );
   }
@@ -198,12 +198,12 @@ export class Session {
   }
 
   /** Goes to other frames of the clip. The timeline moves at once; the pair changes when the frames are loaded. */
-  #goTo(places: Partial<Pick<Film, Slot>>): Promise<void> {
-    const { film, pair, opening } = this.#store.get();
-    if (film === null) return Promise.resolve();
-    const { clip } = film;
-    const wanted: Film = { ...film, ...places };
-    const shown = filmOf(pair);
+  #goTo(places: Partial<Pick<Timeline, Slot>>): Promise<void> {
+    const { timeline, pair, opening } = this.#store.get();
+    if (timeline === null) return Promise.resolve();
+    const { clip } = timeline;
+    const wanted: Timeline = { ...timeline, ...places };
+    const shown = timelineOf(pair);
     const missing = (['first', 'second'] as const).flatMap((slot) => {
       const index = wanted[slot];
       return index === null || index === shown?.[slot] ? [] : [{ slot, index }];
@@ -212,7 +212,7 @@ export class Session {
       if (opening) this.#giveUp();
       return Promise.resolve();
     }
-    this.#store.set({ film: wanted });
+    this.#store.set({ timeline: wanted });
     return this.#openFrames(
       async () => {
         const frames: LoadedFrame[] = [];
@@ -234,7 +234,7 @@ export class Session {
       (frames) => {
         for (const { bitmap, origin } of frames) {
           bitmap.close();
-          if (origin !== undefined && 'clip' in origin && origin.clip !== this.#store.get().film?.clip) origin.clip.close();
+          if (origin !== undefined && 'clip' in origin && origin.clip !== this.#store.get().timeline?.clip) origin.clip.close();
         }
       },
     );
@@ -268,23 +268,23 @@ export class Session {
   /** Stops opening: the timeline returns to the frames on screen. */
   #giveUp(): void {
     this.#overtake();
-    this.#store.set({ opening: false, film: filmOf(this.#store.get().pair) });
+    this.#store.set({ opening: false, timeline: timelineOf(this.#store.get().pair) });
   }
 
   #setPair(pair: FramePair): void {
     this.correcting.keep();
     this.#stop();
-    const { look, pair: before, viewport, film: left } = this.#store.get();
+    const { look, pair: before, viewport, timeline: left } = this.#store.get();
     const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
     const complete = pair.first !== null && pair.second !== null;
     const view = complete && look.view === 'split' ? 'split' : only;
     const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
-    const film = filmOf(pair);
+    const timeline = timelineOf(pair);
     const restored = this.correcting.stateFor(pair);
     const current = isCurrent(restored);
     this.#store.set({
       pair,
-      film,
+      timeline,
       opening: false,
       ...restored,
       run: current ? { phase: 'done', cause: 'restored' } : complete ? STARTING : { phase: 'idle' },
@@ -293,7 +293,7 @@ export class Session {
     });
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
-    if (left !== null && left.clip !== film?.clip) left.clip.close();
+    if (left !== null && left.clip !== timeline?.clip) left.clip.close();
     if (current) this.correcting.settle('restored');
     else void this.segment();
   }

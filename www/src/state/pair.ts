@@ -30,14 +30,14 @@ export function sampleOf({ first, second }: FramePair): { readonly sample: Sampl
 }
 
 /** The open clip and the indices of the two frames in it; `null` for a frame that is not of the clip. */
-export interface Film {
+export interface Timeline {
   readonly clip: Clip;
   readonly first: number | null;
   readonly second: number | null;
 }
 
 /** The clip of a pair's frames: it stays open as long as one of them does. */
-export function filmOf({ first, second }: FramePair): Film | null {
+export function timelineOf({ first, second }: FramePair): Timeline | null {
   const [a, b] = [first, second].map((frame) => (frame?.origin && 'clip' in frame.origin ? frame.origin : null));
   const clip = a?.clip ?? b?.clip;
   return clip === undefined ? null : { clip, first: a?.index ?? null, second: b?.clip === clip ? b.index : null };

@@ -6,7 +6,7 @@ import type { Stroke } from '../correction/strokes.js';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
 import type { Kept } from './kept.js';
-import type { Film, FramePair, LoadedFrame, Slot } from './pair.js';
+import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 
 /** What led to the masks on screen. */
@@ -70,7 +70,7 @@ export interface Notice {
 
 export interface State {
   readonly pair: FramePair;
-  readonly film: Film | null;
+  readonly timeline: Timeline | null;
   readonly live: Live | null;
   /** Whether something is being opened. The current pair stays until it is ready. */
   readonly opening: boolean;
@@ -101,7 +101,7 @@ export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, 
 
 export const INITIAL: State = {
   pair: { first: null, second: null },
-  film: null,
+  timeline: null,
   live: null,
   opening: false,
   settings: DEFAULT_SETTINGS,

@@ -1,4 +1,4 @@
-//! A film of our own making: a real video file, encoded by the browser, with a number in every frame.
+//! Makes videos with a number in every frame.
 
 import { readFile } from 'node:fs/promises';
 
@@ -8,14 +8,14 @@ import type { Upload } from './support.js';
 
 export const WIDTH = 192;
 export const HEIGHT = 128;
-/** Frames of a film are this long, seconds: NTSC's, which no clock of a container counts exactly. */
+/** Duration of a frame, seconds: that of NTSC, which no time base of a container represents exactly. */
 const FRAME = 1001 / 30_000;
 export const BITS = 6;
 /** Side of the square that shows one bit, pixels. */
 export const BIT = 24;
 
-/** A film of `count` frames, each with its number as black and white squares over moving texture, encoded by the browser itself. */
-export async function film(page: Page, count: number, kind: 'webm' | 'mp4', codec: string): Promise<Upload> {
+/** A video of `count` frames, encoded by the browser, each with its number as black and white squares over moving texture. */
+export async function video(page: Page, count: number, kind: 'webm' | 'mp4', codec: string): Promise<Upload> {
   const bundle = await readFile(new URL('../../node_modules/mediabunny/dist/bundles/mediabunny.mjs', import.meta.url));
   await page.route('**/maker/mediabunny.mjs', (route) => route.fulfill({ body: bundle, contentType: 'text/javascript' }));
   const base64 = await page.evaluate(
@@ -49,5 +49,5 @@ export async function film(page: Page, count: number, kind: 'webm' | 'mp4', code
     },
     [new URL('maker/mediabunny.mjs', page.url()).href, count, kind, codec, WIDTH, HEIGHT, FRAME, BITS, BIT] as const,
   );
-  return { name: `film.${kind}`, mimeType: `video/${kind}`, buffer: Buffer.from(base64, 'base64') };
+  return { name: `clip.${kind}`, mimeType: `video/${kind}`, buffer: Buffer.from(base64, 'base64') };
 }

@@ -1,13 +1,13 @@
-//! Films: a real video file with a number in every frame, read back exactly; folders; the fallback without WebCodecs; the camera.
+//! Clips: videos with a number in every frame, read back exactly; folders; the fallback without WebCodecs; the camera.
 
 import { type Page } from '@playwright/test';
 
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
 
-import { BIT, BITS, WIDTH, film } from './film.js';
+import { BIT, BITS, WIDTH, video } from './video.js';
 import { type Upload, done, expect, open, pixelsOf, square, test, upload } from './support.js';
 
-/** The number in the frame that is shown. */
+/** The number in the frame on screen. */
 async function numberShown(page: Page): Promise<number> {
   const { data, width } = await pixelsOf(page, '#frame');
   expect(width).toBe(WIDTH);
@@ -19,7 +19,7 @@ async function numberShown(page: Page): Promise<number> {
   return bits.reduce((sum, bit) => sum + bit, 0);
 }
 
-/** Shows each of the chosen frames and reads its number. */
+/** Shows each frame of the pair and reads its number. */
 async function numbers(page: Page): Promise<[number, number]> {
   await page.locator('#look [name=frame][value=first]').check();
   const first = await numberShown(page);
@@ -28,19 +28,19 @@ async function numbers(page: Page): Promise<[number, number]> {
 }
 
 async function slide(page: Page, slot: 'first' | 'second', index: number): Promise<void> {
-  await page.locator(`[name=film-${slot}]`).fill(String(index));
-  await page.locator(`[name=film-${slot}]`).dispatchEvent('change');
+  await page.locator(`[name=clip-${slot}]`).fill(String(index));
+  await page.locator(`[name=clip-${slot}]`).dispatchEvent('change');
   await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toContainText(`#${index},`);
   await done(page);
 }
 
-test('a WebM film gives exactly the frames that are asked for', async ({ page }) => {
+test('a WebM video gives exactly the requested frames', async ({ page }) => {
   await open(page);
-  const file = await film(page, 40, 'webm', 'vp8');
+  const file = await video(page, 40, 'webm', 'vp8');
   await upload(page, [file]);
-  await expect(page.locator('#film-name')).toHaveText('film.webm, 40 frames, 192 × 128');
+  await expect(page.locator('#clip-name')).toHaveText('clip.webm, 40 frames, 192 × 128');
   await done(page);
-  await expect(page.locator('#film-note')).toBeHidden();
+  await expect(page.locator('#clip-note')).toBeHidden();
   expect(await numbers(page)).toEqual([0, 1]);
   for (const [first, second] of [[17, 18], [39, 5], [16, 38]] as const) {
     await slide(page, 'first', first);
@@ -52,53 +52,53 @@ test('a WebM film gives exactly the frames that are asked for', async ({ page })
   await done(page);
   expect(await numbers(page)).toEqual([17, 38]);
   await page.keyboard.press('.');
-  await expect(page.locator('#film-second-at')).toHaveText('#39, 1.301 s');
+  await expect(page.locator('#clip-second-at')).toHaveText('#39, 1.301 s');
   await done(page);
   expect(await numbers(page)).toEqual([18, 39]);
-  // The film ends here: both stay.
+  // The clip ends here: both frames stay.
   await page.keyboard.press('.');
   expect(await numbers(page)).toEqual([18, 39]);
 
-  // The thumbnails are of the film.
+  // The strip shows thumbnails.
   const strip = await pixelsOf(page, '#strip');
   const greys = new Set(strip.data.filter((_, i) => i % 4 === 0));
   expect(greys.size).toBeGreaterThan(50);
 
-  // Another pair puts the film away.
+  // Another pair closes the clip.
   await page.getByRole('button', { name: 'Two cars' }).click();
   await done(page);
   await expect(page.locator('#timeline')).toBeHidden();
 });
 
-test('an MP4 film gives exactly the frames that are asked for', async ({ page }) => {
+test('an MP4 video gives exactly the requested frames', async ({ page }) => {
   await open(page);
-  // The codec that every build of the browser can write into an MP4.
-  const file = await film(page, 12, 'mp4', 'vp9');
-  await upload(page, [{ ...file, name: 'film.mov', mimeType: 'video/quicktime' }]);
-  await expect(page.locator('#film-name')).toHaveText('film.mov, 12 frames, 192 × 128');
+  // Every build of Chromium can encode this codec.
+  const file = await video(page, 12, 'mp4', 'vp9');
+  await upload(page, [{ ...file, name: 'clip.mov', mimeType: 'video/quicktime' }]);
+  await expect(page.locator('#clip-name')).toHaveText('clip.mov, 12 frames, 192 × 128');
   await done(page);
   await slide(page, 'first', 7);
   await slide(page, 'second', 11);
   expect(await numbers(page)).toEqual([7, 11]);
 });
 
-test('without WebCodecs frames are called approximate', async ({ page, context }) => {
+test('frames are marked approximate without WebCodecs', async ({ page, context }) => {
   const maker = await context.newPage();
   await maker.goto('./');
-  const file = await film(maker, 30, 'webm', 'vp8');
+  const file = await video(maker, 30, 'webm', 'vp8');
   await maker.close();
   await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
   await open(page);
   await upload(page, [file]);
   await done(page);
-  await expect(page.locator('#film-note')).toBeVisible();
-  await expect(page.locator('#film-note')).toHaveText(/^Approximate frames/);
+  await expect(page.locator('#clip-note')).toBeVisible();
+  await expect(page.locator('#clip-note')).toHaveText(/^Approximate frames/);
   await slide(page, 'first', 20);
   const [shown] = await numbers(page);
   expect(Math.abs(shown - 20)).toBeLessThanOrEqual(1);
 });
 
-test('what is no video is refused and the pair stays', async ({ page }) => {
+test('a broken video is rejected and the pair stays', async ({ page }) => {
   await open(page);
   await upload(page, [{ name: 'broken.mp4', mimeType: 'video/mp4', buffer: Buffer.from('no video at all') }]);
   await expect(page.locator('#notice-code')).toHaveText('unreadable-video');
@@ -106,7 +106,7 @@ test('what is no video is refused and the pair stays', async ({ page }) => {
   await expect(page.locator('#motions > li').first()).toBeVisible();
 });
 
-/** An MP4 that says its video is HEVC, as telephones write it; there is nothing to decode in it. */
+/** An MP4 that declares HEVC, as phones record it, without anything to decode. */
 async function hevc(name: string): Promise<Upload> {
   const target = new BufferTarget();
   const output = new Output({ format: new Mp4OutputFormat(), target });
@@ -122,7 +122,7 @@ async function hevc(name: string): Promise<Upload> {
 }
 
 for (const webCodecs of [true, false]) {
-  test(`a video of a codec that the browser has not is refused by the codec's name, ${webCodecs ? 'with' : 'without'} WebCodecs`, async ({ page }) => {
+  test(`the error for an unsupported codec names it, ${webCodecs ? 'with' : 'without'} WebCodecs`, async ({ page }) => {
     if (!webCodecs) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
     await open(page);
     await upload(page, [await hevc("my 'clip'.mov")]);
@@ -135,12 +135,12 @@ for (const webCodecs of [true, false]) {
   });
 }
 
-test('a folder of frames is a film in the order of the names', async ({ page }) => {
+test('a folder of frames is a clip in the order of the names', async ({ page }) => {
   await open(page);
   const names = ['f10.png', 'f2.png', 'f1.png', 'f11.png'];
   const files = await Promise.all(names.map((name) => square(name, 96, 64, Number(/\d+/.exec(name)![0]), 0)));
   await page.locator('#open-pair').setInputFiles(files);
-  await expect(page.locator('#film-name')).toHaveText('f1.png, 4 frames, 96 × 64');
+  await expect(page.locator('#clip-name')).toHaveText('f1.png, 4 frames, 96 × 64');
   await done(page);
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f2.png, 96 × 64');
   await page.keyboard.press('.');
@@ -148,7 +148,7 @@ test('a folder of frames is a film in the order of the names', async ({ page }) 
   await done(page);
 });
 
-test('the camera is segmented live and its last pair stays', async ({ page, context }) => {
+test('the camera is segmented live, and its last pair stays', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
   await open(page);
   await page.getByRole('button', { name: 'Camera' }).click();
@@ -160,7 +160,7 @@ test('the camera is segmented live and its last pair stays', async ({ page, cont
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('camera');
 });
 
-test('frames larger than the working size are worked on smaller', async ({ page }) => {
+test('frames larger than the working size are scaled down', async ({ page }) => {
   await open(page);
   await page.getByLabel('Working size').selectOption('640');
   await done(page);
@@ -170,15 +170,15 @@ test('frames larger than the working size are worked on smaller', async ({ page 
   expect((await pixelsOf(page, '#frame')).width).toBe(640);
 });
 
-test('corrections of a film are there when it is opened again', async ({ page }) => {
+test('corrections are restored when a video is opened again', async ({ page }) => {
   await open(page);
-  const file = await film(page, 6, 'webm', 'vp8');
+  const file = await video(page, 6, 'webm', 'vp8');
   const opened = async (name: string): Promise<void> => {
     await upload(page, [{ ...file, name }]);
-    await expect(page.locator('#film-name')).toContainText(name);
+    await expect(page.locator('#clip-name')).toContainText(name);
     await done(page);
   };
-  await opened('film.webm');
+  await opened('clip.webm');
   await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);
