@@ -5,7 +5,7 @@ import type { Segmentation } from 'veronese';
 
 import type { Clip } from '../src/clips/clip.js';
 import { codecName } from '../src/clips/codecs.js';
-import { UNTOUCHED, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/correction/edits.js';
+import { NO_EDITS, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/correction/edits.js';
 import { labellingOf, labelsIn } from '../src/correction/parts.js';
 import { type Runs, packed, unpacked } from '../src/correction/runs.js';
 import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../src/correction/strokes.js';
@@ -207,9 +207,9 @@ test('edits track what is in effect and what was saved, and can be scaled', () =
   const of = labellingOf(found);
   const stroke = (x: number): { stroke: Stroke } => ({ stroke: { points: [x, 1, 4, 3], radius: 2, tool: 'brush', mask: { of, labels: 1 } } });
   const [one, two, three] = [stroke(1), stroke(2), stroke(3)];
-  const drawn = withAction(withAction(UNTOUCHED, one), two);
+  const drawn = withAction(withAction(NO_EDITS, one), two);
   expect(strokesOf(drawn)).toEqual([one.stroke, two.stroke]);
-  expect([UNTOUCHED, drawn].map(isUnsaved)).toEqual([false, true]);
+  expect([NO_EDITS, drawn].map(isUnsaved)).toEqual([false, true]);
   const saved = asSaved(drawn);
   expect(isUnsaved(saved)).toBe(false);
   const undone = { ...saved, done: 1 };

@@ -40,9 +40,9 @@ export interface Edits {
 
 const NO_APPEARANCES: readonly Appearance[] = [];
 
-export const UNTOUCHED: Edits = { actions: [], done: 0, appearances: NO_APPEARANCES, saved: { action: null, appearances: NO_APPEARANCES } };
+export const NO_EDITS: Edits = { actions: [], done: 0, appearances: NO_APPEARANCES, saved: { action: null, appearances: NO_APPEARANCES } };
 
-export function isTouched({ actions, appearances }: Edits): boolean {
+export function hasEdits({ actions, appearances }: Edits): boolean {
   return actions.length > 0 || appearances.length > 0;
 }
 

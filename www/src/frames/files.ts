@@ -34,7 +34,7 @@ function byPath(one: File, other: File): number {
 }
 
 /** A video, if there is one, and the images in frame order. */
-export interface Sorted {
+export interface Openable {
   readonly video: File | null;
   readonly images: readonly File[];
 }
@@ -43,7 +43,7 @@ export interface Sorted {
  * Selects what can be opened. Files of a folder must look like images or videos by type or name, and hidden ones are skipped. One or two
  * files that were given themselves are always tried.
  */
-export function sortedOut(files: Iterable<File>): Sorted {
+export function selectOpenable(files: Iterable<File>): Openable {
   const seen = [...files].filter((file) => folderOf(file) === null || !pathOf(file).some((part) => part.startsWith('.'))).sort(byPath);
   const video = seen.find(isVideo) ?? null;
   const images = seen.filter((file) => file.type.startsWith('image/') || (folderOf(file) === null && seen.length <= 2));

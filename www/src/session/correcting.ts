@@ -5,11 +5,11 @@
 import type { Segmentation } from 'veronese';
 import { strings } from '../common/strings.js';
 import {
-  UNTOUCHED,
+  NO_EDITS,
   type Appearance,
   asSaved,
   grouped,
-  isTouched,
+  hasEdits,
   lastStroke,
   maskIdOf,
   maskWith,
@@ -144,7 +144,7 @@ export class Correcting {
     const key = keyOfPair(pair);
     if (key === null || pair.first === null) return;
     const ownMotions = motionsElsewhere === null ? null : settings.motions;
-    if (!isTouched(edits) && ownMotions === null) return;
+    if (!hasEdits(edits) && ownMotions === null) return;
     const packed = found === null ? null : { packed: packedResult(found, labellingOf(found)), waited: result?.waited ?? 0 };
     const { width, height } = pair.first;
     this.#store.set({
@@ -158,10 +158,13 @@ export class Correcting {
     const { kept, settings, motionsElsewhere } = this.#store.get();
     const key = keyOfPair(pair) ?? '';
     const known = kept.get(key);
-    if (known === undefined) return { found: null, result: null, edits: UNTOUCHED, kept, settings, motionsElsewhere };
+    if (known === undefined) return { found: null, result: null, edits: NO_EDITS, kept, settings, motionsElsewhere };
     const others = new Map(kept);
     others.delete(key);
-    const number = known.ownMotions === null ? { settings, motionsElsewhere } : { settings: { ...settings, motions: known.ownMotions }, motionsElsewhere: settings.motions };
+    const number =
+      known.ownMotions === null
+        ? { settings, motionsElsewhere }
+        : { settings: { ...settings, motions: known.ownMotions }, motionsElsewhere: settings.motions };
     return { ...this.#restored(known, pair as Result['pair']), ...number, kept: others };
   }
 

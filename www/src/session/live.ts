@@ -2,7 +2,7 @@
 
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
-import { UNTOUCHED } from '../correction/edits.js';
+import { NO_EDITS } from '../correction/edits.js';
 import { frameFromBitmap } from '../frames/frame.js';
 import type { LoadedFrame } from '../state/pair.js';
 import { FRESH, type Result, type State, type Store } from '../state/state.js';
@@ -79,7 +79,7 @@ export class LiveView {
   async #run(first: IteratorResult<View, void>, views: AsyncIterable<View>, current: () => boolean): Promise<void> {
     if (!current() || first.done) return;
     const { look } = this.#store.get();
-    this.#show(first.value, { timeline: null, found: null, edits: UNTOUCHED, look: { ...look, ...FRESH, view: 'second' } });
+    this.#show(first.value, { timeline: null, found: null, edits: NO_EDITS, look: { ...look, ...FRESH, view: 'second' } });
     try {
       for await (const view of views) this.#show(view);
     } catch (error) {

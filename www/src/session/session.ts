@@ -7,7 +7,7 @@ import { openClip } from '../clips/open.js';
 import { PageError, codeOf, sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { WHOLE } from '../drawing/viewport.js';
-import { nameOfFile, sortedOut } from '../frames/files.js';
+import { nameOfFile, selectOpenable } from '../frames/files.js';
 import { frameFromBlob, frameFromUrl } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
@@ -52,7 +52,7 @@ export class Session {
   openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
     return this.#openFrames(
       async () => {
-        const { video, images } = sortedOut(await files);
+        const { video, images } = selectOpenable(await files);
         if (video !== null) return this.#startOf(await openClip(video));
         if (images.length > 2) return this.#startOf(await openFolder(images));
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
@@ -103,7 +103,7 @@ export class Session {
   /** Swaps the two frames. */
   swap(): void {
     const { first, second } = this.#store.get().pair;
-    this.#overtake();
+    this.#invalidate();
     this.#setPair({ first: second, second: first });
   }
 
@@ -163,7 +163,7 @@ export class Session {
   /** Stops at once; the last result stays. */
   cancel(): void {
     const { run, opening } = this.#store.get();
-    if (opening) return this.#giveUp();
+    if (opening) return this.#stopOpening();
     if (run.phase !== 'working') return;
     this.#stop();
     this.#store.set({ run: { phase: 'cancelled' } });
@@ -209,7 +209,7 @@ export class Session {
       return index === null || index === shown?.[slot] ? [] : [{ slot, index }];
     });
     if (missing.length === 0) {
-      if (opening) this.#giveUp();
+      if (opening) this.#stopOpening();
       return Promise.resolve();
     }
     this.#store.set({ timeline: wanted });
@@ -245,7 +245,7 @@ export class Session {
    * earlier ones are discarded.
    */
   async #open<T>(load: () => Promise<T>, take: (opened: T) => void, discard: (opened: T) => void = () => undefined): Promise<void> {
-    const turn = this.#overtake();
+    const turn = this.#invalidate();
     this.#store.set({ opening: true, notice: null });
     try {
       const opened = await load();
@@ -254,20 +254,20 @@ export class Session {
       take(opened);
     } catch (error) {
       if (turn !== this.#opened) return;
-      this.#giveUp();
+      this.#stopOpening();
       this.say(sentenceOf(error), codeOf(error));
     }
   }
 
   /** Invalidates whatever is being opened. */
-  #overtake(): number {
+  #invalidate(): number {
     if (this.#store.get().live === null) this.#live.stop();
     return ++this.#opened;
   }
 
   /** Stops opening: the timeline returns to the frames on screen. */
-  #giveUp(): void {
-    this.#overtake();
+  #stopOpening(): void {
+    this.#invalidate();
     this.#store.set({ opening: false, timeline: timelineOf(this.#store.get().pair) });
   }
 

@@ -80,7 +80,7 @@ const MARK_UNKNOWN: SwitchControl = {
   kind: 'switch',
   name: 'markUnknown',
   label: 'Leave unexplained pixels unlabelled',
-  help: 'Pixels that no motion explains get no label.',
+  help: 'Such as pixels that are hidden in the second frame.',
   initial: false,
 };
 

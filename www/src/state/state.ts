@@ -1,7 +1,7 @@
 //! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
 import type { Segmentation } from 'veronese';
-import { UNTOUCHED, type Edits } from '../correction/edits.js';
+import { NO_EDITS, type Edits } from '../correction/edits.js';
 import type { Stroke } from '../correction/strokes.js';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
@@ -109,7 +109,7 @@ export const INITIAL: State = {
   run: { phase: 'idle' },
   result: null,
   found: null,
-  edits: UNTOUCHED,
+  edits: NO_EDITS,
   kept: new Map(),
   look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.5, outlines: true, arrows: false, residual: false, ...FRESH },
   viewport: WHOLE,

@@ -11,7 +11,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
   const single = find(dialog, '#single-keys', HTMLInputElement);
   const list = find(dialog, 'dl', HTMLDListElement);
   const peek = new Peek(store);
-  const rows = [{ shown: 'B', does: strings.keys.look.peek }, ...keys, { shown: '?', does: strings.keys.look.keys }];
+  const rows = [{ shown: 'B', does: strings.keys.peek }, ...keys, { shown: '?', does: strings.keys.keys }];
   for (const { shown, does } of rows) {
     if (does === '') {
       list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown)); // another key for the same

@@ -29,35 +29,35 @@ export interface Key {
 const PAN = 0.1;
 
 export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Key[] {
-  const { look } = strings.keys;
+  const { keys } = strings;
   const toggle = (name: 'outlines' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
   const pan = (right: number, down: number) => () => zoom.pan(right * PAN, down * PAN);
   return [
-    { keys: ['n'], shown: 'N', does: look.blink, run: () => toggleBlinking(store) },
-    { keys: ['s'], shown: 'S', does: look.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
-    { keys: ['g'], shown: 'G', does: look.kind, run: () => showKind(store, store.get().look.kind === 'groups' ? 'motions' : 'groups') },
-    { keys: ['o'], shown: 'O', does: look.outlines, run: toggle('outlines') },
-    { keys: ['a'], shown: 'A', does: look.arrows, run: toggle('arrows') },
-    { keys: ['r'], shown: 'R', does: look.residual, run: toggle('residual') },
-    { keys: ['+', '='], shown: '+', does: look.zoomIn, run: () => zoom.by(ZOOM_STEP) },
-    { keys: ['-', '_'], shown: '−', does: look.zoomOut, run: () => zoom.by(1 / ZOOM_STEP) },
-    { keys: ['0'], shown: '0', does: look.whole, run: () => zoom.whole() },
-    { keys: ['1'], shown: '1', does: look.actual, run: () => zoom.actual() },
-    { keys: ['arrowleft'], shown: '←', does: look.pan, run: pan(1, 0), arrows: true },
+    { keys: ['n'], shown: 'N', does: keys.blink, run: () => toggleBlinking(store) },
+    { keys: ['s'], shown: 'S', does: keys.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
+    { keys: ['g'], shown: 'G', does: keys.kind, run: () => showKind(store, store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['o'], shown: 'O', does: keys.outlines, run: toggle('outlines') },
+    { keys: ['a'], shown: 'A', does: keys.arrows, run: toggle('arrows') },
+    { keys: ['r'], shown: 'R', does: keys.residual, run: toggle('residual') },
+    { keys: ['+', '='], shown: '+', does: keys.zoomIn, run: () => zoom.by(ZOOM_STEP) },
+    { keys: ['-', '_'], shown: '−', does: keys.zoomOut, run: () => zoom.by(1 / ZOOM_STEP) },
+    { keys: ['0'], shown: '0', does: keys.whole, run: () => zoom.whole() },
+    { keys: ['1'], shown: '1', does: keys.actual, run: () => zoom.actual() },
+    { keys: ['arrowleft'], shown: '←', does: keys.pan, run: pan(1, 0), arrows: true },
     { keys: ['arrowright'], shown: '→', does: '', run: pan(-1, 0), arrows: true },
     { keys: ['arrowup'], shown: '↑', does: '', run: pan(0, 1), arrows: true },
     { keys: ['arrowdown'], shown: '↓', does: '', run: pan(0, -1), arrows: true },
-    { keys: [','], shown: ',', does: look.stepBack, run: () => stepOne(store, session, 'both', -1) },
-    { keys: ['.'], shown: '.', does: look.stepOn, run: () => stepOne(store, session, 'both', 1) },
-    { keys: ['v'], shown: 'V', does: look.look, run: () => chooseTool(store, 'look') },
-    { keys: ['p'], shown: 'P', does: look.brush, run: () => chooseTool(store, 'brush') },
-    { keys: ['e'], shown: 'E', does: look.eraser, run: () => chooseTool(store, 'eraser') },
-    { keys: [], shown: 'Space', does: look.stroke, run: () => undefined },
-    { keys: ['['], shown: '[', does: look.thinner, run: () => changeRadius(store, 0.75) },
-    { keys: [']'], shown: ']', does: look.thicker, run: () => changeRadius(store, 4 / 3) },
-    { keys: ['z'], shown: 'Ctrl Z', does: look.undo, run: () => session.correcting.undo(), command: true, shift: false },
-    { keys: ['z'], shown: 'Ctrl Shift Z', does: look.redo, run: () => session.correcting.redo(), command: true, shift: true },
+    { keys: [','], shown: ',', does: keys.stepBack, run: () => stepOne(store, session, 'both', -1) },
+    { keys: ['.'], shown: '.', does: keys.stepOn, run: () => stepOne(store, session, 'both', 1) },
+    { keys: ['v'], shown: 'V', does: keys.look, run: () => chooseTool(store, 'look') },
+    { keys: ['p'], shown: 'P', does: keys.brush, run: () => chooseTool(store, 'brush') },
+    { keys: ['e'], shown: 'E', does: keys.eraser, run: () => chooseTool(store, 'eraser') },
+    { keys: [], shown: 'Space', does: keys.stroke, run: () => undefined },
+    { keys: ['['], shown: '[', does: keys.thinner, run: () => changeRadius(store, 0.75) },
+    { keys: [']'], shown: ']', does: keys.thicker, run: () => changeRadius(store, 4 / 3) },
+    { keys: ['z'], shown: 'Ctrl Z', does: keys.undo, run: () => session.correcting.undo(), command: true, shift: false },
+    { keys: ['z'], shown: 'Ctrl Shift Z', does: keys.redo, run: () => session.correcting.redo(), command: true, shift: true },
     { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.correcting.redo(), command: true },
-    { keys: ['escape'], shown: 'Esc', does: look.cancel, run: () => session.cancel() },
+    { keys: ['escape'], shown: 'Esc', does: keys.cancel, run: () => session.cancel() },
   ];
 }
