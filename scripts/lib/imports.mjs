@@ -11,12 +11,12 @@ const DOCUMENT = 'ARCHITECTURE.md';
 /** Whether the sources import what the tables say, no more and no less. Prints what differs. */
 export function importsAgree() {
   const document = projectText(DOCUMENT);
-  const [files, pageFiles] = [importsOfFiles('pkg/src'), importsOfFiles('www/src')];
+  const [packageFiles, pageFiles] = [importsOfFiles('pkg/src'), importsOfFiles('www/src')];
   const problems = [
     ...differences('src', tableOf(document, 'imports'), importsOfCrate('src')),
-    ...differences('pkg/src', tableOf(document, 'imports-of-package'), importsOfFolders(files)),
+    ...differences('pkg/src', tableOf(document, 'imports-of-package'), importsOfFolders(packageFiles)),
     ...differences('www/src', tableOf(document, 'imports-of-page'), importsOfFolders(pageFiles)),
-    ...cycles('pkg/src', files),
+    ...cycles('pkg/src', packageFiles),
     ...cycles('www/src', pageFiles),
   ];
   for (const problem of problems) console.error(problem);

@@ -6,7 +6,7 @@ import type { Sample } from '../frames/samples.js';
 
 export type Slot = 'first' | 'second';
 
-/** A frame of a clip or of a sample. */
+/** Where a frame comes from: a clip or a sample. */
 export type Origin = { readonly clip: Clip; readonly index: number } | { readonly sample: Sample; readonly slot: Slot };
 
 /** A frame that is open. `origin` is absent for a file of its own and for the camera. */
@@ -36,7 +36,7 @@ export interface Timeline {
   readonly second: number | null;
 }
 
-/** The clip of a pair's frames: it stays open as long as one of them does. */
+/** The timeline of a pair; `null` if neither frame is of a clip. */
 export function timelineOf({ first, second }: FramePair): Timeline | null {
   const [a, b] = [first, second].map((frame) => (frame?.origin && 'clip' in frame.origin ? frame.origin : null));
   const clip = a?.clip ?? b?.clip;
