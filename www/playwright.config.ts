@@ -12,17 +12,17 @@ export default defineConfig({
   reporter: [['list']],
   use: {
     baseURL: `http://127.0.0.1:${PORT}/`,
-    // Tests hold back and replace files, which a service worker would have kept; the one about it allows it.
+    // Tests delay and replace files, which a service worker would have cached. The test of the service worker allows it.
     serviceWorkers: 'block',
     viewport: { width: 1280, height: 860 },
     launchOptions: {
       executablePath: process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium',
       args: [
         '--no-sandbox',
-        // A camera that is a drawing.
+        // A fake camera.
         '--use-fake-device-for-media-stream',
         '--use-fake-ui-for-media-stream',
-        // A browser that asks nothing of the network by itself.
+        // No requests by the browser itself.
         '--disable-background-networking',
         '--disable-component-update',
         '--disable-default-apps',

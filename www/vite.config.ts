@@ -9,7 +9,7 @@ import { CONTENT_SECURITY_POLICY, HEADERS } from '../scripts/lib/policy.mjs';
 
 const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 
-/** Writes the policy into the built pages; while developing, Vite needs more than it allows. */
+/** Adds the content security policy to the built pages. The development server needs more than it allows. */
 function policy(): Plugin {
   let building = false;
   return {
@@ -20,7 +20,7 @@ function policy(): Plugin {
   };
 }
 
-/** The package's module for measurements: the page segments frames, and keeps nothing that it never loads. */
+/** Leaves out the package's module for measurements, which the page never loads. */
 function withoutMeasurements(): Plugin {
   return {
     name: 'without-measurements',
@@ -31,7 +31,7 @@ function withoutMeasurements(): Plugin {
   };
 }
 
-/** Has the browser fetch the WebAssembly module while it reads the page, not when the first frames are decoded. */
+/** Preloads the WebAssembly module while the page is parsed, not when the first frames are decoded. */
 function preload(): Plugin {
   return {
     name: 'preload',
@@ -51,7 +51,7 @@ function preload(): Plugin {
   };
 }
 
-/** Writes the service worker with the list of all files, under a name that changes with any of them. */
+/** Writes the service worker with the list of all files and a version that is a hash of them. */
 function serviceWorker(): Plugin {
   return {
     name: 'service-worker',
@@ -64,7 +64,7 @@ function serviceWorker(): Plugin {
         .sort();
       const hash = createHash('sha256');
       for (const path of paths) hash.update(path).update(readFileSync(join(dir, path)));
-      const template = readFileSync(here('src/service-worker.js'), 'utf8');
+      const template = readFileSync(here('src/offline/service-worker.js'), 'utf8');
       const filled = template.replace('__FILES__', JSON.stringify(paths)).replace('__VERSION__', hash.digest('hex').slice(0, 16));
       writeFileSync(join(dir, 'service-worker.js'), filled);
     },
@@ -72,18 +72,18 @@ function serviceWorker(): Plugin {
 }
 
 export default defineConfig({
-  // Relative addresses: the built page works in any folder of any host.
+  // Relative URLs, so that the built page works in any folder of any host.
   base: './',
   plugins: [policy(), withoutMeasurements(), preload(), serviceWorker()],
   worker: { format: 'es' },
   build: {
     target: 'es2023',
-    // No data: addresses: the content security policy lets scripts and WebAssembly come from files only.
+    // No data: URLs, because the content security policy allows scripts and WebAssembly from files only.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
     rolldownOptions: { input: [here('index.html'), here('embed.html')] },
   },
-  // The package is part of this project and finds its worker and module by import.meta.url: leave it as it is.
+  // Not pre-bundled, because the package finds its worker and module by import.meta.url.
   optimizeDeps: { exclude: ['veronese'] },
   preview: { strictPort: true, headers: HEADERS },
 });

@@ -1,5 +1,5 @@
-// Who may import whom: ARCHITECTURE.md holds the tables of the crate's modules and of the package's folders, and this compares the
-// sources with them.
+// Who may import whom: ARCHITECTURE.md has tables of the crate's modules and of the folders of the package and the page. This
+// compares the sources with them, and rejects cycles between the files of the package and of the page.
 
 import { readdirSync } from 'node:fs';
 import { join, posix } from 'node:path';
@@ -11,9 +11,13 @@ const DOCUMENT = 'ARCHITECTURE.md';
 /** Whether the sources import what the tables say, no more and no less. Prints what differs. */
 export function importsAgree() {
   const document = projectText(DOCUMENT);
+  const [packageFiles, pageFiles] = [importsOfFiles('pkg/src'), importsOfFiles('www/src')];
   const problems = [
     ...differences('src', tableOf(document, 'imports'), importsOfCrate('src')),
-    ...differences('pkg/src', tableOf(document, 'imports-of-package'), importsOfPackage('pkg/src')),
+    ...differences('pkg/src', tableOf(document, 'imports-of-package'), importsOfFolders(packageFiles)),
+    ...differences('www/src', tableOf(document, 'imports-of-page'), importsOfFolders(pageFiles)),
+    ...cycles('pkg/src', packageFiles),
+    ...cycles('www/src', pageFiles),
   ];
   for (const problem of problems) console.error(problem);
   return problems.length === 0;
@@ -27,8 +31,11 @@ function differences(folder, table, imports) {
     if (!allowed) problems.push(`${DOCUMENT} has no line for ${folder}/${module}.`);
     for (const name of found) if (allowed && !allowed.has(name)) problems.push(`${folder}/${module} imports ${name}, which ${DOCUMENT} does not allow.`);
   }
+  const above = new Set();
   for (const [module, allowed] of table) {
     const found = imports.get(module);
+    for (const name of allowed) if (!above.has(name)) problems.push(`${DOCUMENT} has no line for ${folder}/${name} above that for ${folder}/${module}, which imports it.`);
+    above.add(module);
     if (!found) problems.push(`${DOCUMENT} has a line for ${folder}/${module}, which does not exist.`);
     for (const name of allowed) if (found && !found.has(name)) problems.push(`${DOCUMENT} says that ${folder}/${module} imports ${name}; it does not.`);
   }
@@ -64,21 +71,48 @@ function importsOfCrate(folder) {
   return imports;
 }
 
-/** For every folder of the package's sources the other folders that its files import, values or types. */
-function importsOfPackage(folder) {
+/** For every TypeScript file below `folder` the files there that it imports, values or types. */
+function importsOfFiles(folder) {
   const imports = new Map();
   for (const file of readdirSync(join(root, folder), { recursive: true })) {
     const path = String(file).replaceAll('\\', '/');
-    if (!path.endsWith('.ts')) continue;
-    const own = path.split('/')[0];
-    if (!imports.has(own)) imports.set(own, new Set());
-    for (const [, place] of projectText(`${folder}/${path}`).matchAll(/(?:\bfrom |\bimport\()'(\.[^']+)'/g)) {
-      const [other] = posix.join(posix.dirname(path), place).split('/');
-      // What lies outside are the types that the package publishes.
-      if (other !== own && other !== '..') imports.get(own).add(other);
-    }
+    if (!path.endsWith('.ts') || path.endsWith('.d.ts')) continue;
+    const places = projectText(`${folder}/${path}`).matchAll(/(?:\bfrom |\bimport(?: |\())'(\.[^']+)'/g);
+    const others = [...places].map(([, place]) => posix.join(posix.dirname(path), place).replace(/\.js$/, '.ts'));
+    // What lies outside are the types that the package publishes.
+    imports.set(path, new Set(others.filter((other) => !other.startsWith('..'))));
   }
   return imports;
+}
+
+/** The same for folders. A file that lies in none stands for itself. */
+function importsOfFolders(files) {
+  const folderOf = (path) => path.split('/')[0].replace(/\.ts$/, '');
+  const imports = new Map();
+  for (const [path, others] of files) {
+    const own = folderOf(path);
+    if (!imports.has(own)) imports.set(own, new Set());
+    for (const other of others) if (folderOf(other) !== own) imports.get(own).add(folderOf(other));
+  }
+  return imports;
+}
+
+/** The first cycle that each file closes, a sentence each. */
+function cycles(folder, files) {
+  const problems = [];
+  const done = new Set();
+  const visit = (path, trail) => {
+    if (trail.includes(path)) {
+      const cycle = [...trail.slice(trail.indexOf(path)), path];
+      problems.push(`Files of ${folder} import each other: ${cycle.join(' → ')}.`);
+      return;
+    }
+    if (done.has(path)) return;
+    for (const other of files.get(path) ?? []) visit(other, [...trail, path]);
+    done.add(path);
+  };
+  for (const path of files.keys()) visit(path, []);
+  return problems;
 }
 
 /** A source without its comments and its test module. */

@@ -1,7 +1,7 @@
-//! A host that knows nothing of motions: it gives the element two frames and takes its masks as annotations.
+//! An example of a host page: it gives `<veronese-segmenter>` two frames and lists the masks as annotations.
 
 import { VeroneseSegmenterElement } from 'veronese/element';
-import { SAMPLES } from './samples.js';
+import { SAMPLES } from './frames/samples.js';
 
 const find = <E extends Element>(selector: string, kind: abstract new (...args: never) => E): E => {
   const element = document.querySelector(selector);
@@ -31,7 +31,7 @@ segmenter.addEventListener('result', ({ detail: { width, height, motions: found 
   annotations.replaceChildren(...groups.map((group) => annotation(group, segmenter.mask(group) ?? new Uint8Array(), width, height)));
 });
 
-/** One line of the host's list: a thumbnail of the mask and its number of pixels. */
+/** One item of the host's list: a thumbnail of the mask and its number of pixels. */
 function annotation(group: number, mask: Uint8Array, width: number, height: number): HTMLElement {
   const canvas = document.createElement('canvas');
   canvas.width = width;

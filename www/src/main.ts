@@ -1,18 +1,17 @@
-//! Wires the page together: one store, one session, and the views on their markup.
+//! Wires the page together: one store, one session, and the views mounted on their markup.
 
-import { keysFor } from './keys.js';
-import { settingsFromHash } from './link.js';
-import { keepForOffline } from './offline.js';
-import { SAMPLES } from './samples.js';
-import { Session } from './session.js';
-import { Store } from './state.js';
+import { settingsFromHash } from './export/link.js';
+import { SAMPLES } from './frames/samples.js';
+import { keepForOffline } from './offline/register.js';
+import { Session } from './session/session.js';
+import { Store } from './state/state.js';
 import { mountArrows } from './views/arrows.js';
 import { mountBlink } from './views/blink.js';
 import { Brush } from './views/brush.js';
 import { mountCompare } from './views/compare.js';
-import { mountDownloads } from './views/downloads.js';
 import { mountDrop } from './views/drop.js';
 import { mountEvidence } from './views/evidence.js';
+import { mountExport } from './views/export.js';
 import { mountGestures } from './views/gestures.js';
 import { mountKeys } from './views/keys.js';
 import { mountLeaving } from './views/leaving.js';
@@ -24,6 +23,7 @@ import { mountOverlay } from './views/overlay.js';
 import { mountPicker } from './views/picker.js';
 import { mountProgress } from './views/progress.js';
 import { mountResidual } from './views/residual.js';
+import { keysFor } from './views/shortcuts.js';
 import { mountStage } from './views/stage.js';
 import { mountTimeline } from './views/timeline.js';
 import { mountTimings } from './views/timings.js';
@@ -56,7 +56,7 @@ mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountLeaving(window, store);
-mountDownloads(find(document, '#taking', HTMLElement), store, session);
+mountExport(find(document, '#export', HTMLElement), store, session);
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 
 keepForOffline(store);

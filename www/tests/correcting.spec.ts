@@ -1,10 +1,10 @@
-//! Strokes and merges change the masks as said, and are undone and done again.
+//! Strokes, merges, undo and redo change the masks as described.
 
 import { type Page } from '@playwright/test';
 
 import { differences, done, expect, labelsOnCanvas, open, test } from './support.js';
 
-/** Draws a stroke between two places of the picture, 0…1. */
+/** Draws a stroke between two points of the picture, 0…1. */
 async function stroke(page: Page, from: readonly [number, number], to: readonly [number, number]): Promise<void> {
   const box = (await page.locator('.layers').boundingBox())!;
   const at = ([x, y]: readonly [number, number]): [number, number] => [box.x + x * box.width, box.y + y * box.height];
@@ -12,11 +12,11 @@ async function stroke(page: Page, from: readonly [number, number], to: readonly 
   await page.mouse.down();
   await page.mouse.move(...at(to), { steps: 8 });
   await page.mouse.up();
-  await expect(page.locator('#status')).toHaveText(/^Solved again/);
+  await expect(page.locator('#status')).toHaveText(/^Labels updated/);
   await done(page);
 }
 
-test('a brush stroke says what belongs to a mask, and undo takes it back', async ({ page }) => {
+test('a brush stroke adds pixels to a mask, and undo removes them', async ({ page }) => {
   await open(page, 'groups');
   const found = await labelsOnCanvas(page);
   const at = (x: number, y: number): number => Math.floor(y * 432) * 768 + Math.floor(x * 768);
@@ -29,7 +29,7 @@ test('a brush stroke says what belongs to a mask, and undo takes it back', async
   await stroke(page, [0.7, 0.5], [0.8, 0.5]);
   const painted = await labelsOnCanvas(page);
   for (let x = 0.7; x <= 0.8; x += 0.01) expect(painted[at(x, 0.5)]).toBe(1);
-  // Far away next to nothing has changed.
+  // Far away almost nothing has changed.
   expect(differences(painted.slice(0, 768 * 60), found.slice(0, 768 * 60))).toBeLessThan(50);
 
   await page.locator('#undo').click();
@@ -41,7 +41,7 @@ test('a brush stroke says what belongs to a mask, and undo takes it back', async
   await expect(page.locator('#undo')).toBeDisabled();
 });
 
-test('an eraser stroke takes pixels out of a mask', async ({ page }) => {
+test('an eraser stroke removes pixels from a mask', async ({ page }) => {
   await open(page, 'groups');
   const found = await labelsOnCanvas(page);
   const inside = Math.floor(0.35 * 432) * 768 + Math.floor(0.22 * 768);
@@ -54,7 +54,7 @@ test('an eraser stroke takes pixels out of a mask', async ({ page }) => {
   for (let x = 0.2; x <= 0.25; x += 0.01) expect(erased[Math.floor(0.35 * 432) * 768 + Math.floor(x * 768)]).not.toBe(mask);
 });
 
-test('masks are merged into one and taken apart again', async ({ page }) => {
+test('masks are merged and ungrouped', async ({ page }) => {
   await open(page, 'groups');
   const found = await labelsOnCanvas(page);
   const rows = page.locator('#motions > li');
@@ -68,11 +68,11 @@ test('masks are merged into one and taken apart again', async ({ page }) => {
   expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   await page.locator('#redo').click();
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).getByRole('button', { name: 'Take apart' }).click();
+  await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
   expect(await rows.count()).toBeGreaterThan(count - 1);
 });
 
-test('a stroke with a merged mask means any of its motions', async ({ page }) => {
+test('a stroke with a merged mask allows all of its motions', async ({ page }) => {
   await open(page, 'groups');
   const rows = page.locator('#motions > li');
   await rows.nth(1).getByText('More', { exact: true }).click();
@@ -80,13 +80,13 @@ test('a stroke with a merged mask means any of its motions', async ({ page }) =>
   const merged = await labelsOnCanvas(page);
   await page.keyboard.press('p');
   await rows.nth(1).locator('.motion-words').click();
-  // Through what is in the mask already: nothing that it says is new.
+  // These pixels are in the mask already, so the stroke adds nothing.
   await stroke(page, [0.2, 0.4], [0.24, 0.4]);
   const painted = await labelsOnCanvas(page);
   expect(differences(painted, merged) / painted.length).toBeLessThan(0.03);
 });
 
-test('a stroke is drawn by keyboard alone', async ({ page }) => {
+test('a stroke is drawn with the keyboard', async ({ page }) => {
   await open(page, 'groups');
   const found = await labelsOnCanvas(page);
   await page.locator('#motions > li').nth(1).locator('.motion-words').click();
@@ -96,9 +96,9 @@ test('a stroke is drawn by keyboard alone', async ({ page }) => {
   await page.keyboard.press('Space');
   for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
   await page.keyboard.press('Space');
-  await expect(page.locator('#status')).toHaveText(/^Solved again/);
+  await expect(page.locator('#status')).toHaveText(/^Labels updated/);
   const painted = await labelsOnCanvas(page);
-  // From the middle 20 radii of 8 pixels to the right, then 6.
+  // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
   for (let x = 384 + 160; x <= 384 + 208; x++) expect(painted[216 * 768 + x]).toBe(1);
   expect(differences(painted, found)).toBeGreaterThan(0);
 });

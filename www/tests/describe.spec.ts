@@ -1,9 +1,9 @@
-//! Motions in words, without a browser: directions and signs are what goes wrong unseen.
+//! Motions in words, without a browser.
 
 import { expect, test } from '@playwright/test';
 
-import { type Matrix, partsOf, visibleParts } from '../src/describe.js';
-import { strings } from '../src/strings.js';
+import { strings } from '../src/common/strings.js';
+import { type Matrix, partsOf, visibleParts } from '../src/result/describe.js';
 
 const CENTRE = [120, 80] as const;
 
@@ -17,7 +17,7 @@ function words(matrix: Matrix, reach = 100): string {
   return strings.motion(visibleParts(partsOf(matrix, CENTRE), reach)).replaceAll('\u00a0', ' ');
 }
 
-test('no motion stands still', () => {
+test('the zero motion stands still', () => {
   expect(words([0, 0, 0, 0, 0, 0])).toBe('stands still');
 });
 
@@ -42,7 +42,7 @@ test('a stretch keeps the area', () => {
   expect(words(about([1.02, 0, 0, 1 / 1.02], 0, 0))).toBe('stretches 4 %');
 });
 
-test('what moves no pixel of the mask goes unsaid', () => {
+test('parts that move no pixel of the mask are left out', () => {
   const turn = about([1, -0.002, 0.002, 1], 0.03, 0);
   expect(words(turn, 10)).toBe('stands still');
   expect(words(turn, 400)).toBe('turns 0.11° clockwise');

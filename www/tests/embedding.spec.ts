@@ -1,4 +1,4 @@
-//! <veronese-segmenter> inside a page that knows nothing of it.
+//! <veronese-segmenter> in a host page.
 
 import { type Page } from '@playwright/test';
 import { groupLabels } from 'veronese';
@@ -10,7 +10,7 @@ async function openHost(page: Page): Promise<void> {
   await expect(page.locator('#host-status')).toHaveText(/masks received/, { timeout: 30_000 });
 }
 
-/** The last labels of the element. */
+/** The current labels of the element. */
 function labels(page: Page): Promise<number[]> {
   return page.locator('veronese-segmenter').evaluate((element) => Array.from((element as HTMLElement & { labels(): Uint8Array }).labels()));
 }
@@ -33,7 +33,7 @@ test('attributes, events, methods and colours', async ({ page }) => {
   await expect
     .poll(() => page.locator('veronese-segmenter').evaluate((element) => (element as HTMLElement & { result: { count: number } }).result.count))
     .toBe(2);
-  // The host's own colour for mask 1.
+  // The host page's style sets the colour of mask 1.
   const colours = await page.locator('veronese-segmenter').evaluate((element) => {
     const canvas = element.shadowRoot!.querySelector<HTMLCanvasElement>('.masks')!;
     const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
@@ -76,7 +76,7 @@ test('attributes, events, methods and colours', async ({ page }) => {
   expect(told).toEqual({ events: ['progress', 'result', 'error invalid-option'], count: 1, reason: 'cancelled' });
 });
 
-test('frames that are given are the element\'s own, and what is none is refused', async ({ page }) => {
+test('frames are copied, and invalid ones rejected', async ({ page }) => {
   await openHost(page);
   const told = await page.evaluate(async () => {
     type Frames = HTMLElement & { setFrames(first: unknown, second: unknown): Promise<{ labels: Uint8Array }>; segment(): Promise<{ labels: Uint8Array }> };
@@ -125,7 +125,7 @@ test('frames that are given are the element\'s own, and what is none is refused'
   expect(told.after).toBe(96 * 64);
 });
 
-test('a frame that is missing is an event of the element', async ({ page }) => {
+test('an unreadable frame raises an error event', async ({ page }) => {
   await openHost(page);
   await page.locator('veronese-segmenter').evaluate((element) => element.setAttribute('first', 'embed.html'));
   await expect(page.locator('#host-status')).toHaveText('No masks: the first frame is not an image that this browser can read.');

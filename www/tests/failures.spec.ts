@@ -1,4 +1,4 @@
-//! What goes wrong is said in a sentence, and the page goes on working.
+//! Failures are reported in a sentence, and the page stays usable.
 
 import { type Page } from '@playwright/test';
 
@@ -13,7 +13,7 @@ async function expectToWork(page: Page): Promise<void> {
   expect((await labelsOnCanvas(page)).length).toBe(96 * 64);
 }
 
-test('a broken file is reported and the open pair stays', async ({ page }) => {
+test('a broken file is reported, and the open pair stays', async ({ page }) => {
   await open(page);
   const whole = await sample('first');
   const broken = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('this is not an image') };
@@ -25,7 +25,7 @@ test('a broken file is reported and the open pair stays', async ({ page }) => {
   await expectToWork(page);
 });
 
-test('frames of different size are refused with the sentence of the package', async ({ page }) => {
+test('frames that differ in size are rejected with the message of the package', async ({ page }) => {
   await open(page);
   await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
   await expect(page.getByRole('alert')).toContainText('The frames differ in size: 96×64 and 64×96 pixels.');
@@ -34,7 +34,7 @@ test('frames of different size are refused with the sentence of the package', as
   await expectToWork(page);
 });
 
-test('a frame that is too small is refused', async ({ page }) => {
+test('a frame that is too small is rejected', async ({ page }) => {
   await open(page);
   const dot = await square('dot.png', 1, 1, 0, 0);
   await upload(page, [dot, { ...dot, name: 'dot2.png' }]);
@@ -42,7 +42,7 @@ test('a frame that is too small is refused', async ({ page }) => {
   await expectToWork(page);
 });
 
-test('a seed that is none is refused', async ({ page }) => {
+test('an invalid seed is rejected', async ({ page }) => {
   await open(page);
   const seed = page.getByLabel('Seed');
   await seed.fill('-3');
@@ -51,13 +51,13 @@ test('a seed that is none is refused', async ({ page }) => {
   await expect(seed).toHaveValue('1');
 });
 
-test('a request is cancelled at once and can be made again', async ({ page, context }) => {
-  // The worker's file is held back, so that the request is certainly under way.
+test('a request is cancelled at once and can be repeated', async ({ page, context }) => {
+  // The worker's file is held back, so that the request is certain to be running.
   let release = (): void => undefined;
   const held = new Promise<void>((resolve) => (release = resolve));
   await context.route('**/*worker*.js', async (route) => {
     await held;
-    await route.continue().catch(() => undefined); // whoever asked may be gone
+    await route.continue().catch(() => undefined); // the worker may have been ended
   });
   await page.goto('./');
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
@@ -66,14 +66,14 @@ test('a request is cancelled at once and can be made again', async ({ page, cont
   await expect(page.locator('#status')).toHaveText('Cancelled.');
   await expect(page.locator('#motions > li')).toHaveCount(0);
   release();
-  await page.waitForTimeout(1000); // long enough for the answer, were anybody still working on it
+  await page.waitForTimeout(1000); // long enough for a result, if the request were still running
   await expect(page.locator('#status')).toHaveText('Cancelled.');
   await page.getByRole('button', { name: 'Segment again' }).click();
   await done(page);
   expect((await labelsOnCanvas(page)).length).toBe(768 * 432);
 });
 
-test('a missing sample is reported and files still open', async ({ page, context }) => {
+test('a missing sample is reported, and files can still be opened', async ({ page, context }) => {
   await context.route('**/samples/**', (route) => route.fulfill({ status: 200, body: 'nothing' }));
   await page.goto('./');
   await expect(page.locator('#notice-code')).toHaveText('unreadable-image');

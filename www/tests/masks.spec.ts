@@ -1,4 +1,4 @@
-//! What the page shows is what the package computes, bit for bit.
+//! The page shows exactly what the package computes.
 
 import { readFile } from 'node:fs/promises';
 
@@ -7,7 +7,7 @@ import { decodeImage } from 'veronese/codecs';
 
 import { MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, pixelsOf, sample, segmentedInNode, square, test, upload } from './support.js';
 
-test('opens with the bundled pair segmented', async ({ page }) => {
+test('the page opens with the sample pair segmented', async ({ page }) => {
   await page.goto('./');
   await done(page);
   await page.locator('#look [value=motions]').check();
@@ -22,7 +22,7 @@ test('opens with the bundled pair segmented', async ({ page }) => {
   expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
 });
 
-test('decodes a file to the same bytes as Node', async ({ page }) => {
+test('a file is decoded to the same bytes as in Node', async ({ page }) => {
   await open(page);
   const first = await decodeImage((await sample('first')).buffer);
   const shown = await pixelsOf(page, '#frame');
@@ -30,9 +30,9 @@ test('decodes a file to the same bytes as Node', async ({ page }) => {
   expect(differences(shown.data, first.data)).toBe(0);
 });
 
-test('two uploaded files give the masks that Node gives', async ({ page }) => {
+test('two uploaded files give the same masks as in Node', async ({ page }) => {
   await open(page);
-  // The order is that of the names, read as a person reads numbers; the odd size catches a wrong row length.
+  // Numbers in names are compared by value. The odd size catches a wrong row length.
   const [second, first] = [await square('frame10.png', 161, 97, 3, 1), await square('frame9.png', 161, 97, 0, 0)];
   await upload(page, [second, first]);
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('frame9.png, 161 × 97');
@@ -41,7 +41,7 @@ test('two uploaded files give the masks that Node gives', async ({ page }) => {
   expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
 });
 
-test('swapped frames are segmented the other way round', async ({ page }) => {
+test('swapping the frames segments them in the other order', async ({ page }) => {
   await open(page);
   await page.locator('#swap').click();
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('second.png, 768 × 432');
@@ -69,7 +69,7 @@ test('the labels PNG holds the labels', async ({ page }) => {
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
   expect(download.suggestedFilename()).toBe('labels.png');
   const file = await readFile(await download.path());
-  expect([...file.subarray(24, 26)]).toEqual([8, 3]); // eight bits, indexed
+  expect([...file.subarray(24, 26)]).toEqual([8, 3]); // 8 bits, indexed
   const { data } = await decodeImage(file);
   const labelByColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
   const labels = Array.from({ length: data.length / 4 }, (_, i) => labelByColour.get(data.subarray(4 * i, 4 * i + 3).join()) ?? -1);
@@ -77,7 +77,7 @@ test('the labels PNG holds the labels', async ({ page }) => {
   expect(differences(labels, expected.labels)).toBe(0);
 });
 
-test('toggle, solo, opacity and outlines change what is seen', async ({ page }) => {
+test('visibility, solo, opacity and outlines change the picture', async ({ page }) => {
   await open(page);
   const all = await labelsOnCanvas(page);
   const row = page.locator('#motions > li').first();
@@ -102,7 +102,7 @@ test('toggle, solo, opacity and outlines change what is seen', async ({ page }) 
   await expect(page.locator('#outlines')).toBeHidden();
 });
 
-test('the second frame is shown by switch and while a key is held', async ({ page }) => {
+test('the second frame is shown by a switch and while a key is held', async ({ page }) => {
   await open(page);
   const first = await decodeImage((await sample('first')).buffer);
   const second = await decodeImage((await sample('second')).buffer);
@@ -115,8 +115,8 @@ test('the second frame is shown by switch and while a key is held', async ({ pag
   await page.locator('#look [value=second]').check();
   expect(await shows(second)).toBe(0);
 
-  // What stands still lies where it lay in the first frame: warped by nothing where the largest motion is none.
-  await page.getByRole('button', { name: 'with Motion 0 held still' }).click();
-  await expect(page.locator('#caption')).toHaveText(/frame, Motion 0 held still$/);
+  // Stabilising alternates between the first frame and the second warped back.
+  await page.getByRole('button', { name: 'Stabilise on Motion 0' }).click();
+  await expect(page.locator('#caption')).toHaveText(/frame, stabilised on Motion 0$/);
   await expect(page.getByRole('button', { name: 'Blink' })).toHaveAttribute('aria-pressed', 'true');
 });

@@ -1,10 +1,10 @@
-//! Fill and outlines against their definitions, without a browser.
+//! Fill and outlines compared with their definitions, without a browser.
 
 import { expect, test } from '@playwright/test';
 import type { Segmentation } from 'veronese';
 
-import { maskOf } from '../src/masks.js';
-import { type Painting, fillOf, outlinesOf } from '../src/paint.js';
+import { type Painting, fillOf, outlinesOf } from '../src/drawing/paint.js';
+import { maskOf } from '../src/result/masks.js';
 
 const WIDTH = 23;
 const HEIGHT = 17;
@@ -32,7 +32,7 @@ function blobs(): Segmentation {
   return { version: 1, width: WIDTH, height: HEIGHT, count: 4, motions, labels, evidence: { candidates: [] }, unlabelled: 4, milliseconds: { total: 0 }, settings };
 }
 
-test('a label that is hidden is transparent, the others are opaque', () => {
+test('hidden labels are transparent, the others opaque', () => {
   const scene = blobs();
   const fill = fillOf(scene, { ...EVERYTHING, hidden: new Set([2]) });
   for (let i = 0; i < fill.length; i++) expect(fill[i]! >>> 24).toBe(scene.labels[i] === 2 ? 0 : 255);
@@ -48,7 +48,7 @@ test('motions of one group have one colour', () => {
 
 for (const kind of ['motions', 'groups'] as const) {
   for (const thickness of [1, 2, 5]) {
-    test(`outlines of ${kind}, ${thickness} thick, run where another colour is that near`, () => {
+    test(`outlines of ${kind} are ${thickness} thick`, () => {
       const scene = blobs();
       const { labels } = scene;
       const outlines = outlinesOf(scene, { ...EVERYTHING, kind }, thickness);
@@ -68,7 +68,7 @@ for (const kind of ['motions', 'groups'] as const) {
   }
 }
 
-test('rows painted one by one are the whole picture', () => {
+test('painting row by row gives the same picture', () => {
   const scene = blobs();
   for (const whole of [fillOf(scene, EVERYTHING), outlinesOf(scene, EVERYTHING, 2)]) {
     const pieces = whole.length === 0 ? [] : Array.from({ length: HEIGHT }, (_, y) => y);
@@ -79,7 +79,7 @@ test('rows painted one by one are the whole picture', () => {
   }
 });
 
-test('a colour that was given replaces the own', () => {
+test('a colour set by the user replaces that of the palette', () => {
   const scene = blobs();
   const fill = fillOf(scene, { ...EVERYTHING, colours: { 'motions-2': [1, 2, 3], 'groups-1': [9, 9, 9] } });
   expect(new Set(fill.filter((_, i) => scene.labels[i] === 2))).toEqual(new Set([0xff03_0201]));

@@ -1,4 +1,4 @@
-//! The estimator gives the same bits in the browser and in Node: motions, covariances, labels of 200 problems.
+//! The estimator gives identical bits in the browser and in Node: motions, evidence and labels of 200 problems.
 
 import { readFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -17,7 +17,7 @@ interface Problem {
   motions: number | 'auto';
 }
 
-/** Measurements of one to four motions, some noise, some outliers; only operations that are exact everywhere. */
+/** Measurements of one to four motions with noise and outliers, from operations that are exact on every platform. */
 function problem(index: number): Problem {
   let state = 0x9e3779b9 ^ Math.imul(index + 1, 0x85ebca6b);
   const next = (): number => {
@@ -39,7 +39,7 @@ function problem(index: number): Problem {
   return { positions, derivatives, motions: index % 10 === 9 ? 'auto' : n };
 }
 
-/** All bits of an answer as text: JSON writes a number so that reading it gives the same number. */
+/** All bits of a result as text: numbers survive JSON exactly. */
 function bits(fit: Omit<MotionFit, 'labels'> & { labels: ArrayLike<number> }): string {
   return JSON.stringify([fit.motions, fit.evidence, Array.from(fit.labels)]);
 }

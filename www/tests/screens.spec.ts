@@ -1,10 +1,10 @@
-//! Pictures of the page in its states, in `out/screens/`, for people to look at. Each waits for the state it shows.
+//! Screenshots of the page in various states, written to `out/screens/` for review.
 
 import { type Page } from '@playwright/test';
 
 import { done, expect, sample, screen, square, test, upload } from './support.js';
 
-/** As visitors see it first. */
+/** Opens the page with its defaults. */
 async function openBest(page: Page): Promise<void> {
   await page.goto('./');
   await done(page);
@@ -57,7 +57,7 @@ test('folder of frames', async ({ page }) => {
   await done(page);
   await page.locator('#timeline').scrollIntoViewIfNeeded();
   await page.waitForTimeout(300);
-  await page.screenshot({ path: screen('film'), fullPage: true });
+  await page.screenshot({ path: screen('clip'), fullPage: true });
 });
 
 test('keys', async ({ page }) => {
@@ -86,7 +86,7 @@ test('error', async ({ page }) => {
 });
 
 test('progress', async ({ page, context }) => {
-  // Held back until the picture is taken.
+  // The worker is held back until the screenshot is taken.
   let release = (): void => undefined;
   const held = new Promise<void>((resolve) => (release = resolve));
   await context.route('**/*worker*.js', async (route) => {

@@ -1,4 +1,4 @@
-//! What the browser tests share: the page under watch, files to upload, masks read back from the canvas.
+//! Shared by the tests: a page whose errors fail the test, files to upload, masks read back from the canvas.
 
 import { readFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
@@ -7,21 +7,21 @@ import { type Page, test as base, expect } from '@playwright/test';
 import { type Segmentation, type SegmentOptions, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
-import { PALETTE, UNKNOWN_COLOUR } from '../src/palette.js';
+import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
 
 export { expect };
 
-/** The bundled pair shows two cars on a road: at least so many motions are found in it. */
+/** The sample pair shows two cars on a road: it has at least this many motions. */
 export const MOTIONS_IN_SAMPLE = 3;
 
-/** A file as Playwright takes it. */
+/** A file for Playwright's `setInputFiles`. */
 export interface Upload {
   name: string;
   mimeType: string;
   buffer: Buffer;
 }
 
-/** A test whose page must log no error, violate no policy, and ask nothing of other hosts. */
+/** A test that fails if its page logs an error, violates the content security policy or contacts another host. */
 export const test = base.extend<{ page: Page }>({
   page: async ({ page, baseURL }, use) => {
     const complaints: string[] = [];
@@ -44,32 +44,32 @@ export const test = base.extend<{ page: Page }>({
   },
 });
 
-/** What {@link open} asks of the package: most tests need masks, not the best ones. */
+/** The options of {@link open}: most tests need masks, not the best ones. */
 export const FAST: SegmentOptions = { quality: 'fast' };
 
-/** Opens the page and waits for the bundled pair's masks: made fast, one for each motion unless told otherwise. */
+/** Opens the page and waits for the masks of the sample pair, with quality `fast` and by default one per motion. */
 export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): Promise<void> {
   await page.goto(`./#quality=fast&masks=${kind}`);
   await done(page);
 }
 
-/** Waits until the last request is answered. */
+/** Waits for the last request. */
 export async function done(page: Page): Promise<void> {
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
 }
 
-/** Opens files through the picker and waits for their masks. */
+/** Opens files through the picker. */
 export async function upload(page: Page, files: Upload[]): Promise<void> {
   await page.locator('#open-pair').setInputFiles(files);
 }
 
-/** A file that comes with the page. */
+/** A frame of the sample pair. */
 export async function sample(name: 'first' | 'second', as = `${name}.png`): Promise<Upload> {
   const path = fileURLToPath(new URL(`../public/samples/intel-two-cars/${name}.png`, import.meta.url));
   return { name: as, mimeType: 'image/png', buffer: await readFile(path) };
 }
 
-/** A textured ground and, before it, a textured square that has moved by (`dx`, `dy`): a PNG file of our own making. */
+/** A PNG file of a textured background and a textured square in front of it, moved by (`dx`, `dy`) pixels. */
 export async function square(name: string, width: number, height: number, dx: number, dy: number): Promise<Upload> {
   const pixels = new Uint8Array(width * height * 3);
   const side = Math.min(width, height) / 3;
@@ -83,13 +83,13 @@ export async function square(name: string, width: number, height: number, dx: nu
   return { name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
 }
 
-/** Smooth, nowhere flat, and of different colours in the three channels. */
+/** A smooth texture, nowhere flat, that differs between the channels. */
 function texture(x: number, y: number, pitch: number): [number, number, number] {
   const wave = (a: number, b: number): number => Math.round(128 + 60 * Math.sin(pitch * (a * x + b * y)) + 50 * Math.cos(pitch * (b * x - a * y) * 0.61));
   return [wave(0.9, 0.4), wave(0.5, -0.8), wave(0.2, 0.95)];
 }
 
-/** What Node makes of the same two files. */
+/** The segmentation of two files in Node. */
 export async function segmentedInNode(first: Upload, second: Upload, options: SegmentOptions = FAST): Promise<Segmentation> {
   return segmentPair(await decodeImage(first.buffer), await decodeImage(second.buffer), options);
 }
@@ -100,12 +100,12 @@ interface CanvasPixels {
   data: Uint8Array;
 }
 
-/** The RGBA bytes of a canvas of the page. */
+/** The RGBA bytes of a canvas. */
 export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixels> {
   const { width, height, base64 } = await page.locator(selector).evaluate((canvas) => {
     if (!(canvas instanceof HTMLCanvasElement)) throw new Error('no canvas');
     const { width, height } = canvas;
-    // Read from a copy: reading a canvas often changes how the browser keeps it.
+    // Reads from a copy: frequent reads change how a browser stores a canvas.
     const copy = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
     copy?.drawImage(canvas, 0, 0);
     const image = copy?.getImageData(0, 0, width, height);
@@ -117,7 +117,7 @@ export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixe
   return { width, height, data: new Uint8Array(Buffer.from(base64, 'base64')) };
 }
 
-/** The number of every pixel's mask, read back from the colours of the masks; -1 where nothing is painted. */
+/** The number of each pixel's mask, read back from its colour; -1 where nothing is painted. */
 export async function labelsOnCanvas(page: Page): Promise<Int16Array> {
   const { data } = await pixelsOf(page, '#fill');
   const labelByColour = new Map(PALETTE.map((colour, label) => [colour.join(), label]));
@@ -131,7 +131,7 @@ export async function labelsOnCanvas(page: Page): Promise<Int16Array> {
   });
 }
 
-/** Number of pixels that differ; a number reads better in a failure than two arrays of a million. */
+/** The number of elements that differ: more readable in a failure than two large arrays. */
 export function differences(a: ArrayLike<number>, b: ArrayLike<number>): number {
   if (a.length !== b.length) return Math.max(a.length, b.length);
   let count = 0;
@@ -139,7 +139,7 @@ export function differences(a: ArrayLike<number>, b: ArrayLike<number>): number 
   return count;
 }
 
-/** Where screenshots go, to be looked at. */
+/** The path of a screenshot. */
 export function screen(name: string): string {
   return fileURLToPath(new URL(`../../out/screens/${name}.png`, import.meta.url));
 }

@@ -1,4 +1,4 @@
-//! Fingers on the picture, as the browser itself hears them: what they do to the picture and what is left to the page.
+//! Touch input, dispatched by the browser: which gestures the picture handles and which are left to the page.
 
 import { type Page } from '@playwright/test';
 
@@ -10,7 +10,7 @@ type Point = readonly [number, number];
 
 type Path = readonly [Point, Point];
 
-/** Puts fingers down and moves them in steps from the first to the last of their places. Gives what is to be done to them then. */
+/** Puts fingers down and moves them in steps along their paths. Returns a function that dispatches the next event. */
 async function press(page: Page, ...paths: Path[]): Promise<(type: 'touchStart' | 'touchEnd' | 'touchCancel', ...more: Point[]) => Promise<void>> {
   const cdp = await page.context().newCDPSession(page);
   const steps = 12;
@@ -24,18 +24,18 @@ async function press(page: Page, ...paths: Path[]): Promise<(type: 'touchStart' 
   };
 }
 
-/** Puts fingers down, moves them and lifts them. */
+/** Puts fingers down, moves and lifts them. */
 async function fingers(page: Page, ...paths: Path[]): Promise<void> {
   const then = await press(page, ...paths);
   await then('touchEnd');
-  await page.waitForTimeout(300); // a scroll ends by itself
+  await page.waitForTimeout(300); // for scrolling to end
 }
 
 interface Seen {
-  /** How much the browser has enlarged the page. */
+  /** Zoom of the page. */
   page: number;
   scrolled: number;
-  /** The enlarged picture, in parts of the whole one. */
+  /** Zoom of the picture, and its position in the view, screen pixels. */
   zoom: number;
   left: number;
   top: number;
@@ -54,13 +54,13 @@ async function seen(page: Page): Promise<Seen> {
   });
 }
 
-/** A place of the picture, on the screen. */
+/** Converts points of the picture, 0…1, to the screen. */
 async function placeOf(page: Page): Promise<(u: number, v: number) => Point> {
   const box = (await page.locator('.layers').boundingBox())!;
   return (u, v) => [box.x + u * box.width, box.y + v * box.height];
 }
 
-test('two fingers enlarge the picture, not the page, and move it', async ({ page }) => {
+test('two fingers zoom and pan the picture, not the page', async ({ page }) => {
   await open(page);
   const at = await placeOf(page);
   await fingers(page, [at(0.45, 0.5), at(0.2, 0.5)], [at(0.55, 0.5), at(0.8, 0.5)]);
@@ -78,8 +78,8 @@ test('two fingers enlarge the picture, not the page, and move it', async ({ page
   expect(moved.top - large.top).toBeCloseTo(16, -1);
 });
 
-test('two fingers beside the picture do not enlarge the page', async ({ page }) => {
-  await page.setViewportSize({ width: 780, height: 300 }); // lying down: the picture does not fill the width of its stage
+test('two fingers beside the picture do not zoom the page', async ({ page }) => {
+  await page.setViewportSize({ width: 780, height: 300 }); // landscape: the picture does not fill the width of its stage
   await open(page);
   await page.locator('#stage').evaluate((stage) => stage.scrollIntoView({ block: 'center' }));
   const stage = (await page.locator('#stage').boundingBox())!;
@@ -92,7 +92,7 @@ test('two fingers beside the picture do not enlarge the page', async ({ page }) 
   expect((await seen(page)).page).toBe(1);
 });
 
-test('one finger scrolls the page, and moves the picture once it is enlarged', async ({ page }) => {
+test('one finger scrolls the page, and pans the picture once it is enlarged', async ({ page }) => {
   await open(page);
   const at = await placeOf(page);
   const [x, y] = at(0.5, 0.8);
@@ -111,7 +111,7 @@ test('one finger scrolls the page, and moves the picture once it is enlarged', a
   expect(moved.top).toBeLessThan(large.top - 10);
 });
 
-test('one finger draws with the brush, two still enlarge the picture', async ({ page }) => {
+test('with the brush one finger draws and two zoom', async ({ page }) => {
   await open(page);
   await page.getByLabel('Brush', { exact: true }).check({ force: true });
   const at = await placeOf(page);
@@ -119,7 +119,7 @@ test('one finger draws with the brush, two still enlarge the picture', async ({ 
   const large = await seen(page);
   expect(large.page).toBe(1);
   expect(large.zoom).toBeGreaterThan(3);
-  await expect(page.locator('#undo')).toBeDisabled(); // no stroke came of it
+  await expect(page.locator('#undo')).toBeDisabled(); // no stroke was drawn
 
   await fingers(page, [at(0.4, 0.4), at(0.6, 0.6)]);
   await expect(page.locator('#undo')).toBeEnabled();
@@ -128,7 +128,7 @@ test('one finger draws with the brush, two still enlarge the picture', async ({ 
   expect([after.zoom, after.left, after.scrolled]).toEqual([large.zoom, large.left, 0]);
 });
 
-test('what a finger drew stays when a second one comes down or the browser takes it over', async ({ page }) => {
+test('a stroke stays when a second finger or the browser ends it', async ({ page }) => {
   await open(page);
   await page.getByLabel('Brush', { exact: true }).check({ force: true });
   const at = await placeOf(page);
@@ -143,7 +143,7 @@ test('what a finger drew stays when a second one comes down or the browser takes
   await expect(strokes).toHaveCount(2);
   await done(page);
 
-  // A finger that only came down has drawn nothing yet.
+  // A finger that has not moved has drawn nothing.
   const still = await press(page, [at(0.5, 0.5), at(0.5, 0.5)]);
   await still('touchCancel');
   await expect(page.locator('#strokes .now')).toHaveAttribute('d', '');

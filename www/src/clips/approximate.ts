@@ -1,17 +1,17 @@
-//! Frames of a video by seeking a `<video>`: all that can be had without WebCodecs. Browsers may show a neighbour of the frame
-//! that was asked for, so the clip does not call itself exact.
+//! Frames of a video by seeking a `<video>` element, for browsers without WebCodecs. Browsers may show a neighbour of the requested
+//! frame, so the clip is not exact.
 
-import { PageError } from '../errors.js';
-import { type LoadedFrame, frameFromBitmap } from '../frames.js';
-import { strings } from '../strings.js';
-import { type Clip, type Picture, knownInFilm } from './clip.js';
+import { PageError } from '../common/errors.js';
+import { strings } from '../common/strings.js';
+import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
+import { type Clip, type Picture, identityOf } from './clip.js';
 
-/** The file does not tell its frame rate here: steps are of this many a second. */
+/** A `<video>` element does not tell its frame rate: this one is assumed. */
 const STEPS_PER_SECOND = 30;
-/** A seek that takes longer has failed, milliseconds. */
+/** Timeout of a seek, milliseconds. */
 const PATIENCE = 10_000;
 
-/** `null` where the browser cannot play the file. */
+/** `null` if the browser cannot play the file. */
 export async function openApproximate(file: File, fingerprint: string): Promise<Clip | null> {
   const video = document.createElement('video');
   video.muted = true;
@@ -32,7 +32,7 @@ class ApproximateClip implements Clip {
   readonly times: Float64Array;
   readonly width: number;
   readonly height: number;
-  /** Seeks are done one after another. */
+  /** Seeks run one at a time. */
   #queue: Promise<unknown> = Promise.resolve();
 
   constructor(
@@ -46,10 +46,10 @@ class ApproximateClip implements Clip {
     this.height = video.videoHeight;
   }
 
-  async frame(index: number, longestSide: number): Promise<LoadedFrame> {
+  async frame(index: number, longestSide: number): Promise<DecodedFrame> {
     const began = performance.now();
     const bitmap = await this.#at(index, () => createImageBitmap(this.video));
-    return frameFromBitmap(bitmap, knownInFilm(this.name, this.fingerprint, index), longestSide, began);
+    return frameFromBitmap(bitmap, identityOf(this.name, this.fingerprint, index), longestSide, began);
   }
 
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {
@@ -80,7 +80,7 @@ class ApproximateClip implements Clip {
   }
 }
 
-/** The first of these events. */
+/** Waits for the first of these events and returns its type. */
 function first(video: HTMLVideoElement, ...events: string[]): Promise<string> {
   return new Promise((resolve, reject) => {
     const settle = (event: Event): void => {

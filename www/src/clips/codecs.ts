@@ -1,4 +1,4 @@
-//! What people call the codecs that files name.
+//! Common names of the codecs that files identify.
 
 const NAMES: Readonly<Record<string, string>> = {
   avc: 'H.264',
@@ -16,7 +16,7 @@ const NAMES: Readonly<Record<string, string>> = {
   V_MJPEG: 'Motion JPEG',
 };
 
-/** The first of these identifiers that has a name, else the last of them as the file has it. */
+/** The name of the first identifier that has one, else the last identifier itself. */
 export function codecName(...identifiers: readonly (string | null)[]): string | null {
   const known = identifiers.filter((one) => one !== null);
   const named = known.find((one) => one in NAMES);

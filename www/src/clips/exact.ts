@@ -1,17 +1,17 @@
-//! Exact frames of a video file: the file's packets say when each frame is shown, and a decoder gives the frame of that time. What
-//! comes back is checked against the time asked for: a wrong frame is an error, never shown.
+//! Exact frames of a video. The packets of the file give the presentation time of each frame, and a decoder returns the frame for a
+//! time. Its timestamp is compared with the requested one: a wrong frame is an error and is never shown.
 
 import { BlobSource, EncodedPacketSink, Input, type InputVideoTrack, MATROSKA, MP4, QTFF, VideoSampleSink, WEBM } from 'mediabunny';
-import { PageError } from '../errors.js';
-import { type LoadedFrame, frameFromBitmap } from '../frames.js';
-import { strings } from '../strings.js';
-import { type Clip, type Picture, knownInFilm } from './clip.js';
+import { PageError } from '../common/errors.js';
+import { strings } from '../common/strings.js';
+import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
+import { type Clip, type Picture, identityOf } from './clip.js';
 import { codecName } from './codecs.js';
 
-/** Times closer than this are the same, seconds: containers round them to their own clocks. */
+/** Times that differ by less are equal, seconds: containers round them to their own time base. */
 const SAME_TIME = 1e-4;
 
-/** `null` where the file is none that can be read and decoded here. */
+/** `null` if this browser cannot read or decode the file. */
 export async function openExact(file: File, fingerprint: string): Promise<Clip | null> {
   const input = inputOf(file);
   try {
@@ -23,7 +23,7 @@ export async function openExact(file: File, fingerprint: string): Promise<Clip |
     const times = await timesOf(track);
     if (times.length > 0) return new ExactClip(file.name, fingerprint, input, track, times);
   } catch {
-    // No container that is known, or a damaged one: somebody else may read it.
+    // An unknown or damaged container, which a <video> element may still play.
   }
   input.dispose();
   return null;
@@ -33,13 +33,13 @@ function inputOf(file: File): Input {
   return new Input({ source: new BlobSource(file), formats: [MP4, QTFF, WEBM, MATROSKA] });
 }
 
-/** What the codec of a video is called that this browser has no decoder for; `null` where it has one, or where the file is none that can be read. */
+/** The name of a video's codec if this browser has no decoder for it; `null` if it has one or the file cannot be read. */
 export async function undecodable(file: File): Promise<string | null> {
   const input = inputOf(file);
   try {
     const track = await input.getPrimaryVideoTrack();
     if (track === null || (await track.canDecode())) return null;
-    // Without WebCodecs nothing can be decoded here, and yet be played.
+    // Without WebCodecs nothing can be decoded, but a <video> element may still play it.
     const named = (await track.getCodecParameterString()) !== null;
     if (named && document.createElement('video').canPlayType(await input.getMimeType()) !== '') return null;
     const { internalCodecId } = track;
@@ -51,7 +51,7 @@ export async function undecodable(file: File): Promise<string | null> {
   }
 }
 
-/** When each frame is shown, in that order. */
+/** The presentation times of all frames, ascending, seconds. */
 async function timesOf(track: InputVideoTrack): Promise<Float64Array> {
   const times: number[] = [];
   for await (const packet of new EncodedPacketSink(track).packets(undefined, undefined, { metadataOnly: true })) {
@@ -80,7 +80,7 @@ class ExactClip implements Clip {
     this.#sink = new VideoSampleSink(track);
   }
 
-  async frame(index: number, longestSide: number): Promise<LoadedFrame> {
+  async frame(index: number, longestSide: number): Promise<DecodedFrame> {
     const began = performance.now();
     const sample = await this.#sink.getSample(this.#asked(index));
     try {
@@ -91,7 +91,7 @@ class ExactClip implements Clip {
       const context = canvas.getContext('2d', { alpha: false });
       if (context === null) throw new PageError('unsupported-browser', strings.errors.noCanvas);
       sample.draw(context, 0, 0);
-      return await frameFromBitmap(canvas.transferToImageBitmap(), knownInFilm(this.name, this.fingerprint, index), longestSide, began);
+      return await frameFromBitmap(canvas.transferToImageBitmap(), identityOf(this.name, this.fingerprint, index), longestSide, began);
     } finally {
       sample?.close();
     }
@@ -111,7 +111,7 @@ class ExactClip implements Clip {
     this.input.dispose();
   }
 
-  /** A time inside the frame: its beginning may be rounded to before itself. */
+  /** A time inside the frame: its start may have been rounded down into the frame before. */
   #asked(index: number): number {
     const [now, next] = [this.times[index]!, this.times[index + 1]];
     return now + Math.min(SAME_TIME, next === undefined ? SAME_TIME : (next - now) / 2);

@@ -1,7 +1,7 @@
-//! A folder of frames, in the order of their names.
+//! A folder of frames as a clip, in the order of their names.
 
-import { folderOf, nameOfFile } from '../given.js';
-import { type LoadedFrame, frameFromBlob } from '../frames.js';
+import { folderOf, nameOfFile } from '../frames/files.js';
+import { type DecodedFrame, frameFromBlob } from '../frames/frame.js';
 import type { Clip, Picture } from './clip.js';
 
 export async function openFolder(files: readonly File[]): Promise<Clip> {
@@ -25,7 +25,7 @@ class Folder implements Clip {
     this.count = files.length;
   }
 
-  frame(index: number, longestSide: number): Promise<LoadedFrame> {
+  frame(index: number, longestSide: number): Promise<DecodedFrame> {
     const file = this.files[index]!;
     return frameFromBlob(file, nameOfFile(file), longestSide);
   }
@@ -33,7 +33,7 @@ class Folder implements Clip {
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {
     for (const index of indices) {
       const bitmap = await createImageBitmap(this.files[index]!, { resizeHeight: 96 }).catch(() => null);
-      if (bitmap === null) continue; // said when it is chosen
+      if (bitmap === null) continue; // choosing the frame reports the error
       draw(index, (context, x, y, width, height) => context.drawImage(bitmap, x, y, width, height));
       bitmap.close();
     }

@@ -1,14 +1,14 @@
 //! Flow arrows over the picture.
 
-import { type Arrow, arrowsOf } from '../arrows.js';
-import { maskOf } from '../masks.js';
-import { colourOfMask, isShown } from '../paint.js';
-import { cssColour } from '../palette.js';
-import type { State, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import { type Arrow, arrowsOf } from '../drawing/arrows.js';
+import { colourOfMask, isShown } from '../drawing/paint.js';
+import { cssColour } from '../drawing/palette.js';
+import { maskOf } from '../result/masks.js';
+import type { State, Store } from '../state/state.js';
 import { drawn, find } from './markup.js';
 
-/** Shorter than this, pixels of the frame, is a dot. */
+/** Arrows shorter than this are dots, pixels of the frame. */
 const DOT = 0.5;
 
 export function mountArrows(stage: HTMLElement, store: Store): void {
@@ -17,7 +17,7 @@ export function mountArrows(stage: HTMLElement, store: Store): void {
   let waiting = 0;
   store.subscribe((now, before) => {
     if (now.look === before.look && now.result === before.result) return;
-    // A task of its own: masks and list come first.
+    // In a later task: masks and list come first.
     clearTimeout(waiting);
     waiting = window.setTimeout(() => draw(now));
   });

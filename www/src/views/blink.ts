@@ -1,9 +1,9 @@
-//! Both frames in turn: for as long as the B key is held, or by themselves.
+//! Alternating between the frames: by itself, or while the B key is held.
 
-import type { Store } from '../state.js';
+import type { Store } from '../state/state.js';
 import { find, prefersStillness } from './markup.js';
 
-/** How long each frame is seen, milliseconds. */
+/** How long each frame is shown, milliseconds. */
 const PERIOD = 450;
 
 export function mountBlink(root: ParentNode, store: Store): void {
@@ -16,11 +16,11 @@ export function mountBlink(root: ParentNode, store: Store): void {
     button.setAttribute('aria-pressed', String(look.blinking));
     clearInterval(timer);
     if (look.blinking) timer = window.setInterval(() => flip(store), PERIOD);
-    else if (before.look.view !== 'split' && look.still === null) store.look({ view: 'first' });
+    else if (before.look.view !== 'split' && look.stabilised === null) store.look({ view: 'first' });
   });
 }
 
-/** Begins or ends; where less motion is asked for, each press shows the other frame instead. */
+/** Starts or stops blinking. With reduced motion, each call shows the other frame instead. */
 export function toggleBlinking(store: Store): void {
   const { look, pair } = store.get();
   if (pair.first === null || pair.second === null) return;

@@ -1,23 +1,23 @@
-//! The brush: the circle under the pointer, the stroke being drawn, and the strokes that were drawn.
+//! Brush and eraser: the circle under the pointer, the stroke being drawn, and earlier strokes.
 
-import { maskWith, strokesOf } from '../edits.js';
-import { colourOfMask } from '../paint.js';
-import { type Colour, cssColour } from '../palette.js';
-import { labellingOf, labelsIn } from '../parts.js';
-import type { Session } from '../session.js';
-import type { State, Store } from '../state.js';
-import { type Stroke, possible } from '../strokes.js';
+import { maskWith, strokesOf } from '../correction/edits.js';
+import { labellingOf, labelsIn } from '../correction/parts.js';
+import { type Stroke, allowedLabels } from '../correction/strokes.js';
+import { colourOfMask } from '../drawing/paint.js';
+import { type Colour, cssColour } from '../drawing/palette.js';
+import type { Session } from '../session/session.js';
+import type { State, Store } from '../state/state.js';
 import { drawn, find } from './markup.js';
 
 type Point = readonly [number, number];
 
-/** Where the arrow keys lead. */
+/** Directions of the arrow keys. */
 const STEPS: Readonly<Record<string, Point>> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** The eraser's, and of strokes whose mask is not there. */
+/** The colour of the eraser, and of strokes whose mask is not in the result. */
 const COLOURLESS: Colour = [20, 20, 20];
 
-/** Points nearer than this share of the radius to the last say nothing new. */
+/** A point is recorded at this distance from the last, share of the radius. */
 const NEXT_POINT = 0.3;
 
 export class Brush {
@@ -27,9 +27,9 @@ export class Brush {
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
   readonly #strokes = drawn('g', {});
-  /** The stroke that is being drawn: what it is about is what was chosen when it began. */
+  /** The stroke being drawn. Its tool and mask are those selected when it began. */
   #now: { readonly points: number[]; readonly tool: Stroke['tool']; readonly mask: Stroke['mask'] } | null = null;
-  /** Where the brush was last. */
+  /** The last position of the brush. */
   #at: Point | null = null;
 
   constructor(stage: HTMLElement, store: Store, session: Session) {
@@ -51,8 +51,8 @@ export class Brush {
   }
 
   /**
-   * With the picture in focus: arrow keys move the brush, Space begins and ends a stroke, Escape gives it up. Returns whether the key
-   * meant something.
+   * Handles keys while the picture has focus: arrow keys move the brush, Space starts and ends a stroke, Escape discards it. Returns
+   * whether the key was handled.
    */
   key({ key, shiftKey }: KeyboardEvent): boolean {
     const { tool, result } = this.#store.get();
@@ -83,7 +83,7 @@ export class Brush {
     this.#circle.setAttribute('r', String(this.#store.get().tool.radius));
   }
 
-  /** The circle goes when the pointer does. */
+  /** Hides the circle when the pointer leaves. */
   leave(): void {
     if (!this.painting) this.#circle.setAttribute('r', '0');
   }
@@ -125,7 +125,7 @@ export class Brush {
     this.#path.setAttribute('stroke-width', String(2 * this.#store.get().tool.radius));
   }
 
-  /** The circle is of the mask's colour, the eraser's is broken. */
+  /** The circle has the colour of the selected mask; the style sheet dashes the eraser's. */
   #dress({ tool, look }: State): void {
     this.#picture.dataset.tool = tool.name;
     this.#picture.style.setProperty('--colour', look.selected === null ? 'white' : cssColour(colourOfMask(look.selected, look)));
@@ -141,8 +141,8 @@ export class Brush {
       ...strokesOf(edits).map((stroke) => {
         const mask = stroke.tool === 'brush' ? maskWith(labelsIn(stroke.mask, labellingOf(found)), segmentation, look.kind) : null;
         const colour = mask === null ? COLOURLESS : colourOfMask(mask, look);
-        const heard = possible(stroke, found) === 0 ? 'stroke unheard' : 'stroke';
-        return drawn('path', { class: heard, d: pathOf(stroke.points), 'stroke-width': 2 * stroke.radius, stroke: cssColour(colour) });
+        const className = allowedLabels(stroke, found) === 0 ? 'stroke ineffective' : 'stroke';
+        return drawn('path', { class: className, d: pathOf(stroke.points), 'stroke-width': 2 * stroke.radius, stroke: cssColour(colour) });
       }),
     );
   }

@@ -1,7 +1,7 @@
-//! Text to the clipboard, and saying so.
+//! Copies text to the clipboard and reports it.
 
-import type { Session } from '../session.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
 
 export function copyText(text: string, done: string, session: Session): void {
   navigator.clipboard.writeText(text).then(

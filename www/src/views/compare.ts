@@ -1,23 +1,23 @@
-//! The split view: the first frame with its masks on the left, the second on the right, and the line between them to be moved.
+//! The split view: the first frame with its masks on the left, the second on the right, and a movable line between them.
 
-import { inPicture } from '../camera.js';
-import type { Store } from '../state.js';
+import { inPicture } from '../drawing/viewport.js';
+import type { Store } from '../state/state.js';
 import { find } from './markup.js';
 
 export function mountCompare(stage: HTMLElement, store: Store): void {
   const layers = find(stage, '.layers', HTMLElement);
   const line = find(stage, '#divide', HTMLInputElement);
   line.addEventListener('input', () => store.look({ divide: line.valueAsNumber / 1000 }));
-  // The picture under the line is not pressed by moving it.
+  // Moving the line is not a press on the picture.
   line.addEventListener('pointerdown', (event) => event.stopPropagation());
-  store.subscribe(({ look, camera, pair }, before) => {
-    if (look === before.look && camera === before.camera && pair === before.pair) return;
+  store.subscribe(({ look, viewport, pair }, before) => {
+    if (look === before.look && viewport === before.viewport && pair === before.pair) return;
     const split = look.view === 'split' && pair.first !== null && pair.second !== null;
     line.hidden = !split;
     layers.classList.toggle('split', split);
     if (!split) return;
     line.value = String(Math.round(look.divide * 1000));
-    const [x] = inPicture(camera, [look.divide, 0]);
+    const [x] = inPicture(viewport, [look.divide, 0]);
     stage.style.setProperty('--divide', `${(100 * x).toFixed(3)}%`);
     stage.style.setProperty('--line', `${(100 * look.divide).toFixed(3)}%`);
   });

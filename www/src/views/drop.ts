@@ -1,10 +1,10 @@
-//! Files and folders dropped anywhere on the page, or pasted.
+//! Files and folders dropped on the page or pasted.
 
-import { filesOf } from '../dropped.js';
-import type { Session } from '../session.js';
+import { filesOf } from '../frames/dropped.js';
+import type { Session } from '../session/session.js';
 
 export function mountDrop(root: HTMLElement, session: Session): void {
-  // Entering a child leaves its parent: count, to know when the files have left the page.
+  // Entering a child leaves its parent, so a count tells when the files have left the page.
   let inside = 0;
   const show = (): void => void root.classList.toggle('dropping', inside > 0);
   const carriesFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') ?? false;
@@ -32,7 +32,7 @@ export function mountDrop(root: HTMLElement, session: Session): void {
   });
   document.addEventListener('paste', (event) => {
     const { clipboardData } = event;
-    if (clipboardData === null || clipboardData.files.length === 0) return; // text for a field
+    if (clipboardData === null || clipboardData.files.length === 0) return; // text for an input
     event.preventDefault();
     void session.openFiles(filesOf(clipboardData));
   });

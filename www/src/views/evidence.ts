@@ -1,11 +1,11 @@
-//! What the number of motions rests on: the score of each number, smaller is better, and a button to insist on one.
+//! The evidence for the number of motions: the score of each number, lower is better, and a button to use it.
 
-import type { Session } from '../session.js';
-import { type State, type Store, isAwaited } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import { type State, type Store, isAwaited } from '../state/state.js';
 import { drawn, element, find } from './markup.js';
 
-/** The plot's own units. */
+/** Units of the plot. */
 const HEIGHT = 44;
 const MARGIN = 6;
 
@@ -14,7 +14,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
   const buttons = find(root, '.numbers', HTMLElement);
   const automatic = find(root, '[data-action=automatic]', HTMLButtonElement);
   automatic.addEventListener('click', () => session.change({ motions: 'auto' }));
-  /** Of the last automatic search: a forced number says nothing about the others. */
+  /** The scores of the last automatic search: with a forced number there are none for the others. */
   let scores: readonly { motions: number; score: number }[] = [];
 
   const render = (now: State): void => {
@@ -34,9 +34,9 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
         button.type = 'button';
         button.setAttribute('aria-pressed', String(settings.motions === motions));
         button.classList.toggle('found', motions === found.count);
-        button.setAttribute('aria-label', strings.insistOn(motions, score - least));
+        button.setAttribute('aria-label', strings.forceNumber(motions, score - least));
         button.title = strings.scoreAbove(score - least);
-        button.addEventListener('click', () => session.insist(motions));
+        button.addEventListener('click', () => session.forceMotions(motions));
         return button;
       }),
     );
@@ -55,12 +55,12 @@ function draw(plot: SVGSVGElement, candidates: readonly { motions: number; score
   const [least, most] = [Math.min(...scores), Math.max(...scores)];
   const width = 40 * Math.max(1, candidates.length);
   plot.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
-  // Small differences decide and large ones do not matter: the root brings both into one picture.
+  // The square root shows the small differences, which decide, along with the large ones.
   const place = (score: number): number => HEIGHT - MARGIN - (HEIGHT - 2 * MARGIN) * Math.sqrt((score - least) / Math.max(most - least, 1e-9));
   const points = candidates.map(({ score }, i) => [40 * i + 20, place(score)] as const);
   plot.replaceChildren(
     drawn('polyline', { points: points.map((point) => point.join()).join(' '), class: 'score-line' }),
-    // A line of no length with round ends is a dot that keeps its shape when the plot is stretched.
+    // A line of zero length with round caps is a dot that stays round when the plot is stretched.
     ...points.map(([x, y], i) =>
       drawn('path', { d: `M${x} ${y}h0.01`, class: candidates[i]!.motions === count ? 'score found' : 'score' }),
     ),

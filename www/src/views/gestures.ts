@@ -1,17 +1,17 @@
-//! What pointers do on the picture. Looking: a tap chooses the mask, holding shows the other frame, dragging moves the enlarged
-//! picture. Brush and eraser: dragging paints. Always: the wheel and two fingers zoom.
+//! Pointers on the picture. View tool: a tap selects a mask, holding shows the other frame, dragging pans the enlarged picture. Brush and
+//! eraser: dragging paints. All tools: the wheel and two fingers zoom.
 
-import { inPicture } from '../camera.js';
-import { maskOf } from '../masks.js';
-import type { Session } from '../session.js';
-import type { State, Store } from '../state.js';
+import { inPicture } from '../drawing/viewport.js';
+import { maskOf } from '../result/masks.js';
+import type { Session } from '../session/session.js';
+import type { State, Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import type { Brush } from './brush.js';
 import type { Zoom } from './zoom.js';
 
-/** A press that moves farther is a drag, screen pixels. */
+/** A press that moves further is a drag, screen pixels. */
 const STILL = 5;
-/** A press that lasts longer is no tap, milliseconds. */
+/** A press that lasts longer is not a tap, milliseconds. */
 const TAP = 220;
 /** Zoom per pixel of the wheel. */
 const WHEEL = 0.0025;
@@ -20,7 +20,7 @@ interface Press {
   x: number;
   y: number;
   readonly began: readonly [number, number];
-  /** Whether it was ever farther from there than a press that is held still. */
+  /** Whether it ever moved further from there than {@link STILL}. */
   moved: boolean;
 }
 
@@ -35,7 +35,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     return [(clientX - box.left) / box.width, (clientY - box.top) / box.height];
   };
   const paints = (): boolean => store.get().tool.name !== 'look';
-  /** Something else takes the fingers over: what they drew so far stays, but a finger that only came down drew nothing. */
+  /** A second finger or the browser takes over: a stroke drawn so far stays, one that has not moved is discarded. */
   const leaveOff = (drawn: boolean): void => (drawn ? brush.end() : brush.abandon());
 
   layers.addEventListener('pointerdown', (event) => {
@@ -75,7 +75,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     } else if (paints()) {
       if (!dragged || brush.painting) for (const point of coalesced(event)) brush.move(pixelAt(store.get(), inView(point)));
     } else if (dragged || press.moved) {
-      if (!dragged && store.get().camera.zoom > 1) clearTimeout(holding);
+      if (!dragged && store.get().viewport.zoom > 1) clearTimeout(holding);
       dragged = true;
       zoom.pan(dx / box.width, dy / box.height);
     }
@@ -104,7 +104,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     const plain = event.target === layers && !event.ctrlKey && !event.metaKey && !event.altKey;
     if (plain && brush.key(event)) event.preventDefault();
   });
-  // A long press on a touch screen would open a menu.
+  // A long press on a touch screen opens a menu otherwise.
   layers.addEventListener('contextmenu', (event) => {
     if (presses.size > 0) event.preventDefault();
   });
@@ -112,8 +112,8 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   layers.addEventListener(
     'wheel',
     (event) => {
-      // The whole picture cannot become smaller: let the page scroll.
-      if (event.deltaY > 0 && store.get().camera.zoom <= 1 && !event.ctrlKey) return;
+      // The whole picture is visible already: let the page scroll.
+      if (event.deltaY > 0 && store.get().viewport.zoom <= 1 && !event.ctrlKey) return;
       event.preventDefault();
       const pixels = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY : event.deltaY * 33;
       zoom.by(Math.exp(-pixels * WHEEL * (event.ctrlKey ? 4 : 1)), inView(event));
@@ -127,14 +127,14 @@ function coalesced(event: PointerEvent): PointerEvent[] {
   return events.length > 0 ? events : [event];
 }
 
-/** The place in the frame, its pixels' centres at whole numbers. */
-function pixelAt({ pair, camera }: State, view: readonly [number, number]): [number, number] {
+/** The position in the frame; pixel centres have integer coordinates. */
+function pixelAt({ pair, viewport }: State, view: readonly [number, number]): [number, number] {
   const frame = pair.first ?? pair.second;
-  const [x, y] = inPicture(camera, view);
+  const [x, y] = inPicture(viewport, view);
   return [x * (frame?.width ?? 1) - 0.5, y * (frame?.height ?? 1) - 0.5];
 }
 
-/** Chooses the mask at a place of the first frame, or none where it is chosen already. */
+/** Selects the mask at a position of the first frame, or deselects it. */
 function choose(store: Store, session: Session, [x, y]: readonly [number, number]): void {
   const { result, look } = store.get();
   if (result === null) return;

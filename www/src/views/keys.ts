@@ -1,20 +1,20 @@
-//! Listens to the keys and lists them in a dialogue that `?` opens. Single keys can be switched off there, for those who speak to
-//! their computer.
+//! Handles keyboard shortcuts and lists them in a dialogue that `?` opens. Single-key shortcuts can be disabled there, because speech
+//! input triggers them.
 
-import type { Key } from '../keys.js';
-import type { Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import { element, find, takesArrows, takesText } from './markup.js';
+import type { Key } from './shortcuts.js';
 
 export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, keys: readonly Key[]): void {
   const single = find(dialog, '#single-keys', HTMLInputElement);
   const list = find(dialog, 'dl', HTMLDListElement);
   const peek = new Peek(store);
-  const rows = [{ shown: 'B', does: strings.keys.look.peek }, ...keys, { shown: '?', does: strings.keys.look.keys }];
+  const rows = [{ shown: 'B', does: strings.keys.peek }, ...keys, { shown: '?', does: strings.keys.keys }];
   for (const { shown, does } of rows) {
     if (does === '') {
-      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown)); // the same again, with another key
+      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown)); // another key for the same
       continue;
     }
     const row = element('div');
@@ -27,7 +27,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
   open.addEventListener('click', () => dialog.showModal());
   find(dialog, '[data-action=close]', HTMLButtonElement).addEventListener('click', () => dialog.close());
   dialog.addEventListener('click', (event) => {
-    if (event.target === dialog) dialog.close(); // beside it
+    if (event.target === dialog) dialog.close(); // a click on the backdrop
   });
 
   document.addEventListener('keydown', (event) => {
@@ -38,7 +38,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     if (!command && name === '?') return dialog.showModal();
     if (!command && name === 'b') return peek.press();
     const key = keys.find((one) => one.keys.includes(name) && (one.command ?? false) === command && (one.shift ?? event.shiftKey) === event.shiftKey);
-    if (key === undefined || (key.arrows && (store.get().camera.zoom <= 1 || takesArrows(event.target)))) return;
+    if (key === undefined || (key.arrows && (store.get().viewport.zoom <= 1 || takesArrows(event.target)))) return;
     if (name !== 'escape') event.preventDefault();
     key.run();
   });

@@ -1,8 +1,8 @@
-//! Leaving the page with corrections that were not saved is asked about. There is no listener otherwise: it would keep the browser
-//! from holding the page ready for the way back.
+//! Asks before the page is left with unsaved corrections. Without them there is no listener, because it would keep the page out of the
+//! back/forward cache.
 
-import { hasUnsaved } from '../kept.js';
-import type { Store } from '../state.js';
+import { hasUnsaved } from '../state/kept.js';
+import type { Store } from '../state/state.js';
 
 export function mountLeaving(page: Window, store: Store): void {
   const ask = (event: BeforeUnloadEvent): void => event.preventDefault();

@@ -1,8 +1,8 @@
-//! The row of controls under the picture: which frame, which masks, how strong, and what else is drawn.
+//! The display controls under the picture: frame, masks, opacity, outlines, arrows, residual.
 
-import type { Kind } from '../masks.js';
-import type { Look, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Kind } from '../result/masks.js';
+import type { Look, Store } from '../state/state.js';
 import { find } from './markup.js';
 
 const VIEWS = ['first', 'split', 'second'] as const;
@@ -38,8 +38,8 @@ export function mountLook(form: HTMLFormElement, store: Store): void {
   });
 }
 
-/** Numbers of masks mean something else then: what was chosen by them is forgotten. */
+/** Shows masks of this kind. Mask numbers change meaning, so choices that refer to them are reset. */
 export function showKind(store: Store, kind: Kind): void {
   if (store.get().look.kind === kind) return;
-  store.look({ kind, hidden: new Set(), solo: null, still: null, selected: null });
+  store.look({ kind, hidden: new Set(), solo: null, stabilised: null, selected: null });
 }

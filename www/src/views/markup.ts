@@ -1,15 +1,15 @@
-//! Finding the static markup and making the rest. A missing element is a mistake of ours and said at once, by its selector.
+//! Finds static markup and makes new elements. A missing element throws at once, with its selector.
 
 type Kind<E extends Element> = abstract new (...args: never) => E;
 
-/** The element inside `root` that `selector` names. */
+/** The element in `root` that matches `selector`. */
 export function find<E extends Element>(root: ParentNode, selector: string, kind: Kind<E>): E {
   const element = root.querySelector(selector);
   if (!(element instanceof kind)) throw new Error(`index.html has no ${kind.name} ${selector}`);
   return element;
 }
 
-/** A new element with text in it. */
+/** A new element with text. */
 export function element<T extends keyof HTMLElementTagNameMap>(tag: T, text = '', className = ''): HTMLElementTagNameMap[T] {
   const made = document.createElement(tag);
   made.textContent = text;
@@ -33,17 +33,17 @@ export function contextOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D {
   return context;
 }
 
-/** Whether the element takes typed text, so that single keys are not commands. */
+/** Whether the element takes typed text, so that single keys are not shortcuts. */
 export function takesText(target: EventTarget | null): boolean {
   return target instanceof HTMLElement && target.matches('input:not([type=radio], [type=checkbox], [type=range], [type=file], [type=color]), select, textarea');
 }
 
-/** Whether arrow keys mean something to the element itself. */
+/** Whether the element uses arrow keys itself. */
 export function takesArrows(target: EventTarget | null): boolean {
   return takesText(target) || (target instanceof HTMLElement && target.matches('input[type=radio], input[type=range], summary, [role=slider]'));
 }
 
-/** Whether the user asked for less motion. */
+/** Whether the user prefers reduced motion. */
 export function prefersStillness(): boolean {
   return matchMedia('(prefers-reduced-motion: reduce)').matches;
 }

@@ -1,21 +1,21 @@
-//! The list of masks: each in words and numbers, with its colour, name and share, ways to look at it alone, and its motion to copy.
+//! The list of masks: colour, name, share and motion of each, with its actions.
 
-import { isMerged } from '../correcting.js';
-import { centreOf, partsOf, visibleParts } from '../describe.js';
-import { type Mask, UNLABELLED, masksOf } from '../masks.js';
-import { NOTATIONS } from '../matrices.js';
-import { nameOf } from '../naming.js';
-import { colourOfMask, isShown } from '../paint.js';
-import { colourFromHex, cssColour, hexColour } from '../palette.js';
-import type { Session } from '../session.js';
-import { type Look, type Result, type State, type Store, isAwaited } from '../state.js';
-import { strings } from '../strings.js';
+import { nameOf } from '../common/naming.js';
+import { strings } from '../common/strings.js';
+import { colourOfMask, isShown } from '../drawing/paint.js';
+import { colourFromHex, cssColour, hexColour } from '../drawing/palette.js';
+import { centreOf, partsOf, visibleParts } from '../result/describe.js';
+import { UNLABELLED, type Mask, masksOf } from '../result/masks.js';
+import { NOTATIONS } from '../result/matrices.js';
+import { isMerged } from '../session/correcting.js';
+import type { Session } from '../session/session.js';
+import { type Look, type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
 
 type Segmentation = Result['segmentation'];
 
-/** Brings one row up to date with the state. */
+/** Updates one row. */
 type Refresh = (look: Look) => void;
 
 export function mountMotions(root: ParentNode, store: Store, session: Session): void {
@@ -51,7 +51,7 @@ function whyNone({ phase }: State['run']): string {
   return phase === 'failed' || phase === 'cancelled' ? strings.noMasks[phase] : strings.noMasksYet;
 }
 
-/** A name that is being typed goes on being typed in the new list; null where none is. */
+/** Carries a name that is being typed over to the new list; `null` if none is. */
 function typedName(list: HTMLElement, kind: Look['kind']): ((list: HTMLElement, now: State) => void) | null {
   const field = document.activeElement;
   if (!(field instanceof HTMLInputElement) || !field.matches('.motion-name') || !list.contains(field)) return null;
@@ -76,7 +76,7 @@ function fillList(list: HTMLElement, template: HTMLTemplateElement, { look }: St
     const [main] = mask.motions;
     if (main === undefined) {
       find(row, '.motion-words', HTMLElement).textContent = strings.unknownWords;
-      for (const selector of ['.motion-facts', '[data-action=still]', '.more']) find(row, selector, HTMLElement).remove();
+      for (const selector of ['.motion-facts', '[data-action=stabilise]', '.more']) find(row, selector, HTMLElement).remove();
     } else {
       const [, , width, height] = main.bbox;
       const parts = visibleParts(partsOf(main.matrix, centreOf(segmentation, main.label)), Math.hypot(width, height) / 2);
@@ -97,13 +97,13 @@ function factsOf({ id, motions }: Mask, { kind }: Look, { motions: all }: Segmen
   return facts.join(' · ');
 }
 
-/** Connects what a row shows and is pressed for to the state. */
+/** Connects the controls of a row to the state. */
 function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): Refresh {
   const shown = find(row, '[data-action=show]', HTMLInputElement);
   const colour = find(row, '[data-action=colour]', HTMLInputElement);
   const name = find(row, '.motion-name', HTMLInputElement);
   const solo = find(row, '[data-action=solo]', HTMLButtonElement);
-  const still = row.querySelector<HTMLButtonElement>('[data-action=still]');
+  const stabilise = row.querySelector<HTMLButtonElement>('[data-action=stabilise]');
 
   shown.addEventListener('change', () => {
     const { look } = store.get();
@@ -113,16 +113,16 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
     store.look({ hidden, solo: null });
   });
   colour.addEventListener('input', () => {
-    session.correcting.give(id, { colour: colourFromHex(colour.value) });
+    session.correcting.setAppearance(id, { colour: colourFromHex(colour.value) });
   });
   name.addEventListener('change', () => {
-    session.correcting.give(id, { name: name.value.trim() });
+    session.correcting.setAppearance(id, { name: name.value.trim() });
   });
   name.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') name.blur();
   });
   solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
-  still?.addEventListener('click', () => toggleStill(store, id));
+  stabilise?.addEventListener('click', () => toggleStabilised(store, id));
   row.addEventListener('focusin', () => session.select(id));
   row.addEventListener('pointerdown', () => session.select(id));
 
@@ -136,23 +136,23 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
     row.classList.toggle('away', !shown.checked);
     row.classList.toggle('selected', look.selected === id);
     solo.setAttribute('aria-pressed', String(look.solo === id));
-    still?.setAttribute('aria-pressed', String(look.still === id));
+    stabilise?.setAttribute('aria-pressed', String(look.stabilised === id));
     shown.setAttribute('aria-label', strings.show(called));
     colour.setAttribute('aria-label', strings.colourOf(called));
     name.setAttribute('aria-label', strings.nameOf(called));
     solo.setAttribute('aria-label', strings.soloOf(called));
-    still?.setAttribute('aria-label', strings.stillOf(called));
+    stabilise?.setAttribute('aria-label', strings.stabiliseOf(called));
   };
 }
 
-/** The second frame in the first's place under this mask's motion, both in turn: what stands still belongs to it. */
-export function toggleStill(store: Store, id: number): void {
+/** Alternates between the first frame and the second warped back by the mask's motion: what stays in place belongs to the mask. */
+export function toggleStabilised(store: Store, id: number): void {
   const { look } = store.get();
-  if (look.still === id) store.look({ still: null, blinking: false, view: 'first' });
-  else store.look({ still: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !matchMedia('(prefers-reduced-motion: reduce)').matches });
+  if (look.stabilised === id) store.look({ stabilised: null, blinking: false, view: 'first' });
+  else store.look({ stabilised: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !matchMedia('(prefers-reduced-motion: reduce)').matches });
 }
 
-/** The matrix, ways to copy it, and what to merge with. */
+/** Fills in the matrix, the buttons that copy it, and the masks to merge with. */
 function fillMore(row: HTMLElement, mask: Mask, masks: readonly Mask[], store: Store, session: Session): void {
   const matrix = mask.motions[0]!.matrix;
   const body = find(row, 'tbody', HTMLElement);
@@ -180,9 +180,9 @@ function fillMore(row: HTMLElement, mask: Mask, masks: readonly Mask[], store: S
   merge.hidden = merge.options.length < 2;
   merge.setAttribute('aria-label', strings.mergeOf(nameOf(look, mask.id)));
   merge.addEventListener('change', () => session.correcting.merge(mask.id, Number(merge.value)));
-  const apart = find(row, '[data-action=apart]', HTMLButtonElement);
-  apart.hidden = !isMerged(look.kind, mask.motions);
-  apart.addEventListener('click', () => session.correcting.takeApart(mask.id));
+  const ungroup = find(row, '[data-action=ungroup]', HTMLButtonElement);
+  ungroup.hidden = !isMerged(look.kind, mask.motions);
+  ungroup.addEventListener('click', () => session.correcting.ungroup(mask.id));
 }
 
 function nameOption(option: Element, look: Look): void {

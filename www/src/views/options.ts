@@ -1,12 +1,12 @@
-//! The settings form, drawn from `controls.ts`.
+//! The settings form, made from `state/settings.ts`.
 
-import { CONTROLS, type Control } from '../controls.js';
-import type { Session } from '../session.js';
-import type { Settings, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import { CONTROLS, type Control, type Settings } from '../state/settings.js';
+import type { Store } from '../state/state.js';
 import { element } from './markup.js';
 
-/** Elements of a field, and how they show what is set. */
+/** The elements of a field, and a function that shows the current settings in them. */
 interface Field {
   readonly elements: HTMLElement[];
   readonly show: (settings: Settings) => void;
@@ -88,7 +88,7 @@ function field(control: Control, helpId: string, store: Store, session: Session)
         session.say(strings.errors.wholeNumber(control.label, control.min, control.max), 'invalid-option');
         input.value = String(store.get().settings[control.name]);
       });
-      // What is being typed is not taken away.
+      // Does not overwrite what is being typed.
       const show = (settings: Settings): void => {
         if (document.activeElement !== input) input.value = String(settings[control.name]);
       };

@@ -1,14 +1,13 @@
-//! The masks over the picture: a canvas of fills, faded by the opacity, and a canvas of outlines. Over the first frame they lie as
-//! labelled; over the second each is carried along by its motion. Large masks are painted piece by piece, so that the page never
-//! stops answering.
+//! The masks over the picture: a canvas of fills, with the opacity, and a canvas of outlines. Over the second frame each mask is moved by
+//! its motion. Large frames are painted in pieces, so that the page stays responsive.
 
-import { fillOf, outlinesOf } from '../paint.js';
-import { Piecewise } from '../piecewise.js';
-import type { Look, Result, Store } from '../state.js';
-import { transformOf } from '../warp.js';
+import { fillOf, outlinesOf } from '../drawing/paint.js';
+import { Piecewise } from '../drawing/piecewise.js';
+import { transformOf } from '../drawing/warp.js';
+import type { Look, Result, Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
-/** One pixel of outline for every so many pixels of the longer side. */
+/** Outlines are one pixel thick for every so many pixels of the longer side. */
 const PIXELS_PER_OUTLINE = 400;
 
 type Segmentation = Result['segmentation'];
@@ -32,9 +31,9 @@ export function mountOverlay(stage: HTMLElement, store: Store): void {
   fill.style.opacity = String(store.get().look.opacity);
 }
 
-/** Whether masks lie where they are in the first frame, so that both frames show the same. */
+/** Whether masks are drawn at their positions in the first frame. */
 function inPlace(look: Look): boolean {
-  return look.view !== 'second' || look.still !== null;
+  return look.view !== 'second' || look.stabilised !== null;
 }
 
 function repaints(now: Look, before: Look): boolean {
@@ -81,7 +80,7 @@ function imageOf(pixels: Uint32Array<ArrayBuffer>, width: number): ImageData {
   return new ImageData(new Uint8ClampedArray(pixels.buffer), width);
 }
 
-/** Draws the pixels of one motion where it has carried them. The largest comes first, so that what moves before it covers it. */
+/** Draws the pixels of one motion where it moves them. The largest motion is drawn first, so that the others cover it. */
 function drawMoved(context: CanvasRenderingContext2D, pixels: Uint32Array, { labels, width }: Segmentation, motion: Segmentation['motions'][number]): void {
   const [left, top, across, down] = motion.bbox;
   if (across === 0 || down === 0) return;

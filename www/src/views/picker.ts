@@ -1,17 +1,17 @@
-//! Ways in: opening files or a folder, samples, the camera; replacing one frame, swapping, and the two thumbnails.
+//! Opening files, a folder, a sample or the camera; replacing and swapping frames; the two thumbnails.
 
-import type { LoadedFrame } from '../frames.js';
-import { SAMPLES } from '../samples.js';
-import type { Session } from '../session.js';
-import type { Slot, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import { SAMPLES } from '../frames/samples.js';
+import type { Session } from '../session/session.js';
+import type { LoadedFrame, Slot } from '../state/pair.js';
+import type { Store } from '../state/state.js';
 import { contextOf, element, find } from './markup.js';
 
 export function mountPicker(root: ParentNode, store: Store, session: Session): void {
   const listen = (input: HTMLInputElement, slot: Slot | null): void => {
     input.addEventListener('change', () => {
       const files = [...(input.files ?? [])];
-      input.value = ''; // the same file may be chosen again
+      input.value = ''; // so that choosing the same file again is a change
       if (files.length > 0) void session.openFiles(files, slot);
     });
   };
@@ -61,7 +61,7 @@ function sampleButton(sample: (typeof SAMPLES)[number], session: Session): HTMLE
   return button;
 }
 
-/** The whole frame, as large as it fits, in the middle. */
+/** Draws the whole frame, as large as fits, centred. */
 function drawThumb(canvas: HTMLCanvasElement, frame: LoadedFrame | null): void {
   const context = contextOf(canvas);
   context.clearRect(0, 0, canvas.width, canvas.height);

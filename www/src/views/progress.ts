@@ -1,14 +1,14 @@
-//! The line under the picture: what is being done, how far it is, and the way to stop it.
+//! The status line under the picture: what is running, its progress, and buttons to cancel and resume.
 
-import { isPending } from '../correcting.js';
-import { strokesOf } from '../edits.js';
-import type { Session } from '../session.js';
-import type { After, Result, State, Store } from '../state.js';
-import { strings } from '../strings.js';
-import { sayings } from '../strokes.js';
+import { strings } from '../common/strings.js';
+import { strokesOf } from '../correction/edits.js';
+import { constraintsFrom } from '../correction/strokes.js';
+import { isPending } from '../session/correcting.js';
+import type { Session } from '../session/session.js';
+import type { Cause, Result, State, Store } from '../state/state.js';
 import { find } from './markup.js';
 
-/** Work shorter than this shows no bar: a flash tells nobody anything. Milliseconds. */
+/** The progress bar appears after this time, so that it does not flash up, milliseconds. */
 const PATIENCE = 150;
 
 export function mountProgress(root: HTMLElement, store: Store, session: Session): void {
@@ -27,7 +27,7 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
     const { run, opening } = now;
     const busy = run.phase === 'working' || opening;
     root.dataset.phase = opening ? 'opening' : run.phase;
-    // The rate changes many times a second, which nobody wants to hear.
+    // Screen readers should not announce the rate, which changes many times a second.
     status.setAttribute('aria-live', run.phase === 'live' ? 'off' : 'polite');
     status.textContent = sentenceFor(now);
     const stopped = run.phase === 'cancelled' || (run.phase === 'failed' && isPending(now));
@@ -53,7 +53,7 @@ function sentenceFor(state: State): string {
     case 'working':
       return status.working(run.stage, run.index, run.of);
     case 'done':
-      return result === null ? '' : sentenceAfter(run.after, state, result);
+      return result === null ? '' : sentenceAbout(run.cause, state, result);
     case 'live':
       return status.live(live?.rate ?? 0, result?.segmentation.count ?? 0);
     case 'idle':
@@ -68,14 +68,14 @@ function sentenceFor(state: State): string {
   }
 }
 
-/** What the masks that are shown come from. */
-function sentenceAfter(after: After, { look, found, edits }: State, { segmentation, waited }: Result): string {
+/** What led to the masks on screen. */
+function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentation, waited }: Result): string {
   const { status } = strings;
   const strokes = strokesOf(edits);
-  if (after === 'solved') return status.solved(strokes.length, waited);
-  if (after !== 'found') return status[after];
+  if (cause === 'solved') return status.solved(strokes.length, waited);
+  if (cause !== 'found') return status[cause];
   const { count, motions, settings } = segmentation;
   const groups = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size : count;
   const answer = status.found(count, groups, settings.motions === 'auto' ? null : settings.motions, waited);
-  return found === null || strokes.length === 0 ? answer : `${answer} ${status.held(sayings(strokes, found).length, strokes.length)}`;
+  return found === null || strokes.length === 0 ? answer : `${answer} ${status.applied(constraintsFrom(strokes, found).length, strokes.length)}`;
 }

@@ -1,8 +1,8 @@
-//! The residual in place of the picture.
+//! The residual, drawn instead of the picture.
 
-import { Piecewise } from '../piecewise.js';
-import { residualOf } from '../residual.js';
-import type { Store } from '../state.js';
+import { Piecewise } from '../drawing/piecewise.js';
+import { residualOf } from '../drawing/residual.js';
+import type { Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
 export function mountResidual(stage: HTMLElement, store: Store): void {

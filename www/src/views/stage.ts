@@ -1,11 +1,11 @@
-//! The picture: which frame is drawn, the other one beside it in the split view, and what it is called.
+//! The picture: the frame on screen, the other one in the split view, and the caption.
 
-import type { LoadedFrame } from '../frames.js';
-import { mainMotion } from '../masks.js';
-import { nameOf } from '../naming.js';
-import type { Slot, State, Store } from '../state.js';
-import { strings } from '../strings.js';
-import { drawHeldStill } from '../warp.js';
+import { nameOf } from '../common/naming.js';
+import { strings } from '../common/strings.js';
+import { drawStabilised } from '../drawing/warp.js';
+import { mainMotion } from '../result/masks.js';
+import type { LoadedFrame, Slot } from '../state/pair.js';
+import type { State, Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
 export function mountStage(stage: HTMLElement, store: Store): void {
@@ -20,29 +20,29 @@ export function mountStage(stage: HTMLElement, store: Store): void {
     const slot = shownSlot(now);
     invitation.hidden = slot !== null || opening;
     if (look.names !== before.look.names || look.kind !== before.look.kind) caption.textContent = captionOf(now);
-    if (pair === before.pair && result === before.result && look.view === before.look.view && look.still === before.look.still) return;
+    if (pair === before.pair && result === before.result && look.view === before.look.view && look.stabilised === before.look.stabilised) return;
     layers.hidden = slot === null;
     caption.textContent = captionOf(now);
     const frame = slot === null ? null : pair[slot];
     if (slot === null || frame === null) return;
     stage.style.setProperty('--ratio', String(frame.width / frame.height));
-    draw(canvas, frame, heldMotion(now, slot));
+    draw(canvas, frame, stabilisingMotion(now, slot));
     other.hidden = look.view !== 'split' || pair.second === null;
-    if (!other.hidden && pair.second !== null) draw(other, pair.second, heldMotion(now, 'second'));
+    if (!other.hidden && pair.second !== null) draw(other, pair.second, stabilisingMotion(now, 'second'));
   });
 }
 
-/** The frame that is shown; the other one while it is the only one. */
+/** The frame to show; the other one if it is the only one. */
 export function shownSlot({ pair, look }: State): Slot | null {
   const wanted: Slot = look.view === 'second' ? 'second' : 'first';
   const others: Slot[] = [wanted, 'first', 'second'];
   return others.find((slot) => pair[slot] !== null) ?? null;
 }
 
-/** The matrix by which a frame is warped, if it is to be. */
-function heldMotion({ look, result }: State, slot: Slot): readonly number[] | null {
-  if (slot !== 'second' || look.still === null || result === null) return null;
-  return mainMotion(result.segmentation, look.kind, look.still)?.matrix ?? null;
+/** The motion by which a frame is warped back, if any. */
+function stabilisingMotion({ look, result }: State, slot: Slot): readonly number[] | null {
+  if (slot !== 'second' || look.stabilised === null || result === null) return null;
+  return mainMotion(result.segmentation, look.kind, look.stabilised)?.matrix ?? null;
 }
 
 function captionOf(state: State): string {
@@ -50,15 +50,15 @@ function captionOf(state: State): string {
   if (slot === null) return '';
   if (state.live !== null) return strings.camera;
   const { look } = state;
-  const held = look.still === null || (look.view === 'first' && !look.blinking) ? '' : strings.heldStill(nameOf(look, look.still));
+  const held = look.stabilised === null || (look.view === 'first' && !look.blinking) ? '' : strings.stabilised(nameOf(look, look.stabilised));
   return `${look.view === 'split' ? strings.split : strings.slot[slot]}${held}`;
 }
 
 function draw(canvas: HTMLCanvasElement, { bitmap, width, height }: LoadedFrame, held: readonly number[] | null): void {
-  // Setting the size clears the canvas, also where it stays the same.
+  // Setting the size clears the canvas, even if it does not change.
   canvas.width = width;
   canvas.height = height;
   const context = contextOf(canvas);
   if (held === null) context.drawImage(bitmap, 0, 0);
-  else drawHeldStill(context, bitmap, held);
+  else drawStabilised(context, bitmap, held);
 }

@@ -1,23 +1,24 @@
-//! The timeline of a film: thumbnails, the two chosen frames, steps by one frame.
+//! The timeline of a clip: thumbnails, the two chosen frames, buttons to step.
 
-import type { Session } from '../session.js';
-import type { Film, Slot, Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import type { Slot, Timeline } from '../state/pair.js';
+import type { Store } from '../state/state.js';
 import { contextOf, find } from './markup.js';
 
-/** Width of a thumbnail at least, screen pixels. */
+/** Smallest width of a thumbnail, screen pixels. */
 const THUMB = 72;
-/** Where a mark is that is not seen, as a part of the strip. */
+/** Position of a hidden mark, share of the strip. */
 const OUTSIDE = '-1';
 
 export function mountTimeline(root: HTMLElement, store: Store, session: Session): void {
   const strip = find(root, '#strip', HTMLCanvasElement);
-  const label = find(root, '#film-name', HTMLElement);
-  const note = find(root, '#film-note', HTMLElement);
+  const label = find(root, '#clip-name', HTMLElement);
+  const note = find(root, '#clip-note', HTMLElement);
   const sliders = (['first', 'second'] as const).map((slot) => {
-    const input = find(root, `[name=film-${slot}]`, HTMLInputElement);
-    const readout = find(root, `#film-${slot}-at`, HTMLElement);
-    input.addEventListener('input', () => (readout.textContent = placeOf(store.get().film, input.valueAsNumber)));
+    const input = find(root, `[name=clip-${slot}]`, HTMLInputElement);
+    const readout = find(root, `#clip-${slot}-at`, HTMLElement);
+    input.addEventListener('input', () => (readout.textContent = placeOf(store.get().timeline, input.valueAsNumber)));
     input.addEventListener('change', () => void session.choose(slot, input.valueAsNumber));
     return { slot, input, readout };
   });
@@ -26,47 +27,47 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     button.addEventListener('click', () => stepOne(store, session, slot as Slot | 'both', Number(by)));
   }
   strip.addEventListener('click', (event) => {
-    const { film } = store.get();
-    if (film === null) return;
-    const index = Math.floor((event.offsetX / strip.clientWidth) * film.clip.count);
+    const { timeline } = store.get();
+    if (timeline === null) return;
+    const index = Math.floor((event.offsetX / strip.clientWidth) * timeline.clip.count);
     void session.choose(event.shiftKey ? 'second' : 'first', index);
   });
 
-  store.subscribe(({ film }, before) => {
-    if (film === before.film) return;
-    root.hidden = film === null;
-    if (film === null) return;
-    const { clip } = film;
-    if (clip !== before.film?.clip) {
-      label.textContent = strings.film(clip.name, clip.count, clip.width, clip.height);
+  store.subscribe(({ timeline }, before) => {
+    if (timeline === before.timeline) return;
+    root.hidden = timeline === null;
+    if (timeline === null) return;
+    const { clip } = timeline;
+    if (clip !== before.timeline?.clip) {
+      label.textContent = strings.clip(clip.name, clip.count, clip.width, clip.height);
       note.hidden = clip.exact;
-      void drawStrip(strip, film, () => store.get().film?.clip === clip);
+      void drawStrip(strip, timeline, () => store.get().timeline?.clip === clip);
     }
     for (const { slot, input, readout } of sliders) {
-      const index = film[slot];
+      const index = timeline[slot];
       root.style.setProperty(`--${slot}`, index === null ? OUTSIDE : String((index + 0.5) / clip.count));
       input.max = String(clip.count - 1);
       if (index !== null) input.value = String(index);
-      readout.textContent = placeOf(film, index);
+      readout.textContent = placeOf(timeline, index);
     }
   });
 }
 
-/** One frame on or back, for one of the frames or both; from the other's place where the frame is another file. */
+/** Steps one frame or both. A frame that is not of the clip starts from the position of the other. */
 export function stepOne(store: Store, session: Session, which: Slot | 'both', by: number): void {
-  const { film } = store.get();
-  if (film === null) return;
+  const { timeline } = store.get();
+  if (timeline === null) return;
   if (which === 'both') void session.step(by);
-  else void session.choose(which, (film[which] ?? film.first ?? film.second ?? 0) + by);
+  else void session.choose(which, (timeline[which] ?? timeline.first ?? timeline.second ?? 0) + by);
 }
 
-function placeOf(film: Film | null, index: number | null): string {
-  if (film === null) return '';
+function placeOf(timeline: Timeline | null, index: number | null): string {
+  if (timeline === null) return '';
   if (index === null) return strings.anotherFile;
-  return strings.frameAt(index, film.clip.times?.[index] ?? null);
+  return strings.frameAt(index, timeline.clip.times?.[index] ?? null);
 }
 
-async function drawStrip(canvas: HTMLCanvasElement, { clip }: Film, current: () => boolean): Promise<void> {
+async function drawStrip(canvas: HTMLCanvasElement, { clip }: Timeline, current: () => boolean): Promise<void> {
   const dense = Math.min(2, devicePixelRatio);
   const [across, height] = [canvas.clientWidth || 640, canvas.clientHeight || 48];
   const count = Math.max(1, Math.min(clip.count, Math.floor(across / THUMB)));
@@ -80,7 +81,7 @@ async function drawStrip(canvas: HTMLCanvasElement, { clip }: Film, current: () 
     await clip.thumbnails(indices, (_, picture) => {
       const left = k++ * cell;
       if (!current()) return;
-      // The middle of the frame fills the cell.
+      // The frame covers the cell and is cropped at the sides.
       const scale = Math.max(cell / clip.width, canvas.height / clip.height);
       const [width, tall] = [clip.width * scale, clip.height * scale];
       context.save();
@@ -91,6 +92,6 @@ async function drawStrip(canvas: HTMLCanvasElement, { clip }: Film, current: () 
       context.restore();
     });
   } catch {
-    // Pictures are a help; the frames themselves are asked for one by one, and say what is wrong.
+    // Thumbnails are optional; choosing a frame reports the error.
   }
 }

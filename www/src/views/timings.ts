@@ -1,7 +1,7 @@
-//! Where the time went, stage by stage.
+//! The time of each stage.
 
-import { type Result, type Store, isAwaited } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import { type Result, type Store, isAwaited } from '../state/state.js';
 import { find } from './markup.js';
 
 export function mountTimings(root: HTMLElement, store: Store): void {

@@ -1,10 +1,9 @@
-//! The notice: an error as a sentence with its code in small, or something that needs saying. It lies over the page, where it is seen; what
-//! is no error goes by itself.
+//! The notice over the page: a message, or an error with its code. Messages disappear by themselves; errors stay.
 
-import type { Store } from '../state.js';
+import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
 
-/** How long something that was done is said, milliseconds. */
+/** How long a message stays, milliseconds. */
 const SEEN = 6000;
 
 export function mountToast(root: HTMLElement, store: Store): void {
@@ -19,7 +18,7 @@ export function mountToast(root: HTMLElement, store: Store): void {
     const { notice } = store.get();
     if (notice !== null && notice.code === null) going = window.setTimeout(close, SEEN);
   };
-  // Not while somebody is at it.
+  // Not while it is hovered or focused.
   for (const event of ['pointerenter', 'focusin']) root.addEventListener(event, () => clearTimeout(going));
   for (const event of ['pointerleave', 'focusout']) root.addEventListener(event, goSoon);
 
@@ -33,12 +32,12 @@ export function mountToast(root: HTMLElement, store: Store): void {
   });
 }
 
-/** What stands between backticks is to be typed. */
+/** Text between backticks becomes code. */
 function written(text: string): (string | HTMLElement)[] {
   return text.split('`').map((part, k) => (k % 2 === 1 ? element('code', part) : part));
 }
 
-/** The package's messages begin in lower case and end without a full stop, as messages on a command line do. */
+/** The package's messages start in lower case and have no full stop, as usual on a command line. */
 function asSentence(message: string): string {
   const ended = /[.!?]$/.test(message) ? message : `${message}.`;
   return ended.charAt(0).toUpperCase() + ended.slice(1);

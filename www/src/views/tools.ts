@@ -1,8 +1,8 @@
-//! The row of tools: look, brush, eraser; the brush's size; undo and redo.
+//! The tools: view, brush, eraser; the size of the brush; undo and redo.
 
-import type { Session } from '../session.js';
-import type { Store, ToolName } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import type { Store, ToolName } from '../state/state.js';
 import { find } from './markup.js';
 
 export const RADII = { least: 2, most: 60 } as const;
@@ -41,7 +41,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   render();
 }
 
-/** Takes a tool up. To paint, a mask must be chosen and the first frame seen: the object that stands out most and that frame. */
+/** Selects a tool. For painting it shows the first frame, and selects the second-largest motion if no mask is selected. */
 export function chooseTool(store: Store, name: ToolName): void {
   const { tool, look, result } = store.get();
   store.set({ tool: { ...tool, name } });
@@ -49,7 +49,7 @@ export function chooseTool(store: Store, name: ToolName): void {
   const { motions } = result?.segmentation ?? { motions: [] };
   const second = motions[1] ?? motions[0];
   const selected = look.selected ?? (second === undefined ? null : look.kind === 'groups' ? second.group : second.label);
-  store.look({ view: 'first', blinking: false, still: null, selected });
+  store.look({ view: 'first', blinking: false, stabilised: null, selected });
 }
 
 export function changeRadius(store: Store, factor: number): void {

@@ -1,22 +1,22 @@
-//! How large the picture is shown: the transform of its layers, the pixel grid, the buttons.
+//! Zoom and pan: the transform of the picture, the pixel grid, the buttons.
 
-import { WHOLE, ZOOM_STEP, type Camera, panned, within, zoomedAt } from '../camera.js';
-import type { Store } from '../state.js';
-import { strings } from '../strings.js';
+import { strings } from '../common/strings.js';
+import { WHOLE, ZOOM_STEP, type Viewport, panned, within, zoomedAt } from '../drawing/viewport.js';
+import type { Store } from '../state/state.js';
 import { find } from './markup.js';
 
-/** Pixels are drawn as squares from this size on, and with a grid between them from that size on, screen pixels. */
+/** Pixels are drawn as squares from the first size on, and with a grid from the second, screen pixels. */
 const SQUARES_FROM = 3;
 const GRID_FROM = 10;
 
-/** What buttons, keys, wheel and fingers do to the camera. */
+/** Changes to the viewport by buttons, keys, wheel and fingers. */
 export class Zoom {
   constructor(
     readonly store: Store,
     readonly layers: HTMLElement,
   ) {}
 
-  /** Screen pixels per pixel of the frame while the whole picture is shown. */
+  /** Screen pixels per pixel of the frame at zoom 1. */
   fit(): number {
     const { pair } = this.store.get();
     const frame = pair.first ?? pair.second;
@@ -24,26 +24,26 @@ export class Zoom {
   }
 
   by(factor: number, at: readonly [number, number] = [0.5, 0.5]): void {
-    this.#set(zoomedAt(this.store.get().camera, factor, at, this.fit()));
+    this.#set(zoomedAt(this.store.get().viewport, factor, at, this.fit()));
   }
 
   pan(right: number, down: number): void {
-    this.#set(panned(this.store.get().camera, right, down, this.fit()));
+    this.#set(panned(this.store.get().viewport, right, down, this.fit()));
   }
 
   whole(): void {
     this.#set(WHOLE);
   }
 
-  /** One pixel of the frame is one of the screen. */
+  /** Shows one pixel of the frame as one pixel of the screen. */
   actual(): void {
-    const { camera } = this.store.get();
-    this.#set(within({ ...camera, zoom: 1 / this.fit() }, this.fit()));
+    const { viewport } = this.store.get();
+    this.#set(within({ ...viewport, zoom: 1 / this.fit() }, this.fit()));
   }
 
-  #set(camera: Camera): void {
-    const { camera: now } = this.store.get();
-    if (camera.zoom !== now.zoom || camera.x !== now.x || camera.y !== now.y) this.store.set({ camera });
+  #set(viewport: Viewport): void {
+    const { viewport: now } = this.store.get();
+    if (viewport.zoom !== now.zoom || viewport.x !== now.x || viewport.y !== now.y) this.store.set({ viewport });
   }
 }
 
@@ -61,27 +61,27 @@ export function mountZoom(stage: HTMLElement, store: Store): Zoom {
   value.addEventListener('click', () => zoom.actual());
 
   const render = (): void => {
-    const { camera, pair } = store.get();
+    const { viewport, pair } = store.get();
     const frame = pair.first ?? pair.second;
     if (frame === null) return;
-    const scale = camera.zoom * zoom.fit();
-    const [left, top] = [0.5 - camera.x * camera.zoom, 0.5 - camera.y * camera.zoom];
-    content.style.transform = camera.zoom === 1 ? 'none' : `translate(${left * 100}%, ${top * 100}%) scale(${camera.zoom})`;
-    stage.style.setProperty('--scale', String(camera.zoom));
+    const scale = viewport.zoom * zoom.fit();
+    const [left, top] = [0.5 - viewport.x * viewport.zoom, 0.5 - viewport.y * viewport.zoom];
+    content.style.transform = viewport.zoom === 1 ? 'none' : `translate(${left * 100}%, ${top * 100}%) scale(${viewport.zoom})`;
+    stage.style.setProperty('--scale', String(viewport.zoom));
     stage.classList.toggle('squares', scale >= SQUARES_FROM);
-    stage.classList.toggle('zoomed', camera.zoom > 1);
+    stage.classList.toggle('zoomed', viewport.zoom > 1);
     grid.hidden = scale < GRID_FROM;
     if (!grid.hidden) {
       const { offsetWidth: width, offsetHeight: height } = layers;
       grid.style.backgroundSize = `${scale}px ${scale}px`;
       grid.style.backgroundPosition = `${left * width}px ${top * height}px`;
     }
-    out.disabled = camera.zoom <= 1;
+    out.disabled = viewport.zoom <= 1;
     value.textContent = strings.percent(Math.round(scale * 100) / 100);
     value.setAttribute('aria-label', strings.zoomValue(value.textContent));
   };
   store.subscribe((now, before) => {
-    if (now.camera !== before.camera || now.pair !== before.pair) render();
+    if (now.viewport !== before.viewport || now.pair !== before.pair) render();
   });
   new ResizeObserver(render).observe(layers);
   return zoom;

@@ -1,0 +1,197 @@
+//! Every text that the code shows, in one place. Static text is in `index.html`.
+
+import type { MotionParts } from '../result/describe.js';
+import type { Kind } from '../result/masks.js';
+
+const decimals = (digits: number): Intl.NumberFormat => new Intl.NumberFormat('en', { maximumFractionDigits: digits });
+const tenths = decimals(1);
+const hundredths = decimals(2);
+const whole = decimals(0);
+
+/** Keeps a number and its unit on one line. */
+const NBSP = '\u00a0';
+
+/** Two decimals below one, one decimal above. */
+function amount(value: number): string {
+  const size = Math.abs(value);
+  return (size < 1 ? hundredths : tenths).format(size);
+}
+
+const STAGES: Readonly<Record<string, string>> = {
+  frames: 'Reading the frames',
+  dominant: 'Estimating the dominant motion',
+  measurements: 'Measuring derivatives',
+  algebra: 'Fitting the multibody polynomial',
+  selection: 'Selecting the motions',
+  refinement: 'Refining the motions',
+  labels: 'Labelling the pixels',
+  masks: 'Upsampling the masks',
+};
+
+/** A stage's name in words. One that is not in the table gets its camelCase name split into words. */
+function stage(name: string): string {
+  const words = name.replace(/([a-z0-9])([A-Z])/g, '$1 $2').toLowerCase();
+  return STAGES[name] ?? words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+/** "moves 4.1 px right, 0.2 px up; turns 1.2° clockwise; grows 0.5 %". */
+function motion(parts: MotionParts): string {
+  const said: string[] = [];
+  const moves: string[] = [];
+  if (parts.right !== 0) moves.push(`${amount(parts.right)}${NBSP}px ${parts.right > 0 ? 'right' : 'left'}`);
+  if (parts.down !== 0) moves.push(`${amount(parts.down)}${NBSP}px ${parts.down > 0 ? 'down' : 'up'}`);
+  if (moves.length > 0) said.push(`moves ${moves.join(', ')}`);
+  if (parts.turn !== 0) said.push(`turns ${amount(parts.turn)}° ${parts.turn > 0 ? 'clockwise' : 'anticlockwise'}`);
+  if (parts.growth !== 0) said.push(`${parts.growth > 0 ? 'grows' : 'shrinks'} ${amount(parts.growth * 100)}${NBSP}%`);
+  if (parts.stretch !== 0) said.push(`stretches ${amount(parts.stretch * 100)}${NBSP}%`);
+  return said.length > 0 ? said.join('; ') : 'stands still';
+}
+
+const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
+const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
+const scoreAbove = (above: number): string => (above === 0 ? 'lowest score' : `score ${whole.format(above)} above the lowest`);
+const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
+
+export const strings = {
+  slot: { first: 'First frame', second: 'Second frame' },
+  split: 'First | second',
+  camera: 'Camera',
+  cameraFrame: 'camera',
+  openCamera: 'Camera',
+  closeCamera: 'Stop camera',
+  size,
+  percent,
+  milliseconds: (ms: number): string => `${ms < 10 ? tenths.format(ms) : whole.format(ms)} ms`,
+  stage,
+  zoomValue: (value: string): string => `Zoom ${value}: set to 100 %`,
+  magnified: (times: number): string => `arrows ×${times}`,
+
+  empty: 'none yet',
+  frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
+  stabilised: (name: string): string => `, stabilised on ${name}`,
+
+  clip: (name: string, count: number, width: number, height: number): string => `${name}, ${whole.format(count)} frames, ${size(width, height)}`,
+  anotherFile: 'another file',
+  frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
+
+  motion,
+  maskName: (kind: Kind, id: number): string => `${kind === 'groups' ? 'Group' : 'Motion'} ${id}`,
+  noMasksYet: 'Masks appear here once they are found.',
+  noMasks: { failed: 'No masks: the segmentation failed.', cancelled: 'No masks: the segmentation was cancelled.' },
+  liveMasks: (count: number): string => `${motions(count)} at the moment. Stop the camera to list them.`,
+  residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
+  severalMotions: (count: number): string => `${count} motions in one group`,
+  groupWith: (labels: readonly number[]): string => `grouped with ${labels.map((label) => `Motion ${label}`).join(', ')}`,
+  unknownName: 'Unlabelled',
+  unknownWords: 'no motion explains these pixels',
+  entry: (value: number): string => (Math.abs(value) < 1 ? value.toFixed(6) : value.toFixed(3)),
+  show: (name: string): string => `Show ${name}`,
+  colourOf: (name: string): string => `Colour of ${name}`,
+  nameOf: (name: string): string => `Name of ${name}`,
+  soloOf: (name: string): string => `Solo: show only ${name}`,
+  stabiliseOf: (name: string): string => `Stabilise on ${name}: alternate between the frames with ${name} held in place`,
+  mergeOf: (name: string): string => `Merge ${name} with another mask`,
+  copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
+  copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
+
+  forceNumber: (count: number, above: number): string => `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair: ${scoreAbove(above)}`,
+  scoreAbove,
+
+  toolHelp: {
+    look: '',
+    brush: 'Paint pixels that belong to the selected mask; the labels around them adapt.',
+    eraser: 'Paint pixels that do not belong to the selected mask.',
+  },
+
+  timings: {
+    decode: (name: string): string => `Decoding ${name}`,
+    total: 'All stages',
+    waited: 'Including transfers',
+  },
+
+  status: {
+    idle: 'Open two frames or a video to begin.',
+    opening: 'Opening…',
+    waiting: (slot: 'first' | 'second'): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
+    working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
+    /** `requested`: the number of motions in the settings; null for automatic. */
+    found: (count: number, groups: number, requested: number | null, waited: number): string => {
+      const among = groups === count ? '' : groups === 1 ? ' in one group' : ` in ${groups} groups`;
+      const set = requested === null ? '' : count < requested ? `, fewer than the ${requested} requested: no more could be distinguished` : ', as requested';
+      return `${motions(count)}${among} found in ${whole.format(waited)} ms${set}.`;
+    },
+    /** How many of all strokes have an effect on this result. */
+    applied: (applied: number, all: number): string => {
+      if (applied === all) return all === 1 ? 'Your stroke is applied.' : `Your ${all} strokes are applied.`;
+      if (all === 1) return 'Your stroke has no effect: its mask is not in this result.';
+      if (applied === 0) return `Your ${all} strokes have no effect: their masks are not in this result.`;
+      const others = all - applied === 1 ? 'mask of the other is' : 'masks of the others are';
+      return `${applied} of your ${all} strokes ${applied > 1 ? 'are' : 'is'} applied: the ${others} not in this result.`;
+    },
+    solved: (strokes: number, waited: number): string => `Labels updated with your ${strokes === 1 ? 'stroke' : 'strokes'} in ${whole.format(waited)} ms.`,
+    undone: 'Undone.',
+    redone: 'Redone.',
+    merged: 'Merged.',
+    ungrouped: 'Ungrouped.',
+    restored: 'Restored your corrections of these frames.',
+    live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} pairs per second, ${motions(count).toLowerCase()}.`,
+    cancelled: 'Cancelled.',
+    cancelledBefore: 'Cancelled. The masks are from the last result.',
+    cancelledStrokes: 'Cancelled. Your strokes are kept, but not all are applied yet.',
+    failed: 'The segmentation failed.',
+    failedBefore: 'The segmentation failed. The masks are from the last result.',
+    failedStrokes: 'The update failed. Your strokes are kept, but not all are applied yet.',
+  },
+
+  notices: {
+    noFiles: 'There is no image or video among these files.',
+    noMasks: 'There are no masks to paint yet.',
+    chooseMask: 'Select a mask in the list first.',
+    nothingElse: 'There is no other mask that these pixels could belong to.',
+    notPainted: 'The brush cannot make pixels unlabelled. Select another mask, or use the eraser.',
+  },
+
+  errors: {
+    unreadable: (name: string): string => `“${name}” is not an image that this browser can read.`,
+    unreachable: (name: string): string => `“${name}” could not be loaded.`,
+    tooLarge: (name: string, width: number, height: number): string => `“${name}” is too large: ${width} × ${height} pixels.`,
+    unreadableVideo: (name: string): string => `“${name}” is not a video that this browser can read.`,
+    unreadableFolder: (name: string): string => `The folder “${name}” cannot be read.`,
+    unsupportedCodec: (name: string, codec: string, command: string): string =>
+      `“${name}” is ${codec}, which this browser cannot decode. Convert it to H.264 or VP9, e.g. with \`${command}\`, or open it in a browser that plays it.`,
+    slowVideo: 'Reading the video timed out.',
+    inexactFrame: (name: string, index: number): string => `Frame ${index} of “${name}” cannot be read exactly.`,
+    noCamera: 'There is no camera, or the page has no permission to use it.',
+    noCanvas: 'This browser cannot read pixels from a canvas.',
+    noClipboard: 'The browser did not allow writing to the clipboard.',
+    notWritten: (what: string): string => `${what} could not be exported.`,
+    wholeNumber: (name: string, min: number, max: number): string => `${name} must be a whole number from ${min} to ${max}.`,
+  },
+
+  keys: {
+    peek: 'Show the other frame while held',
+    blink: 'Alternate between the frames',
+    split: 'Split view',
+    kind: 'Switch between groups and motions',
+    outlines: 'Outlines',
+    arrows: 'Flow arrows',
+    residual: 'Residual: what the motions do not explain',
+    zoomIn: 'Zoom in',
+    zoomOut: 'Zoom out',
+    whole: 'Fit the picture',
+    actual: 'Zoom to 100 %',
+    pan: 'Pan the enlarged picture',
+    stepBack: 'Step both frames back',
+    stepOn: 'Step both frames forward',
+    look: 'View: select masks, pan',
+    brush: 'Brush: add to the selected mask',
+    eraser: 'Eraser: remove from the selected mask',
+    stroke: 'With the picture focused: start or end a stroke; arrow keys move the brush',
+    thinner: 'Smaller brush',
+    thicker: 'Larger brush',
+    undo: 'Undo',
+    redo: 'Redo',
+    cancel: 'Cancel',
+    keys: 'Show this list',
+  },
+} as const;

@@ -1,0 +1,77 @@
+//! Run-length encoded labels: they store corrections in little memory and compare two labellings quickly.
+
+import { UNLABELLED } from '../result/masks.js';
+
+/** Row-major; run k covers the pixels from `ends[k - 1]` up to, but not including, `ends[k]`. */
+export interface Runs {
+  readonly width: number;
+  readonly height: number;
+  readonly ends: Uint32Array;
+  readonly labels: Uint8Array;
+}
+
+export function packed(labels: Uint8Array, width: number, height: number): Runs {
+  let count = Math.min(1, labels.length);
+  for (let p = 1; p < labels.length; p++) if (labels[p] !== labels[p - 1]) count += 1;
+  const runs = { width, height, ends: new Uint32Array(count), labels: new Uint8Array(count) };
+  for (let p = 1, k = 0; p <= labels.length; p++) {
+    if (p < labels.length && labels[p] === labels[p - 1]) continue;
+    runs.ends[k] = p;
+    runs.labels[k++] = labels[p - 1]!;
+  }
+  return runs;
+}
+
+export function unpacked({ width, height, ends, labels }: Runs): Uint8Array<ArrayBuffer> {
+  const pixels = new Uint8Array(width * height);
+  for (let k = 0, from = 0; k < ends.length; from = ends[k++]!) pixels.fill(labels[k]!, from, ends[k]);
+  return pixels;
+}
+
+/** Size of the runs in memory, bytes. */
+export function sizeOf({ ends, labels }: Runs): number {
+  return ends.byteLength + labels.byteLength;
+}
+
+/** Labels correspond only if their intersection over union reaches this: a smaller overlap is chance. */
+const LEAST_COMMON = 0.1;
+
+/**
+ * For each label of `now` the label of `before` with the largest intersection over union, if that reaches {@link LEAST_COMMON}. Several
+ * labels may continue the same one, if it was split.
+ */
+export function continued(before: Runs, now: Runs): ReadonlyMap<number, number> {
+  const [old, areasBefore] = [before.width === now.width && before.height === now.height ? before : resized(before, now), new Map<number, number>()];
+  const areasNow = new Map<number, number>();
+  const common = new Map<number, number>();
+  const add = (map: Map<number, number>, key: number, pixels: number): void => void map.set(key, (map.get(key) ?? 0) + pixels);
+  for (let i = 0, k = 0, from = 0; i < old.ends.length && k < now.ends.length; ) {
+    const to = Math.min(old.ends[i]!, now.ends[k]!);
+    const [was, is] = [old.labels[i]!, now.labels[k]!];
+    add(areasBefore, was, to - from);
+    add(areasNow, is, to - from);
+    add(common, 256 * is + was, to - from);
+    if (old.ends[i] === to) i += 1;
+    if (now.ends[k] === to) k += 1;
+    from = to;
+  }
+  const best = new Map<number, { readonly was: number; readonly share: number }>();
+  for (const [key, pixels] of common) {
+    const [is, was] = [key >> 8, key & 255];
+    if (is === UNLABELLED || was === UNLABELLED) continue;
+    const share = pixels / (areasNow.get(is)! + areasBefore.get(was)! - pixels);
+    if (share >= LEAST_COMMON && share > (best.get(is)?.share ?? 0)) best.set(is, { was, share });
+  }
+  return new Map([...best].map(([is, { was }]) => [is, was]));
+}
+
+/** The labels at another size, by nearest neighbour. */
+function resized(runs: Runs, { width, height }: Pick<Runs, 'width' | 'height'>): Runs {
+  const [labels, sx, sy] = [unpacked(runs), runs.width / width, runs.height / height];
+  const pixels = new Uint8Array(width * height);
+  for (let y = 0, p = 0; y < height; y++) {
+    const row = Math.floor((y + 0.5) * sy) * runs.width;
+    for (let x = 0; x < width; x++) pixels[p++] = labels[row + Math.floor((x + 0.5) * sx)]!;
+  }
+  return packed(pixels, width, height);
+}

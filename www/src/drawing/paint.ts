@@ -1,0 +1,98 @@
+//! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. It needs no canvas, so it can be tested in Node
+//! and done in pieces.
+
+import type { Segmentation } from 'veronese';
+import { UNLABELLED, type Kind, keyOf, maskTable } from '../result/masks.js';
+import { UNKNOWN_COLOUR, type Colour, colourOf, wordFromColour } from './palette.js';
+
+/** What decides how labels are painted. */
+export interface Painting {
+  readonly kind: Kind;
+  readonly hidden: ReadonlySet<number>;
+  /** The only mask shown, if any. */
+  readonly solo: number | null;
+  /** Colours that the user gave to masks, by `keyOf`. */
+  readonly colours: Readonly<Record<string, Colour>>;
+}
+
+export function isShown(mask: number, { hidden, solo }: Pick<Painting, 'hidden' | 'solo'>): boolean {
+  return solo === null ? !hidden.has(mask) : solo === mask;
+}
+
+/** The colour of a mask: the user's, or that of the palette. */
+export function colourOfMask(mask: number, { kind, colours }: Pick<Painting, 'kind' | 'colours'>): Colour {
+  return colours[keyOf(kind, mask)] ?? (mask === UNLABELLED ? UNKNOWN_COLOUR : colourOf(mask));
+}
+
+/** The RGBA word of each label; 0 (transparent) if it is hidden. */
+function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Array {
+  const masks = maskTable(segmentation, painting.kind);
+  const words = new Uint32Array(256);
+  for (const label of [...segmentation.motions.map((motion) => motion.label), UNLABELLED]) {
+    const mask = masks[label]!;
+    if (isShown(mask, painting)) words[label] = wordFromColour(colourOfMask(mask, painting));
+  }
+  return words;
+}
+
+/** Rows `from` to `to` of the fill: each pixel has the opaque colour of its mask, or is transparent. */
+export function fillOf(segmentation: Segmentation, painting: Painting, from = 0, to = segmentation.height): Uint32Array<ArrayBuffer> {
+  const words = wordsByLabel(segmentation, painting);
+  const { labels, width } = segmentation;
+  const pixels = new Uint32Array((to - from) * width);
+  for (let i = 0, p = from * width; i < pixels.length; i++, p++) pixels[i] = words[labels[p]!]!;
+  return pixels;
+}
+
+/** Outlines are lighter than the fill: the share of white mixed into the colour of the mask. */
+const LIGHTER = 0.45;
+
+function lighter(word: number): number {
+  const channel = (shift: number): number => {
+    const value = (word >>> shift) & 255;
+    return Math.round(value + (255 - value) * LIGHTER) << shift;
+  };
+  return word === 0 ? 0 : ((255 << 24) | channel(16) | channel(8) | channel(0)) >>> 0;
+}
+
+/**
+ * Rows `from` to `to` of the outlines: the pixels of a mask that have another mask within `thickness` pixels along the row or column. The
+ * largest mask has none: its outline would double all others.
+ */
+export function outlinesOf(
+  segmentation: Segmentation,
+  painting: Painting,
+  thickness: number,
+  from = 0,
+  to = segmentation.height,
+): Uint32Array<ArrayBuffer> {
+  const words = wordsByLabel(segmentation, painting);
+  const masks = maskTable(segmentation, painting.kind);
+  const rims = words.map((word, label) => (masks[label] === 0 && painting.solo === null ? 0 : lighter(word)));
+  const { labels, width, height } = segmentation;
+  const first = from * width;
+  const pixels = new Uint32Array((to - from) * width);
+  /** Paints up to `limit` pixels from `start` on, until the mask ends. */
+  const paint = (start: number, step: number, limit: number): void => {
+    const own = masks[labels[start]!];
+    for (let k = 0, i = start; k < limit && masks[labels[i]!] === own; k++, i += step) {
+      if (i >= first && i - first < pixels.length) pixels[i - first] = rims[labels[i]!]!;
+    }
+  };
+  // Borders just above and below reach into these rows.
+  const [top, bottom] = [Math.max(0, from - thickness), Math.min(height, to + thickness)];
+  for (let y = top, i = top * width; y < bottom; y++) {
+    for (let x = 0; x < width; x++, i++) {
+      const own = masks[labels[i]!];
+      if (x > 0 && masks[labels[i - 1]!] !== own) {
+        paint(i, 1, Math.min(thickness, width - x));
+        paint(i - 1, -1, Math.min(thickness, x));
+      }
+      if (y > 0 && masks[labels[i - width]!] !== own) {
+        paint(i, width, Math.min(thickness, height - y));
+        paint(i - width, -width, Math.min(thickness, y));
+      }
+    }
+  }
+  return pixels;
+}

@@ -1,0 +1,61 @@
+//! Formats of annotation tools. The encoders are the package's, loaded on first use.
+
+import type { FormatMeta } from 'veronese/formats';
+import type { Export, Format } from './format.js';
+import { zipped } from './zip.js';
+
+type Encoders = typeof import('veronese/formats');
+
+/** The arguments of the encoders. The largest mask, usually the background, is exported like any other. */
+function argumentsFor({ labels, segmentation: { width, height }, masks, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
+  const names = Object.fromEntries(masks.map(({ id, name }) => [id, name]));
+  const motions = masks.map(({ id, motions: [main], pixels, share }) => ({ ...main!, label: id, pixels, share }));
+  return [labels, width, height, { image, names, motions, labels: masks.map(({ id }) => id) }];
+}
+
+function entry(
+  id: string,
+  title: string,
+  file: string,
+  hint: string,
+  encode: (encoders: Encoders, exported: Export) => unknown,
+): Format {
+  const type = file.endsWith('.json') ? 'application/json' : file.endsWith('.xml') ? 'application/xml' : 'application/zip';
+  return {
+    id,
+    title,
+    file,
+    type,
+    hint,
+    async make(exported) {
+      const made = await encode(await import('veronese/formats'), exported);
+      if (typeof made === 'string') return made;
+      return made instanceof Uint8Array ? new Uint8Array(made) : `${JSON.stringify(made)}\n`;
+    },
+  };
+}
+
+export const ANNOTATIONS: readonly Format[] = [
+  entry('coco-rle', 'COCO, RLE', 'coco.json', 'Instances as compressed run lengths: exact, holes included.', ({ encodeCoco }, exported) =>
+    encodeCoco(...argumentsFor(exported), { shape: 'rle' }),
+  ),
+  entry('coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances as polygons.', ({ encodeCoco }, exported) =>
+    encodeCoco(...argumentsFor(exported), { shape: 'polygon' }),
+  ),
+  entry('cvat', 'CVAT', 'annotations.xml', 'CVAT for images 1.1, with masks.', ({ encodeCvatXml }, exported) =>
+    encodeCvatXml(...argumentsFor(exported), { shape: 'mask' }),
+  ),
+  entry('label-studio', 'Label Studio', 'label-studio.json', 'A task with brush labels as predictions, to import into a project.', ({ encodeLabelStudio }, exported) => [
+    encodeLabelStudio(...argumentsFor(exported), { shape: 'brush' }),
+  ]),
+  entry('labelme', 'LabelMe', 'labelme.json', 'Mask shapes; save the file next to the image.', ({ encodeLabelMe }, exported) =>
+    encodeLabelMe(...argumentsFor(exported), { shape: 'mask' }),
+  ),
+  entry('yolo', 'YOLO segmentation', 'yolo.zip', 'A text file with one line per mask, and the class names.', ({ encodeYolo }, exported) => {
+    const { text, names } = encodeYolo(...argumentsFor(exported));
+    const list = names.map((name, k) => `  ${k}: ${JSON.stringify(name)}\n`).join('');
+    const bytes = (content: string): Uint8Array => new TextEncoder().encode(content);
+    const stem = exported.image.replace(/\.[^.]*$/, '').replace(/[\\/:*?"<>|#]/g, '_');
+    return zipped({ [`labels/${stem}.txt`]: bytes(text), 'data.yaml': bytes(`names:\n${list}`) });
+  }),
+];

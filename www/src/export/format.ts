@@ -1,0 +1,41 @@
+//! A format of the export menu, and the result that it is given.
+
+import { type Segmentation, groupLabels } from 'veronese';
+import { nameOf } from '../common/naming.js';
+import { colourOfMask } from '../drawing/paint.js';
+import type { Colour } from '../drawing/palette.js';
+import { UNLABELLED, type Mask, masksOf } from '../result/masks.js';
+import type { Look, Result } from '../state/state.js';
+import { atSize } from './full-size.js';
+
+/** A result as it is exported. */
+export interface Export {
+  readonly result: Result;
+  readonly look: Look;
+  /** At the full size of the frames. */
+  readonly segmentation: Segmentation;
+  /** The number of each pixel's mask, {@link UNLABELLED} for none. */
+  readonly labels: Uint8Array;
+  readonly masks: readonly (Mask & { readonly name: string; readonly colour: Colour })[];
+  /** File name of the first frame. */
+  readonly image: string;
+}
+
+export interface Format {
+  readonly id: string;
+  readonly title: string;
+  readonly file: string;
+  readonly type: string;
+  /** A sentence about the file. */
+  readonly hint: string;
+  make(exported: Export): Promise<string | Uint8Array<ArrayBuffer> | Blob>;
+}
+
+export function exportOf(result: Result, look: Look): Export {
+  const segmentation = atSize(result.segmentation, result.pair.first.full);
+  const labels = look.kind === 'groups' ? groupLabels(segmentation) : segmentation.labels;
+  const masks = masksOf(segmentation, look.kind)
+    .filter(({ id }) => id !== UNLABELLED)
+    .map((mask) => ({ ...mask, name: nameOf(look, mask.id), colour: colourOfMask(mask.id, look) }));
+  return { result, look, segmentation, labels, masks, image: result.pair.first.name };
+}

@@ -1,0 +1,54 @@
+//! Settings and the sample in the page's address, read and written. Values that are not among the choices are ignored.
+
+import { SAMPLES, type Sample, sampleCalled } from '../frames/samples.js';
+import type { Kind } from '../result/masks.js';
+import { sampleOf } from '../state/pair.js';
+import { CONTROLS, DEFAULT_SETTINGS, type Settings } from '../state/settings.js';
+import type { State } from '../state/state.js';
+
+export interface Linked {
+  readonly settings: Partial<Settings>;
+  readonly kind: Kind | null;
+  readonly sample: Sample | null;
+  readonly swapped: boolean;
+}
+
+export function settingsFromHash(hash: string): Linked {
+  const values = new URLSearchParams(hash.replace(/^#/, ''));
+  const settings: Record<string, unknown> = {};
+  for (const control of CONTROLS) {
+    const text = values.get(control.name);
+    if (text === null) continue;
+    if (control.kind === 'switch') {
+      if (text === 'true' || text === 'false') settings[control.name] = text === 'true';
+    } else if (control.kind === 'number') {
+      const value = Number(text);
+      if (/^\d+$/.test(text) && value >= control.min && value <= control.max) settings[control.name] = value;
+    } else {
+      const choice = control.choices.find(({ value }) => String(value) === text);
+      if (choice !== undefined) settings[control.name] = choice.value;
+    }
+  }
+  const kind = values.get('masks');
+  return {
+    settings,
+    kind: kind === 'motions' || kind === 'groups' ? kind : null,
+    sample: sampleCalled(values.get('sample')),
+    swapped: values.get('swapped') === 'true',
+  };
+}
+
+/** The page's address with the sample and the settings after the `#`, which is never sent to a server. */
+export function linkFor({ settings, look: { kind }, pair }: Pick<State, 'settings' | 'look' | 'pair'>, address: string): string {
+  const values = new URLSearchParams();
+  const shown = sampleOf(pair);
+  if (shown !== null && (shown.sample !== SAMPLES[0] || shown.swapped)) values.set('sample', shown.sample.id);
+  if (shown?.swapped) values.set('swapped', 'true');
+  for (const [name, value] of Object.entries(settings)) {
+    if (value !== DEFAULT_SETTINGS[name as keyof Settings]) values.set(name, String(value));
+  }
+  if (kind !== 'groups') values.set('masks', kind);
+  const url = new URL(address);
+  url.hash = values.toString();
+  return url.href;
+}

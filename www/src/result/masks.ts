@@ -1,0 +1,92 @@
+//! Masks: what is shown, listed and exported as one. A mask is one motion, or a group of them: the motions of one surface, or those
+//! that the user merged.
+
+import type { Segmentation } from 'veronese';
+
+export type Kind = 'groups' | 'motions';
+
+type Motion = Segmentation['motions'][number];
+
+/** The mask of pixels without a label. */
+export const UNLABELLED = 255;
+
+export interface Mask {
+  /** The label of its motion or the number of its group; {@link UNLABELLED} for pixels without a label. */
+  readonly id: number;
+  /** Largest first. */
+  readonly motions: readonly Motion[];
+  readonly pixels: number;
+  readonly share: number;
+}
+
+/** The key of a mask's name and colour: the kinds number their masks separately. */
+export function keyOf(kind: Kind, id: number): string {
+  return `${kind}-${id}`;
+}
+
+/** The number of the mask that a label belongs to. */
+export function maskOf(label: number, { motions }: Pick<Segmentation, 'motions'>, kind: Kind): number {
+  return kind === 'groups' ? (motions[label]?.group ?? label) : label;
+}
+
+/** `table[label]` is the number of the label's mask. */
+export function maskTable(segmentation: Pick<Segmentation, 'motions'>, kind: Kind): Uint8Array {
+  return Uint8Array.from({ length: 256 }, (_, label) => maskOf(label, segmentation, kind));
+}
+
+/** All masks by number; pixels without a label come last. */
+export function masksOf(segmentation: Segmentation, kind: Kind): Mask[] {
+  const byId = new Map<number, Motion[]>();
+  for (const motion of segmentation.motions) {
+    const id = maskOf(motion.label, segmentation, kind);
+    byId.set(id, [...(byId.get(id) ?? []), motion]);
+  }
+  const total = segmentation.width * segmentation.height;
+  const masks = [...byId].map(([id, motions]): Mask => {
+    const pixels = motions.reduce((sum, motion) => sum + motion.pixels, 0);
+    return { id, motions: motions.toSorted((a, b) => b.pixels - a.pixels), pixels, share: pixels / total };
+  });
+  masks.sort((a, b) => a.id - b.id);
+  const { unlabelled } = segmentation;
+  return unlabelled > 0 ? [...masks, { id: UNLABELLED, motions: [], pixels: unlabelled, share: unlabelled / total }] : masks;
+}
+
+/** The largest motion of a mask. */
+export function mainMotion(segmentation: Segmentation, kind: Kind, id: number): Motion | null {
+  return masksOf(segmentation, kind).find((mask) => mask.id === id)?.motions[0] ?? null;
+}
+
+/** The labels of a mask, one bit each, as `relabel` expects them. */
+export function labelSet(segmentation: Pick<Segmentation, 'motions'>, kind: Kind, id: number): number {
+  return segmentation.motions.reduce((set, { label }) => (maskOf(label, segmentation, kind) === id ? set | (1 << label) : set), 0);
+}
+
+/** The segmentation with other groups: `group` gives the group of each motion. */
+export function regrouped(segmentation: Segmentation, group: (motion: Motion) => number): Segmentation {
+  return { ...segmentation, motions: segmentation.motions.map((motion) => ({ ...motion, group: group(motion) })) };
+}
+
+/** The segmentation with two masks merged under the smaller of their numbers. */
+export function merged(segmentation: Segmentation, kind: Kind, one: number, other: number): Segmentation {
+  const sets = [labelSet(segmentation, kind, one), labelSet(segmentation, kind, other)];
+  const joined = segmentation.motions.filter(({ label }) => ((sets[0]! | sets[1]!) >> label) & 1);
+  const id = Math.min(...joined.map(({ group }) => group));
+  return regrouped(segmentation, (motion) => (joined.includes(motion) ? id : motion.group));
+}
+
+/** The segmentation with a group split into its motions: the largest keeps the number, the others get unused ones. */
+export function ungrouped(segmentation: Segmentation, group: number): Segmentation {
+  const used = new Set(segmentation.motions.map((motion) => motion.group));
+  let first = true;
+  return regrouped(segmentation, (motion) => {
+    if (motion.group !== group) return motion.group;
+    if (first) {
+      first = false;
+      return group;
+    }
+    let free = 0;
+    while (used.has(free)) free += 1;
+    used.add(free);
+    return free;
+  });
+}

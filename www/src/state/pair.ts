@@ -1,0 +1,44 @@
+//! The two frames of a pair, and where each comes from.
+
+import type { Clip } from '../clips/clip.js';
+import type { DecodedFrame } from '../frames/frame.js';
+import type { Sample } from '../frames/samples.js';
+
+export type Slot = 'first' | 'second';
+
+/** Where a frame comes from: a clip or a sample. */
+export type Origin = { readonly clip: Clip; readonly index: number } | { readonly sample: Sample; readonly slot: Slot };
+
+/** A frame that is open. `origin` is absent for a file of its own and for the camera. */
+export interface LoadedFrame extends DecodedFrame {
+  readonly origin?: Origin;
+}
+
+/** The two frames; `null` until a frame is opened. */
+export type FramePair = Readonly<Record<Slot, LoadedFrame | null>>;
+
+/** Identifies a pair by its content; `null` if a frame is missing. */
+export function keyOfPair({ first, second }: FramePair): string | null {
+  return first === null || second === null ? null : `${first.fingerprint} ${second.fingerprint}`;
+}
+
+/** The sample that a pair shows; `null` if either frame is anything else. */
+export function sampleOf({ first, second }: FramePair): { readonly sample: Sample; readonly swapped: boolean } | null {
+  const [a, b] = [first?.origin, second?.origin];
+  if (!a || !b || !('sample' in a && 'sample' in b) || a.sample !== b.sample || a.slot === b.slot) return null;
+  return { sample: a.sample, swapped: a.slot === 'second' };
+}
+
+/** The open clip and the indices of the two frames in it; `null` for a frame that is not of the clip. */
+export interface Timeline {
+  readonly clip: Clip;
+  readonly first: number | null;
+  readonly second: number | null;
+}
+
+/** The timeline of a pair; `null` if neither frame is of a clip. */
+export function timelineOf({ first, second }: FramePair): Timeline | null {
+  const [a, b] = [first, second].map((frame) => (frame?.origin && 'clip' in frame.origin ? frame.origin : null));
+  const clip = a?.clip ?? b?.clip;
+  return clip === undefined ? null : { clip, first: a?.index ?? null, second: b?.clip === clip ? b.index : null };
+}

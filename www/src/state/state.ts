@@ -1,0 +1,148 @@
+//! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
+
+import type { Segmentation } from 'veronese';
+import { NO_EDITS, type Edits } from '../correction/edits.js';
+import type { Stroke } from '../correction/strokes.js';
+import type { Painting } from '../drawing/paint.js';
+import { WHOLE, type Viewport } from '../drawing/viewport.js';
+import type { Kept } from './kept.js';
+import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
+import { DEFAULT_SETTINGS, type Settings } from './settings.js';
+
+/** What led to the masks on screen. */
+export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'restored';
+
+/** What is running. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
+export type Run =
+  | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'live' }
+  | { readonly phase: 'done'; readonly cause: Cause }
+  | { readonly phase: 'working'; readonly work: 'segmenting' | 'solving'; readonly stage: string; readonly index: number; readonly of: number };
+
+/** A segmentation with the frames that it belongs to, so that views never combine two requests. */
+export interface Result {
+  readonly segmentation: Segmentation;
+  readonly pair: { readonly first: LoadedFrame; readonly second: LoadedFrame };
+  /** Time from request to result, transfers to and from the worker included, milliseconds. */
+  readonly waited: number;
+  /** The last stroke that the labels take into account. */
+  readonly under: Stroke | null;
+}
+
+/** How the result is displayed. Mask numbers refer to the current result and kind. */
+export interface Look extends Painting {
+  readonly view: Slot | 'split';
+  /** Position of the split, 0…1 of the width of the view. */
+  readonly divide: number;
+  /** Whether the two frames alternate. */
+  readonly blinking: boolean;
+  /** Opacity of the masks, 0…1. */
+  readonly opacity: number;
+  readonly outlines: boolean;
+  readonly arrows: boolean;
+  readonly residual: boolean;
+  /** The selected mask, to which brush and eraser refer. */
+  readonly selected: number | null;
+  /** The second frame is drawn warped back by the motion of this mask, so that its pixels stay in place. */
+  readonly stabilised: number | null;
+  /** Names that the user gave to masks, by `keyOf`. Like the colours, they follow from the edits. */
+  readonly names: Readonly<Record<string, string>>;
+}
+
+export type ToolName = 'look' | 'brush' | 'eraser';
+
+export interface Tool {
+  readonly name: ToolName;
+  /** Of the brush, pixels of the frame. */
+  readonly radius: number;
+}
+
+/** The state of the camera while it is on. */
+export interface Live {
+  /** Segmentations per second, lately. */
+  readonly rate: number;
+}
+
+/** A message to the user; an error if `code` is set. */
+export interface Notice {
+  readonly sentence: string;
+  readonly code: string | null;
+}
+
+export interface State {
+  readonly pair: FramePair;
+  readonly timeline: Timeline | null;
+  readonly live: Live | null;
+  /** Whether something is being opened. The current pair stays until it is ready. */
+  readonly opening: boolean;
+  readonly settings: Settings;
+  /** The number of motions set for all other pairs, while this pair has its own; otherwise `null`. */
+  readonly motionsElsewhere: Settings['motions'] | null;
+  readonly run: Run;
+  readonly result: Result | null;
+  /** The segmentation before corrections. */
+  readonly found: Segmentation | null;
+  /** The edits of this pair. */
+  readonly edits: Edits;
+  /** The edits of other pairs, by `keyOfPair`. */
+  readonly kept: ReadonlyMap<string, Kept>;
+  readonly look: Look;
+  readonly viewport: Viewport;
+  readonly tool: Tool;
+  readonly notice: Notice | null;
+}
+
+/** Whether the first result of a new pair is pending. Views keep showing the last one until then, so that the layout does not jump. */
+export function isAwaited({ result, run }: State): boolean {
+  return result === null && run.phase === 'working';
+}
+
+/** The initial values of the parts of a look that belong to one result. */
+export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, blinking: false, names: {}, colours: {} } as const;
+
+export const INITIAL: State = {
+  pair: { first: null, second: null },
+  timeline: null,
+  live: null,
+  opening: false,
+  settings: DEFAULT_SETTINGS,
+  motionsElsewhere: null,
+  run: { phase: 'idle' },
+  result: null,
+  found: null,
+  edits: NO_EDITS,
+  kept: new Map(),
+  look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.5, outlines: true, arrows: false, residual: false, ...FRESH },
+  viewport: WHOLE,
+  tool: { name: 'look', radius: 8 },
+  notice: null,
+};
+
+export type Listener = (now: State, before: State) => void;
+
+/** Holds the state and notifies listeners of changes. */
+export class Store {
+  #state: State = INITIAL;
+  readonly #listeners = new Set<Listener>();
+
+  get(): State {
+    return this.#state;
+  }
+
+  /** Replaces parts of the state and calls the listeners in the order of their subscription. */
+  set(change: Partial<State>): void {
+    const before = this.#state;
+    this.#state = { ...before, ...change };
+    for (const listener of this.#listeners) listener(this.#state, before);
+  }
+
+  /** Changes how the result is displayed. */
+  look(change: Partial<Look>): void {
+    this.set({ look: { ...this.#state.look, ...change } });
+  }
+
+  /** Calls `listener` at every change. Returns a function that ends the subscription. */
+  subscribe(listener: Listener): () => void {
+    this.#listeners.add(listener);
+    return () => this.#listeners.delete(listener);
+  }
+}

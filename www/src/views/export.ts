@@ -1,0 +1,91 @@
+//! Taking the result away: as files, to the clipboard, as something that makes it again.
+
+import { strings } from '../common/strings.js';
+import { type Format, exportOf } from '../export/format.js';
+import { FORMATS, LABELS, MASKS, OVERLAY, RESULT } from '../export/formats.js';
+import { linkFor } from '../export/link.js';
+import { commandFor, scriptFor } from '../export/reproduce.js';
+import { isPending } from '../session/correcting.js';
+import type { Session } from '../session/session.js';
+import type { Result, State, Store } from '../state/state.js';
+import { copyText } from './clipboard.js';
+import { element, find } from './markup.js';
+
+/** The formats that have a button of their own. */
+const BUTTONS: readonly Format[] = [LABELS, MASKS, RESULT];
+
+/** Texts to copy; those with a result need one. */
+const COPIES: readonly { readonly title: string; readonly text: (state: State, result: Result) => string }[] = [
+  { title: 'command', text: ({ settings, look }, result) => commandFor(result, settings, look) },
+  { title: 'JavaScript', text: ({ settings, look }, result) => scriptFor(result, settings, look) },
+];
+
+export function mountExport(root: HTMLElement, store: Store, session: Session): void {
+  const need: (HTMLButtonElement | HTMLSelectElement)[] = [];
+  const button = (text: string, run: (result: Result) => void, className = 'button small quiet'): HTMLButtonElement => {
+    const made = element('button', text, className);
+    made.type = 'button';
+    made.disabled = true;
+    made.addEventListener('click', () => {
+      const { result } = store.get();
+      if (result !== null) run(result);
+    });
+    need.push(made);
+    return made;
+  };
+
+  const download = async (format: Format): Promise<void> => {
+    try {
+      const state = await session.correcting.settled();
+      if (state.result === null) return;
+      const content = await format.make(exportOf(state.result, state.look));
+      save(content instanceof Blob ? content : new Blob([content], { type: format.type }), format.file);
+      // The report alone holds no masks.
+      if (format !== RESULT && !isPending(state)) session.correcting.saved(state);
+    } catch {
+      session.say(strings.errors.notWritten(format.title), 'not-written');
+    }
+  };
+  find(root, '.export-buttons', HTMLElement).append(...BUTTONS.map((format) => button(format.title, () => void download(format), 'button small')));
+
+  const select = find(root, 'select', HTMLSelectElement);
+  const hint = find(root, '#format-hint', HTMLElement);
+  select.append(...FORMATS.map(({ id, title }) => new Option(title, id)));
+  need.push(select);
+  const chosen = (): Format => FORMATS[select.selectedIndex] ?? LABELS;
+  select.addEventListener('change', () => (hint.textContent = chosen().hint));
+  hint.textContent = chosen().hint;
+  find(root, '.format-row', HTMLElement).append(button('Save', () => void download(chosen()), 'button small primary'));
+
+  const copies = find(root, '.copies', HTMLElement);
+  copies.append(button('Copy picture', (result) => copyPicture(OVERLAY.make(exportOf(result, store.get().look)) as Promise<Blob>, session)));
+  copies.append(...COPIES.map(({ title, text }) => button(`Copy ${title}`, (result) => copyText(text(store.get(), result), strings.copiedText(title), session))));
+  const link = element('button', 'Copy link', 'button small quiet');
+  link.type = 'button';
+  link.addEventListener('click', () => copyText(linkFor(store.get(), location.href), strings.copiedText('link with the settings'), session));
+  copies.append(link);
+
+  store.subscribe(({ result, live }, before) => {
+    if (result === before.result && live === before.live) return;
+    for (const control of need) control.disabled = result === null || live !== null;
+  });
+  select.disabled = true;
+}
+
+function copyPicture(picture: Promise<Blob>, session: Session): void {
+  // Some browsers must be promised the picture while the press is handled.
+  Promise.resolve()
+    .then(() => navigator.clipboard.write([new ClipboardItem({ 'image/png': picture })]))
+    .then(
+      () => session.say(strings.copiedText('picture')),
+      () => session.say(strings.errors.noClipboard, 'no-clipboard'),
+    );
+}
+
+function save(file: Blob, name: string): void {
+  const link = document.createElement('a');
+  link.href = URL.createObjectURL(file);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}

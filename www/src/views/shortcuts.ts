@@ -1,0 +1,63 @@
+//! The keyboard shortcuts as data. `keys.ts` handles and lists them.
+
+import { strings } from '../common/strings.js';
+import { ZOOM_STEP } from '../drawing/viewport.js';
+import type { Session } from '../session/session.js';
+import type { Store } from '../state/state.js';
+import { toggleBlinking } from './blink.js';
+import { showKind } from './look.js';
+import { stepOne } from './timeline.js';
+import { changeRadius, chooseTool } from './tools.js';
+import type { Zoom } from './zoom.js';
+
+export interface Key {
+  /** Values of `KeyboardEvent.key` in lower case, all with the same effect. */
+  readonly keys: readonly string[];
+  /** As shown in the list. */
+  readonly shown: string;
+  readonly does: string;
+  readonly run: () => void;
+  /** With Ctrl or the command key. */
+  readonly command?: boolean;
+  /** Requires Shift (true) or excludes it (false). */
+  readonly shift?: boolean;
+  /** An arrow key: only while the picture is enlarged, and if the focused element does not use arrow keys. */
+  readonly arrows?: boolean;
+}
+
+/** How far an arrow key pans the enlarged picture, share of the view. */
+const PAN = 0.1;
+
+export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Key[] {
+  const { keys } = strings;
+  const toggle = (name: 'outlines' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
+  const pan = (right: number, down: number) => () => zoom.pan(right * PAN, down * PAN);
+  return [
+    { keys: ['n'], shown: 'N', does: keys.blink, run: () => toggleBlinking(store) },
+    { keys: ['s'], shown: 'S', does: keys.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
+    { keys: ['g'], shown: 'G', does: keys.kind, run: () => showKind(store, store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['o'], shown: 'O', does: keys.outlines, run: toggle('outlines') },
+    { keys: ['a'], shown: 'A', does: keys.arrows, run: toggle('arrows') },
+    { keys: ['r'], shown: 'R', does: keys.residual, run: toggle('residual') },
+    { keys: ['+', '='], shown: '+', does: keys.zoomIn, run: () => zoom.by(ZOOM_STEP) },
+    { keys: ['-', '_'], shown: '−', does: keys.zoomOut, run: () => zoom.by(1 / ZOOM_STEP) },
+    { keys: ['0'], shown: '0', does: keys.whole, run: () => zoom.whole() },
+    { keys: ['1'], shown: '1', does: keys.actual, run: () => zoom.actual() },
+    { keys: ['arrowleft'], shown: '←', does: keys.pan, run: pan(1, 0), arrows: true },
+    { keys: ['arrowright'], shown: '→', does: '', run: pan(-1, 0), arrows: true },
+    { keys: ['arrowup'], shown: '↑', does: '', run: pan(0, 1), arrows: true },
+    { keys: ['arrowdown'], shown: '↓', does: '', run: pan(0, -1), arrows: true },
+    { keys: [','], shown: ',', does: keys.stepBack, run: () => stepOne(store, session, 'both', -1) },
+    { keys: ['.'], shown: '.', does: keys.stepOn, run: () => stepOne(store, session, 'both', 1) },
+    { keys: ['v'], shown: 'V', does: keys.look, run: () => chooseTool(store, 'look') },
+    { keys: ['p'], shown: 'P', does: keys.brush, run: () => chooseTool(store, 'brush') },
+    { keys: ['e'], shown: 'E', does: keys.eraser, run: () => chooseTool(store, 'eraser') },
+    { keys: [], shown: 'Space', does: keys.stroke, run: () => undefined },
+    { keys: ['['], shown: '[', does: keys.thinner, run: () => changeRadius(store, 0.75) },
+    { keys: [']'], shown: ']', does: keys.thicker, run: () => changeRadius(store, 4 / 3) },
+    { keys: ['z'], shown: 'Ctrl Z', does: keys.undo, run: () => session.correcting.undo(), command: true, shift: false },
+    { keys: ['z'], shown: 'Ctrl Shift Z', does: keys.redo, run: () => session.correcting.redo(), command: true, shift: true },
+    { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.correcting.redo(), command: true },
+    { keys: ['escape'], shown: 'Esc', does: keys.cancel, run: () => session.cancel() },
+  ];
+}

@@ -1,0 +1,198 @@
+//! Clips: videos with a number in every frame, read back exactly; folders; the fallback without WebCodecs; the camera.
+
+import { type Page } from '@playwright/test';
+
+import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
+
+import { BIT, BITS, WIDTH, video } from './video.js';
+import { type Upload, done, expect, open, pixelsOf, square, test, upload } from './support.js';
+
+/** The number in the frame on screen. */
+async function numberShown(page: Page): Promise<number> {
+  const { data, width } = await pixelsOf(page, '#frame');
+  expect(width).toBe(WIDTH);
+  const bits = Array.from({ length: BITS }, (_, b) => {
+    const grey = data[4 * ((8 + BIT / 2) * width + 8 + b * BIT + BIT / 2)]!;
+    if (grey > 90 && grey < 160) throw new Error(`bit ${b} is neither black nor white: ${grey}`);
+    return grey > 128 ? 1 << b : 0;
+  });
+  return bits.reduce((sum, bit) => sum + bit, 0);
+}
+
+/** Shows each frame of the pair and reads its number. */
+async function numbers(page: Page): Promise<[number, number]> {
+  await page.locator('#look [name=frame][value=first]').check();
+  const first = await numberShown(page);
+  await page.locator('#look [name=frame][value=second]').check();
+  return [first, await numberShown(page)];
+}
+
+async function slide(page: Page, slot: 'first' | 'second', index: number): Promise<void> {
+  await page.locator(`[name=clip-${slot}]`).fill(String(index));
+  await page.locator(`[name=clip-${slot}]`).dispatchEvent('change');
+  await expect(page.locator(`[data-slot=${slot}] .slot-name`)).toContainText(`#${index},`);
+  await done(page);
+}
+
+test('a WebM video gives exactly the requested frames', async ({ page }) => {
+  await open(page);
+  const file = await video(page, 40, 'webm', 'vp8');
+  await upload(page, [file]);
+  await expect(page.locator('#clip-name')).toHaveText('clip.webm, 40 frames, 192 × 128');
+  await done(page);
+  await expect(page.locator('#clip-note')).toBeHidden();
+  expect(await numbers(page)).toEqual([0, 1]);
+  for (const [first, second] of [[17, 18], [39, 5], [16, 38]] as const) {
+    await slide(page, 'first', first);
+    await slide(page, 'second', second);
+    expect(await numbers(page)).toEqual([first, second]);
+  }
+
+  await page.getByRole('button', { name: 'First frame: step forward' }).click();
+  await done(page);
+  expect(await numbers(page)).toEqual([17, 38]);
+  await page.keyboard.press('.');
+  await expect(page.locator('#clip-second-at')).toHaveText('#39, 1.301 s');
+  await done(page);
+  expect(await numbers(page)).toEqual([18, 39]);
+  // The clip ends here: both frames stay.
+  await page.keyboard.press('.');
+  expect(await numbers(page)).toEqual([18, 39]);
+
+  // The strip shows thumbnails.
+  const strip = await pixelsOf(page, '#strip');
+  const greys = new Set(strip.data.filter((_, i) => i % 4 === 0));
+  expect(greys.size).toBeGreaterThan(50);
+
+  // Another pair closes the clip.
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await done(page);
+  await expect(page.locator('#timeline')).toBeHidden();
+});
+
+test('an MP4 video gives exactly the requested frames', async ({ page }) => {
+  await open(page);
+  // Every build of Chromium can encode this codec.
+  const file = await video(page, 12, 'mp4', 'vp9');
+  await upload(page, [{ ...file, name: 'clip.mov', mimeType: 'video/quicktime' }]);
+  await expect(page.locator('#clip-name')).toHaveText('clip.mov, 12 frames, 192 × 128');
+  await done(page);
+  await slide(page, 'first', 7);
+  await slide(page, 'second', 11);
+  expect(await numbers(page)).toEqual([7, 11]);
+});
+
+test('frames are marked approximate without WebCodecs', async ({ page, context }) => {
+  const maker = await context.newPage();
+  await maker.goto('./');
+  const file = await video(maker, 30, 'webm', 'vp8');
+  await maker.close();
+  await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
+  await open(page);
+  await upload(page, [file]);
+  await done(page);
+  await expect(page.locator('#clip-note')).toBeVisible();
+  await expect(page.locator('#clip-note')).toHaveText(/^Approximate frames/);
+  await slide(page, 'first', 20);
+  const [shown] = await numbers(page);
+  expect(Math.abs(shown - 20)).toBeLessThanOrEqual(1);
+});
+
+test('a broken video is rejected and the pair stays', async ({ page }) => {
+  await open(page);
+  await upload(page, [{ name: 'broken.mp4', mimeType: 'video/mp4', buffer: Buffer.from('no video at all') }]);
+  await expect(page.locator('#notice-code')).toHaveText('unreadable-video');
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+  await expect(page.locator('#motions > li').first()).toBeVisible();
+});
+
+/** An MP4 that declares HEVC, as phones record it, without anything to decode. */
+async function hevc(name: string): Promise<Upload> {
+  const target = new BufferTarget();
+  const output = new Output({ format: new Mp4OutputFormat(), target });
+  const source = new EncodedVideoPacketSource('hevc');
+  output.addVideoTrack(source);
+  await output.start();
+  // HEVCDecoderConfigurationRecord of the Main profile, level 3.1, without parameter sets.
+  const description = Uint8Array.from([1, 1, 0x60, 0, 0, 0, 0x90, 0, 0, 0, 0, 0, 93, 0xf0, 0, 0xfc, 0xfd, 0xf8, 0xf8, 0, 0, 0x0f, 0]);
+  const decoderConfig = { codec: 'hvc1.1.6.L93.90', codedWidth: 640, codedHeight: 360, description };
+  for (let k = 0; k < 3; k++) await source.add(new EncodedPacket(new Uint8Array([0, 0, 0, 2, 0x26, 1]), 'key', k / 30, 1 / 30), { decoderConfig });
+  await output.finalize();
+  return { name, mimeType: 'video/mp4', buffer: Buffer.from(target.buffer!) };
+}
+
+for (const webCodecs of [true, false]) {
+  test(`the error for an unsupported codec names it, ${webCodecs ? 'with' : 'without'} WebCodecs`, async ({ page }) => {
+    if (!webCodecs) await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));
+    await open(page);
+    await upload(page, [await hevc("my 'clip'.mov")]);
+    await expect(page.locator('#notice-code')).toHaveText('unsupported-codec');
+    const notice = page.getByRole('alert');
+    await expect(notice).toContainText("“my 'clip'.mov” is HEVC (H.265), which this browser cannot decode.");
+    await expect(notice).toContainText("ffmpeg -i 'my '\\''clip'\\''.mov' -c:v libx264 -pix_fmt yuv420p 'my '\\''clip'\\''-h264.mp4'");
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+    await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  });
+}
+
+test('a folder of frames is a clip in the order of the names', async ({ page }) => {
+  await open(page);
+  const names = ['f10.png', 'f2.png', 'f1.png', 'f11.png'];
+  const files = await Promise.all(names.map((name) => square(name, 96, 64, Number(/\d+/.exec(name)![0]), 0)));
+  await page.locator('#open-pair').setInputFiles(files);
+  await expect(page.locator('#clip-name')).toHaveText('f1.png, 4 frames, 96 × 64');
+  await done(page);
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f2.png, 96 × 64');
+  await page.keyboard.press('.');
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f10.png, 96 × 64');
+  await done(page);
+});
+
+test('the camera is segmented live, and its last pair stays', async ({ page, context }) => {
+  await context.grantPermissions(['camera']);
+  await open(page);
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live: [\d.]+ pairs per second, .*motion/, { timeout: 20_000 });
+  await expect(page.locator('#caption')).toHaveText('Camera');
+  await page.getByRole('button', { name: 'Stop camera' }).click();
+  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+  await expect(page.locator('#motions > li').first()).toBeVisible();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('camera');
+});
+
+test('frames larger than the working size are scaled down', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Working size').selectOption('640');
+  await done(page);
+  await upload(page, [await square('a.png', 800, 500, 0, 0), await square('b.png', 800, 500, 5, 0)]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 800 × 500');
+  await done(page);
+  expect((await pixelsOf(page, '#frame')).width).toBe(640);
+});
+
+test('corrections are restored when a video is opened again', async ({ page }) => {
+  await open(page);
+  const file = await video(page, 6, 'webm', 'vp8');
+  const opened = async (name: string): Promise<void> => {
+    await upload(page, [{ ...file, name }]);
+    await expect(page.locator('#clip-name')).toContainText(name);
+    await done(page);
+  };
+  await opened('clip.webm');
+  await page.getByRole('button', { name: 'Step both forward' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
+  await done(page);
+  const name = page.locator('#motions > li').first().locator('.motion-name');
+  await name.fill('Wall');
+  await name.press('Enter');
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await expect(page.locator('#timeline')).toBeHidden();
+  await done(page);
+  await expect(name).toHaveValue('Motion 0');
+  await opened('again.webm');
+  await expect(name).toHaveValue('Motion 0'); // the first pair
+  await page.getByRole('button', { name: 'Step both forward' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
+  await done(page);
+  await expect(name).toHaveValue('Wall');
+});

@@ -1,0 +1,496 @@
+//! Edits survive slow results, stepping through a clip and other settings, and leaving the page with unsaved ones asks first.
+
+import { readFile } from 'node:fs/promises';
+
+import { type Page } from '@playwright/test';
+import { davisPalette } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
+
+import { PALETTE } from '../src/drawing/palette.js';
+import { type Upload, differences, done, expect, labelsOnCanvas, open, sample, square, test, upload } from './support.js';
+
+type Place = readonly [number, number];
+
+/** Draws a stroke between two points of the picture, 0…1, without waiting for the result. */
+async function draw(page: Page, from: Place, to: Place): Promise<void> {
+  const box = (await page.locator('.layers').boundingBox())!;
+  const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
+  await page.mouse.move(...at(from));
+  await page.mouse.down();
+  await page.mouse.move(...at(to), { steps: 4 });
+  await page.mouse.up();
+}
+
+/** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
+async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
+  await page.locator('.layers').evaluate(
+    (layers, [lines, first, last]) => {
+      const press = (selector: string): void => (selector === '' ? undefined : document.querySelector<HTMLElement>(selector)!.click());
+      press(first);
+      const box = layers.getBoundingClientRect();
+      layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
+      for (const line of lines) {
+        ['pointerdown', 'pointermove', 'pointerup'].forEach((type, k) => {
+          const [x, y] = line[Math.min(k, 1)]!;
+          const at = { clientX: box.x + x * box.width, clientY: box.y + y * box.height };
+          layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
+        });
+      }
+      press(last);
+    },
+    [lines, first, last] as const,
+  );
+}
+
+/** Selects the brush, and a mask by its position in the list. */
+async function brush(page: Page, row: number): Promise<void> {
+  await page.locator('#tools [value=brush]').check();
+  await page.locator('#motions > li').nth(row).locator('.motion-words').click();
+}
+
+const strokes = (page: Page) => page.locator('#strokes g path');
+
+/** The numbers of the masks along a line of the picture. */
+function along(labels: Int16Array, width: number, height: number, from: Place, to: Place): Set<number> {
+  const at = (k: number, axis: 0 | 1): number => from[axis] + ((to[axis] - from[axis]) * k) / 20;
+  return new Set(Array.from({ length: 21 }, (_, k) => labels[Math.floor(at(k, 1) * height) * width + Math.floor(at(k, 0) * width)]!));
+}
+
+function mostCommon(values: readonly number[]): number {
+  const counts = new Map<number, number>();
+  for (const value of values) counts.set(value, (counts.get(value) ?? 0) + 1);
+  return [...counts].reduce((most, one) => (one[1] > most[1] ? one : most))[0];
+}
+
+/** Frames of a square that moves right and down. */
+function frames(count: number, width = 160, height = 96): Promise<Upload[]> {
+  return Promise.all(Array.from({ length: count }, (_, k) => square(`f${k}.png`, width, height, 3 * k, k)));
+}
+
+/** Opens frames as a clip, with quality `fast` and one mask per motion. */
+async function openClip(page: Page, files: Upload[]): Promise<void> {
+  await open(page);
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
+  await done(page);
+}
+
+/** Steps both frames of a clip and waits for the masks of the new pair. */
+async function step(page: Page, by: 1 | -1, second: string): Promise<void> {
+  await page.getByRole('button', { name: by > 0 ? 'Step both forward' : 'Step both back' }).click();
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText(second);
+  await done(page);
+}
+
+/** Whether the page asks before it is left. */
+async function warns(page: Page): Promise<boolean> {
+  const asked = page.waitForEvent('dialog', { timeout: 3000 }).then(
+    async (dialog) => {
+      expect(dialog.type()).toBe('beforeunload');
+      await dialog.dismiss();
+      return true;
+    },
+    () => false,
+  );
+  // A navigation by Playwright would wait for a new page that never comes.
+  await page.evaluate(() => setTimeout(() => location.reload()));
+  return asked;
+}
+
+test('strokes drawn while others are being applied are all kept', async ({ page }) => {
+  await open(page);
+  const found = await labelsOnCanvas(page);
+  await brush(page, 1);
+  const rows = [0.15, 0.2, 0.25, 0.3].map((y): [Place, Place] => [[0.7, y], [0.8, y]]);
+  await drawAtOnce(page, rows);
+  await expect(strokes(page)).toHaveCount(4); // at once
+  await done(page);
+  const painted = await labelsOnCanvas(page);
+  for (const [from, to] of rows) expect([...along(painted, 768, 432, from, to)]).toEqual([1]);
+
+  for (let k = 3; k >= 0; k--) {
+    await page.locator('#undo').click();
+    await expect(strokes(page)).toHaveCount(k);
+  }
+  await done(page);
+  await expect(page.locator('#undo')).toBeDisabled();
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+  for (let k = 0; k < 4; k++) await page.locator('#redo').click();
+  await done(page);
+  expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
+});
+
+test('a stroke that is undone while it is being applied stays undone', async ({ page }) => {
+  await open(page);
+  const found = await labelsOnCanvas(page);
+  await brush(page, 1);
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await page.keyboard.press('Control+z');
+  await done(page);
+  await expect(page.locator('#status')).toHaveText('Undone.');
+  await page.waitForTimeout(1500); // the result would have arrived
+  await expect(page.locator('#status')).toHaveText('Undone.');
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+  await page.keyboard.press('Control+Shift+z');
+  await done(page);
+  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+});
+
+test('a stroke drawn during segmentation is applied afterwards', async ({ page }) => {
+  await open(page);
+  const found = await labelsOnCanvas(page);
+  await brush(page, 1);
+  await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { first: '#setting-quality-best' });
+  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
+  await expect(strokes(page)).toHaveCount(1);
+  await done(page);
+  await expect(page.getByLabel('Best')).toBeChecked();
+  await expect(page.locator('#status')).toHaveText(/motions found in .* Your stroke is applied\.$/);
+  // The better result numbers its motions differently, and may split the mask in two. The stroke applies to one of its parts, which is
+  // still selected.
+  const now = await labelsOnCanvas(page);
+  const goesOn = (label: number): boolean => mostCommon([...found].filter((_, p) => now[p] === label)) === 1;
+  const drawn = [...along(now, 768, 432, [0.7, 0.2], [0.8, 0.2])];
+  expect(drawn).toHaveLength(1);
+  expect(drawn.filter(goesOn)).toEqual(drawn);
+  const same = mostCommon([...now].filter((_, p) => found[p] === 1));
+  await expect(page.locator('#motions > li.selected')).toHaveAttribute('data-mask', String(same));
+});
+
+test('cancelling keeps the strokes', async ({ page }) => {
+  await open(page);
+  await brush(page, 1);
+  await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#cancel' });
+  await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are applied yet.');
+  await expect(strokes(page)).toHaveCount(1);
+  await page.locator('#again').click();
+  await done(page);
+  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+});
+
+test('strokes, names, colours and undo are restored with their frames', async ({ page }) => {
+  await openClip(page, await frames(4));
+  const rows = page.locator('#motions > li');
+  await rows.nth(1).locator('.motion-name').fill('Square');
+  await rows.nth(1).locator('.motion-name').press('Enter');
+  await rows.nth(0).locator('.swatch').fill('#112233');
+  await brush(page, 1);
+  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await done(page);
+  await draw(page, [0.8, 0.8], [0.9, 0.8]);
+  await done(page);
+  await page.locator('#undo').click();
+  await rows.nth(0).locator('.swatch').fill(`#${PALETTE[0]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
+  const mine = await labelsOnCanvas(page);
+  await rows.nth(0).locator('.swatch').fill('#112233');
+
+  await step(page, 1, 'f2.png');
+  await expect(page.locator('#undo')).toBeDisabled();
+  await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Motion 1');
+  await step(page, -1, 'f1.png');
+  await expect(page.locator('#status')).toHaveText('Restored your corrections of these frames.');
+  await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Square');
+  await expect(rows.nth(0).locator('.swatch')).toHaveValue('#112233');
+  await rows.nth(0).locator('.swatch').fill(`#${PALETTE[0]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
+  expect(differences(await labelsOnCanvas(page), mine)).toBe(0);
+  await expect(strokes(page)).toHaveCount(1);
+  await page.locator('#redo').click();
+  await done(page);
+  await expect(strokes(page)).toHaveCount(2);
+  await page.locator('#undo').click();
+  await page.locator('#undo').click();
+  await expect(page.locator('#undo')).toBeDisabled();
+});
+
+test('a stroke drawn just before a step is kept', async ({ page }) => {
+  await openClip(page, await frames(4));
+  await brush(page, 1);
+  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await page.keyboard.press('.'); // while it is being applied
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(0);
+  await step(page, -1, 'f1.png');
+  await expect(strokes(page)).toHaveCount(1);
+  expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
+});
+
+test('a stroke in progress when the frames change belongs to the old ones', async ({ page }) => {
+  await openClip(page, await frames(4));
+  await brush(page, 1);
+  const box = (await page.locator('.layers').boundingBox())!;
+  await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.2 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.9 * box.width, box.y + 0.2 * box.height, { steps: 4 });
+  await page.keyboard.press('.');
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
+  await page.mouse.up();
+  await done(page);
+  await expect(strokes(page)).toHaveCount(0);
+  await step(page, -1, 'f1.png');
+  await expect(strokes(page)).toHaveCount(1);
+});
+
+test('corrections are restored when frames are opened again in any way', async ({ page }) => {
+  await open(page);
+  const files = await frames(4);
+  const pair = async (): Promise<void> => {
+    await upload(page, files.slice(0, 2));
+    await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+    await done(page);
+  };
+  await pair();
+  await brush(page, 1);
+  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await done(page);
+
+  // Replaced and put back.
+  await page.getByLabel('Replace the second frame').setInputFiles([files[3]!]);
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f3.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(0);
+  await page.getByLabel('Replace the second frame').setInputFiles([files[1]!]);
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(1);
+
+  // Swapped and swapped back.
+  await page.locator('#swap').click();
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f0.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(0);
+  await page.locator('#swap').click();
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(1);
+
+  // Replaced by a sample and opened again.
+  await page.getByRole('button', { name: 'Parallax' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('400 × 300');
+  await done(page);
+  await pair();
+  await expect(strokes(page)).toHaveCount(1);
+
+  // Opened as frames of a clip.
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText('4 frames');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(1);
+  expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
+});
+
+test('corrections survive the camera', async ({ page, context }) => {
+  await context.grantPermissions(['camera']);
+  await open(page);
+  await brush(page, 1);
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await page.getByRole('button', { name: 'Camera' }).click();
+  await expect(page.locator('#status')).toHaveText(/^Live/, { timeout: 20_000 });
+  await expect(strokes(page)).toHaveCount(0);
+  expect(await warns(page)).toBe(true);
+  await page.getByRole('button', { name: 'Stop camera' }).click();
+  await done(page);
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('first.png');
+  await done(page);
+  await expect(strokes(page)).toHaveCount(1);
+  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+});
+
+test('corrections are scaled to another working size', async ({ page }) => {
+  await openClip(page, await frames(3, 800, 480));
+  await brush(page, 1);
+  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await done(page);
+  await page.getByLabel('Working size').selectOption('640');
+  await done(page);
+  await step(page, 1, 'f2.png');
+  await step(page, -1, 'f1.png');
+  await expect(strokes(page)).toHaveCount(1);
+  expect([...along(await labelsOnCanvas(page), 640, 384, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
+});
+
+test('strokes and names follow their masks to a result with other settings', async ({ page }) => {
+  await open(page);
+  const rows = page.locator('#motions > li');
+  const count = await rows.count();
+  await rows.nth(2).locator('.motion-name').fill('Car');
+  await rows.nth(2).locator('.motion-name').press('Enter');
+  await brush(page, 1);
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await done(page);
+  const painted = await labelsOnCanvas(page);
+
+  await page.getByLabel('Leave unexplained pixels unlabelled').check();
+  await done(page);
+  await expect(strokes(page)).toHaveCount(1);
+  await expect(page.locator('#status')).toHaveText(/Your stroke is applied\.$/);
+  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+  expect(await page.locator('.motion-name').evaluateAll((inputs) => inputs.filter((input) => (input as HTMLInputElement).value === 'Car').length)).toBe(1);
+
+  // With one motion the stroke has no effect. With the first settings everything is as before.
+  await page.getByLabel('Number of motions').selectOption('1');
+  await done(page);
+  await expect(rows).toHaveCount(1 + (await page.locator('#motions > [data-mask="255"]').count()));
+  await expect(page.locator('#status')).toHaveText(/Your stroke has no effect: its mask is not in this result\.$/);
+  await page.getByLabel('Number of motions').selectOption('auto');
+  await page.getByLabel('Leave unexplained pixels unlabelled').uncheck();
+  await done(page);
+  await expect(rows).toHaveCount(count);
+  expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
+  await expect(rows.nth(2).locator('.motion-name')).toHaveValue('Car');
+  await page.locator('#undo').click();
+  await expect(page.locator('#undo')).toBeDisabled();
+});
+
+test('leaving the page asks first only with unsaved corrections', async ({ page }) => {
+  await openClip(page, await frames(3));
+  await page.locator('#look [name=outlines]').uncheck();
+  await page.locator('#zoom-in').click();
+  await page.keyboard.press('0');
+  await brush(page, 1);
+  expect(await warns(page)).toBe(false);
+  await done(page);
+
+  await openClip(page, await frames(3));
+  await brush(page, 1);
+  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await done(page);
+  expect(await warns(page)).toBe(true);
+  await step(page, 1, 'f2.png');
+  expect(await warns(page)).toBe(true); // edits of the pair before
+  await step(page, -1, 'f1.png');
+
+  await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
+  expect(await warns(page)).toBe(true); // the report has no masks
+  await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
+  expect(await warns(page)).toBe(false);
+});
+
+test('an exported file includes strokes that are still being applied', async ({ page }) => {
+  await open(page);
+  await brush(page, 1);
+  const [download] = await Promise.all([page.waitForEvent('download'), drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '.export-buttons button' })]);
+  const { data } = await decodeImage(await readFile(await download.path()));
+  const p = Math.floor(0.2 * 432) * 768 + Math.floor(0.75 * 768);
+  expect([...data.subarray(4 * p, 4 * p + 3)]).toEqual([...davisPalette()[1]!]);
+});
+
+test('a name that is being typed survives a new result', async ({ page }) => {
+  await open(page);
+  await brush(page, 1);
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  const name = page.locator('#motions > li').nth(1).locator('.motion-name');
+  await name.focus();
+  await page.keyboard.press('Control+a');
+  await page.keyboard.type('Van', { delay: 5 });
+  await done(page);
+  await page.keyboard.type(' 2');
+  await page.keyboard.press('Enter');
+  await expect(name).toHaveValue('Van 2');
+  await expect(page.locator('#motions > li').nth(1).getByRole('checkbox')).toHaveAccessibleName('Show Van 2');
+});
+
+test('a stroke has the colour of its mask, also of a merged one', async ({ page }) => {
+  await open(page, 'groups');
+  const rows = page.locator('#motions > li');
+  await rows.nth(1).getByText('More', { exact: true }).click();
+  await rows.nth(1).locator('[data-action=merge]').selectOption('0');
+  await rows.nth(0).locator('.motion-words').click();
+  await page.locator('#tools [value=brush]').check();
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await done(page);
+  const colour = `rgb(${PALETTE[0]!.join(' ')})`;
+  await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
+  await page.locator('#tools [value=eraser]').check();
+  await draw(page, [0.7, 0.3], [0.8, 0.3]);
+  await done(page);
+  await expect(strokes(page).last()).toHaveAttribute('stroke', 'rgb(20 20 20)');
+  await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
+});
+
+test('a stroke without effect is rejected with a message', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Number of motions').selectOption('1');
+  await done(page);
+  await page.locator('#tools [value=eraser]').check();
+  await page.locator('#motions > li').first().locator('.motion-words').click();
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await expect(page.locator('#notice')).toContainText('There is no other mask that these pixels could belong to.');
+  await expect(strokes(page)).toHaveCount(0);
+});
+
+test('the status describes the last action', async ({ page }) => {
+  await page.goto('./');
+  await done(page);
+  const status = page.locator('#status');
+  const rows = page.locator('#motions > li');
+  const groups = await rows.count();
+  await page.locator('#look [name=colouring][value=motions]').check();
+  const motions = await rows.count();
+  expect(motions).toBeGreaterThan(groups);
+  await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d,]+ ms\\.$`));
+  await page.locator('#look [name=colouring][value=groups]').check();
+  await expect(status).toHaveText(new RegExp(`^${motions} motions in ${groups} groups found in [\\d,]+ ms\\.$`));
+
+  await brush(page, 1);
+  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await expect(status).toHaveText(/^Labels updated with your stroke in [\d,]+ ms\.$/);
+  await page.locator('#undo').click();
+  await expect(status).toHaveText('Undone.');
+  await page.locator('#redo').click();
+  await expect(status).toHaveText('Redone.');
+  await rows.nth(1).getByText('More', { exact: true }).click();
+  await rows.nth(1).locator('[data-action=merge]').selectOption('2');
+  await expect(status).toHaveText('Merged.');
+  await rows.nth(1).getByText('More', { exact: true }).click();
+  await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
+  await expect(status).toHaveText('Ungrouped.');
+});
+
+test('the status mentions fewer motions than requested', async ({ page }) => {
+  await open(page);
+  await upload(page, (await frames(2)));
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
+  await done(page);
+  await page.getByLabel('Number of motions').selectOption('10');
+  await done(page);
+  const count = await page.locator('#motions > li').count();
+  expect(count).toBeLessThan(10);
+  await expect(page.locator('#status')).toHaveText(/, fewer than the 10 requested: no more could be distinguished\.$/);
+  await page.getByLabel('Number of motions').selectOption('2');
+  await done(page);
+  await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d,]+ ms, as requested\.$/);
+});
+
+test('a number of motions chosen for a pair applies to that pair', async ({ page }) => {
+  await openClip(page, await frames(3));
+  const setting = page.getByLabel('Number of motions');
+  await page.locator('.numbers button', { hasText: /^1$/ }).click();
+  await done(page);
+  await expect(setting).toHaveValue('1');
+  await expect(page.locator('#motions > li')).toHaveCount(1);
+  await step(page, 1, 'f2.png');
+  await expect(setting).toHaveValue('auto');
+  expect(await page.locator('#motions > li').count()).toBeGreaterThan(1);
+  await step(page, -1, 'f1.png');
+  await expect(setting).toHaveValue('1');
+  await expect(page.locator('#motions > li')).toHaveCount(1);
+
+  // The setting applies to all pairs, and each status says so.
+  await setting.selectOption('2');
+  await done(page);
+  await step(page, 1, 'f2.png');
+  await expect(setting).toHaveValue('2');
+  await expect(page.locator('#status')).toHaveText(/, as requested\.$/);
+});
+
+test('the list of masks reports a failure', async ({ page }) => {
+  await open(page);
+  await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
+  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
+  await expect(page.locator('#motions-empty')).toHaveText('No masks: the segmentation failed.');
+  await upload(page, [await sample('first'), await sample('second')]);
+  await done(page);
+  await expect(page.locator('#motions-empty')).toBeHidden();
+});

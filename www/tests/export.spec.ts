@@ -1,0 +1,297 @@
+//! Exports match what is on screen: files are downloaded and read, commands and scripts are copied and run.
+
+import { spawnSync } from 'node:child_process';
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+import { type Page } from '@playwright/test';
+import { unzipSync } from 'fflate';
+import { groupLabels } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
+
+import { video } from './video.js';
+import { differences, done, expect, open, sample, segmentedInNode, test, upload, square } from './support.js';
+
+/** Clicks a button that saves a file. */
+async function saved(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name, exact: true }).click()]);
+  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+}
+
+async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
+  await page.getByLabel('File format').selectOption({ label: format });
+  return saved(page, 'Save');
+}
+
+/** The red channel of a PNG. */
+async function reds(bytes: Uint8Array): Promise<Uint8Array> {
+  const { data } = await decodeImage(bytes);
+  return Uint8Array.from({ length: data.length / 4 }, (_, p) => data[4 * p]!);
+}
+
+test('all masks are exported as one archive', async ({ page }) => {
+  await open(page, 'groups');
+  const expected = await segmentedInNode(await sample('first'), await sample('second'));
+  const groups = groupLabels(expected);
+  const { name, bytes } = await saved(page, 'All masks');
+  expect(name).toBe('masks.zip');
+  const files = unzipSync(bytes);
+  const numbers = [...new Set(groups)];
+  expect(Object.keys(files).sort()).toEqual([...numbers.map((k) => `mask-${k}.png`), 'labels.png', 'result.json'].sort());
+  for (const k of numbers) {
+    expect(differences(await reds(files[`mask-${k}.png`]!), groups.map((group) => (group === k ? 255 : 0)))).toBe(0);
+  }
+  expect(JSON.parse(new TextDecoder().decode(files['result.json']))).toMatchObject({ count: expected.count, width: 768 });
+});
+
+test('the selected mask and the overlay are exported as PNG', async ({ page }) => {
+  await open(page, 'groups');
+  const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
+  await page.locator('#motions > li').nth(2).locator('.motion-words').click();
+  const mask = await savedAs(page, 'Selected mask');
+  expect(mask.name).toBe('mask.png');
+  expect(differences(await reds(mask.bytes), groups.map((group) => (group === 2 ? 255 : 0)))).toBe(0);
+
+  await page.getByLabel('Opacity').fill('0');
+  await page.getByLabel('Outlines').uncheck();
+  const overlay = await decodeImage((await savedAs(page, 'Overlay')).bytes);
+  expect(differences(overlay.data, (await decodeImage((await sample('first')).buffer)).data)).toBe(0);
+});
+
+test('masks of frames that were scaled down are exported at full size', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Working size').selectOption('640');
+  await upload(page, [await square('a.png', 960, 540, 0, 0), await square('b.png', 960, 540, 6, 3)]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 960 × 540');
+  await done(page);
+  const { width, height } = await decodeImage((await saved(page, 'Labels PNG')).bytes);
+  expect([width, height]).toEqual([960, 540]);
+  const report = JSON.parse((await saved(page, 'Result JSON')).bytes.toString()) as { motions: { matrix: number[]; bbox: number[] }[] };
+  const [u, v] = [report.motions[1]!.matrix, report.motions[1]!.bbox].map(([a, b, c]) => [a, b, c]);
+  expect(u && v).toBeTruthy();
+  const [a11, a12, a13, a21, a22, a23] = report.motions[1]!.matrix as [number, number, number, number, number, number];
+  expect(a11 * 400 + a12 * 250 + a13).toBeCloseTo(6, 0);
+  expect(a21 * 400 + a22 * 250 + a23).toBeCloseTo(3, 0);
+});
+
+test('the copied command and script give the same masks', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page, 'groups');
+  await page.getByLabel('Number of motions').selectOption('3');
+  await done(page);
+  const expected = await segmentedInNode(await sample('first'), await sample('second'), { quality: 'fast', motions: 3 });
+  const folder = await mkdtemp(join(tmpdir(), 'veronese-'));
+  try {
+    for (const slot of ['first', 'second'] as const) await writeFile(join(folder, `${slot}.png`), (await sample(slot)).buffer);
+
+    await page.getByRole('button', { name: 'Copy command' }).click();
+    await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
+    const command = await page.evaluate(() => navigator.clipboard.readText());
+    const program = fileURLToPath(new URL('../../pkg/bin/veronese.js', import.meta.url));
+    const words = command.split(' ');
+    expect(words.shift()).toBe('veronese');
+    const { status } = spawnSync(process.execPath, [program, ...words], { cwd: folder });
+    expect(status).toBe(0);
+    const { bytes } = await saved(page, 'Labels PNG');
+    const written = await decodeImage(await readFile(join(folder, 'masks', 'labels.png')));
+    expect(differences(written.data, (await decodeImage(bytes)).data)).toBe(0);
+
+    await page.getByRole('button', { name: 'Copy JavaScript' }).click();
+    await expect(page.locator('#notice')).toContainText('Copied the JavaScript to the clipboard.');
+    const script = (await page.evaluate(() => navigator.clipboard.readText()))
+      .replaceAll(/from '(veronese[^']*)'/g, (_, name: string) => `from '${import.meta.resolve(name)}'`)
+      .concat('process.stdout.write(Buffer.from(masks));\n');
+    await writeFile(join(folder, 'script.mjs'), script);
+    const { stdout, stderr } = spawnSync(process.execPath, ['script.mjs'], { cwd: folder, maxBuffer: 2 ** 24 });
+    expect(stderr.toString()).toBe('');
+    expect(differences(stdout, groupLabels(expected))).toBe(0);
+  } finally {
+    await rm(folder, { recursive: true });
+  }
+});
+
+test('the picture is copied', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page);
+  await page.getByRole('button', { name: 'Copy picture' }).click();
+  await expect(page.locator('#notice')).toContainText('Copied the picture to the clipboard.');
+  const size = await page.evaluate(async () => {
+    const [item] = await navigator.clipboard.read();
+    const bitmap = await createImageBitmap(await item!.getType('image/png'));
+    return [bitmap.width, bitmap.height];
+  });
+  expect(size).toEqual([768, 432]);
+});
+
+test('a copied link opens with the same settings', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page);
+  await page.getByLabel('Number of motions').selectOption('2');
+  await done(page);
+  await page.getByRole('button', { name: 'Copy link' }).click();
+  await expect(page.locator('#notice')).toContainText('Copied the link with the settings to the clipboard.');
+  const link = await page.evaluate(() => navigator.clipboard.readText());
+  expect(new URL(link).hash).toBe('#motions=2&quality=fast&masks=motions');
+  const other = await context.newPage();
+  await other.goto(link);
+  await done(other);
+  await expect(other.getByLabel('Number of motions')).toHaveValue('2');
+  await expect(other.getByLabel('Fast')).toBeChecked();
+  await expect(other.locator('#motions > li')).toHaveCount(2);
+  await expect(other.locator('#look [value=motions]')).toBeChecked();
+});
+
+test('a copied link opens the current sample', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page);
+  const copied = async (): Promise<string> => {
+    await page.evaluate(() => navigator.clipboard.writeText(''));
+    await page.getByRole('button', { name: 'Copy link' }).click();
+    await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).not.toBe('');
+    return page.evaluate(() => navigator.clipboard.readText());
+  };
+  await page.getByRole('button', { name: 'Parallax' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
+  await done(page);
+  await page.getByRole('button', { name: 'Swap the two frames' }).click();
+  await done(page);
+  const link = await copied();
+  expect(new URL(link).hash).toBe('#sample=parallax&swapped=true&quality=fast&masks=motions');
+  const other = await context.newPage();
+  await other.goto(link);
+  await done(other);
+  await expect(other.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
+
+  // Also in a page that is open.
+  await other.evaluate(() => (location.hash = '#sample=leader-follower&motions=2&masks=groups'));
+  await expect(other.locator('.slot-name')).toHaveText(['first.png, 200 × 150', 'second.png, 200 × 150']);
+  await done(other);
+  await expect(other.locator('#look [value=groups]')).toBeChecked();
+  await expect(other.getByLabel('Number of motions')).toHaveValue('2');
+
+  // With a replaced frame the pair is no longer a sample.
+  await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('other.png');
+  expect(new URL(await copied()).hash).toBe('#quality=fast&masks=motions');
+});
+
+test('the command names the frames of the result, also a replaced one', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page);
+  await upload(page, [await video(page, 8, 'webm', 'vp8')]);
+  await expect(page.locator('#clip-name')).toContainText('clip.webm');
+  await done(page);
+  await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
+  await done(page);
+  await page.getByRole('button', { name: 'Step both forward' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
+  await done(page);
+  await page.getByRole('button', { name: 'Copy command' }).click();
+  await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
+  expect((await page.evaluate(() => navigator.clipboard.readText())).split('\n')).toEqual([
+    "ffmpeg -i clip.webm -vf 'select=eq(n\\,1)' -frames:v 1 frame-1.png",
+    'veronese pair frame-1.png other.png --quality fast --out masks --overlay',
+  ]);
+});
+
+for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 780]] as const) {
+  test(`a notice confirms a copy in view, ${screen}`, async ({ page, context }) => {
+    await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+    await page.setViewportSize({ width, height });
+    await open(page);
+    const notice = page.locator('#notice');
+    for (const name of ['Copy picture', 'Copy command', 'Copy JavaScript', 'Copy link']) {
+      await page.getByRole('button', { name }).click();
+      await expect(notice).toContainText('to the clipboard.');
+      await expect(notice).toBeInViewport({ ratio: 1 });
+      await page.getByRole('button', { name: 'Dismiss' }).click();
+      await expect(notice).toBeHidden();
+    }
+    // A notice that is not an error disappears by itself.
+    await page.getByRole('button', { name: 'Copy link' }).click();
+    await expect(notice).toBeInViewport({ ratio: 1 });
+    await expect(notice).toBeHidden({ timeout: 10_000 });
+  });
+}
+
+/** Decodes compressed COCO run lengths, after the description of the format. */
+function countsOf(text: string): number[] {
+  const counts: number[] = [];
+  for (let i = 0; i < text.length; ) {
+    let [value, shift, more] = [0, 0, true];
+    let chunk = 0;
+    while (more) {
+      chunk = text.charCodeAt(i++) - 48;
+      value |= (chunk & 0x1f) << shift;
+      more = (chunk & 0x20) !== 0;
+      shift += 5;
+    }
+    if (chunk & 0x10) value |= -1 << shift;
+    counts.push(counts.length > 2 ? value + counts.at(-2)! : value);
+  }
+  return counts;
+}
+
+/** A mask of 255 and 0, row-major, from column-major runs that start with zeros. */
+function planeFromColumns(counts: readonly number[], width: number, height: number): Uint8Array {
+  const plane = new Uint8Array(width * height);
+  let at = 0;
+  counts.forEach((count, k) => {
+    if (k % 2 === 1) for (let i = at; i < at + count; i++) plane[(i % height) * width + Math.floor(i / height)] = 255;
+    at += count;
+  });
+  expect(at).toBe(width * height);
+  return plane;
+}
+
+test('formats of annotation tools have the masks under their names', async ({ page }) => {
+  await open(page, 'groups');
+  const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
+  const row = page.locator('#motions > li').nth(1);
+  await row.locator('.motion-name').fill('White car');
+  await row.locator('.motion-name').press('Enter');
+  const mask = (id: number): Uint8Array => groups.map((group) => (group === id ? 255 : 0));
+  const json = async (format: string): Promise<unknown> => JSON.parse((await savedAs(page, format)).bytes.toString());
+
+  const coco = (await json('COCO, RLE')) as {
+    categories: { id: number; name: string }[];
+    annotations: { category_id: number; area: number; segmentation: { counts: string; size: number[] } }[];
+  };
+  const category = coco.categories.find(({ name }) => name === 'White car')!;
+  const annotation = coco.annotations.find((one) => one.category_id === category.id)!;
+  expect(annotation.segmentation.size).toEqual([432, 768]);
+  expect(differences(planeFromColumns(countsOf(annotation.segmentation.counts), 768, 432), mask(1))).toBe(0);
+
+  const polygons = (await json('COCO, polygons')) as { annotations: { segmentation: number[][] }[] };
+  expect(polygons.annotations).toHaveLength(coco.annotations.length);
+  expect(polygons.annotations[1]!.segmentation[0]!.length).toBeGreaterThan(20);
+
+  const cvat = (await savedAs(page, 'CVAT')).bytes.toString();
+  const shape = /<mask label="White car"[^>]*rle="([^"]*)"[^>]*>/.exec(cvat)!;
+  const side = (name: string): number => Number(new RegExp(`${name}="(\\d+)"`).exec(shape[0])![1]);
+  const [left, top, width, height] = ['left', 'top', 'width', 'height'].map(side) as [number, number, number, number];
+  const plane = new Uint8Array(768 * 432);
+  let at = 0;
+  shape[1]!.split(',').forEach((run, k) => {
+    for (let i = 0; i < Number(run); i++, at++) {
+      if (k % 2 === 1) plane[(top + Math.floor(at / width)) * 768 + left + (at % width)] = 255;
+    }
+  });
+  expect(at).toBeLessThanOrEqual(width * height);
+  expect(differences(plane, mask(1))).toBe(0);
+
+  const [task] = (await json('Label Studio')) as [{ predictions: { result: { value: { brushlabels: string[]; rle: number[] } }[] }[] }];
+  expect(task.predictions[0]!.result.map(({ value }) => value.brushlabels[0])).toContain('White car');
+  const labelme = (await json('LabelMe')) as { shapes: { label: string }[]; imageWidth: number };
+  expect(labelme.shapes.map(({ label }) => label)).toContain('White car');
+  expect(labelme.imageWidth).toBe(768);
+
+  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+  const lines = new TextDecoder().decode(yolo['labels/first.txt']).trim().split('\n');
+  expect(lines.length).toBe(new Set(groups).size);
+  for (const line of lines) expect(line).toMatch(/^\d+( (0|1|0?\.\d+|\d\.\d+(e-\d+)?)){6,}$/);
+  expect(new TextDecoder().decode(yolo['data.yaml'])).toContain('White car');
+});

@@ -1,0 +1,206 @@
+//! Dropped and pasted files, use by keyboard, a narrow screen, a page in a subfolder.
+
+import { mkdir, mkdtemp, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+
+import { type Page } from '@playwright/test';
+
+import { video } from './video.js';
+import { type Upload, done, expect, labelsOnCanvas, open, sample, segmentedInNode, differences, square, test } from './support.js';
+
+/** Drops or pastes files. */
+async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise<void> {
+  const plain = files.map(({ name, mimeType, buffer }) => ({ name, mimeType, base64: buffer.toString('base64') }));
+  await page.evaluate(
+    ([how, plain]) => {
+      const transfer = new DataTransfer();
+      for (const { name, mimeType, base64 } of plain) {
+        transfer.items.add(new File([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], name, { type: mimeType }));
+      }
+      const common = { bubbles: true, cancelable: true };
+      if (how === 'drop') {
+        document.body.dispatchEvent(new DragEvent('dragenter', { ...common, dataTransfer: transfer }));
+        document.body.dispatchEvent(new DragEvent('drop', { ...common, dataTransfer: transfer }));
+      } else document.body.dispatchEvent(new ClipboardEvent('paste', { ...common, clipboardData: transfer }));
+    },
+    [how, plain] as const,
+  );
+}
+
+test('two files are dropped together', async ({ page }) => {
+  await open(page);
+  const [a, b] = [await square('a.png', 80, 60, 0, 0), await square('b.png', 80, 60, 2, 1)];
+  await give(page, 'drop', [b, a]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
+  await done(page);
+  expect(differences(await labelsOnCanvas(page), (await segmentedInNode(a, b)).labels)).toBe(0);
+});
+
+/** Drops files and folders from the disk. */
+async function dropPaths(page: Page, paths: string[]): Promise<void> {
+  const cdp = await page.context().newCDPSession(page);
+  const data = { items: [], files: paths, dragOperationsMask: 1 };
+  for (const type of ['dragEnter', 'dragOver', 'drop'] as const) await cdp.send('Input.dispatchDragEvent', { type, x: 300, y: 300, data });
+}
+
+/** Calls `use` with a temporary folder of these files. */
+async function withFolder(files: Record<string, Buffer>, use: (path: string) => Promise<void>): Promise<void> {
+  const root = await mkdtemp(join(tmpdir(), 'veronese-'));
+  try {
+    for (const [name, bytes] of Object.entries(files)) {
+      await mkdir(dirname(join(root, name)), { recursive: true });
+      await writeFile(join(root, name), bytes);
+    }
+    await use(root);
+  } finally {
+    await rm(root, { recursive: true });
+  }
+}
+
+test('a dropped folder is a clip in the order of its names', async ({ page }) => {
+  await open(page);
+  // More files than browsers return in one batch. Files that are hidden or not images are skipped.
+  const files: Record<string, Buffer> = { 'clip/notes.txt': Buffer.from('notes'), 'clip/.thumb.png': Buffer.from('hidden') };
+  const [still, moved] = [await square('', 96, 64, 0, 0), await square('', 96, 64, 2, 0)];
+  for (let k = 0; k < 130; k++) files[`clip/f${k}.png`] = (k % 2 === 0 ? still : moved).buffer;
+  await withFolder(files, async (root) => {
+    await dropPaths(page, [join(root, 'clip')]);
+    await expect(page.locator('#clip-name')).toHaveText('clip, 130 frames, 96 × 64');
+    await done(page);
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f1.png, 96 × 64');
+    await page.locator('[name=clip-second]').fill('129');
+    await page.locator('[name=clip-second]').dispatchEvent('change');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f129.png, 96 × 64');
+    await done(page);
+  });
+});
+
+test('subfolders of a dropped folder follow each other', async ({ page }) => {
+  await open(page);
+  const { buffer } = await square('', 96, 64, 0, 0);
+  const names = ['b/1.png', 'a10/1.png', 'a2/2.png', 'a2/1.png', '10.png', '9.png'];
+  await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
+    await dropPaths(page, [join(root, 'clip')]);
+    await expect(page.locator('#clip-name')).toHaveText('clip, 6 frames, 96 × 64');
+    const seen: string[] = [];
+    for (let k = 0; k < names.length; k++) {
+      await page.locator('[name=clip-first]').fill(String(k));
+      await page.locator('[name=clip-first]').dispatchEvent('change');
+      await expect(page.locator('#clip-first-at')).toHaveText(`#${k}`);
+      await done(page);
+      seen.push((await page.locator('[data-slot=first] .slot-name').textContent())!.split(',')[0]!);
+    }
+    expect(seen).toEqual(['9.png', '10.png', 'a2/1.png', 'a2/2.png', 'a10/1.png', 'b/1.png']);
+  });
+});
+
+test('a folder from the picker has the same order and names', async ({ page }) => {
+  await open(page);
+  const { buffer } = await square('', 96, 64, 0, 0);
+  const names = ['b/1.png', 'a/2.png', 'a/1.png', '.hidden.png'];
+  await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
+    await page.locator('#open-folder').setInputFiles(join(root, 'clip'));
+    await expect(page.locator('#clip-name')).toHaveText('clip, 3 frames, 96 × 64');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('a/2.png, 96 × 64');
+    await done(page);
+  });
+});
+
+test('a dropped folder may hold a video, a pair or nothing to open', async ({ page }) => {
+  await open(page);
+  const { buffer } = await video(page, 4, 'webm', 'vp8');
+  const pair = { 'pair/.hidden': Buffer.from(''), 'pair/b.png': (await square('', 80, 60, 2, 1)).buffer, 'pair/a.png': (await square('', 80, 60, 0, 0)).buffer };
+  await withFolder({ 'video/clip.webm': buffer, 'video/read.me': Buffer.from(''), 'empty/notes.txt': Buffer.from(''), ...pair }, async (root) => {
+    await dropPaths(page, [join(root, 'video')]);
+    await expect(page.locator('#clip-name')).toHaveText('clip.webm, 4 frames, 192 × 128');
+    await done(page);
+    await dropPaths(page, [join(root, 'empty')]);
+    await expect(page.getByRole('alert')).toContainText('There is no image or video among these files.');
+    await expect(page.locator('#timeline')).toBeVisible();
+    await dropPaths(page, [join(root, 'pair')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 80 × 60');
+    await done(page);
+    // A file can still be dropped by itself.
+    await dropPaths(page, [join(root, 'pair', 'b.png')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('b.png, 80 × 60');
+  });
+});
+
+test('two files are pasted one after the other', async ({ page }) => {
+  await open(page);
+  await give(page, 'paste', [await square('z.png', 80, 60, 0, 0)]);
+  await expect(page.locator('#status')).toHaveText('Now add the second frame.');
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('none yet');
+  await give(page, 'paste', [await square('a.png', 80, 60, 2, 1)]);
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('a.png, 80 × 60');
+  await done(page);
+});
+
+test('one frame of the pair is replaced', async ({ page }) => {
+  await open(page);
+  const other = await sample('first', 'other.png');
+  await page.getByLabel('Replace the second frame').setInputFiles(other);
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 768 × 432');
+  await done(page);
+});
+
+/** Presses Tab until the element has focus. */
+async function tabTo(page: Page, selector: string): Promise<void> {
+  for (let i = 0; i < 150; i++) {
+    await page.keyboard.press('Tab');
+    if (await page.locator(selector).first().evaluate((element) => element === document.activeElement)) return;
+  }
+  throw new Error(`Tab does not reach ${selector}`);
+}
+
+test('the page can be used with the keyboard', async ({ page }) => {
+  const chooser = page.waitForEvent('filechooser'); // must be set up before the key is pressed
+  await open(page);
+  const all = await labelsOnCanvas(page);
+
+  await tabTo(page, '#open-pair');
+  await page.keyboard.press('Enter');
+  expect((await chooser).isMultiple()).toBe(true);
+
+  await tabTo(page, '#look [name=frame]');
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowRight');
+  await expect(page.locator('#caption')).toHaveText('Second frame');
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowLeft');
+  await tabTo(page, '#look [name=opacity]');
+  await page.keyboard.press('End');
+  await expect(page.locator('#opacity-value')).toHaveText('100 %');
+
+  await tabTo(page, '#motions [type=checkbox]');
+  await page.keyboard.press('Space');
+  expect(differences(await labelsOnCanvas(page), all)).toBeGreaterThan(0);
+  await page.keyboard.press('Space');
+  expect(differences(await labelsOnCanvas(page), all)).toBe(0);
+
+  await tabTo(page, '#settings select');
+  await page.keyboard.press('2'); // the option that starts with it
+  await page.keyboard.press('Tab');
+  await done(page);
+  await expect(page.getByLabel('Number of motions')).toHaveValue('2');
+});
+
+test('the page works in any folder', async ({ page, context, baseURL }) => {
+  await context.route('**/some/folder/**', async (route) => {
+    const url = route.request().url().replace('/some/folder/', '/');
+    await route.fulfill({ response: await route.fetch({ url }) });
+  });
+  const asked: string[] = [];
+  page.on('request', (request) => asked.push(new URL(request.url()).pathname));
+  await page.goto(`${baseURL}some/folder/`);
+  await done(page);
+  expect(asked.filter((path) => !path.startsWith('/some/folder/'))).toEqual([]);
+});
+
+test('the page fits a screen 360 pixels wide', async ({ page }) => {
+  await page.setViewportSize({ width: 360, height: 740 });
+  await open(page);
+  expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(360);
+});

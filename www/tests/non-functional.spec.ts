@@ -1,0 +1,204 @@
+//! Accessibility, content security policy, offline use, size, memory, responsiveness.
+
+import { readFileSync, readdirSync } from 'node:fs';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+
+import { type Page, test as unwatched } from '@playwright/test';
+
+import { done, expect, labelsOnCanvas, open, test } from './support.js';
+
+const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
+
+/** The serious and critical violations that axe finds. */
+async function axe(page: Page): Promise<string[]> {
+  const source = readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
+  await page.evaluate(source);
+  return page.evaluate(async () => {
+    const { axe } = window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { target: string[] }[] }[] }> } };
+    const { violations } = await axe.run();
+    return violations
+      .filter(({ impact }) => impact === 'serious' || impact === 'critical')
+      .map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
+  });
+}
+
+for (const scheme of ['light', 'dark'] as const) {
+  test(`axe finds nothing serious, ${scheme}`, async ({ page }) => {
+    await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
+    await open(page, 'groups');
+    await page.locator('.more summary').nth(1).click();
+    await page.keyboard.press('p');
+    expect(await axe(page)).toEqual([]);
+    await page.keyboard.press('?');
+    await expect(page.getByRole('dialog')).toBeVisible();
+    expect(await axe(page)).toEqual([]);
+    await page.keyboard.press('Escape');
+    await page.setViewportSize({ width: 360, height: 740 });
+    expect(await axe(page)).toEqual([]);
+  });
+}
+
+test('the content security policy has no exceptions', async ({ page }) => {
+  const response = await page.goto('./');
+  const meta = await page.locator('meta[http-equiv=Content-Security-Policy]').getAttribute('content');
+  expect(response?.headers()['content-security-policy']).toBe(meta);
+  expect(meta).not.toContain('unsafe-inline');
+  expect(meta).not.toContain("'unsafe-eval'");
+  expect(meta).toContain("script-src 'self' 'wasm-unsafe-eval';");
+  const html = readFileSync(join(DIST, 'index.html'), 'utf8');
+  expect(html).not.toMatch(/<script(?![^>]*\ssrc=)|\sstyle=|\son\w+=|<style/);
+  await done(page);
+});
+
+unwatched('inline scripts are blocked', async ({ page }) => {
+  await page.goto('./');
+  const refused = await page.evaluate(
+    () =>
+      new Promise<string>((resolve) => {
+        document.addEventListener('securitypolicyviolation', ({ violatedDirective, blockedURI }) => resolve(`${violatedDirective} ${blockedURI}`));
+        const script = document.createElement('script');
+        script.textContent = 'window.reached = true';
+        document.body.append(script);
+      }),
+  );
+  expect(refused).toBe('script-src-elem inline');
+  expect(await page.evaluate(() => 'reached' in window)).toBe(false);
+});
+
+test('the page works without cross-origin isolation', async ({ page }) => {
+  await open(page);
+  expect(await page.evaluate(() => crossOriginIsolated)).toBe(false);
+});
+
+test('the scripts stay within their size budget', () => {
+  // The host page has a script of its own.
+  const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !name.startsWith('embed-'));
+  const sizes = files.map((name) => [name, gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length] as const);
+  const [video, own] = [sizes.filter(([name]) => name.startsWith('exact-')), sizes.filter(([name]) => !name.startsWith('exact-'))];
+  expect(video).toHaveLength(1); // mediabunny
+  expect(own.reduce((sum, [, size]) => sum + size, 0)).toBeLessThanOrEqual(62 * 1024);
+});
+
+test('scripts for videos are loaded only when a video is opened', async ({ page }) => {
+  const asked: string[] = [];
+  page.on('request', (request) => asked.push(request.url()));
+  await open(page);
+  expect(asked.filter((url) => /exact-|approximate-|browser-/.test(url))).toEqual([]);
+});
+
+test('? lists the shortcuts, and single-key shortcuts can be disabled', async ({ page }) => {
+  await open(page);
+  await page.keyboard.press('?');
+  const dialog = page.getByRole('dialog', { name: 'Keyboard shortcuts' });
+  await expect(dialog).toContainText('Alternate between the frames');
+  await dialog.getByLabel('Enable single-key shortcuts').uncheck();
+  await dialog.getByRole('button', { name: 'Close' }).click();
+  await page.keyboard.press('s');
+  await expect(page.locator('#look [value=first]')).toBeChecked();
+  await page.keyboard.press('?');
+  await expect(dialog).toBeHidden();
+});
+
+test('the page loads only the core module', async ({ page }) => {
+  const modules: string[] = [];
+  page.on('request', (request) => {
+    const name = /([a-z_]+_bg)[^/]*\.wasm$/.exec(request.url())?.[1];
+    if (name !== undefined) modules.push(name);
+  });
+  await open(page);
+  expect([...new Set(modules)]).toEqual(['veronese_bg']);
+});
+
+test('the page stays responsive while it works', async ({ page }) => {
+  await page.addInitScript(() => {
+    const longest = { milliseconds: 0 };
+    Object.assign(window, { longest });
+    new PerformanceObserver((list) => {
+      for (const { duration } of list.getEntries()) longest.milliseconds = Math.max(longest.milliseconds, duration);
+    }).observe({ type: 'longtask', buffered: true });
+  });
+  await open(page);
+  await page.keyboard.press('a');
+  await page.keyboard.press('r');
+  await page.waitForTimeout(300);
+  await page.evaluate(() => ((window as unknown as { longest: { milliseconds: number } }).longest.milliseconds = 0));
+  // Segmenting, painting, arrows and residual, three times. The best run is the least disturbed by other programs.
+  const times: number[] = [];
+  for (const seed of [2, 3, 4]) {
+    await page.getByLabel('Seed').fill(String(seed));
+    await page.getByLabel('Seed').blur();
+    await done(page);
+    await page.waitForTimeout(300); // for tasks that draw later
+    times.push(
+      await page.evaluate(() => {
+        const { longest } = window as unknown as { longest: { milliseconds: number } };
+        const { milliseconds } = longest;
+        longest.milliseconds = 0;
+        return milliseconds;
+      }),
+    );
+  }
+  console.log(`longest tasks of the main thread: ${times.map((ms) => ms.toFixed(0)).join(', ')} ms`);
+  expect(Math.min(...times)).toBeLessThanOrEqual(50);
+});
+
+test('memory does not grow over 200 segmentations', async ({ page }) => {
+  test.setTimeout(180_000);
+  await open(page);
+  await page.getByRole('button', { name: 'Leader and follower' }).click();
+  await page.getByLabel('Fast').check();
+  await done(page);
+  const cdp = await page.context().newCDPSession(page);
+  const heap = async (): Promise<number> => {
+    await cdp.send('HeapProfiler.collectGarbage');
+    return (await cdp.send('Runtime.getHeapUsage')).usedSize;
+  };
+  const again = (from: number, to: number): Promise<void> =>
+    page.evaluate(
+      async ([from, to]) => {
+        const input = document.querySelector<HTMLInputElement>('#setting-seed')!;
+        const run = document.querySelector<HTMLElement>('#run')!;
+        for (let seed = from; seed < to; seed++) {
+          input.value = String(seed);
+          input.dispatchEvent(new Event('change'));
+          await new Promise<void>((resolve) => {
+            const observer = new MutationObserver(() => {
+              if (run.dataset.phase !== 'done') return;
+              observer.disconnect();
+              resolve();
+            });
+            observer.observe(run, { attributes: true, attributeFilter: ['data-phase'] });
+          });
+        }
+      },
+      [from, to] as const,
+    );
+  await again(100, 120);
+  const early = await heap();
+  await again(120, 300);
+  const late = await heap();
+  console.log(`heap after 20: ${(early / 2 ** 20).toFixed(1)} MiB, after 200: ${(late / 2 ** 20).toFixed(1)} MiB`);
+  expect(late - early).toBeLessThan(4 * 2 ** 20);
+  expect(page.workers()).toHaveLength(1);
+});
+
+test.describe('with a service worker', () => {
+  test.use({ serviceWorkers: 'allow' });
+
+  test('the page works offline after the first visit', async ({ page, context }) => {
+    await open(page);
+    const labels = await labelsOnCanvas(page);
+    await expect(page.locator('html')).toHaveAttribute('data-offline', 'ready', { timeout: 30_000 });
+    await context.setOffline(true);
+    await page.reload();
+    await done(page);
+    await page.locator('#look [name=colouring][value=motions]').check();
+    expect(await labelsOnCanvas(page)).toEqual(labels);
+    await page.getByRole('button', { name: 'Parallax' }).click();
+    await done(page);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 400 × 300');
+    await context.setOffline(false);
+  });
+});

@@ -1,0 +1,232 @@
+//! Functions of the page that need no browser.
+
+import { expect, test } from '@playwright/test';
+import type { Segmentation } from 'veronese';
+
+import type { Clip } from '../src/clips/clip.js';
+import { codecName } from '../src/clips/codecs.js';
+import { NO_EDITS, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/correction/edits.js';
+import { labellingOf, labelsIn } from '../src/correction/parts.js';
+import { type Runs, packed, unpacked } from '../src/correction/runs.js';
+import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../src/correction/strokes.js';
+import { arrowsOf } from '../src/drawing/arrows.js';
+import { residualOf } from '../src/drawing/residual.js';
+import { atSize } from '../src/export/full-size.js';
+import { linkFor, settingsFromHash } from '../src/export/link.js';
+import { commandFor, scriptFor } from '../src/export/reproduce.js';
+import type { Matrix } from '../src/result/describe.js';
+import { labelSet, masksOf, merged, ungrouped } from '../src/result/masks.js';
+import { NOTATIONS } from '../src/result/matrices.js';
+import { DEFAULT_SETTINGS } from '../src/state/settings.js';
+import { INITIAL, type Result } from '../src/state/state.js';
+import { differences } from './support.js';
+
+const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
+
+/** Four motions on 8×4 pixels, two columns each; 1 and 2 are one group. */
+function scene(): Segmentation {
+  const labels = Uint8Array.from({ length: 32 }, (_, p) => Math.floor((p % 8) / 2));
+  const motions = [0, 1, 2, 3].map((label) => ({
+    label,
+    matrix: label === 3 ? MATRIX : ([0, 0, label, 0, 0, 0] as Matrix),
+    pixels: 8,
+    share: 0.25,
+    residual: 1,
+    bbox: [2 * label, 0, 2, 4] as [number, number, number, number],
+    group: [0, 1, 1, 2][label]!,
+  }));
+  const settings = { motions: 'auto', quality: 'best', markUnknown: false, before: false, seed: 1, software: '' } as const;
+  return { version: 1, width: 8, height: 4, count: 4, motions, labels, evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
+}
+
+test('masks are groups or motions, and can be merged and ungrouped', () => {
+  const found = scene();
+  expect(masksOf(found, 'groups').map(({ id, pixels }) => [id, pixels])).toEqual([[0, 8], [1, 16], [2, 8]]);
+  expect(masksOf(found, 'motions').map(({ id }) => id)).toEqual([0, 1, 2, 3]);
+  expect(labelSet(found, 'groups', 1)).toBe(0b0110);
+  expect(labelSet(found, 'motions', 1)).toBe(0b0010);
+
+  const joined = merged(found, 'groups', 2, 1);
+  expect(joined.motions.map(({ group }) => group)).toEqual([0, 1, 1, 1]);
+  expect(found.motions.map(({ group }) => group)).toEqual([0, 1, 1, 2]);
+  // Merging single motions leaves the rest of their groups alone.
+  expect(merged(found, 'motions', 0, 3).motions.map(({ group }) => group)).toEqual([0, 1, 1, 0]);
+  expect(ungrouped(joined, 1).motions.map(({ group }) => group)).toEqual([0, 1, 2, 3]);
+});
+
+test('a stroke covers the pixels under it, and later strokes win', () => {
+  const line = { points: [3, 5, 12, 5], radius: 1.5, labels: 0b01 };
+  const evidence = evidenceOf([line], 20, 12);
+  for (let p = 0; p < evidence.length; p++) {
+    const [x, y] = [p % 20, Math.floor(p / 20)];
+    const distance = Math.hypot(x - Math.min(Math.max(x, 3), 12), y - 5);
+    if (distance < 1.2) expect(evidence[p]).toBe(0b01);
+    if (distance > 1.5) expect(evidence[p]).toBe(0);
+  }
+  const dot = { points: [3, 5], radius: 0.5, labels: 0b10 };
+  expect(evidenceOf([line, dot], 20, 12)[5 * 20 + 3]).toBe(0b10);
+  expect(evidenceOf([{ ...line, labels: 0b011 }, { ...dot, labels: 0b110 }], 20, 12)[5 * 20 + 3]).toBe(0b010);
+  // Points outside the frame are allowed.
+  expect(evidenceOf([{ points: [-50, -50, 300, 300], radius: 4, labels: 1 }], 20, 12).length).toBe(240);
+});
+
+test('all notations of a motion move pixels the same way', () => {
+  const [json, svg, openCv] = NOTATIONS.map(({ write }) => write(MATRIX));
+  expect(JSON.parse(json!)).toEqual(MATRIX);
+  const [x, y] = [30, 70];
+  const [a11, a12, a13, a21, a22, a23] = MATRIX;
+  const moved = [x + a11 * x + a12 * y + a13, y + a21 * x + a22 * y + a23];
+  const rows = JSON.parse(openCv!) as number[][];
+  rows.forEach(([p, q, r], k) => expect(p! * x + q! * y + r!).toBeCloseTo(moved[k]!, 6));
+  // SVG measures from the corner of the first pixel, half a pixel from its centre.
+  const [a, b, c, d, e, f] = svg!.match(/-?[\d.]+(e-?\d+)?/g)!.map(Number) as [number, number, number, number, number, number];
+  expect(a * (x + 0.5) + c * (y + 0.5) + e - 0.5).toBeCloseTo(moved[0]!, 6);
+  expect(b * (x + 0.5) + d * (y + 0.5) + f - 0.5).toBeCloseTo(moved[1]!, 6);
+});
+
+test('a result at full size has the same motions', () => {
+  const found = scene();
+  const full = atSize(found, { width: 24, height: 12 });
+  expect(full.labels.length).toBe(24 * 12);
+  expect([...full.labels.subarray(0, 24)]).toEqual([...Array(6).fill(0), ...Array(6).fill(1), ...Array(6).fill(2), ...Array(6).fill(3)]);
+  expect(full.motions.map(({ pixels }) => pixels)).toEqual([72, 72, 72, 72]);
+  expect(full.motions[3]!.bbox).toEqual([18, 0, 6, 12]);
+  const flow = ([a11, a12, a13, a21, a22, a23]: Matrix, x: number, y: number): number[] => [a11 * x + a12 * y + a13, a21 * x + a22 * y + a23];
+  // Small pixel (7, 2) covers the large pixels 21…23, 6…8.
+  const [small, large] = [flow(found.motions[3]!.matrix, 7, 2), flow(full.motions[3]!.matrix, 22, 7)];
+  expect(large[0]).toBeCloseTo(3 * small[0]!, 9);
+  expect(large[1]).toBeCloseTo(3 * small[1]!, 9);
+  expect(atSize(found, { width: 8, height: 4 })).toBe(found);
+});
+
+test('the residual is black where a motion fits, and dark grey where it leaves the frame', () => {
+  const found: Segmentation = { ...scene(), motions: scene().motions.map((motion) => ({ ...motion, matrix: [0, 0, 1, 0, 0, 0] })) };
+  const picture = (shift: number) => ({ width: 8, height: 4, data: Uint8Array.from({ length: 128 }, (_, i) => (i % 4 === 3 ? 255 : 20 * (((i >> 2) % 8) - shift) + 20)) });
+  const pixels = residualOf(found, picture(0), picture(1), 0, 4);
+  for (let p = 0; p < 32; p++) expect(pixels[p]).toBe(p % 8 === 7 ? 0xff28_2420 : 0xff00_0000);
+  const worse = residualOf(found, picture(0), picture(3), 0, 4);
+  expect(worse[0]! & 0xff).toBeGreaterThan(200);
+});
+
+test('arrows point in the direction of the motion', () => {
+  const { arrows, magnified } = arrowsOf({ ...scene(), labels: new Uint8Array(32).fill(3) });
+  expect(arrows.length).toBeGreaterThan(0);
+  for (const { label, from: [x, y], to: [u, v] } of arrows) {
+    expect(label).toBe(3);
+    expect(u - x).toBeCloseTo(magnified * (MATRIX[0] * x + MATRIX[1] * y + MATRIX[2]), 9);
+    expect(v - y).toBeCloseTo(magnified * (MATRIX[3] * x + MATRIX[4] * y + MATRIX[5]), 9);
+  }
+});
+
+test('a link holds the settings, and invalid values are ignored', () => {
+  const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true, seed: 9 };
+  const link = linkFor({ ...INITIAL, settings, look: { ...INITIAL.look, kind: 'motions' } }, 'https://example.org/veronese/?x=1#old');
+  expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&seed=9&masks=motions');
+  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true, seed: 9 }, kind: 'motions', sample: null, swapped: false });
+  expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
+  expect(settingsFromHash('#motions=11&quality=silly&seed=-1&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false });
+});
+
+test('codecs have their common names', () => {
+  expect(codecName('hevc', 'hvc1')).toBe('HEVC (H.265)');
+  expect(codecName(null, 'mp4v')).toBe('MPEG-4 Part 2 (DivX, Xvid)');
+  expect(codecName(null, 'SVQ3')).toBe('SVQ3');
+  expect(codecName(null, null)).toBeNull();
+});
+
+test('command and script contain the settings that are not defaults', () => {
+  type Frame = Result['pair']['first'];
+  const frame = (name: string, origin?: Partial<Frame['origin']>) => ({ name, origin }) as Frame;
+  const result = { pair: { first: frame("it's a.png"), second: frame('b.png') } } as Result;
+  const settings = { ...DEFAULT_SETTINGS, motions: 2, seed: 5 };
+  expect(commandFor(result, settings, INITIAL.look)).toBe(`veronese pair 'it'\\''s a.png' b.png --motions 2 --grouped --seed 5 --out masks --overlay`);
+  expect(scriptFor(result, settings, { ...INITIAL.look, kind: 'motions' })).toContain('segmentPair(first, second, { motions: 2, seed: 5 })');
+  const clip = { name: 'my clip.mp4', exact: true, times: Float64Array.from({ length: 9 }, (_, k) => k / 30) } as unknown as Clip;
+  const inClip = { pair: { first: frame('my clip.mp4 #3', { clip, index: 3 }), second: frame('my clip.mp4 #5', { clip, index: 5 }) } } as Result;
+  expect(commandFor(inClip, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
+    `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,3)' -frames:v 1 frame-3.png`,
+    `ffmpeg -i 'my clip.mp4' -vf 'select=eq(n\\,5)' -frames:v 1 frame-5.png`,
+    'veronese pair frame-3.png frame-5.png --grouped --out masks --overlay',
+  ]);
+  // A file, and a frame of a video that is read by time.
+  const seeking = { ...clip, exact: false };
+  const mixed = { pair: { first: frame('b.png'), second: frame('my clip.mp4 #5', { clip: seeking, index: 5 }) } } as Result;
+  expect(commandFor(mixed, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([
+    `ffmpeg -i 'my clip.mp4' -vf 'select=between(t\\,-0.817\\,0.183)' -update 1 frame-5.png`,
+    'veronese pair b.png frame-5.png --grouped --out masks --overlay',
+  ]);
+});
+
+test('labels survive run-length encoding', () => {
+  const [width, height] = [37, 23];
+  const labels = Uint8Array.from({ length: width * height }, (_, p) => (p % 11 === 0 ? 255 : Math.floor((p % width) / 9) % 4));
+  const runs = packed(labels, width, height);
+  expect(differences(unpacked(runs), labels)).toBe(0);
+  expect(unpacked(packed(new Uint8Array(6).fill(3), 3, 2))).toEqual(new Uint8Array(6).fill(3));
+});
+
+/** Labels given as rows of digits; a dot is unlabelled. */
+function drawing(...rows: string[]): Runs {
+  const labels = Uint8Array.from([...rows.join('')], (digit) => (digit === '.' ? 255 : Number(digit)));
+  return packed(labels, rows[0]!.length, rows.length);
+}
+
+test('a label is matched to another labelling by its pixels', () => {
+  const before = drawing('0000000000', '0011002220', '0011002220', '0000002220');
+  // Other numbers, and some pixels unlabelled.
+  const renumbered = drawing('0.00000000', '0022001110', '0022001110', '00.000111.');
+  expect(labelsIn({ of: before, labels: 0b010 }, renumbered)).toBe(0b100);
+  expect(labelsIn({ of: before, labels: 0b101 }, renumbered)).toBe(0b011);
+  // One label split, one disappeared, and a small new one matches nothing.
+  const other = drawing('0000000004', '0000001133', '0000001133', '0000001130');
+  expect(labelsIn({ of: before, labels: 0b100 }, other)).toBe(0b1010);
+  expect(labelsIn({ of: before, labels: 0b010 }, other)).toBe(0);
+  expect(labelsIn({ of: before, labels: 0b001 }, other)).toBe(0b0001);
+  // A larger frame.
+  const large = drawing(...['0000000000', '0022001110', '0022001110', '0000001110'].flatMap((row) => Array<string>(2).fill([...row].map((c) => c + c).join(''))));
+  expect(labelsIn({ of: before, labels: 0b010 }, large)).toBe(0b100);
+});
+
+test('a stroke whose mask is missing has no effect', () => {
+  const found = scene();
+  const here = labellingOf(found);
+  const path = { points: [1, 1, 6, 1], radius: 1 };
+  const brush = { ...path, tool: 'brush', mask: { of: here, labels: 0b0110 } } as const;
+  const eraser = { ...path, tool: 'eraser', mask: { of: here, labels: 0b0110 } } as const;
+  expect(constraintsFrom([brush, eraser], found).map(({ labels }) => labels)).toEqual([0b0110, 0b1001]);
+  const gone = { of: drawing('5554....', '555.....', '555.....', '555.....'), labels: 0b1_0000 };
+  expect(constraintsFrom([{ ...brush, mask: gone }, { ...eraser, mask: gone }], found)).toEqual([]);
+  // The unlabelled mask has no motion: erasing it allows all of them, painting it has no effect.
+  const unknown = { of: here, labels: 0 };
+  expect(allowedLabels({ tool: 'eraser', mask: unknown }, found)).toBe(0b1111);
+  expect(allowedLabels({ tool: 'brush', mask: unknown }, found)).toBe(0);
+});
+
+test('edits track what is in effect and what was saved, and can be scaled', () => {
+  const found = scene();
+  const of = labellingOf(found);
+  const stroke = (x: number): { stroke: Stroke } => ({ stroke: { points: [x, 1, 4, 3], radius: 2, tool: 'brush', mask: { of, labels: 1 } } });
+  const [one, two, three] = [stroke(1), stroke(2), stroke(3)];
+  const drawn = withAction(withAction(NO_EDITS, one), two);
+  expect(strokesOf(drawn)).toEqual([one.stroke, two.stroke]);
+  expect([NO_EDITS, drawn].map(isUnsaved)).toEqual([false, true]);
+  const saved = asSaved(drawn);
+  expect(isUnsaved(saved)).toBe(false);
+  const undone = { ...saved, done: 1 };
+  expect(isUnsaved(undone)).toBe(true);
+  expect(isUnsaved({ ...undone, done: 2 })).toBe(false);
+  // A new stroke replaces the undone one: the number of actions is that saved, the actions are not.
+  const other = withAction(undone, three);
+  expect(strokesOf(other)).toEqual([one.stroke, three.stroke]);
+  expect(isUnsaved(other)).toBe(true);
+
+  const large = scaled(saved, 2, 2);
+  expect(isUnsaved(large)).toBe(false);
+  expect(strokesOf(large)[0]).toMatchObject({ points: [2.5, 2.5, 8.5, 6.5], radius: 4 });
+
+  const grouping = { grouping: { of, groups: [0, 1, 0, 2] } };
+  expect(grouped(found, withAction(drawn, grouping), found).motions.map(({ group }) => group)).toEqual([0, 1, 0, 2]);
+  // Motions 1 and 3 swap numbers.
+  const swapped = { ...found, labels: found.labels.map((label) => [0, 3, 2, 1][label]!) };
+  expect(grouped(swapped, withAction(drawn, grouping), swapped).motions.map(({ group }) => group)).toEqual([0, 2, 0, 1]);
+});

@@ -1,0 +1,182 @@
+//! Zoom, split view, blinking, arrows, residual, names, colours, evidence.
+
+import { type Page } from '@playwright/test';
+
+import { differences, done, expect, labelsOnCanvas, open, pixelsOf, segmentedInNode, sample, test } from './support.js';
+
+async function zoomShown(page: Page): Promise<number> {
+  return Number((await page.locator('#zoom-value').textContent())!.replace(/[^\d.]/g, ''));
+}
+
+test('wheel, buttons, keys and dragging zoom and pan the picture', async ({ page }) => {
+  await open(page);
+  const box = (await page.locator('.layers').boundingBox())!;
+  const whole = await zoomShown(page);
+  const place = async (): Promise<{ x: number; y: number; width: number }> => (await page.locator('#frame').boundingBox())!;
+
+  // The point under the pointer stays there.
+  const [x, y] = [box.x + 0.25 * box.width, box.y + 0.6 * box.height];
+  await page.mouse.move(x, y);
+  await page.mouse.wheel(0, -300);
+  await expect.poll(() => zoomShown(page)).toBeGreaterThan(whole);
+  const large = await place();
+  expect((x - large.x) / large.width).toBeCloseTo(0.25, 2);
+
+  await page.mouse.down();
+  await page.mouse.move(x + 60, y, { steps: 4 });
+  await page.mouse.up();
+  expect((await place()).x).toBeCloseTo(large.x + 60, 0);
+
+  await page.locator('#zoom-fit').click();
+  expect(await zoomShown(page)).toBe(whole);
+  await page.locator('#zoom-in').click();
+  expect(Math.abs((await zoomShown(page)) - 1.5 * whole)).toBeLessThanOrEqual(1);
+  await page.keyboard.press('0');
+  expect(await zoomShown(page)).toBe(whole);
+  for (let k = 0; k < 8; k++) await page.keyboard.press('+');
+  await expect(page.locator('#grid')).toBeVisible();
+  await expect(page.locator('#stage')).toHaveClass(/squares/);
+  await page.locator('#viewer-title').evaluate(() => (document.activeElement as HTMLElement | null)?.blur());
+  const before = await place();
+  await page.keyboard.press('ArrowRight');
+  expect((await place()).x).toBeLessThan(before.x);
+  await page.keyboard.press('-');
+  expect((await place()).width).toBeLessThan(before.width);
+});
+
+test('the zoom button shows the picture at 100 %', async ({ page }) => {
+  await page.setViewportSize({ width: 600, height: 800 });
+  await open(page);
+  expect(await zoomShown(page)).toBeLessThan(100);
+  await page.locator('#zoom-value').click();
+  expect(await zoomShown(page)).toBe(100);
+  expect((await page.locator('#frame').boundingBox())!.width).toBeCloseTo(768, 0);
+});
+
+test('two fingers zoom', async ({ page }) => {
+  await open(page);
+  const whole = await zoomShown(page);
+  await page.locator('.layers').evaluate((layers) => {
+    const box = layers.getBoundingClientRect();
+    const send = (type: string, pointerId: number, x: number): void => {
+      const at = { clientX: box.x + x * box.width, clientY: box.y + 0.5 * box.height };
+      layers.dispatchEvent(new PointerEvent(type, { pointerId, pointerType: 'touch', isPrimary: pointerId === 1, button: type === 'pointermove' ? -1 : 0, bubbles: true, ...at }));
+    };
+    layers.setPointerCapture = () => undefined; // synthetic pointers cannot be captured
+    send('pointerdown', 1, 0.45);
+    send('pointerdown', 2, 0.55);
+    for (let k = 1; k <= 5; k++) {
+      send('pointermove', 1, 0.45 - 0.02 * k);
+      send('pointermove', 2, 0.55 + 0.02 * k);
+    }
+    send('pointerup', 1, 0.35);
+    send('pointerup', 2, 0.65);
+  });
+  expect(await zoomShown(page)).toBeGreaterThan(2 * whole);
+});
+
+test('the split view shows both frames, and its line moves', async ({ page }) => {
+  await open(page);
+  await page.locator('#look [value=split]').check();
+  await expect(page.locator('#other')).toBeVisible();
+  const line = page.getByRole('slider', { name: 'Position of the split' });
+  await line.fill('250');
+  await expect(page.locator('#other')).toHaveCSS('clip-path', /25%/);
+  await line.focus();
+  await page.keyboard.press('ArrowRight');
+  await expect(page.locator('#other')).toHaveCSS('clip-path', /25\.1%/);
+  await page.keyboard.press('s');
+  await expect(page.locator('#other')).toBeHidden();
+});
+
+test('blinking alternates between the frames, but not with reduced motion', async ({ page }) => {
+  await open(page);
+  const seen = new Set<string>();
+  await page.getByRole('button', { name: 'Blink' }).click();
+  await expect.poll(async () => seen.add((await page.locator('#caption').textContent())!).size, { intervals: [100] }).toBe(2);
+  await page.getByRole('button', { name: 'Blink' }).click();
+  await expect(page.locator('#caption')).toHaveText('First frame');
+
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await page.keyboard.press('n');
+  await expect(page.locator('#caption')).toHaveText('Second frame');
+  await page.waitForTimeout(1200);
+  await expect(page.locator('#caption')).toHaveText('Second frame');
+});
+
+test('masks are groups by default, and single motions on request', async ({ page }) => {
+  await open(page, 'groups');
+  const expected = await segmentedInNode(await sample('first'), await sample('second'));
+  const groups = expected.labels.map((label) => expected.motions[label]!.group);
+  expect(differences(await labelsOnCanvas(page), groups)).toBe(0);
+  await expect(page.locator('#motions > li')).toHaveCount(new Set(groups).size);
+  await page.keyboard.press('g');
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+  await expect(page.locator('#motions > li')).toHaveCount(expected.count);
+});
+
+test('masks can be named, coloured and selected', async ({ page }) => {
+  await open(page, 'groups');
+  const row = page.locator('#motions > li').nth(1);
+  await row.locator('.motion-name').fill('White car');
+  await row.locator('.motion-name').press('Enter');
+  await expect(row.getByRole('button', { name: 'Solo: show only White car' })).toBeVisible();
+  await row.locator('[type=color]').fill('#123456');
+  const fill = await pixelsOf(page, '#fill');
+  const box = (await page.locator('.layers').boundingBox())!;
+  const [px, py] = [0.2, 0.4];
+  const p = 4 * (Math.floor(py * fill.height) * fill.width + Math.floor(px * fill.width));
+  expect([...fill.data.subarray(p, p + 4)]).toEqual([0x12, 0x34, 0x56, 255]);
+  // A click on the picture selects the mask there.
+  await page.locator('#motions > li').first().locator('.motion-words').click();
+  await expect(row).not.toHaveClass(/selected/);
+  await page.mouse.click(box.x + px * box.width, box.y + py * box.height);
+  await expect(row).toHaveClass(/selected/);
+});
+
+test('arrows and the residual are drawn', async ({ page }) => {
+  await open(page);
+  await page.getByLabel('Arrows').check();
+  await expect(page.locator('#arrows path.arrow')).not.toHaveCount(0);
+  expect(await page.locator('#arrows path.arrow').nth(1).getAttribute('d')).toMatch(/^M[\d.]+ [\d.]+L/);
+  await expect(page.locator('#magnified')).toHaveText(/^arrows ×\d/);
+  await page.getByLabel('Residual').check();
+  // The motions explain most pixels, which are painted dark.
+  const dark = async (): Promise<number> => {
+    const { data, width, height } = await pixelsOf(page, '#residual');
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i]! < 128 && data[i + 3] === 255) count += 1;
+    return count / (width * height);
+  };
+  await expect.poll(dark).toBeGreaterThan(0.8);
+});
+
+test('the motion is copied in three notations', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await open(page);
+  const expected = await segmentedInNode(await sample('first'), await sample('second'));
+  const row = page.locator('#motions > li').nth(1);
+  await row.getByText('More', { exact: true }).click();
+  await row.getByRole('button', { name: 'JSON' }).click();
+  await expect(page.locator('#notice')).toContainText('clipboard');
+  expect(JSON.parse(await page.evaluate(() => navigator.clipboard.readText()))).toEqual(expected.motions[1]!.matrix);
+  await row.getByRole('button', { name: 'SVG / CSS' }).click();
+  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^matrix\((-?[\d.e-]+, ){5}-?[\d.e-]+\)$/);
+  await row.getByRole('button', { name: 'OpenCV' }).click();
+  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^\[\[/);
+});
+
+test('the number of motions can be forced in the evidence plot', async ({ page }) => {
+  await open(page);
+  const { evidence } = await segmentedInNode(await sample('first'), await sample('second'));
+  const numbers = page.locator('#evidence .number');
+  await expect(numbers).toHaveCount(evidence.candidates.length);
+  await numbers.filter({ hasText: '2' }).click();
+  await done(page);
+  await expect(page.getByLabel('Number of motions')).toHaveValue('2');
+  await expect(page.locator('#motions > li')).toHaveCount(2);
+  await expect(numbers).toHaveCount(evidence.candidates.length); // the automatic scores stay
+  await page.getByRole('button', { name: 'Automatic' }).click();
+  await done(page);
+  await expect(page.getByLabel('Number of motions')).toHaveValue('auto');
+});
