@@ -16,6 +16,9 @@ const AT_ONCE = 2;
 await command(async (args) => {
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
   await checkRust();
+  if (args.includes('--sensitivity')) {
+    return (await run('cargo', [...CARGO, 'sensitivity', ...args.filter((name) => name !== '--sensitivity')])).code;
+  }
   const out = resolve(root, valueOf(args, '--out') ?? 'out/masks');
   const baselines = join(out, 'baseline');
   for (const folder of [baselines, join(out, 'frames')]) rmSync(folder, { recursive: true, force: true });

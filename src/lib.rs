@@ -142,6 +142,7 @@ mod progress;
 mod random;
 pub mod refinement;
 pub mod scene;
+mod tuning;
 mod view;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
@@ -156,13 +157,15 @@ pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
 #[doc(hidden)]
 pub use pair::Part;
-#[cfg(feature = "ablation")]
-#[doc(hidden)]
-pub use pair::segment_pair_without;
 pub use pair::{
     Correction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel, segment_pair,
 };
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub use pair::{segment_pair_varied, segment_pair_without};
 pub use points::fit_motions;
 pub use progress::{Progress, Stage};
 pub use random::Random;
+#[doc(hidden)]
+pub use tuning::Tuned;
 pub use workspace::release_workspace;

@@ -15,18 +15,23 @@ pub use settings::Part;
 
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
-use crate::estimation::dominant::{dominant_motion, dominant_motion_near};
+use crate::estimation::dominant::{RIDGE, dominant_motion, dominant_motion_near};
 use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
 use crate::random::Random;
+#[cfg(feature = "ablation")]
+use crate::tuning::{Tuned, varied};
 use crate::view::brightness::Photometric;
 use crate::view::cost::{View, noise};
 use crate::view::level::{Level, levels};
 use crate::workspace;
 use settings::Settings;
+
+/// Iterations that refine the dominant motion once the brightness is known. Chosen on generated scenes.
+const ITERATIONS: usize = 3;
 
 /// The stages of [`segment_pair`], in order.
 const STAGES: &[&str] =
@@ -66,6 +71,22 @@ pub fn segment_pair_without(
         settings.coherence.smoothness = 0.0;
     }
     segment_with(first, second, before, options, settings, &mut |_| {})
+}
+
+/// [`segment_pair`] with a tuned constant multiplied by `factor`, for sensitivity studies.
+///
+/// # Errors
+/// As [`segment_pair`].
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub fn segment_pair_varied(
+    constant: Tuned,
+    factor: f32,
+    first: &Frame,
+    second: &Frame,
+    options: &SegmentOptions,
+) -> Result<Segmentation> {
+    varied(constant, factor, || segment_pair(first, second, None, options, &mut |_| {}))
 }
 
 fn segment_with(
@@ -168,7 +189,7 @@ impl<'a> Pair<'a> {
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];
             base.noise = noise(base, &motion);
-            let how = Alignment::of_region(3, 1e-3);
+            let how = Alignment::of_region(ITERATIONS, RIDGE);
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
         }
         self.measure_along(&motion, brightness);

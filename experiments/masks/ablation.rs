@@ -25,9 +25,14 @@ const VARIANTS: [(Variant, &str); 15] = [
     (Variant::ThreeFrames, "*with the frame before*"),
 ];
 
-/// One row: the scores of generated scenes, of scenes with a bare ground, and of real pairs.
+/// One form of the pipeline: its scores with `best` and with `fast`.
 pub(crate) struct Worth {
     pub(crate) title: &'static str,
+    pub(crate) with: [Scored; 2],
+}
+
+/// The scores of generated scenes, of scenes with a bare ground, and of the real pairs of the sequences.
+pub(crate) struct Scored {
     pub(crate) scenes: Summary,
     /// The scenes with a bare ground, which need the static background hypothesis.
     pub(crate) bare: Summary,
@@ -40,24 +45,28 @@ pub(crate) fn variants() -> Vec<Variant> {
     VARIANTS.map(|(variant, _)| variant).to_vec()
 }
 
-/// Whether the ablation includes a case: generated scenes of one to four objects, those with a bare ground, and the real pairs.
+/// Whether the ablation includes a case: generated scenes of one to four objects, those with a bare ground, and the real pairs
+/// of the sequences.
 pub(crate) fn takes_part(case: &Case) -> bool {
-    matches!(case.set, Set::Generated | Set::Colour | Set::Bare | Set::Pairs)
+    matches!(case.set, Set::Generated | Set::Colour | Set::Bare | Set::Sequences)
 }
 
 /// The rows of the table; empty if no case is included.
 pub(crate) fn worths(measured: &[Measured]) -> Vec<Worth> {
     let mut rows = Vec::new();
     for (k, (variant, title)) in VARIANTS.into_iter().enumerate() {
-        let of = |sets: &[Set]| {
-            let own = measured.iter().filter(|one| sets.contains(&one.case.set));
-            Summary::of(own.filter_map(|one| one.variants.get(k).map(|outcome| (&one.case, outcome))))
+        let scored = |quality: usize| {
+            let of = |sets: &[Set]| {
+                let own = measured.iter().filter(|one| sets.contains(&one.case.set));
+                Summary::of(own.filter_map(|one| one.variants.get(k).map(|both| (&one.case, &both[quality]))))
+            };
+            // The real pairs have no frame before.
+            let pairs = Some(of(&[Set::Sequences])).filter(|pairs| pairs.cases > 0 && variant != Variant::ThreeFrames);
+            Scored { scenes: of(&[Set::Generated, Set::Colour]), bare: of(&[Set::Bare]), pairs }
         };
-        // The real pairs have no frame before.
-        let pairs = Some(of(&[Set::Pairs])).filter(|pairs| pairs.cases > 0 && variant != Variant::ThreeFrames);
-        let (scenes, bare) = (of(&[Set::Generated, Set::Colour]), of(&[Set::Bare]));
-        if scenes.cases > 0 || bare.cases > 0 || pairs.is_some() {
-            rows.push(Worth { title, scenes, bare, pairs });
+        let with = [0, 1].map(scored);
+        if with[0].scenes.cases > 0 || with[0].bare.cases > 0 || with[0].pairs.is_some() {
+            rows.push(Worth { title, with });
         }
     }
     rows

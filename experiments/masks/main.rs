@@ -8,6 +8,7 @@ mod measure;
 mod page;
 mod pictures;
 mod scores;
+mod sensitivity;
 mod summary;
 mod tables;
 
@@ -24,13 +25,14 @@ Scores masks of generated scenes and real pairs against an OpenCV baseline, in t
 
   frames       writes the frames of the generated cases and prints a line per case: its name, a tab, its folder
   measure      measures and writes table.csv, masks.json, masks.md and a picture of every case
+  sensitivity  measures what tuned constants change and writes sensitivity.json and sensitivity.md (npm run bench:masks -- --sensitivity)
 
   --quick            a subset of the generated cases, no large frames, no ablation
   --only A,B         only cases whose name or set contains one of these
   --no-ablation      skip the ablation
   --out DIR          output folder; default out/masks
   --shared DIR       folder with further pairs, if it exists; default ../shared
-  --write-docs       also write docs/masks.md and docs/images/masks-*.png
+  --write-docs       also write docs/masks.md and docs/images/masks-*.png; for the sensitivity, its part of docs/masks.md
 ";
 
 struct Options {
@@ -74,7 +76,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" => options.step = name,
+            "frames" | "measure" | "sensitivity" => options.step = name,
             "--quick" => (options.quick, options.ablation) = (true, false),
             "--no-ablation" => options.ablation = false,
             "--write-docs" => options.write_docs = true,
@@ -85,7 +87,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames or measure.".into()),
+        true => Err("Say which step: frames, measure or sensitivity.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -112,6 +114,9 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
+    if options.step == "sensitivity" {
+        return sensitivity(options, cases);
+    }
     if !here {
         eprintln!("{} is not there: only the generated cases are measured.", options.shared.display());
     }
@@ -127,7 +132,9 @@ fn run(options: &Options) -> Result<(), Failure> {
     for one in &measured {
         fs::write(out.join(format!("{}.png", one.case.name)), &one.picture).map_err(cannot)?;
     }
-    let page = page::Page { measured: &measured, worths: &worths, honesty: &honesty, reasons: reasons()? };
+    let sensitivity =
+        page::sensitivity_in(&fs::read_to_string(docs().join("masks.md"))?).unwrap_or_default().to_owned();
+    let page = page::Page { measured: &measured, worths: &worths, honesty: &honesty, reasons: reasons()?, sensitivity };
     fs::write(out.join("masks.md"), page.text("")).map_err(cannot)?;
     if options.write_docs {
         write_docs(&page)?;
@@ -139,6 +146,25 @@ fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Measures the sensitivity and writes it.
+fn sensitivity(options: &Options, cases: Vec<Case>) -> Result<(), Failure> {
+    let measured = sensitivity::measure(&sensitivity::chosen(cases))?;
+    let table = sensitivity::table(&measured);
+    fs::write(options.out.join("sensitivity.json"), serde_json::to_string_pretty(&sensitivity::json(&measured))?)?;
+    fs::write(options.out.join("sensitivity.md"), &table)?;
+    if options.write_docs {
+        let path = docs().join("masks.md");
+        let page = page::with_sensitivity(&fs::read_to_string(&path)?, &table);
+        fs::write(path, page.ok_or("docs/masks.md has no part for the sensitivity")?)?;
+    }
+    eprintln!("The results are in {}.", options.out.display());
+    Ok(())
+}
+
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
+}
+
 /// Why cases come out as they do, written by hand, by the name of the case.
 fn reasons() -> Result<serde_json::Map<String, serde_json::Value>, Failure> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("experiments/masks/reasons.json");
@@ -148,7 +174,7 @@ fn reasons() -> Result<serde_json::Map<String, serde_json::Value>, Failure> {
 
 /// The page and its pictures; pictures that it no longer shows go away.
 fn write_docs(page: &page::Page<'_>) -> Result<(), Failure> {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = docs();
     let images = docs.join("images");
     for entry in fs::read_dir(&images)? {
         let entry = entry?;

@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use veronese::{
-    AffineMotion, Part, Quality, SegmentOptions, Segmentation, UNLABELLED, segment_pair, segment_pair_without,
+    AffineMotion, Part, Quality, SegmentOptions, Segmentation, Tuned, UNLABELLED, segment_pair, segment_pair_varied,
+    segment_pair_without,
 };
 
 use crate::cases::{Case, Data, Set, baseline};
@@ -60,8 +61,8 @@ pub(crate) struct Measured {
     pub(crate) honesty: Option<Honesty>,
     /// Frame, best, baseline and truth side by side, as a PNG file.
     pub(crate) picture: Vec<u8>,
-    /// What each form of the pipeline gives, in the order of the ablation; empty where the case takes no part in it.
-    pub(crate) variants: Vec<Outcome>,
+    /// What each form of the pipeline gives with either quality, in the order of the ablation; empty where the case takes no part in it.
+    pub(crate) variants: Vec<[Outcome; 2]>,
 }
 
 impl Measured {
@@ -122,7 +123,7 @@ fn measure(case: &Case, baselines: &Path, variants: &[Variant]) -> Result<Measur
         outcomes,
         honesty: Honesty::of(&data)?,
         picture: pictures::panels(&data, &shown)?,
-        variants: variants.iter().map(|&variant| of_variant(variant, &data)).collect::<Result<_>>()?,
+        variants: variants.iter().map(|&variant| with_both(variant, &data)).collect::<Result<_>>()?,
     })
 }
 
@@ -151,7 +152,7 @@ fn outcome(
     }
 }
 
-/// The pipeline in one form of the ablation.
+/// The pipeline in one form of the ablation or of the sensitivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Variant {
     /// As it is.
@@ -160,19 +161,29 @@ pub(crate) enum Variant {
     Without(Part),
     /// With the frame before the first, where there is one.
     ThreeFrames,
+    /// With a constant multiplied by a factor.
+    Varied(Tuned, f32),
 }
 
-fn of_variant(variant: Variant, data: &Data) -> Result<Outcome> {
+/// What a form of the pipeline gives with `best`, then with `fast`.
+fn with_both(variant: Variant, data: &Data) -> Result<[Outcome; 2]> {
+    Ok([of_variant(variant, Method::Best, data)?, of_variant(variant, Method::Fast, data)?])
+}
+
+/// What a form of the pipeline gives with the quality of a method.
+pub(crate) fn of_variant(variant: Variant, method: Method, data: &Data) -> Result<Outcome> {
     let (first, second) = (&data.first, &data.second);
-    let options = SegmentOptions::default();
+    let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
+    let options = SegmentOptions { quality, ..SegmentOptions::default() };
     let start = Instant::now();
     let found = match variant {
         Variant::Whole => segment_pair(first, second, None, &options, &mut |_| {})?,
         Variant::ThreeFrames => segment_pair(first, second, data.before.as_ref(), &options, &mut |_| {})?,
         Variant::Without(part) => segment_pair_without(part, first, second, None, &options)?,
+        Variant::Varied(constant, factor) => segment_pair_varied(constant, factor, first, second, &options)?,
     };
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
-    Ok(outcome(Method::Best, data, &found.labels, &grouped(&found), &[], milliseconds))
+    Ok(outcome(method, data, &found.labels, &grouped(&found), &[], milliseconds))
 }
 
 /// `work` on every case, on a few threads; the results in the order of the cases, or the first error.

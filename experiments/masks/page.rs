@@ -22,6 +22,8 @@ pub(crate) struct Page<'a> {
     pub(crate) honesty: &'a Honesty,
     /// Explanations of the results, by case name.
     pub(crate) reasons: Map<String, Value>,
+    /// The text about the sensitivity, which is measured by itself.
+    pub(crate) sensitivity: String,
 }
 
 const HEAD: &str = "\
@@ -58,6 +60,24 @@ one real pair that may be redistributed is [in the README](../README.md); it has
 
 ";
 
+/// Markers around the text about the sensitivity.
+const SENSITIVITY_BEGINS: &str =
+    "<!-- begin sensitivity: written by npm run bench:masks -- --sensitivity --write-docs -->";
+const SENSITIVITY_ENDS: &str = "<!-- end sensitivity -->";
+
+/// The text about the sensitivity in a page, without its markers.
+pub(crate) fn sensitivity_in(page: &str) -> Option<&str> {
+    let (_, rest) = page.split_once(SENSITIVITY_BEGINS)?;
+    Some(rest.split_once(SENSITIVITY_ENDS)?.0.trim())
+}
+
+/// A page with other text about the sensitivity.
+pub(crate) fn with_sensitivity(page: &str, text: &str) -> Option<String> {
+    let (before, rest) = page.split_once(SENSITIVITY_BEGINS)?;
+    let (_, after) = rest.split_once(SENSITIVITY_ENDS)?;
+    Some(format!("{before}{SENSITIVITY_BEGINS}\n{}\n{SENSITIVITY_ENDS}{after}", text.trim()))
+}
+
 /// The head of a table of real pairs.
 const REAL_HEAD: &str =
     "| pairs | cases | method | J | J by hand | F | adjusted Rand | ms |\n|---|---|---|---|---|---|---|---|";
@@ -74,6 +94,7 @@ impl Page<'_> {
         self.pairs(&mut text);
         self.flows(&mut text);
         self.ablation(&mut text);
+        self.sensitivity(&mut text);
         self.honesty(&mut text);
         self.pictures(&mut text, prefix);
         self.real_ends(&mut text);
@@ -202,40 +223,63 @@ impl Page<'_> {
 
     fn ablation(&self, text: &mut String) {
         let Some(whole) = self.worths.first() else { return };
+        let [best, _] = &whole.with;
         let _ = writeln!(
             text,
-            "## Ablation\n\nEach row leaves out one part of the pipeline (best). The scores are those of {} generated scenes, the {} scenes of \
-             cars on bare ground and the real pairs, with the change in brackets.\n\n| without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | J, real | J by hand, real | F, real | ms, scenes |\n\
-             |---|---|---|---|---|---|---|---|---|---|",
-            whole.scenes.cases, whole.bare.cases
+            "## Ablation\n\nEach row leaves out one part of the pipeline; the change is in brackets. First the {} generated scenes and \
+             the {} scenes of cars on bare ground, with *best* unless something else is said.\n\n\
+             | without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | mean IoU, fast | ms, scenes |\n\
+             |---|---|---|---|---|---|---|---|",
+            best.scenes.cases, best.bare.cases
         );
         for worth in self.worths {
+            let ([now, fast], [of_whole, fast_whole]) = (&worth.with, &whole.with);
+            let (s, w) = (&now.scenes, &of_whole.scenes);
             let first = std::ptr::eq(worth, whole);
-            let cell = |value: f64, of_whole: f64| match first {
-                true => three(value),
-                false => format!("{} ({:+.3})", three(value), value - of_whole),
-            };
-            let (s, w) = (&worth.scenes, &whole.scenes);
-            let mut cells = vec![
-                cell(s.miou, w.miou),
+            let cells = [
+                changed(s.miou, w.miou, first),
                 per_cent(s.count_right),
-                cell(s.sub_pixel, w.sub_pixel),
-                cell(s.boundary, w.boundary),
-                cell(worth.bare.miou, whole.bare.miou),
+                changed(s.sub_pixel, w.sub_pixel, first),
+                changed(s.boundary, w.boundary, first),
+                changed(now.bare.miou, of_whole.bare.miou, first),
+                changed(fast.scenes.miou, fast_whole.scenes.miou, first),
             ];
-            match (&worth.pairs, &whole.pairs) {
-                (Some(s), Some(w)) => cells.extend([
-                    cell(s.j_background, w.j_background),
-                    cell(s.j_oracle, w.j_oracle),
-                    cell(s.grouped_boundary, w.grouped_boundary),
-                ]),
-                _ => cells.extend(["–".to_owned(), "–".to_owned(), "–".to_owned()]),
-            }
             let _ = writeln!(text, "| {} | {} | {:.0} |", worth.title, cells.join(" | "), s.milliseconds);
         }
+        text.push('\n');
+        if let Some(pairs) = &best.pairs {
+            let _ = writeln!(
+                text,
+                "The {} real pairs of sequences, with both qualities:\n\n\
+                 | without | J, best | J by hand, best | F, best | J, fast | J by hand, fast | F, fast |\n\
+                 |---|---|---|---|---|---|---|",
+                pairs.cases
+            );
+        }
+        for worth in self.worths {
+            let first = std::ptr::eq(worth, whole);
+            let cells = worth.with.iter().zip(&whole.with).filter_map(|(now, of_whole)| {
+                let (s, w) = (now.pairs.as_ref()?, of_whole.pairs.as_ref()?);
+                let values = [
+                    (s.j_background, w.j_background),
+                    (s.j_oracle, w.j_oracle),
+                    (s.grouped_boundary, w.grouped_boundary),
+                ];
+                Some(values.map(|(value, of_whole)| changed(value, of_whole, first)).join(" | "))
+            });
+            let cells: Vec<String> = cells.collect();
+            if !cells.is_empty() {
+                let _ = writeln!(text, "| {} | {} |", worth.title, cells.join(" | "));
+            }
+        }
         text.push_str(
-            "\nDifferences below about 0.01 on the scenes and 0.02 on the real pairs come from a single object in a single case and are not significant.\n\n",
+            "\nDifferences below about 0.01 come from a single object in a few cases and are not significant.\n\n",
         );
+    }
+
+    fn sensitivity(&self, text: &mut String) {
+        let _ =
+            writeln!(text, "## Sensitivity\n\n{SENSITIVITY_BEGINS}\n{}\n{SENSITIVITY_ENDS}\n", self.sensitivity.trim());
     }
 
     fn honesty(&self, text: &mut String) {
@@ -347,6 +391,11 @@ fn ends<T>(mut list: Vec<T>) -> [Vec<T>; 2] {
     worst.reverse();
     list.truncate(many);
     [list, worst]
+}
+
+/// A figure with its change in brackets; alone in the first row.
+fn changed(value: f64, of_whole: f64, first: bool) -> String {
+    if first { three(value) } else { format!("{} ({:+.3})", three(value), value - of_whole) }
 }
 
 fn three(value: f64) -> String {

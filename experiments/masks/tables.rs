@@ -107,10 +107,13 @@ pub(crate) fn all(measured: &[Measured], ablation: &[Worth], honesty: &Honesty) 
     let worths: Vec<Value> = ablation
         .iter()
         .map(|worth| {
-            json!({
-                "variant": worth.title, "scenes": of_summary(&worth.scenes), "bare": of_summary(&worth.bare),
-                "pairs": worth.pairs.as_ref().map(of_summary),
-            })
+            let [best, fast] = worth.with.each_ref().map(|scored| {
+                json!({
+                    "scenes": of_summary(&scored.scenes), "bare": of_summary(&scored.bare),
+                    "sequences": scored.pairs.as_ref().map(of_summary),
+                })
+            });
+            json!({ "variant": worth.title, "best": best, "fast": fast })
         })
         .collect();
     json!({

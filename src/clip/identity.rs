@@ -13,7 +13,7 @@ use crate::components::{Connectivity, components};
 use crate::frame::Plane;
 use crate::frame::palette::COLOURS;
 use crate::labelling::is_background;
-use crate::labelling::regions::description::SMALLEST_SHARE;
+use crate::labelling::regions::description::smallest_share;
 use crate::labelling::solver::{MAX_LABELS, Solver};
 use crate::order::descending;
 
@@ -105,7 +105,7 @@ impl Identities {
         };
         let mut labels = vec![0u8; mask.len()];
         let found = components(mask, width, Connectivity::Eight);
-        let smallest = (SMALLEST_SHARE * mask.len() as f64) as usize / 2;
+        let smallest = (smallest_share() * mask.len() as f64) as usize / 2;
         let mut unclaimed = Vec::new();
         for k in descending(found.list.iter().map(|c| c.size as f64)).iter().copied() {
             if found.list[k].label == 0 || found.list[k].size < smallest {

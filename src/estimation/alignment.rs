@@ -7,9 +7,11 @@
 use nalgebra::{SMatrix, SVector};
 
 use crate::frame::Plane;
+use crate::frame::filter::gaussian;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::lanes::whole;
 use crate::motion::AffineMotion;
+use crate::tuning::{Tuned, tuned};
 use crate::view::brightness::Photometric;
 use crate::view::cost::{CostModel, lane_sum};
 use crate::view::level::Level;
@@ -35,29 +37,40 @@ pub(crate) struct Alignment {
     pub(crate) photometric: bool,
 }
 
+/// Robustness on the pixels of a region: two standard deviations have a quarter of the full weight. Chosen on generated scenes.
+const REGION_ROBUSTNESS: f32 = 4.0;
+/// Priors of the dominant motion, which most of the frame determines, and of the motion of an object. Chosen on generated scenes.
+const RIDGES: [f64; 2] = [1e-4, 1e-2];
+
 impl Alignment {
-    /// A motion refined on the pixels of its region, with known brightness. A residual of two standard deviations has a quarter of the
-    /// full weight.
+    /// A motion refined on the pixels of its region, with known brightness.
     pub(crate) fn of_region(iterations: usize, ridge: f64) -> Alignment {
-        Alignment { freedom: Freedom::Affine, iterations, robustness: 4.0, ridge, photometric: false }
+        Alignment { freedom: Freedom::Affine, iterations, robustness: REGION_ROBUSTNESS, ridge, photometric: false }
     }
 }
 
-/// Ridge prior for the motion of a label's region. The dominant motion (label 0) has most of the frame to determine its linear terms.
+/// Ridge prior for the motion of a label's region; label 0 is the dominant motion.
 pub(crate) fn ridge_of_label(label: usize) -> f64 {
-    if label == 0 { 1e-4 } else { 1e-2 }
+    RIDGES[usize::from(label > 0)]
 }
 
-/// Standard deviation of the blur that softens the border of a region before its motion is refined, pixels.
-pub(crate) const REGION_BLUR: f32 = 0.7;
+/// Standard deviation of the blur that softens the border of a region before its motion is refined, pixels. Chosen on generated scenes.
+const REGION_BLUR: f32 = 0.7;
 
-/// A step shorter than this, pixels of the level, ends the iteration.
+/// A region with a soft border.
+pub(crate) fn softened(region: &Plane) -> Plane {
+    gaussian(region, tuned(Tuned::RegionBlur, REGION_BLUR))
+}
+
+/// A step shorter than this, pixels of the level, ends the iteration: a fiftieth of the position error of a correct motion.
 const SMALL_STEP: f64 = 0.003;
-/// Below this sum of support weights a motion is left as it is.
+/// Below this sum of support weights a motion is left as it is: two pixels for each of its six entries.
 const SMALLEST_SUPPORT: f64 = 12.0;
 /// Largest linear entry, a zoom by 40 % or a rotation by 23°. Estimates beyond it have diverged, and the cost would reward them for
-/// moving pixels out of the frame.
+/// moving pixels out of the frame. A safeguard.
 const LARGEST_LINEAR: f64 = 0.4;
+/// A pixel of less weight does not count.
+const SMALLEST_WEIGHT: f32 = 1e-3;
 
 /// Unknowns: the six entries of A (in centred coordinates), bias, gain.
 const UNKNOWNS: usize = 8;
@@ -93,7 +106,7 @@ impl<'a> Support<'a> {
         let (mut sum, mut sx, mut sy) = (0.0, 0.0, 0.0);
         for y in 0..weights.height() {
             for (x, &w) in weights.row(y).iter().enumerate() {
-                if w > 1e-3 {
+                if w > SMALLEST_WEIGHT {
                     (left, right) = (left.min(x), right.max(x + 1));
                     (top, bottom) = (top.min(y), y + 1);
                     let w = f64::from(w);
@@ -147,8 +160,9 @@ pub(crate) fn align(
 /// Adds the prior, and replaces the equations of unknowns that are not free by "the step is zero".
 fn constrain(normal: &mut Normal, how: Alignment) {
     let linear = [0, 1, 3, 4];
+    let ridge = tuned(Tuned::Ridge, how.ridge);
     for (i, of) in linear.into_iter().zip([2, 2, 5, 5]) {
-        normal[(i, i)] += how.ridge * normal[(of, of)];
+        normal[(i, i)] += ridge * normal[(of, of)];
     }
     let floor = 1e-9 * normal.trace() + 1e-12;
     for i in 0..UNKNOWNS {
@@ -236,7 +250,8 @@ impl RowBuffers {
     ) {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
-        let position_sigma = CostModel::ESTIMATION.position_sigma * CostModel::ESTIMATION.position_sigma;
+        let robustness = tuned(Tuned::Robustness, how.robustness);
+        let position_sigma = CostModel::estimation().position_sigma * CostModel::estimation().position_sigma;
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
         // The mean of both gradients, per pixel of this level.
         let half = 0.5 * level.stride as f32;
@@ -273,8 +288,8 @@ impl RowBuffers {
             for k in 0..CHUNK {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
                 let information = 1.0 / (noise + position_sigma * energy[k]);
-                let robust = how.robustness / (how.robustness + residual * residual * information);
-                let counts = at.inside(k) & if given[k] > 1e-3 { u32::MAX } else { 0 };
+                let robust = robustness / (robustness + residual * residual * information);
+                let counts = at.inside(k) & if given[k] > SMALLEST_WEIGHT { u32::MAX } else { 0 };
                 let counted = |value: f32| f32::from_bits(value.to_bits() & counts);
                 weights_of[k] = counted(given[k] * information * robust * robust);
                 gx_of[k] = counted(half * (dx[k] + second_dx[k]));

@@ -2,15 +2,27 @@
 
 use super::alignment::{Alignment, Freedom, Support, align};
 use crate::motion::AffineMotion;
+use crate::tuning::{Tuned, tuned};
 use crate::view::brightness::Photometric;
 use crate::view::cost::{CostModel, cost_with, total};
 use crate::view::level::Level;
 
-/// Reach of the search for a start at the coarsest level, pixels of that level.
+/// Reach of the search for a start at the coarsest level, pixels of that level. Its square is the price. Not varied.
 const REACH: i32 = 3;
 /// How much cheaper than the zero motion (in summed costs) another motion must be. Static cameras are common, and a small wrong
-/// motion of the background does more harm later than missing a small true one here.
+/// motion of the background does more harm later than missing a small true one here. Chosen on generated scenes.
 const STATIC_BONUS: f64 = 20.0;
+/// Mean cost per pixel of length that decides ties for the shorter shift.
+const LENGTH_PRICE: f64 = 1e-3;
+/// Prior against linear terms: most of the frame determines them. Chosen on generated scenes.
+pub(crate) const RIDGE: f64 = 1e-3;
+/// Iterations with a translation at the coarsest level, and with an affine motion at every level. Chosen on generated scenes.
+const ITERATIONS: [usize; 2] = [6, 5];
+/// Robustness of the translation, of the affine motions, and of a last fit at the base level: strict only when the motion is nearly
+/// right. Chosen on generated scenes.
+const ROBUSTNESS: [f32; 3] = [9.0, 6.0, 2.0];
+/// At the base level every second pixel of every second row is enough.
+const THINNING: usize = 2;
 
 /// The dominant motion of the working frame and the change of brightness (none unless `brightness` allows it), from the levels
 /// `base` and coarser.
@@ -25,11 +37,11 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -
     if shift != AffineMotion::STATIC {
         candidates.push(shift);
     }
-    let finest = &levels[base].thinned(2);
+    let finest = &levels[base].thinned(THINNING);
     let mut best = static_candidate(finest, start, brightness);
     for candidate in candidates {
         let (motion, photometric) = descend(levels, base, finest, candidate, start, brightness);
-        let sum = total(&cost_with(finest, &motion, photometric, CostModel::ESTIMATION));
+        let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation()));
         if sum < best.0 {
             best = (sum, motion, photometric);
         }
@@ -44,14 +56,14 @@ pub(crate) fn dominant_motion_near(
     expected: &AffineMotion,
     brightness: bool,
 ) -> (AffineMotion, Photometric) {
-    let finest = &levels[base].thinned(2);
+    let finest = &levels[base].thinned(THINNING);
     let start = match brightness {
         true => Photometric::from_moments(&finest.first, &finest.second),
         false => Photometric::default(),
     };
     let mut best = static_candidate(finest, start, brightness);
     let (motion, photometric) = descend(&levels[..=base], base, finest, *expected, start, brightness);
-    let sum = total(&cost_with(finest, &motion, photometric, CostModel::ESTIMATION));
+    let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation()));
     if sum < best.0 {
         best = (sum, motion, photometric);
     }
@@ -65,9 +77,8 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
         for dy in -REACH..=REACH {
             let (dx, dy) = (f64::from(dx), f64::from(dy));
             let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
-            let plane = cost_with(level, &shift, photometric, CostModel::ESTIMATION);
-            // The small term decides ties for the shorter shift.
-            let cost = total(&plane) / plane.values().len() as f64 + 1e-3 * (dx * dx + dy * dy).sqrt();
+            let plane = cost_with(level, &shift, photometric, CostModel::estimation());
+            let cost = total(&plane) / plane.values().len() as f64 + LENGTH_PRICE * (dx * dx + dy * dy).sqrt();
             if cost < best.0 {
                 best = (cost, shift);
             }
@@ -85,9 +96,16 @@ fn descend(
     mut photometric: Photometric,
     brightness: bool,
 ) -> (AffineMotion, Photometric) {
-    let affine =
-        Alignment { freedom: Freedom::Affine, iterations: 5, robustness: 6.0, ridge: 1e-3, photometric: brightness };
-    let translation = Alignment { freedom: Freedom::Translation, iterations: 6, robustness: 9.0, ..affine };
+    let affine = Alignment {
+        freedom: Freedom::Affine,
+        iterations: ITERATIONS[1],
+        robustness: ROBUSTNESS[1],
+        ridge: RIDGE,
+        photometric: brightness,
+    };
+    let translation =
+        Alignment { freedom: Freedom::Translation, iterations: ITERATIONS[0], robustness: ROBUSTNESS[0], ..affine };
+    let strict = Alignment { robustness: ROBUSTNESS[2], ..affine };
     for (index, level) in levels.iter().enumerate().skip(base).rev() {
         let level = if index == base { finest } else { level };
         let support = Support::everything(level);
@@ -96,7 +114,7 @@ fn descend(
         }
         motion = align(level, &motion, &support, &mut photometric, affine);
         if index == base {
-            motion = align(level, &motion, &support, &mut photometric, Alignment { robustness: 2.0, ..affine });
+            motion = align(level, &motion, &support, &mut photometric, strict);
         }
     }
     (motion, photometric)
@@ -107,6 +125,10 @@ fn static_candidate(level: &Level, mut photometric: Photometric, brightness: boo
     if brightness {
         photometric = photometric.refined_at_rest(level);
     }
-    let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::ESTIMATION));
-    (cost - STATIC_BONUS / (level.stride * level.stride) as f64, AffineMotion::STATIC, photometric)
+    let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::estimation()));
+    (
+        cost - tuned(Tuned::StaticBonus, STATIC_BONUS) / (level.stride * level.stride) as f64,
+        AffineMotion::STATIC,
+        photometric,
+    )
 }

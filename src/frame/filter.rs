@@ -4,9 +4,12 @@ use super::Plane;
 use crate::lanes::{LANES, each_with};
 use crate::workspace::Buffer;
 
-/// Weights of a normalised Gaussian, from the centre outwards, cut at 3σ.
+/// Radius of a Gaussian window, standard deviations: 0.3 % of the weight lies beyond.
+const WINDOW_RADIUS: f32 = 3.0;
+
+/// Weights of a normalised Gaussian, from the centre outwards.
 fn gaussian_weights(sigma: f32) -> Vec<f32> {
-    let radius = libm::ceilf(3.0 * sigma).max(1.0) as usize;
+    let radius = libm::ceilf(WINDOW_RADIUS * sigma).max(1.0) as usize;
     let mut weights: Vec<f32> =
         (0..=radius).map(|k| libm::expf(-0.5 * (k as f32 / sigma) * (k as f32 / sigma))).collect();
     let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f32>();
@@ -110,7 +113,8 @@ fn weighted_block<const N: usize>(
     sums
 }
 
-/// Every second pixel after the 5-tap filter [1 4 6 4 1]/16: pixel (x, y) of the result lies at (2x, 2y) of the source.
+/// Every second pixel after the 5-tap filter [1 4 6 4 1]/16 (Burt and Adelson, IEEE Trans. Communications 31(4), 1983): pixel (x, y) of
+/// the result lies at (2x, 2y) of the source.
 pub(crate) fn halve(plane: &Plane) -> Plane {
     let (width, height) = (plane.width().div_ceil(2), plane.height().div_ceil(2));
     let mut filter = RowFilter::new(plane.width(), vec![6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);

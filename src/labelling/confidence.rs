@@ -22,9 +22,9 @@ const COST_WEIGHT: f32 = 3.5;
 const NEIGHBOUR_WEIGHT: f32 = 2.25;
 /// δ: weight of the pixel's own label.
 const OWN_LABEL_WEIGHT: f32 = 1.4;
-/// u: windowed cost above which a motion does not explain a pixel; the largest cost is 2.
+/// u: windowed cost above which a motion does not explain a pixel; the largest cost is 2. The share of it is that of `markUnknown`.
 const UNEXPLAINED_COST: f32 = 1.4;
-/// Standard deviations of the windows of costs and of labels, working pixels.
+/// Standard deviations of the windows of costs and of labels, working pixels. Not part of the fit.
 const WINDOWS: [f32; 2] = [8.0, 3.0];
 
 /// Probability, 0…1, of every motion at every pixel; `costs[k]` is the label cost of motion k.

@@ -23,9 +23,9 @@ const STAGES: &[&str] = &["frames", "labels", "masks"];
 /// Largest number of motions in a [`Correction`]: what the labelling solves at once.
 pub const MAX_CORRECTED: usize = MAX_LABELS;
 
-/// A stroke has no influence below this share of its price.
+/// A stroke has no influence below this share of its price. Not varied, nor are the next two.
 const SMALLEST_INFLUENCE: f32 = 0.02;
-/// Price of changing a label where no stroke has influence.
+/// Price of changing a label where no stroke has influence: that of a motion that does not fit.
 const CHANGE_PRICE: f32 = 2.0;
 /// Full-size labels are computed anew within this many working pixels of a change.
 const MARGIN: usize = 3;

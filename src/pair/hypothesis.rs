@@ -14,11 +14,16 @@ use crate::view::level::Level;
 
 /// The hypothesis of a static background is tried only if adding the zero motion to those found lowers the cost below this share.
 /// In frames with large flat areas, one affine motion fitted across several objects can explain more than the static background does;
-/// much of the background is then left unexplained.
+/// much of the background is then left unexplained. Chosen on generated scenes.
 const STATIC_GAIN_SHARE: f64 = 0.95;
 /// The hypothesis wins only if its motions together cost less than this share of those found with the dominant motion. A background
-/// that moves by less than a pixel costs about the same as a static one plus one more motion.
+/// that moves by less than a pixel costs about the same as a static one plus one more motion. Chosen on generated scenes.
 const CLEARLY_CHEAPER: f64 = 0.9;
+/// Rounds of refinement after the first selection, of the winning hypothesis, and at each finer level. Chosen on generated scenes.
+const ROUNDS: [usize; 3] = [1, 2, 1];
+/// Distance of the pixels looked at on finer levels, and proposals tried there in each round. For speed.
+const FINE_THINNING: usize = 2;
+const FINE_TRIES: usize = 2;
 
 impl Settings {
     /// How motions are added at the selection level (0) and at finer levels (1).
@@ -108,7 +113,7 @@ fn with_dominant(
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(0));
-    settings.refit(level, &mut selected, 1);
+    settings.refit(level, &mut selected, ROUNDS[0]);
     let cost = total(&smallest_cost(&selected)) + settings.hypothesis_price * selected.len() as f64;
     (Found { selected, runner_up }, cost)
 }
@@ -116,19 +121,19 @@ fn with_dominant(
 /// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels.
 pub(super) fn refine(pair: &Pair<'_>, found: Found, settings: &Settings) -> Found {
     let Found { mut selected, mut runner_up } = found;
-    settings.refit(&pair.levels[pair.selection], &mut selected, 2);
+    settings.refit(&pair.levels[pair.selection], &mut selected, ROUNDS[1]);
     if settings.least == 1 {
         prune(&mut selected, settings.price[0]);
     }
     for level in pair.levels[..pair.selection].iter().rev() {
-        let level = &level.thinned(2);
+        let level = &level.thinned(FINE_THINNING);
         selected = selected.iter().map(|l| ScoredMotion::new(level, l.motion)).collect();
         if settings.has(Part::FinerLevels) {
-            let how = Deflation { tries: 2, ..settings.deflation(1) };
+            let how = Deflation { tries: FINE_TRIES, ..settings.deflation(1) };
             let proposals = fine_proposals(level, &selected);
             runner_up = add_motions(level, &mut selected, &proposals, how).or(runner_up);
         }
-        settings.refit(level, &mut selected, 1);
+        settings.refit(level, &mut selected, ROUNDS[2]);
     }
     Found { selected, runner_up }
 }

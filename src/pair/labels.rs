@@ -8,7 +8,7 @@ use super::hypothesis::Found;
 use super::settings::{Part, Settings};
 use crate::components::absorb_small;
 use crate::frame::Plane;
-use crate::labelling::regions::description::{SMALLEST_SHARE, counts, price_of_motion, worth};
+use crate::labelling::regions::description::{counts, price_of_motion, smallest_share, worth};
 use crate::labelling::regions::merging::best_merger;
 use crate::labelling::regions::splitting::{split_bodies, split_components};
 use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
@@ -19,18 +19,23 @@ use crate::labelling::terms::smoothness::Borders;
 use crate::labelling::terms::visibility::{hidden_under, with_visibility};
 use crate::labelling::{BACKGROUND, is_background, objects};
 use crate::motion::AffineMotion;
+use crate::tuning::{Tuned, tuned};
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
 /// After a split, an object competes only this far around its region, as a share of the square root of its pixel count …
 const COMPETITION_SHARE: f64 = 0.25;
-/// … and at least this many pixels of the working size.
+/// … and at least this many pixels of the working size. Chosen on generated scenes.
 const SMALLEST_COMPETITION: usize = 12;
-/// Weight of a pixel of a coarser level, in working pixels. It stands for four, but their noise is not independent.
+/// Weight of a pixel of a coarser level, in working pixels. It stands for four, but their noise is not independent. Confirmed on real
+/// pairs.
 const COARSE_PIXEL: f32 = 2.0;
-/// Smoothness on a coarser level, as a share of that at the working size: borders have half as many pixels.
+/// Smoothness on a coarser level, as a share of that at the working size: borders have half as many pixels. Chosen on generated scenes.
 const COARSE_SMOOTHNESS: f32 = 0.7;
+
+/// Motions that splitting may add beyond the largest number of selected ones. Not varied.
+const PARTS: usize = 3;
 
 /// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
@@ -95,7 +100,7 @@ pub(super) fn borders(pair: &Pair<'_>, index: usize, settings: &Settings) -> Bor
 
 /// Estimation costs of every motion on a level, in units of working pixels.
 pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
-    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
+    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation())).collect();
     if level.index > 0 {
         raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= nats_of_pixel(level));
     }
@@ -104,7 +109,7 @@ pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<P
 
 /// Weight of a pixel of a level, in working pixels.
 fn nats_of_pixel(level: &Level) -> f32 {
-    if level.index > 0 { COARSE_PIXEL } else { 1.0 }
+    if level.index > 0 { tuned(Tuned::CoarsePixel, COARSE_PIXEL) } else { 1.0 }
 }
 
 impl<'a> LabelState<'a> {
@@ -300,7 +305,7 @@ impl<'a> LabelState<'a> {
         }
         let level = self.level;
         self.clean(level.width());
-        let most = self.settings.most + 3;
+        let most = self.settings.most + PARTS;
         let parts = split_components(level, &mut self.motions, &mut self.labels, most);
         let bodies = split_bodies(level, &mut self.motions, &mut self.labels, most);
         if !(parts || bodies) {
@@ -320,7 +325,8 @@ impl<'a> LabelState<'a> {
         self.excluded = vec![Buffer::filled(self.labels.len(), false)];
         for k in objects(self.motions.len()) {
             let smallest = SMALLEST_COMPETITION >> self.level.index;
-            let reach = smallest.max((COMPETITION_SHARE * (sizes[k] as f64).sqrt()) as usize);
+            let reach =
+                smallest.max((tuned(Tuned::CompetitionShare, COMPETITION_SHARE) * (sizes[k] as f64).sqrt()) as usize);
             let near = near_label(&self.labels, k as u8, width, height, reach);
             self.excluded.push(near.iter().map(|near| !near).collect());
         }
@@ -331,13 +337,13 @@ impl<'a> LabelState<'a> {
     fn add_exclusion_costs(&mut self) {
         for (cost, excluded) in self.uncorrected.costs.iter_mut().zip(&self.excluded) {
             let pixels = cost.values_mut().iter_mut().zip(excluded);
-            pixels.filter(|(_, excluded)| **excluded).for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+            pixels.filter(|(_, excluded)| **excluded).for_each(|(c, _)| *c += CostModel::estimation().truncation);
         }
     }
 
     /// Gives small components to the labels around them and removes motions without pixels. Rows of labels are `width` long.
     fn clean(&mut self, width: usize) {
-        let smallest = (SMALLEST_SHARE * self.labels.len() as f64) as usize;
+        let smallest = (smallest_share() * self.labels.len() as f64) as usize;
         absorb_small(&mut self.labels, width, smallest);
         let sizes = counts(&self.labels, self.motions.len());
         let mut next = 0u8;

@@ -1,11 +1,12 @@
-//! Every number of the pipeline that depends on the quality, an option or the size of the frames. The values come from measurements
-//! on generated scenes and on real pairs (docs/masks.md). Numbers that never change are constants beside the code that uses them.
+//! Every number of the pipeline that depends on the quality, an option or the size of the frames. Unless something else is said they were
+//! chosen on generated scenes, those of `fast` for speed. Numbers that never change are constants beside the code that uses them.
 
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, MIN_SIDE};
 use crate::labelling::coherence::Coherence;
 use crate::labelling::solver::Solver;
 use crate::options::{MotionCount, Quality, SegmentOptions};
+use crate::tuning::{Tuned, tuned};
 
 /// A part of the pipeline that can be left out, for ablation studies. Without the feature `ablation` all parts are enabled. Not covered by
 /// semantic versioning.
@@ -78,10 +79,23 @@ pub(crate) struct Settings {
     pub(crate) without: Option<Part>,
 }
 
-/// Longer side of the working size at most, pixels.
+/// Longer side of the working size at most, pixels. Chosen on generated scenes.
 const WORK_SIDE_BEST: usize = 448;
-/// The same with quality `fast`.
+/// The same with quality `fast`. For speed.
 const WORK_SIDE_FAST: usize = 320;
+/// Longer side of the level on which motions are selected and labels drafted at most, pixels, unless frames are halved. Chosen on generated
+/// scenes.
+const SELECTION_SIDE: usize = 320;
+/// Longer side of the base level at most, pixels. Chosen on generated scenes.
+const BASE_SIDE: usize = 224;
+/// λ of frames at their original size, chosen on generated scenes, and of frames that were halved, chosen on real pairs.
+const SMOOTHNESS: [f32; 2] = [8.0, 12.0];
+/// Price of an object's pixel, costs: 1/40 of the largest. Chosen on generated scenes.
+const OBJECT_BIAS: f32 = 0.05;
+/// Gains that pay for a motion in the first selection and, on a quarter of the pixels, at finer levels. Chosen on generated scenes.
+const PRICE: [f64; 2] = [60.0, 30.0];
+/// Price of a motion in the comparison of two hypotheses. Chosen on generated scenes.
+const HYPOTHESIS_PRICE: f64 = 300.0;
 
 /// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.
 fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
@@ -99,10 +113,11 @@ impl Settings {
         let halvings = halvings_to(WORK_SIDE_BEST, size);
         // Halving averages the noise; what remains is model error, which neighbours share. Motions are then best selected at the working
         // size itself, with a higher smoothness. For frames at their original size, a coarser level averages the noise.
-        let (fine_side, smoothness) = if halvings > 0 { (448, 12.0) } else { (320, 8.0) };
+        let (fine_side, smoothness) =
+            if halvings > 0 { (WORK_SIDE_BEST, SMOOTHNESS[1]) } else { (SELECTION_SIDE, SMOOTHNESS[0]) };
         let best = Settings {
             halvings,
-            base_side: 224,
+            base_side: BASE_SIDE,
             selection_side: fine_side,
             draft_side: fine_side,
             smallest_side: 24,
@@ -110,15 +125,15 @@ impl Settings {
             measurements: 2000,
             tiles: 48,
             tries: 6,
-            price: [60.0, 30.0],
-            hypothesis_price: 300.0,
+            price: PRICE.map(|price| tuned(Tuned::SelectionPrice, price)),
+            hypothesis_price: tuned(Tuned::HypothesisPrice, HYPOTHESIS_PRICE),
             most: 7,
             least: 1,
-            gain_window: 2.0,
+            gain_window: tuned(Tuned::GainWindow, 2.0),
             visibility_rounds: 2,
             coherence: Coherence {
-                smoothness,
-                object_bias: 0.05,
+                smoothness: tuned(Tuned::Smoothness, smoothness),
+                object_bias: tuned(Tuned::ObjectBias, OBJECT_BIAS),
                 draft_solver: Solver::FAST,
                 solver: Solver::BEST,
                 sharpening: Solver::BEST,
@@ -131,16 +146,19 @@ impl Settings {
             Quality::Fast => Settings {
                 halvings: halvings_to(WORK_SIDE_FAST, size),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
-                selection_side: 224,
-                draft_side: 224,
+                selection_side: BASE_SIDE,
+                draft_side: BASE_SIDE,
                 degrees: 2,
                 measurements: 1000,
                 tiles: 24,
                 tries: 1,
                 visibility_rounds: 1,
-                gain_window: 1.5,
+                gain_window: tuned(Tuned::GainWindow, 1.5),
                 coherence: Coherence {
-                    smoothness: if halvings_to(WORK_SIDE_FAST, size) > 1 { 12.0 } else { 8.0 },
+                    smoothness: tuned(
+                        Tuned::Smoothness,
+                        SMOOTHNESS[usize::from(halvings_to(WORK_SIDE_FAST, size) > 1)],
+                    ),
                     solver: Solver::FAST,
                     sharpening: Solver::LIGHT,
                     ..best.coherence

@@ -97,7 +97,7 @@ pub(crate) fn solve(
     let labelled = labels::label(&pair, found, settings);
     let level = pair.finest();
     let costs = costs_where_seen(level, &labelled.motions);
-    let most = CostModel::LABELS.truncation;
+    let most = CostModel::labels().truncation;
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
     let probabilities = probabilities(&costs, &labelled.labels);

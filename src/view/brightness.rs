@@ -17,11 +17,11 @@ pub(crate) struct Photometric {
     pub(crate) gain: f64,
 }
 
-/// Smallest and largest factor of the gain.
+/// Smallest and largest factor of the gain. A safeguard: exposure changes less from frame to frame.
 const GAINS: (f64, f64) = (0.7, 1.4);
 /// Reweighted least squares steps with a known motion; three settle to a tenth of a grey level.
 const STEPS: usize = 3;
-/// Squared residual, in noise variances, at which a pixel's weight has fallen to a quarter.
+/// Squared residual, in noise variances, at which a pixel's weight has fallen to a quarter: the same as in the alignment of a region.
 const ROBUSTNESS: f64 = 4.0;
 
 impl Photometric {

@@ -15,7 +15,10 @@ const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
 /// The same on coarser levels, after the 5-tap filter and halving (measured).
 const NOISE_CORRELATION_HALVED: f32 = 0.4;
 
-/// A sample of a level keeps its shorter side at least this long, pixels.
+/// Noise before it is measured, grey levels: only the first search for the dominant motion uses it. Chosen on generated scenes.
+const INITIAL_NOISE: f32 = 4.0;
+
+/// A sample of a level keeps its shorter side at least this long, pixels. A safeguard for narrow frames.
 const SMALLEST_SAMPLE: usize = 8;
 
 /// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame, times the stride where it is thinned.
@@ -52,7 +55,7 @@ impl Level {
             second_dx: second.dx.clone(),
             second_dy: second.dy.clone(),
             energy: first.energy(),
-            noise: 4.0,
+            noise: INITIAL_NOISE,
             stride: 1,
         }
     }

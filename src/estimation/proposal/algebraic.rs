@@ -20,7 +20,7 @@ use crate::view::cost::CostModel;
 use crate::view::level::Level;
 use crate::workspace::{Buffer, kept};
 
-/// Pixels with shorter gradients (grey levels per pixel) are not used.
+/// Pixels with shorter gradients (grey levels per pixel) are not used. Chosen on generated scenes, as are all constants below.
 const SMALLEST_GRADIENT: f32 = 1.0;
 /// A pixel takes part when its weight e/(e + [`HALF_WEIGHT`]) exceeds this; e is its squared residual in variances.
 const SMALLEST_WEIGHT: f32 = 0.45;
@@ -35,6 +35,12 @@ const ROUNDS: usize = 5;
 const PER_UNKNOWN: usize = 2;
 /// Pixels that it takes to make a proposal.
 const SMALLEST_GROUP: usize = 6;
+/// Squared gradient length, (grey levels per pixel)², from which on measurements have about the same length.
+const FLAT: f64 = 4.0;
+/// Distance of an inlier from the polynomial, in medians of all distances.
+const INLIER: f64 = 1.5;
+/// Smallest slope that a measurement is weighted by, in mean slopes. A safeguard against singular points.
+const SMALLEST_SLOPE: f64 = 1e-2;
 
 /// The measurements that the dominant motion does not explain, with their weights.
 struct Unexplained {
@@ -72,7 +78,7 @@ fn unexplained(
     random: &mut Random,
 ) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
-    let position_sigma = CostModel::ESTIMATION.position_sigma * CostModel::ESTIMATION.position_sigma;
+    let position_sigma = CostModel::estimation().position_sigma * CostModel::estimation().position_sigma;
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut places = Buffer::with_capacity(width * height);
@@ -109,7 +115,7 @@ fn unexplained(
         let at = |plane: &Plane| f64::from(plane.at(x, y));
         let (gx, gy) = (at(&local.gx), at(&local.gy));
         let temporal = at(&local.residual) - gx * at(&flow.u) - gy * at(&flow.v);
-        let length = (gx * gx + gy * gy + 4.0).sqrt();
+        let length = (gx * gx + gy * gy + FLAT).sqrt();
         [gx / length, gy / length, temporal / (length * FLOW_UNIT)]
     };
     let points = || chosen.iter().map(|&k| (places[k] % width, places[k] / width));
@@ -135,11 +141,11 @@ fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
         weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
         readings = read_off(&refitting, &refitting.fit(&weights));
         let distances: Buffer<f64> = readings.iter().map(|r| r.distance).collect();
-        close = 1.5 * median_f64(&distances).unwrap_or(0.0) + 1e-9;
+        close = INLIER * median_f64(&distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
             let relative = r.distance / close;
-            *w = given / ((r.slope + 1e-2 * mean).max(1e-300) * (1.0 + relative * relative));
+            *w = given / ((r.slope + SMALLEST_SLOPE * mean).max(1e-300) * (1.0 + relative * relative));
         }
     }
     group(&readings, data.measurements.positions(), close, 2 * degree + 1)

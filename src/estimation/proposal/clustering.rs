@@ -5,6 +5,7 @@ use crate::workspace::Buffer;
 /// A point: flow and position, in comparable units.
 pub(super) type Point = [f64; 4];
 
+/// A safeguard: clusters settle sooner.
 const MAX_ITERATIONS: usize = 30;
 
 fn distance(a: &Point, b: &Point) -> f64 {

@@ -10,14 +10,18 @@ use crate::lanes::{each_with, whole};
 use crate::motion::AffineMotion;
 use crate::view::level::Level;
 
-/// Standard deviation of the window at the base level and at coarser ones, pixels.
+/// Standard deviation of the window at the base level and at coarser ones, pixels. Chosen on generated scenes, as are all constants below.
 const WINDOW: (f32, f32) = (3.0, 2.0);
 /// Iterations per level.
 const ITERATIONS: usize = 3;
 /// Longest step of one iteration, pixels.
 const LONGEST_STEP: f32 = 1.5;
-/// Information added to every window, so that flat ones do not move.
+/// Information added to every window, 1/pixel², so that flat ones do not move.
 pub(crate) const FLAT: f32 = 0.02;
+/// Squared residual, in variances, at which a pixel's weight has fallen to a half: three standard deviations.
+const ROBUSTNESS: f32 = 9.0;
+/// Variance of the position, pixels²: about that of the cost of a motion.
+pub(crate) const POSITION_VARIANCE: f32 = 0.02;
 
 /// Flow relative to the dominant motion, pixels of the base level, with its certainty.
 pub(crate) struct LocalFlow {
@@ -87,7 +91,7 @@ fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
     let mut weight = s.residual.clone();
     each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| {
-        1.0 / (noise + r * r * (1.0 / 9.0) + 0.02 * energy)
+        1.0 / (noise + r * r * (1.0 / ROBUSTNESS) + POSITION_VARIANCE * energy)
     });
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();

@@ -15,6 +15,9 @@ pub(crate) struct Proposal {
     pub(crate) place: [f64; 2],
 }
 
+/// Share of the frame's width and height over which proposals are compared. Not varied: they differ by translations alone.
+const COMPARED: f64 = 0.1;
+
 /// A motion plus a translation.
 pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion {
     let mut a = motion.matrix;
@@ -23,8 +26,7 @@ pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion 
     AffineMotion::new(a)
 }
 
-/// Drops every proposal that agrees with an earlier one to within `tolerance` pixels around its place (a tenth of the frame's width
-/// and height); keeps at most `most`.
+/// Drops every proposal that agrees with an earlier one to within `tolerance` pixels around its place; keeps at most `most`.
 pub(crate) fn distinct(
     proposals: &mut dyn Iterator<Item = Proposal>,
     tolerance: f64,
@@ -36,7 +38,7 @@ pub(crate) fn distinct(
         if kept.len() >= most {
             break;
         }
-        let points = [(x, y), (x + 0.1 * width, y), (x, y + 0.1 * height)];
+        let points = [(x, y), (x + COMPARED * width, y), (x, y + COMPARED * height)];
         let alike = |other: &AffineMotion| {
             points.iter().all(|&(x, y)| {
                 let ([u, v], [p, q]) = (motion.flow(x, y), other.flow(x, y));

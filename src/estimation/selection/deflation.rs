@@ -9,6 +9,7 @@ use crate::frame::filter::gaussian;
 use crate::lanes::{LANES, each_with};
 use crate::motion::AffineMotion;
 use crate::order::descending;
+use crate::tuning::{Tuned, tuned};
 use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
@@ -27,18 +28,21 @@ pub(crate) struct Deflation {
     pub(crate) window: f32,
 }
 
-/// Gain per pixel that does not count: windows across borders and chance produce as much.
+/// Gain per pixel that does not count: windows across borders and chance produce as much. Chosen on generated scenes.
 const MARGIN: f32 = 0.35;
-/// Proposals are tried on every second pixel of every second row …
+/// Proposals are tried on every second pixel of every second row: faster, and the best one is measured on all …
 const THINNING: usize = 2;
 /// … and ranked beforehand by block means; side of a block, pixels.
 const BLOCK: usize = 4;
-/// Regions with at most this many pixels are ignored.
+/// Regions with at most this many pixels are ignored: as many as a motion has entries.
 const SMALLEST_REGION: usize = 6;
-/// Ridge prior on the linear terms: small regions determine them badly.
+/// Ridge prior on the linear terms: small regions determine them badly. Chosen on generated scenes.
 const RIDGE: f64 = 2e-2;
-/// Proposals whose estimated gain is below this share of the price are not tried.
+/// Proposals whose estimated gain is below this share of the price are not tried. For speed.
 const SMALLEST_TRIED_GAIN: f64 = 0.25;
+/// Rounds in which a proposal is refined and its region found anew, and iterations in each. Chosen on generated scenes.
+const ROUNDS: usize = 2;
+const ITERATIONS: usize = 3;
 
 /// By how much a cost is below the current one at every pixel, averaged over windows.
 fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
@@ -48,7 +52,8 @@ fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
 }
 
 fn gain_of(improvement: &Plane) -> f64 {
-    let gain = |d: f32| (d - MARGIN).max(0.0);
+    let margin = tuned(Tuned::GainMargin, MARGIN);
+    let gain = |d: f32| (d - margin).max(0.0);
     let (blocks, rest) = improvement.values().as_chunks::<LANES>();
     let mut sum = 0.0;
     for block in blocks {
@@ -125,15 +130,15 @@ pub(crate) fn add_motions(
     }
 }
 
-/// Refines a proposal twice on the region where it beats the current motions. Returns its gain and the motion.
+/// Refines a proposal in a few rounds on the region where it beats the current motions. Returns its gain and the motion.
 fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, ScoredMotion) {
     let mut scored = ScoredMotion::new(level, proposal);
     let mut improved = improvement(current, &scored.cost, window);
     let mut gain = gain_of(&improved);
-    for round in 0..2 {
+    for round in 0..ROUNDS {
         let Some(region) = heaviest_region(&improved, current, &scored.cost) else { break };
         let support = Support::weighted(&region);
-        let affine = Alignment::of_region(3, RIDGE);
+        let affine = Alignment::of_region(ITERATIONS, RIDGE);
         let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {
@@ -153,7 +158,8 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) 
 /// The connected region in which a cost improves most on the current one, as weights 0 and 1.
 fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Plane> {
     let (width, height) = (improved.width(), improved.height());
-    let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > MARGIN)).collect();
+    let margin = tuned(Tuned::GainMargin, MARGIN);
+    let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > margin)).collect();
     let found = components(&mask, width, Connectivity::Eight);
     let mut weights = Buffer::filled(found.list.len(), 0.0f64);
     for ((&region, a), c) in found.of.iter().zip(current.values()).zip(cost.values()) {

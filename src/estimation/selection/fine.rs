@@ -2,7 +2,7 @@
 //! It finds displacements too small for the level of the first selection. Pixels are those of a thinned level.
 
 use super::ScoredMotion;
-use crate::estimation::proposal::local_flow::FLAT;
+use crate::estimation::proposal::local_flow::{FLAT, POSITION_VARIANCE};
 use crate::estimation::proposal::{Proposal, distinct, translated};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
@@ -12,7 +12,7 @@ use crate::order::descending;
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// Standard deviation of the window, pixels.
+/// Standard deviation of the window, pixels. Chosen on generated scenes, as are all constants below.
 const WINDOW: f32 = 1.33;
 /// Distance of the windows, pixels.
 const STRIDE: usize = 5;
@@ -88,7 +88,7 @@ fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [
             let gx = half * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
             let gy = half * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
             let r = at.sample(level.second.values()) - level.first.at(x, y);
-            let weight = 1.0 / (noise + 0.02 * level.energy.at(x, y));
+            let weight = 1.0 / (noise + POSITION_VARIANCE * level.energy.at(x, y));
             for (plane, product) in sums.iter_mut().zip([gx * gx, gx * gy, gy * gy, gx * r, gy * r]) {
                 plane.row_mut(y)[x] = weight * product;
             }

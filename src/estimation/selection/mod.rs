@@ -13,10 +13,11 @@ use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::lanes::lower;
 use crate::motion::AffineMotion;
+use crate::tuning::{Tuned, tuned};
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
 
-/// Standard deviation of the window over which costs are averaged during selection, pixels of the second frame.
+/// Standard deviation of the window over which costs are averaged during selection, pixels of the second frame. Chosen on generated scenes.
 const WINDOW: f32 = 2.0;
 
 /// A motion and its cost at every pixel of a level, averaged over windows.
@@ -32,7 +33,10 @@ impl ScoredMotion {
     pub(crate) fn new(level: &Level, motion: AffineMotion) -> ScoredMotion {
         ScoredMotion {
             motion,
-            cost: gaussian(&cost(level, &motion, CostModel::ESTIMATION), WINDOW / level.stride as f32),
+            cost: gaussian(
+                &cost(level, &motion, CostModel::estimation()),
+                tuned(Tuned::SelectionWindow, WINDOW) / level.stride as f32,
+            ),
         }
     }
 

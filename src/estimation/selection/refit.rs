@@ -1,18 +1,20 @@
 //! Every motion refined on the pixels where it wins.
 
 use super::ScoredMotion;
-use crate::estimation::alignment::{Alignment, REGION_BLUR, Support, align, ridge_of_label};
+use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
 use crate::frame::Plane;
-use crate::frame::filter::{eroded, gaussian};
+use crate::frame::filter::eroded;
 use crate::lanes::each_with;
 use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
 
-/// Regions with more pixels than this are eroded before their motion is refined.
+/// Regions with more pixels than this are eroded before their motion is refined: smaller ones would lose too many. Not varied.
 const LARGE: usize = 200;
-/// Motions of regions with fewer pixels than this are not refined.
+/// Motions of regions with fewer pixels than this are not refined. Not varied.
 const SMALLEST_REGION: usize = 20;
+/// Iterations of a refinement. Chosen on generated scenes.
+const ITERATIONS: usize = 2;
 
 /// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
 pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
@@ -20,7 +22,7 @@ pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize)
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
         for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
-            let how = Alignment::of_region(2, ridge_of_label(k));
+            let how = Alignment::of_region(ITERATIONS, ridge_of_label(k));
             let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
             let refined = ScoredMotion::new(level, motion);
             if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
@@ -53,5 +55,5 @@ fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
     if pixels > LARGE {
         region = eroded(&region);
     }
-    Some(gaussian(&region, REGION_BLUR))
+    Some(softened(&region))
 }

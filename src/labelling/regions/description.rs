@@ -3,15 +3,30 @@
 
 use crate::frame::Plane;
 use crate::labelling::{BACKGROUND, neighbours};
+use crate::tuning::{Tuned, tuned};
 
-/// Nats per pixel of border.
-pub(super) const PER_BORDER_PIXEL: f64 = 0.5;
-/// Regions smaller than this share of the frame are not objects.
-pub(crate) const SMALLEST_SHARE: f64 = 0.004;
+/// Nats for the six parameters of a motion, per ln N: 6/2 (Schwarz, Annals of Statistics 6(2), 1978).
+const PER_LOG_PIXELS: f64 = 3.0;
+/// Nats per pixel of border. Chosen on generated scenes, confirmed on real pairs.
+const PER_BORDER_PIXEL: f64 = 0.5;
+/// Regions smaller than this share of the frame are not objects. Chosen on generated scenes.
+const SMALLEST_SHARE: f64 = 0.004;
+/// Worth of a region that is too small to be an object, nats: less than that of any other.
+const TOO_SMALL: f64 = -1e9;
 
 /// Nats for the six parameters of a motion in a frame of N = `pixels`: (6/2) ln N.
 pub(crate) fn price_of_motion(pixels: usize) -> f64 {
-    3.0 * libm::log(pixels as f64)
+    tuned(Tuned::MotionPrice, PER_LOG_PIXELS) * libm::log(pixels as f64)
+}
+
+/// Nats for a border of some pixels.
+pub(super) fn price_of_border(pixels: usize) -> f64 {
+    tuned(Tuned::BorderPrice, PER_BORDER_PIXEL) * pixels as f64
+}
+
+/// Share of the frame below which a region is not an object.
+pub(crate) fn smallest_share() -> f64 {
+    tuned(Tuned::SmallestShare, SMALLEST_SHARE)
 }
 
 /// Description length in nats of both frames by n motions and labels: residuals, six parameters per motion, borders.
@@ -21,7 +36,7 @@ pub(crate) fn length(raw: &[Plane], labels: &[u8], width: usize) -> f64 {
     let left_over: f64 = labels.iter().enumerate().map(|(p, &l)| f64::from(raw[usize::from(l)].values()[p])).sum();
     // Every pair of neighbours is counted by both of its labels.
     let borders = border_lengths(labels, raw.len(), width).iter().sum::<usize>() / 2;
-    0.5 * left_over + raw.len() as f64 * price_of_motion(labels.len()) + PER_BORDER_PIXEL * borders as f64
+    0.5 * left_over + raw.len() as f64 * price_of_motion(labels.len()) + price_of_border(borders)
 }
 
 /// Nats that each object saves beyond its price; infinite for the dominant motion, element 0.
@@ -37,11 +52,11 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
             if k == BACKGROUND {
                 return f64::INFINITY;
             }
-            if (counts[k] as f64) < SMALLEST_SHARE * pixels as f64 {
-                return -1e9 + counts[k] as f64;
+            if (counts[k] as f64) < smallest_share() * pixels as f64 {
+                return TOO_SMALL + counts[k] as f64;
             }
             let other = (0..raw.len()).filter(|&m| m != k).map(|m| sums[k][m]).fold(f64::INFINITY, f64::min);
-            0.5 * (other - sums[k][k]) - price_of_motion(pixels) - PER_BORDER_PIXEL * borders[k] as f64
+            0.5 * (other - sums[k][k]) - price_of_motion(pixels) - price_of_border(borders[k])
         })
         .collect()
 }
@@ -59,6 +74,7 @@ pub(crate) fn sums(raw: &[Plane], labels: &[u8]) -> Vec<Vec<f64>> {
 
 /// Number of pixels of each label.
 pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
+    /// Labels counted together; for speed.
     const PART: usize = 32;
     let mut counts = vec![0; of];
     for part in labels.chunks(PART) {

@@ -8,14 +8,16 @@
 use crate::labelling::neighbours;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
+use crate::tuning::{Tuned, tuned};
 
-/// Common borders with fewer pixel pairs than this are ignored.
+/// Common borders with fewer pixel pairs than this are ignored. Not varied.
 const SHORTEST_BORDER: usize = 12;
-/// Flows that differ by less than this (median along the border, pixels) are continuous …
+/// Flows that differ by less than this (median along the border, full-size pixels) are continuous. The layers of a rigid background
+/// differ by 0.3 to 1.1 pixels, moving objects by 2 and more (fourteen real pairs) …
 const TOLERANCE: f64 = 0.3;
 /// … or by less than this share of the largest jump of all joins …
 const RELATIVE_TOLERANCE: f64 = 0.3;
-/// … as long as that is less than this share of the frame's longer side: layers of one background differ little.
+/// … as long as that is less than this share of the frame's longer side: layers of one background differ little. Chosen on real pairs.
 const LARGEST_TOLERANCE: f64 = 0.007;
 
 /// The group of every motion, named by its smallest label. `motions` are in pixels of the labels, each of which is `reduction` pixels
@@ -24,7 +26,9 @@ pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, redu
     let joined = joined(motions.len(), borders(motions, labels, width));
     let largest = joined.iter().fold(0.0f64, |m, j| m.max(j.jump));
     let side = width.max(labels.len() / width) as f64;
-    let tolerance = (RELATIVE_TOLERANCE * largest).min(LARGEST_TOLERANCE * side).max(TOLERANCE / reduction);
+    let tolerance = (tuned(Tuned::GroupTolerance, RELATIVE_TOLERANCE) * largest)
+        .min(tuned(Tuned::LargestGroupTolerance, LARGEST_TOLERANCE) * side)
+        .max(TOLERANCE / reduction);
     let mut group: Vec<usize> = (0..motions.len()).collect();
     for Join { keep, drop, .. } in joined.into_iter().take_while(|j| j.jump < tolerance) {
         group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);

@@ -15,7 +15,7 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
 
-/// Iterations of the refinement on the joint region.
+/// Iterations of the refinement on the joint region, as on a part of a split one.
 const ITERATIONS: usize = 4;
 
 /// Two labels that are one body, the smaller first, and its motion.
@@ -51,7 +51,7 @@ pub(crate) fn best_merger(
         region.iter().for_each(|&p| mask.values_mut()[p] = 1.0);
         let motion = aligned_on(level, &motions[better], &mask, ITERATIONS, ridge_of_label(a));
         let area = Area::of(&region, width);
-        let cost = cost_within(level, &area, &motion, CostModel::ESTIMATION);
+        let cost = cost_within(level, &area, &motion, CostModel::estimation());
         let together: f64 = region.iter().map(|&p| f64::from(pixel * cost.values()[area.index_of(p, width)])).sum();
         let gain = sums[a][a] + sums[b][b] - together;
         if gain > best.as_ref().map_or(0.0, |(most, _)| *most) {
@@ -104,7 +104,7 @@ mod tests {
     }
 
     fn merger(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Option<Merger> {
-        let raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::ESTIMATION)).collect();
+        let raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation())).collect();
         best_merger(level, motions, &raw, labels, 1.0)
     }
 

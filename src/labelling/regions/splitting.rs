@@ -1,8 +1,8 @@
 //! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in parts.
 
-use super::description::{PER_BORDER_PIXEL, SMALLEST_SHARE, price_of_motion};
+use super::description::{price_of_border, price_of_motion, smallest_share};
 use crate::components::{Connectivity, components};
-use crate::estimation::alignment::{Alignment, REGION_BLUR, Support, align};
+use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::{eroded, gaussian};
@@ -14,19 +14,24 @@ use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// Smallest number of pixels of a part.
+/// Smallest number of pixels of a part: five for each entry of its motion. Only levels below 7500 pixels get there.
 const SMALLEST_PART: usize = 30;
-/// Standard deviation of the window over which the two halves compete, pixels …
+/// Standard deviation of the window over which the two halves compete, pixels. Chosen on generated scenes …
 const WINDOW: f32 = 2.5;
-/// … and its radius.
+/// … and its radius, that of a Gaussian of this deviation.
 const REACH: usize = 8;
-/// Rounds of the two-body split.
+/// Rounds of the two-body split. Chosen on generated scenes.
 const ROUNDS: usize = 3;
-/// Smallest share of the region that counts as a half.
+/// Smallest share of the region that counts as a half. Not varied.
 const SMALLEST_HALF: f64 = 0.1;
+/// Iterations in which a motion is refined on a part …
+const ITERATIONS: usize = 4;
+/// … and on a half in each round, with a stronger prior: halves are small. Chosen on generated scenes.
+const ITERATIONS_ON_HALF: usize = 3;
+const RIDGE_OF_HALF: f64 = 3e-2;
 
 fn smallest_part(pixels: usize) -> usize {
-    SMALLEST_PART.max((SMALLEST_SHARE * pixels as f64) as usize)
+    SMALLEST_PART.max((smallest_share() * pixels as f64) as usize)
 }
 
 /// A motion refined on the pixels of a mask.
@@ -59,12 +64,12 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
         let mut fits = Vec::new();
         for &part in &parts {
             let mask: Buffer<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
-            let inner = gaussian(&eroded(&Plane::from_buffer(width, height, mask)), REGION_BLUR);
-            let motion = aligned_on(level, &motions[label], &inner, 4, 1e-2);
+            let inner = softened(&eroded(&Plane::from_buffer(width, height, mask)));
+            let motion = aligned_on(level, &motions[label], &inner, ITERATIONS, ridge_of_label(label));
             let [x0, y0, x1, y1] = found.list[part].bounds;
             let area = Area { columns: x0..x1 + 1, rows: y0..y1 + 1 };
             let [together, alone] =
-                [motions[label], motion].map(|m| cost_within(level, &area, &m, CostModel::ESTIMATION));
+                [motions[label], motion].map(|m| cost_within(level, &area, &m, CostModel::estimation()));
             let mut gain = 0.0;
             for y in area.rows.clone() {
                 for x in area.columns.clone().filter(|&x| found.of[y * width + x] as usize == part) {
@@ -132,8 +137,8 @@ fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<
             for (&p, &s) in region.iter().zip(&second) {
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
-            *motion = aligned_on(level, motion, &mask, 3, 3e-2);
-            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::ESTIMATION), WINDOW));
+            *motion = aligned_on(level, motion, &mask, ITERATIONS_ON_HALF, RIDGE_OF_HALF);
+            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation()), WINDOW));
         }
         for (&p, s) in region.iter().zip(&mut second) {
             let place = around.index_of(p, width);
@@ -144,14 +149,13 @@ fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<
             return None;
         }
     }
-    let [one, two @ ..] = [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::ESTIMATION));
+    let [one, two @ ..] = [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::estimation()));
     let mut gain = 0.0;
     for (&p, &s) in region.iter().zip(&second) {
         let place = around.index_of(p, width);
         gain += 0.5 * f64::from(one.values()[place] - two[usize::from(s)].values()[place]);
     }
-    let price =
-        price_of_motion(width * height) + PER_BORDER_PIXEL * inner_border(region, &second, width, height) as f64;
+    let price = price_of_motion(width * height) + price_of_border(inner_border(region, &second, width, height));
     (gain > price).then_some((pair, second))
 }
 

@@ -22,11 +22,11 @@ use crate::view::cost::{Comparison, CostModel, View};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// Size of a tile, working pixels.
+/// Size of a tile, working pixels: as wide as a chunk of a row, low enough to follow a border. For speed.
 const TILE: [usize; 2] = [32, 8];
-/// How far around a tile labels compete in it, coarse pixels.
+/// How far around a tile labels compete in it, coarse pixels. Not varied.
 const MARGIN: usize = 4;
-/// Cost of a label that does not compete.
+/// Cost of a label that does not compete: more than four neighbours could save.
 const FAR: f32 = 1e3;
 
 /// Labels of a coarser level, with the neighbourhood properties they were solved with.
@@ -185,7 +185,7 @@ struct Comparisons<'a> {
 impl<'a> Comparisons<'a> {
     fn new(fine: &WorkingLevel<'a>) -> Comparisons<'a> {
         let all = |view| {
-            let one = |motion| Comparison::new(fine.level, view, motion, CostModel::LABELS);
+            let one = |motion| Comparison::new(fine.level, view, motion, CostModel::labels());
             fine.motions.iter().map(one).collect()
         };
         Comparisons { second: all(View::Second), before: all(View::Before) }
@@ -244,7 +244,7 @@ impl<'a> Comparisons<'a> {
                 }
                 if let Some(excluded) = coarse.excluded.get(label) {
                     let excluded = row.iter_mut().zip(places).filter(|(_, p)| excluded[**p]);
-                    excluded.for_each(|(c, _)| *c += CostModel::ESTIMATION.truncation);
+                    excluded.for_each(|(c, _)| *c += CostModel::estimation().truncation);
                 }
                 if let Some(hidden) = coarse.hidden.get(label) {
                     let most = most_where_hidden(label, fine.coherence.object_bias);

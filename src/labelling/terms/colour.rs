@@ -7,17 +7,18 @@
 
 use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
+use crate::tuning::{Tuned, tuned};
 use crate::workspace::Buffer;
 
-/// Prior probability of every colour under every label.
+/// Prior probability of every colour under every label: half of an even share of the colours. Not varied.
 const PRIOR: f32 = 1e-3;
-/// Cost per nat of improbability if colours can be trusted entirely.
+/// Cost per nat of improbability if colours can be trusted entirely. Confirmed on real pairs.
 const PRICE_PER_NAT: f32 = 1.0;
-/// Largest cost of a colour.
+/// Largest cost of a colour: that of a pixel that a motion does not explain.
 const LARGEST_PRICE: f32 = 2.0;
-/// Summed margins, in costs, below which the colours of a label are unknown.
+/// Summed margins, in costs, below which the colours of a label are unknown: ten pixels of the largest margin. Not varied.
 const SMALLEST_SUPPORT: f32 = 20.0;
-/// Side of the blocks that form the two halves, working pixels.
+/// Side of the blocks that form the two halves, working pixels. Not varied.
 const BLOCK: usize = 12;
 
 /// Cost of each colour under each label.
@@ -35,7 +36,9 @@ impl ColourPrices {
         let weights = margins(costs, labels);
         let trust = trust(palette, labels, &weights, n);
         let mut table = posterior(palette, labels, &weights, n, |_| true);
-        table.iter_mut().for_each(|p| *p = (-PRICE_PER_NAT * trust * trust * libm::logf(*p)).min(LARGEST_PRICE));
+        let price = tuned(Tuned::ColourPrice, PRICE_PER_NAT);
+        let largest = tuned(Tuned::LargestColourPrice, LARGEST_PRICE);
+        table.iter_mut().for_each(|p| *p = (-price * trust * trust * libm::logf(*p)).min(largest));
         ColourPrices { table, labels: n }
     }
 

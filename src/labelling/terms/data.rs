@@ -7,12 +7,13 @@ use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_var
 use crate::labelling::terms::views::{cheapest, costs_in_views};
 use crate::lanes::{each_with, lower};
 use crate::motion::AffineMotion;
+use crate::tuning::{Tuned, tuned};
 use crate::view::cost::CostModel;
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
 /// Share of λ that an object pays for every pixel on the frame's border. Without it the part of an object's outline along the frame's
-/// border would be free, and labels would leak into flat regions there.
+/// border would be free, and labels would leak into flat regions there. Confirmed on real pairs.
 const FRAME_BORDER: f32 = 0.375;
 
 /// Label cost of every motion at every pixel; the first is the dominant motion.
@@ -60,7 +61,7 @@ impl LabelCosts {
 /// smallest cost of any motion that keeps the pixel inside, infinite if there is none.
 #[inline(never)]
 pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
-    let neutral = CostModel::LABELS.outside();
+    let neutral = CostModel::labels().outside();
     let (least, most, object_bias) = match label {
         BACKGROUND => (f32::NEG_INFINITY, neutral, 0.0),
         _ => (neutral, f32::INFINITY, coherence.object_bias),
@@ -74,7 +75,7 @@ pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], cohe
 
 /// Price of an object's pixel on the frame's border, for each of the borders it lies on.
 pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
-    FRAME_BORDER * coherence.smoothness
+    tuned(Tuned::FrameBorder, FRAME_BORDER) * coherence.smoothness
 }
 
 fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
@@ -118,7 +119,7 @@ mod tests {
         }
         let nowhere = AffineMotion::translation(100.0, 0.0);
         let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
-        assert_eq!(unseen[0].at(30, 30), CostModel::LABELS.outside());
+        assert_eq!(unseen[0].at(30, 30), CostModel::labels().outside());
         assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.object_bias).abs() < 1e-6);
     }
 }

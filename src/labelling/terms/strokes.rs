@@ -4,6 +4,9 @@
 //! `STROKE_PRICE · exp(−d/STROKE_REACH)` more. The geodesic distance d grows slowly where the frames agree with the stroke, at image
 //! edges where they cannot tell, and fast where they contradict it. One stroke therefore takes a whole region with it and stops at its
 //! border.
+//!
+//! Prices are in costs, of which [`CostModel`](crate::view::cost::CostModel) has at most 2 for a pixel, and distances in steps between
+//! neighbours. No study has varied these constants: there is no true answer to how far a stroke should reach.
 
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;

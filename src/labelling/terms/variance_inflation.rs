@@ -8,13 +8,14 @@
 use crate::frame::Plane;
 use crate::frame::filter::RowFilter;
 use crate::lanes::{each, each_with};
+use crate::tuning::{Tuned, tuned};
 use crate::view::cost::CostModel;
 
 /// Standard deviation of the window in which the fit is judged, pixels.
 const WINDOW: f32 = 4.0;
-/// Largest windowed cost that noise alone explains.
+/// Largest windowed cost that noise alone explains. Chosen on real pairs.
 const EXPECTED: f32 = 0.5;
-/// Largest factor of the standard deviation.
+/// Largest factor of the standard deviation. Confirmed on real pairs.
 const LARGEST: f32 = 3.0;
 
 /// Factor of each pixel's variance, computed row by row from the smallest label cost.
@@ -28,16 +29,18 @@ pub(crate) struct VarianceInflation {
 impl VarianceInflation {
     /// `smallest` is infinite where all motions move a pixel out of every view.
     pub(crate) fn new(mut smallest: Plane) -> VarianceInflation {
-        each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::LABELS.outside() });
-        let window = RowFilter::gaussian(smallest.width(), WINDOW);
+        each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::labels().outside() });
+        let window = RowFilter::gaussian(smallest.width(), tuned(Tuned::InflationWindow, WINDOW));
         VarianceInflation { smallest, window }
     }
 
     /// Writes the factors of row y.
     pub(crate) fn write(&mut self, y: usize, row: &mut [f32]) {
         self.window.row(&self.smallest, y, row);
+        let expected = tuned(Tuned::ExpectedMisfit, EXPECTED);
+        let largest = tuned(Tuned::LargestInflation, LARGEST);
         each(row, |m| {
-            let ratio = (m / EXPECTED).clamp(1.0, LARGEST);
+            let ratio = (m / expected).clamp(1.0, largest);
             ratio * ratio
         });
     }
@@ -46,8 +49,9 @@ impl VarianceInflation {
 /// Costs with inflated variance: e / (1 + e/T) with e / inflation in place of e. Infinite costs stay infinite.
 #[inline(never)]
 pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32]) {
+    let truncation = CostModel::labels().truncation;
     each_with(costs, [inflation], |cost, [inflation]| {
-        let share = cost / CostModel::LABELS.truncation;
+        let share = cost / truncation;
         let allowed = cost / (inflation * (1.0 - share) + share);
         if cost.is_finite() { allowed } else { cost }
     });
@@ -82,7 +86,7 @@ mod tests {
 
     #[test]
     fn what_is_saturated_or_unseen_stays_so() {
-        let mut costs = [Plane::filled(20, 20, CostModel::LABELS.truncation), Plane::filled(20, 20, f32::INFINITY)];
+        let mut costs = [Plane::filled(20, 20, CostModel::labels().truncation), Plane::filled(20, 20, f32::INFINITY)];
         let before = costs.clone();
         allow(&mut costs);
         assert_eq!(costs, before);

@@ -10,16 +10,16 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, View, cost_in};
 use crate::view::level::Level;
 
-/// Standard deviation of the window over which the views are compared, pixels.
+/// Standard deviation of the window over which the views are compared, pixels. Not varied.
 const WINDOW: f32 = 1.5;
-/// Twice the difference of the smallest costs from which on only the better view counts.
+/// Twice the difference of the smallest costs from which on only the better view counts. Not varied.
 const TRANSITION: f32 = 0.3;
 
 /// Cost of every motion at every pixel, infinite where it moves the pixel out of every view; and the weight of the later view, if
 /// there are two.
 pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Plane>, Option<Plane>) {
     let all = |view| {
-        motions.iter().map(|m| cost_in(level, view, &level.area(), m, CostModel::LABELS)).collect::<Vec<Plane>>()
+        motions.iter().map(|m| cost_in(level, view, &level.area(), m, CostModel::labels())).collect::<Vec<Plane>>()
     };
     let mut costs = all(View::Second);
     if level.before.is_none() {
@@ -40,7 +40,7 @@ pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Pl
 /// [`costs_in_views`] with the neutral cost where a motion moves a pixel out of every view.
 pub(crate) fn costs_where_seen(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let (mut costs, _) = costs_in_views(level, motions);
-    let neutral = CostModel::LABELS.outside();
+    let neutral = CostModel::labels().outside();
     costs.iter_mut().for_each(|cost| each(cost.values_mut(), |c| if c.is_finite() { c } else { neutral }));
     costs
 }
@@ -57,7 +57,7 @@ pub(crate) fn blend_views(later: f32, earlier: f32, share: f32) -> f32 {
 
 /// The smallest cost of any motion, averaged over windows.
 fn unexplained(costs: &[Plane]) -> Plane {
-    gaussian(&cheapest(costs, CostModel::LABELS.truncation), WINDOW)
+    gaussian(&cheapest(costs, CostModel::labels().truncation), WINDOW)
 }
 
 /// The smallest of the costs at every pixel, at most `most`.
