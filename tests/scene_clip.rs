@@ -30,7 +30,8 @@ fn areas(clip: &ClipScene, object: u8) -> Vec<usize> {
 /// Whether an object touches the border of the frame.
 fn at_border(clip: &ClipScene, object: u8, t: usize) -> bool {
     let labels = clip.labels(t).unwrap();
-    let border = |p: usize| p < WIDTH || p + WIDTH >= labels.len() || p % WIDTH == 0 || (p + 1) % WIDTH == 0;
+    let border =
+        |p: usize| p < WIDTH || p + WIDTH >= labels.len() || p.is_multiple_of(WIDTH) || (p + 1).is_multiple_of(WIDTH);
     (0..labels.len()).any(|p| labels[p] == object && border(p))
 }
 
@@ -357,7 +358,7 @@ fn the_same_seed_gives_the_same_bytes_on_every_machine() {
     let clip =
         generate_clip(&ClipOptions { width: 96, height: 64, frames: 40, events, seed: 99, ..ClipOptions::default() })
             .unwrap();
-    let motions = frames(&clip).flat_map(|t| (0..=clip.objects() as u8).filter_map(move |object| Some((object, t))));
+    let motions = frames(&clip).flat_map(|t| (0..=clip.objects() as u8).map(move |object| (object, t)));
     let motions: Vec<u8> = motions
         .filter_map(|(object, t)| clip.motion(object, t))
         .flat_map(|motion| motion.matrix)

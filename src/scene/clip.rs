@@ -180,7 +180,18 @@ pub struct ClipScene {
     timeline: Vec<Shown>,
 }
 
-/// Generates a clip.
+/// Generates a clip. Frames, labels, motions and flow are computed when asked for.
+///
+/// ```
+/// use veronese::scene::{self, ClipOptions, Event};
+///
+/// let events = vec![Event::HiddenByBackground, Event::Pan];
+/// let clip = scene::generate_clip(&ClipOptions { width: 160, height: 120, events, ..ClipOptions::default() })?;
+/// let hidden = &clip.occurrences[0];
+/// assert!(!clip.labels(hidden.frames.start)?.contains(&hidden.objects[0]));
+/// assert!(clip.labels(hidden.frames.end)?.contains(&hidden.objects[0]));
+/// # Ok::<(), veronese::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::FrameSizeUnsupported`], [`Error::InvalidOption`].
@@ -197,13 +208,10 @@ pub fn generate_clip(options: &ClipOptions) -> Result<ClipScene> {
         found.extend(script.occurrences.iter().map(|o| on_timeline(o, index, &timeline)));
         shots.push(Shot::dress(&mut random, options, script));
     }
-    let mut occurrences = Vec::new();
-    for (k, &event) in options.events.iter().enumerate() {
-        let again = options.events[..k].contains(&event);
-        occurrences.extend(found.iter().filter(|o| o.event == event && !again).cloned());
-        occurrences.extend(of_camera(event, &timeline).into_iter().filter(|_| !again));
-    }
-    Ok(ClipScene { options: options.clone(), occurrences, shots, timeline })
+    let asked = |event: &Event| options.events.contains(event);
+    found.extend(Event::ALL.into_iter().filter(asked).flat_map(|event| of_recording(event, &timeline)));
+    found.sort_by_key(|o: &Occurrence| options.events.iter().position(|&event| event == o.event));
+    Ok(ClipScene { options: options.clone(), occurrences: found, shots, timeline })
 }
 
 /// The events of objects and of the moving camera, shot by shot.
@@ -264,13 +272,13 @@ fn on_timeline(occurrence: &Occurrence, shot: usize, timeline: &[Shown]) -> Occu
 }
 
 /// When an event of the recording happens.
-fn of_camera(event: Event, timeline: &[Shown]) -> Vec<Occurrence> {
+fn of_recording(event: Event, timeline: &[Shown]) -> Vec<Occurrence> {
     let changes = |differ: &dyn Fn(&Shown, &Shown) -> bool| -> Vec<usize> {
         (1..timeline.len()).filter(|&t| differ(&timeline[t - 1], &timeline[t])).collect()
     };
-    let whole = |frames: Vec<usize>| match (frames.first(), frames.last()) {
-        (Some(&first), Some(&last)) => vec![first..last + 1],
-        _ => Vec::new(),
+    let whole = |frames: Vec<usize>| -> Vec<Range<usize>> {
+        let ends = frames.first().zip(frames.last());
+        ends.map(|(&first, &last)| first..last + 1).into_iter().collect()
     };
     let frames = match event {
         Event::Cut => whole(changes(&|before, now| before.shot != now.shot)),

@@ -17,8 +17,8 @@ pub(super) struct Path {
 impl Path {
     pub(super) fn at(&self, moment: usize) -> [f64; 2] {
         let way = self.way[moment];
-        let (sine, versine) = (libm::sin(self.rate * way), 1.0 - libm::cos(self.rate * way));
-        [0, 1].map(|k| self.anchor[k] + self.velocity[k] * way + self.bow[0][k] * sine + self.bow[1][k] * versine)
+        let (sine, rise) = (libm::sin(self.rate * way), 1.0 - libm::cos(self.rate * way));
+        [0, 1].map(|k| self.anchor[k] + self.velocity[k] * way + self.bow[0][k] * sine + self.bow[1][k] * rise)
     }
 
     /// Whether it stands still from a moment to the next.
