@@ -28,7 +28,7 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::motion::AffineMotion;
 use crate::random::Random;
-pub use clip::{ClipOptions, ClipScene, Event, MAX_CLIP_FRAMES, MIN_CLIP_FRAMES, Occurrence, generate_clip};
+pub use clip::{ClipScene, ClipSceneOptions, Event, MAX_CLIP_FRAMES, MIN_CLIP_FRAMES, Occurrence, generate_clip};
 use layer::{RICH, background, object};
 use shape::{Kind, Shape};
 use texture::Style;

@@ -8,13 +8,14 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use std::ops::Range;
 
 use veronese::AffineMotion;
-use veronese::scene::{ClipOptions, ClipScene, Event, generate_clip};
+use veronese::scene::{ClipScene, ClipSceneOptions, Event, generate_clip};
 
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;
 
 fn clip(events: &[Event], seed: u64) -> ClipScene {
-    let options = ClipOptions { width: WIDTH, height: HEIGHT, events: events.to_vec(), seed, ..ClipOptions::default() };
+    let options =
+        ClipSceneOptions { width: WIDTH, height: HEIGHT, events: events.to_vec(), seed, ..ClipSceneOptions::default() };
     generate_clip(&options).unwrap()
 }
 
@@ -241,7 +242,8 @@ fn the_true_flow_brings_the_next_frame_back() {
         (5, vec![Event::Articulated, Event::Fast]),
         (6, vec![Event::HiddenByObject, Event::Slow]),
     ] {
-        let options = ClipOptions { width: WIDTH, height: HEIGHT, events, seed, noise: 0.0, ..ClipOptions::default() };
+        let options =
+            ClipSceneOptions { width: WIDTH, height: HEIGHT, events, seed, noise: 0.0, ..ClipSceneOptions::default() };
         let clip = generate_clip(&options).unwrap();
         for t in [3, 17, 28] {
             let (now, next) = (clip.frame(t).unwrap(), clip.frame(t + 1).unwrap());
@@ -315,15 +317,15 @@ fn frames_may_be_asked_for_in_any_order() {
 
 #[test]
 fn options_out_of_range_and_frames_that_do_not_exist_are_refused() {
-    let ok = ClipOptions { width: WIDTH, height: HEIGHT, ..ClipOptions::default() };
-    let code = |o: ClipOptions| generate_clip(&o).map(|_| ()).unwrap_err().code();
-    assert_eq!(code(ClipOptions { width: 15, ..ok.clone() }), "frame-size-unsupported");
-    assert_eq!(code(ClipOptions { frames: 29, ..ok.clone() }), "invalid-option");
-    assert_eq!(code(ClipOptions { frames: 121, ..ok.clone() }), "invalid-option");
-    assert_eq!(code(ClipOptions { objects: 9, ..ok.clone() }), "invalid-option");
-    assert_eq!(code(ClipOptions { noise: f64::NAN, ..ok.clone() }), "invalid-option");
-    assert_eq!(code(ClipOptions { events: vec![Event::Crossing; 5], ..ok.clone() }), "invalid-option");
-    let clip = generate_clip(&ClipOptions { objects: 0, ..ok.clone() }).unwrap();
+    let ok = ClipSceneOptions { width: WIDTH, height: HEIGHT, ..ClipSceneOptions::default() };
+    let code = |o: ClipSceneOptions| generate_clip(&o).map(|_| ()).unwrap_err().code();
+    assert_eq!(code(ClipSceneOptions { width: 15, ..ok.clone() }), "frame-size-unsupported");
+    assert_eq!(code(ClipSceneOptions { frames: 29, ..ok.clone() }), "invalid-option");
+    assert_eq!(code(ClipSceneOptions { frames: 121, ..ok.clone() }), "invalid-option");
+    assert_eq!(code(ClipSceneOptions { objects: 9, ..ok.clone() }), "invalid-option");
+    assert_eq!(code(ClipSceneOptions { noise: f64::NAN, ..ok.clone() }), "invalid-option");
+    assert_eq!(code(ClipSceneOptions { events: vec![Event::Crossing; 5], ..ok.clone() }), "invalid-option");
+    let clip = generate_clip(&ClipSceneOptions { objects: 0, ..ok.clone() }).unwrap();
     assert_eq!(clip.objects(), 0);
     assert!(clip.labels(31).unwrap().iter().all(|&l| l == 0));
     assert_eq!(clip.frame(32).unwrap_err().code(), "invalid-option");
@@ -331,7 +333,8 @@ fn options_out_of_range_and_frames_that_do_not_exist_are_refused() {
     assert!(clip.motion(0, 30).is_some() && clip.motion(1, 30).is_none());
     assert!(clip.motion(0, 31).is_none() && clip.motion(0, usize::MAX - 1).is_none());
     // In the smallest frames events may find no place; then the clip does not claim them.
-    let tiny = generate_clip(&ClipOptions { width: 16, height: 16, events: Event::ALL[..6].to_vec(), ..ok }).unwrap();
+    let tiny =
+        generate_clip(&ClipSceneOptions { width: 16, height: 16, events: Event::ALL[..6].to_vec(), ..ok }).unwrap();
     assert_eq!((tiny.objects(), tiny.labels(29).unwrap().len()), (8, 256));
 }
 
@@ -355,9 +358,15 @@ fn the_same_seed_gives_the_same_bytes_on_every_machine() {
         Event::Flash,
         Event::Repeats,
     ];
-    let clip =
-        generate_clip(&ClipOptions { width: 96, height: 64, frames: 40, events, seed: 99, ..ClipOptions::default() })
-            .unwrap();
+    let clip = generate_clip(&ClipSceneOptions {
+        width: 96,
+        height: 64,
+        frames: 40,
+        events,
+        seed: 99,
+        ..ClipSceneOptions::default()
+    })
+    .unwrap();
     let motions = frames(&clip).flat_map(|t| (0..=clip.objects() as u8).map(move |object| (object, t)));
     let motions: Vec<u8> = motions
         .filter_map(|(object, t)| clip.motion(object, t))

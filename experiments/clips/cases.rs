@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use veronese::Frame;
 use veronese::codecs::{Picture, decode_image, encode_colour_png, encode_grey_png};
-use veronese::scene::{ClipOptions, Event, generate_clip};
+use veronese::scene::{ClipSceneOptions, Event, generate_clip};
 
 use crate::scores::VOID;
 
@@ -49,7 +49,7 @@ const FRAMES_WITH_CUT: usize = 48;
 /// Where a clip comes from.
 #[derive(Clone, Debug)]
 enum Source {
-    Generated(ClipOptions),
+    Generated(ClipSceneOptions),
     Folder(PathBuf),
 }
 
@@ -74,7 +74,8 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
     for (k, (events, objects)) in GENERATED.into_iter().enumerate() {
         let seed = SEED + k as u64;
         let frames = if events.contains(&Event::Cut) { FRAMES_WITH_CUT } else { FRAMES };
-        let options = ClipOptions { frames, objects, events: events.to_vec(), seed, ..ClipOptions::default() };
+        let options =
+            ClipSceneOptions { frames, objects, events: events.to_vec(), seed, ..ClipSceneOptions::default() };
         let words = events.iter().map(|&event| word(event)).collect::<Vec<_>>().join("-");
         let name = format!("{seed}-{}", if words.is_empty() { "plain" } else { &words });
         if !quick || k % 4 == 2 {

@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use veronese::clip::{ClipOptions, ClipSegmenter};
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
 use crate::cases::{Data, labels};
@@ -58,9 +59,15 @@ pub(crate) struct Found {
     pub(crate) milliseconds: Option<f64>,
 }
 
-/// The clip segmenter's labels of every frame, an object the same number in all. `None` as long as there is no clip segmenter.
-fn clip_labels(_frames: &[Frame]) -> Result<Option<Vec<Vec<u8>>>> {
-    Ok(None)
+/// The clip segmenter's labels of every frame, an object the same number in all.
+fn clip_labels(frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
+    let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
+    let mut found = Vec::new();
+    for frame in frames {
+        found.extend(segmenter.push(frame.clone())?);
+    }
+    found.extend(segmenter.finish());
+    Ok(found.into_iter().map(|frame| frame.labels).collect())
 }
 
 /// What a method finds in a clip; `None` if it does not exist here. Labels of other programs are in `peers`, by method and clip.
@@ -73,7 +80,7 @@ pub(crate) fn found(
     let start = Instant::now();
     let pairs = |quality| pair_by_pair(&data.frames, &SegmentOptions { quality, ..SegmentOptions::default() });
     let own = match method {
-        Method::Clip => clip_labels(&data.frames)?,
+        Method::Clip => Some(clip_labels(&data.frames)?),
         Method::Pairs => Some(pairs(Quality::Best)?),
         Method::PairsFast => Some(pairs(Quality::Fast)?),
         Method::Flow | Method::Mog2 | Method::Knn => None,

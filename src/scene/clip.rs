@@ -99,7 +99,7 @@ impl Event {
 
 /// What a clip shows and how it is recorded.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ClipOptions {
+pub struct ClipSceneOptions {
     /// Width in pixels; default 320.
     pub width: usize,
     /// Height in pixels; default 240.
@@ -120,9 +120,9 @@ pub struct ClipOptions {
     pub seed: u64,
 }
 
-impl Default for ClipOptions {
+impl Default for ClipSceneOptions {
     fn default() -> Self {
-        ClipOptions {
+        ClipSceneOptions {
             width: 320,
             height: 240,
             frames: 32,
@@ -173,8 +173,8 @@ struct Shot {
 /// A generated clip and the truth about it. In its labels 0 is the background, and an object has the same number in all frames.
 pub struct ClipScene {
     /// What was asked for.
-    pub options: ClipOptions,
-    /// What happens when, in the order of [`ClipOptions::events`]. An event that found no place, as may be in tiny frames, is missing.
+    pub options: ClipSceneOptions,
+    /// What happens when, in the order of [`ClipSceneOptions::events`]. An event that found no place, as may be in tiny frames, is missing.
     pub occurrences: Vec<Occurrence>,
     shots: Vec<Shot>,
     timeline: Vec<Shown>,
@@ -183,10 +183,10 @@ pub struct ClipScene {
 /// Generates a clip. Frames, labels, motions and flow are computed when asked for.
 ///
 /// ```
-/// use veronese::scene::{self, ClipOptions, Event};
+/// use veronese::scene::{self, ClipSceneOptions, Event};
 ///
 /// let events = vec![Event::HiddenByBackground, Event::Pan];
-/// let clip = scene::generate_clip(&ClipOptions { width: 160, height: 120, events, ..ClipOptions::default() })?;
+/// let clip = scene::generate_clip(&ClipSceneOptions { width: 160, height: 120, events, ..ClipSceneOptions::default() })?;
 /// let hidden = &clip.occurrences[0];
 /// assert!(!clip.labels(hidden.frames.start)?.contains(&hidden.objects[0]));
 /// assert!(clip.labels(hidden.frames.end)?.contains(&hidden.objects[0]));
@@ -195,7 +195,7 @@ pub struct ClipScene {
 ///
 /// # Errors
 /// [`Error::FrameSizeUnsupported`], [`Error::InvalidOption`].
-pub fn generate_clip(options: &ClipOptions) -> Result<ClipScene> {
+pub fn generate_clip(options: &ClipSceneOptions) -> Result<ClipScene> {
     check(options)?;
     let mut random = Random::from_seed(options.seed);
     let timeline = timeline(options, &mut random);
@@ -215,7 +215,7 @@ pub fn generate_clip(options: &ClipOptions) -> Result<ClipScene> {
 }
 
 /// The events of objects and of the moving camera, shot by shot.
-fn events_of_shots(options: &ClipOptions) -> Vec<Vec<Event>> {
+fn events_of_shots(options: &ClipSceneOptions) -> Vec<Vec<Event>> {
     let mut shots = vec![Vec::new(); if options.events.contains(&Event::Cut) { 2 } else { 1 }];
     let count = shots.len();
     let mut next = 0;
@@ -231,7 +231,7 @@ fn events_of_shots(options: &ClipOptions) -> Vec<Vec<Event>> {
 }
 
 /// Shots, repeated frames and exposure.
-fn timeline(options: &ClipOptions, random: &mut Random) -> Vec<Shown> {
+fn timeline(options: &ClipSceneOptions, random: &mut Random) -> Vec<Shown> {
     let has = |event| options.events.contains(&event);
     let count = options.frames as f64;
     let cut = (count * random.uniform(0.42, 0.58)) as usize;
@@ -295,7 +295,7 @@ fn of_recording(event: Event, timeline: &[Shown]) -> Vec<Occurrence> {
 }
 
 impl Shot {
-    fn dress(random: &mut Random, options: &ClipOptions, script: Script) -> Shot {
+    fn dress(random: &mut Random, options: &ClipSceneOptions, script: Script) -> Shot {
         let [low, high] = script.camera.bounds([options.width, options.height]);
         let size = [0, 1].map(|k| (high[k] - low[k]) as usize + 1);
         let style = Style::draw(random);
@@ -401,9 +401,9 @@ impl ClipScene {
     }
 }
 
-fn check(options: &ClipOptions) -> Result<()> {
+fn check(options: &ClipSceneOptions) -> Result<()> {
     let bad = |name, reason: String| Err(Error::InvalidOption { name, reason });
-    let &ClipOptions { width, height, frames, objects, noise, blur, .. } = options;
+    let &ClipSceneOptions { width, height, frames, objects, noise, blur, .. } = options;
     check_scene(&SceneOptions { width, height, objects, noise, blur, ..SceneOptions::default() })?;
     if !(MIN_CLIP_FRAMES..=MAX_CLIP_FRAMES).contains(&frames) {
         return bad("frames", format!("must be from {MIN_CLIP_FRAMES} to {MAX_CLIP_FRAMES}, not {frames}"));

@@ -8,7 +8,7 @@ use super::actor::{Actor, Part};
 use super::camera::{Camera, swung};
 use super::occurrence::Watch;
 use super::path::{Path, with_stop};
-use super::{ClipOptions, Event, Occurrence};
+use super::{ClipSceneOptions, Event, Occurrence};
 use crate::random::Random;
 
 /// How often a script is drawn again if an event does not happen in it: another object may be in the way.
@@ -27,7 +27,7 @@ impl Script {
     /// A shot of so many moments with these events; its objects are numbered from `next` on.
     pub(super) fn draw(
         random: &mut Random,
-        options: &ClipOptions,
+        options: &ClipSceneOptions,
         events: &[Event],
         moments: usize,
         next: u8,
@@ -89,7 +89,13 @@ struct Director<'a> {
 }
 
 impl<'a> Director<'a> {
-    fn new(random: &'a mut Random, options: &ClipOptions, events: &[Event], moments: usize, next: u8) -> Director<'a> {
+    fn new(
+        random: &'a mut Random,
+        options: &ClipSceneOptions,
+        events: &[Event],
+        moments: usize,
+        next: u8,
+    ) -> Director<'a> {
         let size = [options.width as f64, options.height as f64];
         let unit = (size[0] * size[1]).sqrt() / 277.0;
         let angle = random.uniform(0.0, 2.0 * PI);
