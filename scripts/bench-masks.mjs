@@ -5,13 +5,12 @@
 import { existsSync, mkdirSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
+import { findOpenCv, runOnAll } from './lib/opencv.mjs';
 import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
-import { command, must, run } from './lib/run.mjs';
+import { command, run } from './lib/run.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'masks', '--'];
-/** Number of baselines that run at once. */
-const AT_ONCE = 2;
 
 await command(async (args) => {
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
@@ -45,30 +44,8 @@ async function runBaseline(cases, folder, shared) {
     console.error(`Without a baseline to compare with: ${program} is not there.`);
     return;
   }
-  const python = await findPython();
-  if (!python) {
-    const packages = 'pip install numpy opencv-python-headless';
-    console.error(`Without a baseline to compare with: it needs Python with NumPy and OpenCV (${packages}). The Python to take may`);
-    console.error('be named in VERONESE_PYTHON; otherwise python3, then python on the path are tried.');
-    return;
-  }
-  console.error(`The baseline on ${cases.length} cases, by ${python} …`);
+  const python = await findOpenCv();
+  if (!python) return;
   mkdirSync(folder, { recursive: true });
-  const left = [...cases];
-  const worker = async () => {
-    for (let next = left.shift(); next; next = left.shift()) {
-      const [name, frames] = next;
-      await must(`The baseline failed on ${name}.`, python, [program, frames, '--out', join(folder, name)], { output: 'collect' });
-    }
-  };
-  await Promise.all(Array.from({ length: AT_ONCE }, worker));
-}
-
-/** The first Python that has the baseline's requirements. */
-async function findPython() {
-  const candidates = process.env.VERONESE_PYTHON ? [process.env.VERONESE_PYTHON] : ['python3', 'python'];
-  for (const python of candidates) {
-    if ((await run(python, ['-c', 'import cv2, numpy'], { output: 'collect' })).code === 0) return python;
-  }
-  return undefined;
+  await runOnAll(python, program, cases, (name, frames) => [frames, '--out', join(folder, name)]);
 }

@@ -14,11 +14,13 @@
 //! # Ok::<(), veronese::Error>(())
 //! ```
 
+mod clip;
 mod layer;
 mod render;
 mod shape;
 mod spline;
 mod texture;
+mod warp;
 
 use std::f64::consts::PI;
 
@@ -26,6 +28,7 @@ use crate::error::Result;
 use crate::frame::Frame;
 use crate::motion::AffineMotion;
 use crate::random::Random;
+pub use clip::{ClipScene, ClipSceneOptions, Event, MAX_CLIP_FRAMES, MIN_CLIP_FRAMES, Occurrence, generate_clip};
 use layer::{RICH, background, object};
 use shape::{Kind, Shape};
 use texture::Style;

@@ -6,6 +6,10 @@ mod cases;
 mod honesty;
 mod measure;
 mod page;
+#[path = "../panels.rs"]
+mod panels;
+#[path = "../parallel.rs"]
+mod parallel;
 mod pictures;
 mod scores;
 mod sensitivity;
@@ -19,6 +23,7 @@ use std::path::{Path, PathBuf};
 use cases::Case;
 use honesty::Honesty;
 use measure::Method;
+use parallel::in_parallel;
 
 const HELP: &str = "\
 Scores masks of generated scenes and real pairs against an OpenCV baseline, in two steps. The baseline runs between them.
@@ -106,9 +111,8 @@ fn run(options: &Options) -> Result<(), Failure> {
     let cannot = |error: std::io::Error| format!("{} cannot be written: {error}", out.display());
     fs::create_dir_all(out).map_err(cannot)?;
     if options.step == "frames" {
-        let folders = measure::in_parallel(&cases, |case| {
-            Ok(case.folder(&out.join("frames")).map_err(|error| error.to_string())?)
-        })?;
+        let folders =
+            in_parallel(&cases, |case| Ok(case.folder(&out.join("frames")).map_err(|error| error.to_string())?))?;
         for (case, folder) in cases.iter().zip(folders) {
             println!("{}\t{}", case.name, folder.display());
         }

@@ -2,8 +2,6 @@
 
 use std::error::Error;
 use std::path::Path;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use veronese::{
@@ -13,11 +11,9 @@ use veronese::{
 
 use crate::cases::{Case, Data, Set, baseline};
 use crate::honesty::Honesty;
+use crate::parallel::in_parallel;
 use crate::pictures;
 use crate::scores::{Scores, flow_error, scores};
-
-/// Threads at most: each works on a case of its own.
-const MOST_THREADS: usize = 2;
 
 /// The methods compared, in the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -184,28 +180,4 @@ pub(crate) fn of_variant(variant: Variant, method: Method, data: &Data) -> Resul
     };
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     Ok(outcome(method, data, &found.labels, &grouped(&found), &[], milliseconds))
-}
-
-/// `work` on every case, on a few threads; the results in the order of the cases, or the first error.
-pub(crate) fn in_parallel<T: Send>(cases: &[Case], work: impl Fn(&Case) -> Result<T> + Sync) -> Result<Vec<T>> {
-    let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<(usize, Result<T>)>> = Mutex::new(Vec::new());
-    let worker = || {
-        loop {
-            let k = next.fetch_add(1, Ordering::Relaxed);
-            let Some(case) = cases.get(k) else { return };
-            let result = work(case);
-            if result.is_err() {
-                next.store(cases.len(), Ordering::Relaxed);
-            }
-            if let Ok(mut results) = results.lock() {
-                results.push((k, result));
-            }
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS);
-    std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(worker))));
-    let mut results = results.into_inner().map_err(|_| "a thread ended early")?;
-    results.sort_by_key(|(k, _)| *k);
-    results.into_iter().map(|(_, result)| result).collect()
 }

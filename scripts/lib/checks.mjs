@@ -7,7 +7,7 @@ import { run } from './run.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
-// Only the benchmark of masks uses the other feature.
+// Only the benchmarks of masks and clips use the other feature.
 const ALL = ['--features', 'codecs,ablation'];
 const only = (feature) => ['--no-default-features', '--features', feature];
 const DENY = ['--', '-D', 'warnings'];

@@ -6,14 +6,19 @@ use super::texture::{Style, Texture};
 use crate::motion::AffineMotion;
 use crate::random::Random;
 
-/// A moving texture with an outline. Coordinates are those of the frame `first`.
-pub(super) struct Layer {
-    pub(super) motion: AffineMotion,
+/// A texture with an outline.
+pub(super) struct Sprite {
     pub(super) texture: Texture,
     /// Added to a pixel, gives its position in the texture.
     pub(super) offset: [f64; 2],
     /// Outline and its centre; none for the background.
     pub(super) shape: Option<(Shape, [f64; 2])>,
+}
+
+/// A moving sprite. Its coordinates are those of the frame `first`.
+pub(super) struct Layer {
+    pub(super) motion: AffineMotion,
+    pub(super) sprite: Sprite,
 }
 
 /// Minimum contrast of a textured background, grey levels.
@@ -27,9 +32,9 @@ pub(super) fn background(
     margin: usize,
     (style, contrast): (&Style, f64),
 ) -> Layer {
-    let (width, height) = (options.width + 2 * margin, options.height + 2 * margin);
-    let texture = textured(random, style, width, height, options.colour, contrast);
-    Layer { motion, texture, offset: [margin as f64; 2], shape: None }
+    let size = [options.width + 2 * margin, options.height + 2 * margin];
+    let sprite = Sprite::backdrop(random, size, [margin as f64; 2], options.colour, (style, contrast));
+    Layer { motion, sprite }
 }
 
 /// An object in front of the background.
@@ -41,10 +46,29 @@ pub(super) fn object(
     centre: [f64; 2],
     style: &Style,
 ) -> Layer {
-    let side = (2.0 * shape.reach()) as usize + 8;
-    let texture = textured(random, style, side, side, options.colour, 22.0);
-    let half = 0.5 * side as f64;
-    Layer { motion, texture, offset: [half - centre[0], half - centre[1]], shape: Some((shape, centre)) }
+    Layer { motion, sprite: Sprite::cut(random, shape, centre, options.colour, style) }
+}
+
+impl Sprite {
+    /// A texture of `size`, in which the origin is at `offset`; of at least some contrast, where its style has it.
+    pub(super) fn backdrop(
+        random: &mut Random,
+        size: [usize; 2],
+        offset: [f64; 2],
+        colour: bool,
+        (style, contrast): (&Style, f64),
+    ) -> Sprite {
+        let texture = textured(random, style, size[0], size[1], colour, contrast);
+        Sprite { texture, offset, shape: None }
+    }
+
+    /// A texture as large as the shape needs.
+    pub(super) fn cut(random: &mut Random, shape: Shape, centre: [f64; 2], colour: bool, style: &Style) -> Sprite {
+        let side = (2.0 * shape.reach()) as usize + 8;
+        let texture = textured(random, style, side, side, colour, 22.0);
+        let half = 0.5 * side as f64;
+        Sprite { texture, offset: [half - centre[0], half - centre[1]], shape: Some((shape, centre)) }
+    }
 }
 
 /// The first of nine random textures with at least the given contrast, or the last.

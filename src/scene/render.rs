@@ -1,31 +1,13 @@
 //! Rendering of layers to frames and their ground truth.
 
-use super::layer::Layer;
+use super::layer::{Layer, Sprite};
+use super::shape::Shape;
+use super::warp::Warp;
 use super::{Scene, SceneOptions};
 use crate::error::{Error, Result};
 use crate::frame::Frame;
 use crate::motion::AffineMotion;
 use crate::random::Random;
-
-/// `[a, b, c, d, e, f]` maps (x, y) to (a x + b y + c, d x + e y + f).
-type Warp = [f64; 6];
-
-/// x ↦ x + A x.
-fn forward(motion: &AffineMotion) -> Warp {
-    let a = &motion.matrix;
-    [1.0 + a[0], a[1], a[2], a[3], 1.0 + a[4], a[5]]
-}
-
-/// The inverse of [`forward`]; the identity if it has none.
-fn backward(motion: &AffineMotion) -> Warp {
-    let [a, b, c, d, e, f] = forward(motion);
-    let determinant = a * e - b * d;
-    if determinant.abs() < 1e-9 {
-        return [1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-    }
-    let (a, b, d, e) = (e / determinant, -b / determinant, -d / determinant, a / determinant);
-    [a, b, -(a * c + b * f), d, e, -(d * c + e * f)]
-}
 
 /// Renders the frames at t = −1, 0, 1. The layers are in order of depth: the first is the background, the last the nearest.
 pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Random) -> Result<Scene> {
@@ -33,7 +15,8 @@ pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Rand
     let mut rgba: [Vec<u8>; 3] = Default::default();
     let mut labels: [Vec<u8>; 3] = Default::default();
     for t in 0..3 {
-        let (mut image, visible) = compose(layers, width, height, t);
+        let (mut image, visible) =
+            compose(layers.iter().map(|layer| (&layer.sprite, origin(&layer.motion, t))), width, height);
         blur(&mut image, width, height, options.blur);
         labels[t] = visible;
         let (gain, bias) = match t {
@@ -50,50 +33,69 @@ pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Rand
     Ok(Scene { frames: [frame(0)?, frame(1)?, frame(2)?], rgba, labels: truth, motions, occluded, options: *options })
 }
 
-/// The image without blur at time t (0, 1, 2 for before, first, second), and the visible layer at every pixel.
-fn compose(layers: &[Layer], width: usize, height: usize, t: usize) -> (Vec<[f32; 3]>, Vec<u8>) {
+/// From frame t (0, 1, 2 for before, first, second) to `first`, as a thing with this motion sees it.
+fn origin(motion: &AffineMotion, t: usize) -> Warp {
+    match t {
+        0 => Warp::of(motion),
+        1 => Warp::of(&AffineMotion::STATIC),
+        _ => Warp::of(motion).inverse(),
+    }
+}
+
+/// The image of sprites from back to front without blur, and the index of the visible sprite at every pixel. The warps go from the
+/// frame to the sprite.
+pub(super) fn compose<'a>(
+    sprites: impl Iterator<Item = (&'a Sprite, Warp)>,
+    width: usize,
+    height: usize,
+) -> (Vec<[f32; 3]>, Vec<u8>) {
     let mut image = vec![[0.0f32; 3]; width * height];
     let mut labels = vec![0u8; width * height];
-    for (index, layer) in layers.iter().enumerate() {
-        let [a, b, c, d, e, f] = match t {
-            0 => forward(&layer.motion),
-            1 => forward(&AffineMotion::STATIC),
-            _ => backward(&layer.motion),
-        };
-        for y in 0..height {
-            for x in 0..width {
-                let p = y * width + x;
-                let (px, py) = (x as f64, y as f64);
-                let (u, v) = (a * px + b * py + c, d * px + e * py + f);
-                let cover = match &layer.shape {
-                    None => 1.0,
-                    Some((shape, centre)) => {
-                        let (dx, dy) = (u - centre[0], v - centre[1]);
-                        let reach = shape.reach() + 2.0;
-                        if dx * dx + dy * dy > reach * reach {
-                            continue;
-                        }
-                        shape.coverage(dx, dy) as f32
-                    }
-                };
-                if cover <= 0.0 {
-                    continue;
-                }
-                let new = layer.texture.at(u + layer.offset[0], v + layer.offset[1]);
-                for k in 0..3 {
-                    image[p][k] += cover * (new[k] - image[p][k]);
-                }
-                if cover > 0.5 {
-                    labels[p] = index as u8;
-                }
+    for (index, (sprite, warp)) in sprites.enumerate() {
+        each_covered(sprite.shape.as_ref(), &warp, [width, height], |p, [u, v], cover| {
+            let new = sprite.texture.at(u + sprite.offset[0], v + sprite.offset[1]);
+            for k in 0..3 {
+                image[p][k] += cover * (new[k] - image[p][k]);
             }
-        }
+            if cover > 0.5 {
+                labels[p] = index as u8;
+            }
+        });
     }
     (image, labels)
 }
 
+/// Calls `paint` for every pixel of a frame that a shape covers at least in part: its index, its place in the coordinates of the shape,
+/// the share that is covered. No shape covers everything.
+pub(super) fn each_covered(
+    shape: Option<&(Shape, [f64; 2])>,
+    warp: &Warp,
+    [width, height]: [usize; 2],
+    mut paint: impl FnMut(usize, [f64; 2], f32),
+) {
+    for y in 0..height {
+        for x in 0..width {
+            let [u, v] = warp.at(x as f64, y as f64);
+            let cover = match shape {
+                None => 1.0,
+                Some((shape, centre)) => {
+                    let (dx, dy) = (u - centre[0], v - centre[1]);
+                    let reach = shape.reach() + 2.0;
+                    if dx * dx + dy * dy > reach * reach {
+                        continue;
+                    }
+                    shape.coverage(dx, dy) as f32
+                }
+            };
+            if cover > 0.0 {
+                paint(y * width + x, [u, v], cover);
+            }
+        }
+    }
+}
+
 /// The blur of the camera: a Gaussian of standard deviation `sigma` pixels.
-fn blur(image: &mut [[f32; 3]], width: usize, height: usize, sigma: f64) {
+pub(super) fn blur(image: &mut [[f32; 3]], width: usize, height: usize, sigma: f64) {
     if sigma <= 0.0 {
         return;
     }
@@ -124,7 +126,7 @@ fn blur(image: &mut [[f32; 3]], width: usize, height: usize, sigma: f64) {
 }
 
 /// RGBA bytes of an image after gain, bias and noise of standard deviation `noise`·√(I/128), which is equal in all channels.
-fn exposed(image: &[[f32; 3]], gain: f32, bias: f32, noise: f64, random: &mut Random) -> Vec<u8> {
+pub(super) fn exposed(image: &[[f32; 3]], gain: f32, bias: f32, noise: f64, random: &mut Random) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(image.len() * 4);
     for pixel in image {
         let value = pixel.map(|c| c.clamp(0.0, 255.0) * gain + bias);

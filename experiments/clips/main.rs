@@ -1,0 +1,141 @@
+//! The clip benchmark: labels that persist through time, of generated and real clips, beside what OpenCV gives.
+//! `npm run bench:clips` runs it.
+
+mod cases;
+mod figures;
+mod linking;
+mod measure;
+mod methods;
+mod page;
+#[path = "../panels.rs"]
+mod panels;
+#[path = "../parallel.rs"]
+mod parallel;
+mod scores;
+mod strips;
+
+use std::error::Error;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use parallel::in_parallel;
+
+const HELP: &str = "\
+Scores labels that persist through time, of generated and real clips, in two steps. OpenCV's methods run between them.
+
+  frames       writes the generated clips and prints a line per clip: its name, a tab, its folder
+  measure      measures and writes table.csv, clips.json, clips.md, a strip of every clip, and the labels of every method
+
+  --quick            every fourth generated clip, no real ones
+  --only A,B         only clips whose name contains one of these
+  --out DIR          output folder; default out/clips
+  --shared DIR       folder with real clips, if it exists; default ../shared
+  --write-docs       also write docs/clips.md and docs/images/clips-*.png
+";
+
+struct Options {
+    step: String,
+    quick: bool,
+    only: Vec<String>,
+    out: PathBuf,
+    shared: PathBuf,
+    write_docs: bool,
+}
+
+type Failure = Box<dyn Error + Send + Sync>;
+
+fn main() {
+    match options(std::env::args().skip(1)).map(|options| options.map(|options| run(&options))) {
+        Ok(None) => print!("{HELP}"),
+        Ok(Some(Ok(()))) => {}
+        Ok(Some(Err(error))) => stop(&error.to_string(), 1),
+        Err(message) => stop(&format!("{message}\n\n{HELP}"), 2),
+    }
+}
+
+fn stop(message: &str, code: i32) {
+    eprintln!("{message}");
+    std::process::exit(code);
+}
+
+/// What was asked for; `None` where help was.
+fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options>, String> {
+    let mut options = Options {
+        step: String::new(),
+        quick: false,
+        only: Vec::new(),
+        out: PathBuf::from("out/clips"),
+        shared: PathBuf::from("../shared"),
+        write_docs: false,
+    };
+    while let Some(name) = arguments.next() {
+        let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
+        match name.as_str() {
+            "--help" | "-h" => return Ok(None),
+            "frames" | "measure" => options.step = name,
+            "--quick" => options.quick = true,
+            "--write-docs" => options.write_docs = true,
+            "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
+            "--out" => options.out = PathBuf::from(value()?),
+            "--shared" => options.shared = PathBuf::from(value()?),
+            _ => return Err(format!("There is no option '{name}'.")),
+        }
+    }
+    match options.step.is_empty() {
+        true => Err("Say which step: frames or measure.".into()),
+        false => Ok(Some(options)),
+    }
+}
+
+fn run(options: &Options) -> Result<(), Failure> {
+    let mut cases = cases::all(&options.shared, options.quick)?;
+    if !options.only.is_empty() {
+        cases.retain(|case| options.only.iter().any(|part| case.name.contains(part)));
+    }
+    if cases.is_empty() {
+        return Err("There is no such clip.".into());
+    }
+    let out = &options.out;
+    let cannot = |error: std::io::Error| format!("{} cannot be written: {error}", out.display());
+    fs::create_dir_all(out).map_err(cannot)?;
+    if options.step == "frames" {
+        let folders = in_parallel(&cases, |case| case.folder(&out.join("generated")))?;
+        for (case, folder) in cases.iter().zip(folders) {
+            println!("{}\t{}", case.name, folder.display());
+        }
+        return Ok(());
+    }
+    if cases.iter().all(cases::Case::is_generated) && !options.quick && options.only.is_empty() {
+        eprintln!("{} has no clips: only the generated ones are measured.", options.shared.display());
+    }
+    let measured = measure::all(&cases, out)?;
+    fs::write(out.join("table.csv"), figures::csv(&measured)).map_err(cannot)?;
+    fs::write(out.join("clips.json"), serde_json::to_string_pretty(&figures::all(&measured))?).map_err(cannot)?;
+    for one in &measured {
+        fs::write(out.join(format!("{}.png", one.case.name)), &one.strip).map_err(cannot)?;
+    }
+    let page = page::Page { measured: &measured };
+    fs::write(out.join("clips.md"), page.text("")).map_err(cannot)?;
+    if options.write_docs {
+        write_docs(&page)?;
+    }
+    eprintln!("The results are in {}.", out.display());
+    Ok(())
+}
+
+/// The page and its pictures; pictures that it no longer shows go away.
+fn write_docs(page: &page::Page<'_>) -> Result<(), Failure> {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let images = docs.join("images");
+    for entry in fs::read_dir(&images)? {
+        let entry = entry?;
+        if entry.file_name().to_string_lossy().starts_with("clips-") {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    for one in page.shown() {
+        fs::write(images.join(format!("clips-{}.png", one.case.name)), &one.strip)?;
+    }
+    fs::write(docs.join("clips.md"), page.text("images/clips-"))?;
+    Ok(())
+}
