@@ -226,6 +226,7 @@ describe('a clip', () => {
     await fails('invalid-option', /'--shapes' must be 'polygon' or 'box'/, 2, '--shapes', 'mask');
     await fails('invalid-option', /'--tolerance' must be/, 2, '--tolerance=-1');
     for (const value of ['0', 'x']) await fails('invalid-option', /'--frame-rate' must be/, 2, `--frame-rate=${value}`);
+    await refused(clip, [join(clip, 'tracks.json'), '--to', 'coco', '--out', clip], 'file-not-found', /labels\.png/);
     await fails('invalid-option', /'--grouped' is not for/, 1, '--grouped');
     await fails('invalid-option', /'--image' is not for/, 1, '--image', 'a.png');
     await refused(clip, [clip, '--to', 'coco', '--out', join(clip, 'tracks.json')], 'write-failed', /it is a file/);
@@ -313,6 +314,10 @@ describe('a batch', () => {
     await refused(out, [out, '--to', 'coco'], 'invalid-json', /result\.json/);
     rmSync(report);
     await refused(out, [out, '--to', 'coco,yolo'], 'file-not-found', /result\.json/);
+    rmSync(join(out, pairs[1]), { recursive: true });
+    await refused(out, [out, '--to', 'coco', '--from', '1', '--until', '1'], 'invalid-option', /there is no pair from 1 to 1/);
+    await converted(out, '--to', 'coco');
+    assert.deepEqual(json(out, 'coco.json').images.map(({ file_name }) => file_name), ['a0.png', 'a2.png'], 'a pair that failed is left out');
   });
 });
 

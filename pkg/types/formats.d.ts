@@ -17,7 +17,7 @@ export interface FormatMotion {
 export interface FormatMeta {
   /** Name of the image that the masks lie on; default `first.png`. */
   image?: string;
-  /** Names by label; default `motion-0`, `motion-1` … */
+  /** Names by label; default `motion-0`, `motion-1` … Labels with the same name are instances of one class. */
   names?: Readonly<Record<number, string>>;
   /** The motions of the masks. */
   motions?: readonly FormatMotion[];

@@ -4,14 +4,18 @@ import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
 import { VeroneseError } from '../common/errors.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
+import { isFormatName } from './formats.js';
 import type { PairSettings } from './pair.js';
 import type { Range } from './sequence.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
 /** Names of the formats, wrapped to fit a terminal. */
 const FORMAT_NAMES = wrapped(Object.keys(SEQUENCE_FORMATS), 80, '\n' + ' '.repeat(41));
-/** Those that need to know an object again in the next frame. */
-const TRACK_FORMATS = Object.entries(SEQUENCE_FORMATS).flatMap(([name, { tracks }]) => (tracks ? [name] : []));
+/** Those that are not for all folders. */
+const formatsFor = (ofPair: boolean, ofTracks: boolean): string =>
+  Object.entries(SEQUENCE_FORMATS)
+    .flatMap(([name, { tracks }]) => (tracks === ofTracks && isFormatName(name) === ofPair ? [name] : []))
+    .join(', ');
 
 export const HELP = `veronese segments two video frames by motion: how many motions there are, what each one is, and which pixels follow it.
 
@@ -38,11 +42,11 @@ export const HELP = `veronese segments two video frames by motion: how many moti
   veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
 
-  veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; FORMATS are separated
-                                         by commas:
+  veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; separate FORMATS by commas:
                                          ${FORMAT_NAMES}
-                                         of clip only, because they hold tracks: ${wrapped(TRACK_FORMATS, 56, '\n' + ' '.repeat(41))}
-                                         (of pair too: youtube-vis and cvat-mots; not of pair: masks)
+                                         only of clip: ${formatsFor(false, true)}
+                                         only of pair and clip: ${formatsFor(true, true)}
+                                         only of batch and clip: ${formatsFor(false, false)}
       --tolerance PIXELS     distance by which polygons may deviate from a mask's border (default: 0)
       --out DIR              output folder (default: the input folder)
     of pair and batch:

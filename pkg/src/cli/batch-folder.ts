@@ -14,13 +14,21 @@ interface PairFolder {
   frame: string;
 }
 
-/** The pairs' folders by their numbers. */
+/** The pairs' folders by their numbers. Throws `unreadable-file`. */
 export function pairFolders(folder: string): PairFolder[] {
-  const found = readdirSync(folder, { withFileTypes: true }).flatMap((entry): PairFolder[] => {
-    const [, index, frame] = /^(\d{6,})-(.+)$/.exec(entry.name) ?? [];
-    return frame !== undefined && entry.isDirectory() ? [{ index: Number(index), name: entry.name, frame }] : [];
+  const found = foldersIn(folder).flatMap((name): PairFolder[] => {
+    const [, index, frame] = /^(\d{6,})-(.+)$/.exec(name) ?? [];
+    return frame === undefined ? [] : [{ index: Number(index), name, frame }];
   });
   return found.sort((a, b) => a.index - b.index);
+}
+
+function foldersIn(folder: string): string[] {
+  try {
+    return readdirSync(folder, { withFileTypes: true }).flatMap((entry) => (entry.isDirectory() ? [entry.name] : []));
+  } catch (thrown) {
+    throw new VeroneseError('unreadable-file', `'${folder}' cannot be read: ${(thrown as Error).message}`);
+  }
 }
 
 /** A label is a motion of one pair: nothing says which motion of the next pair is the same thing. */
@@ -28,6 +36,7 @@ export function openBatch(folder: string, range: Range, background: boolean, gro
   const all = pairFolders(folder);
   const until = lastOf(range, all.at(-1)?.index ?? 0);
   const pairs = all.filter(({ index }) => index >= range.from && index <= until);
+  if (pairs.length === 0) throw new VeroneseError('invalid-option', `there is no pair from ${range.from} to ${until}`);
   const labels = Array.from({ length: UNLABELLED }, (_, label) => label);
   return {
     meta: {

@@ -1,6 +1,6 @@
 // `veronese convert`: the folders of `pair`, `batch` and `clip`, in the forms that annotation tools read.
 
-import { statSync } from 'node:fs';
+import { type Stats, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { VeroneseError } from '../common/errors.js';
 import type { ConvertCommand } from './arguments.js';
@@ -25,13 +25,21 @@ type Kind = 'pair' | 'batch' | 'clip';
 
 /** Which command the folder is of; one that is of none is taken for a pair's, to be told what is missing there. */
 function kindOf(folder: string): Kind {
-  const has = (name: string) => statSync(join(folder, name), { throwIfNoEntry: false });
+  const has = (name: string) => statusOf(join(folder, name));
   if (has(TRACKS)) return 'clip';
   if (has('result.json') || has('labels.png')) return 'pair';
   if (has(LABELS)?.isDirectory()) {
     throw new VeroneseError('invalid-input', `'${folder}' has no ${TRACKS}: the clip is not finished, run 'veronese clip' again to finish it`);
   }
   return has('.')?.isDirectory() && pairFolders(folder).length > 0 ? 'batch' : 'pair';
+}
+
+function statusOf(path: string): Stats | undefined {
+  try {
+    return statSync(path);
+  } catch {
+    return undefined; // Whoever reads it is told why that is not possible.
+  }
 }
 
 /** Throws where an option or a format says nothing of this kind of folder. */
