@@ -138,6 +138,16 @@ describe('a clip', () => {
     assert.deepEqual(await times(), { video: 'clip', duration: 0.28, second: 0.04, rate: 25 });
   });
 
+  test('frames of a video, which are no files, are called what their labels are', async (t) => {
+    const folder = temporaryFolder(t);
+    for (const files of [undefined, [], Array(7).fill('a.mp4'), Array.from({ length: 7 }, (_, k) => `a.mp4#${k}`)]) {
+      clipFolder(folder.path('clip'), { files });
+      const images = [];
+      for await (const { image } of await openClip(folder.path('clip'), { from: 5 }, false)) images.push(image);
+      assert.deepEqual(images, ['f005.png', 'f006.png']);
+    }
+  });
+
   test('--tolerance has polygons with fewer vertices', async (t) => {
     const folder = temporaryFolder(t);
     const round = Uint8Array.from({ length: 60 * 60 }, (_, at) => Number(((at % 60) - 30) ** 2 + (Math.floor(at / 60) - 30) ** 2 < 700));

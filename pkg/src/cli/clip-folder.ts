@@ -109,8 +109,11 @@ function tracksOf(value: unknown, path: string): Tracks {
   if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) throw wrong(`"width" and "height" must be from 1 to ${LONGEST_SIDE}`);
   if (!isListOf(frames, isFileName) || frames.length === 0) throw wrong('"frames" must be names of files');
   if (new Set(frames.map((name) => name.toLowerCase())).size < frames.length) throw wrong('"frames" has a name twice');
-  const { files = frames.map((name) => `${name}.png`) } = value;
-  if (!isListOf(files, isFileName) || files.length !== frames.length) throw wrong('"files" must have a name for each frame');
+  const { files: named = [] } = value;
+  if (!isListOf(named, isFileName) || ![0, frames.length].includes(named.length)) throw wrong('"files" must have a name for each frame');
+  // Frames of a video are no files: they are called what their labels are.
+  const areFiles = new Set(named).size === frames.length && !named.some((name) => /#\d+$/.test(name));
+  const files = areFiles ? named : frames.map((name) => `${name}.png`);
   const isFrame = (frame: unknown): frame is number => isWhole(frame, 0, frames.length - 1);
   const isMatrix = (matrix: unknown): matrix is Matrix | null =>
     matrix === null || (Array.isArray(matrix) && matrix.length === 6 && matrix.every(Number.isFinite));
