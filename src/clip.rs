@@ -1,9 +1,9 @@
 //! Clips: objects that keep their number from their first frame to their last.
 //!
-//! 1. Each frame is prepared once and solved in pairs with the next frame and the one before ([`evidence`]).
-//! 2. Two rounds carry the evidence along the motions, learn colours and cut the foreground ([`round`]). The second starts from the
+//! 1. Each frame is prepared once and solved in pairs with the next frame and the one before (`clip/evidence.rs`).
+//! 2. Two rounds carry the evidence along the motions, learn colours and cut the foreground (`clip/round.rs`). The second starts from the
 //!    first one's cut.
-//! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones ([`identity`]).
+//! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
 //! 4. Labels are upsampled along the edges of the full frame.
 
 mod carry;

@@ -25,9 +25,9 @@ impl Texture {
     fn at(&self, x: f32, y: f32) -> [f32; 3] {
         // Two pixels of the frame for one of the texture: smooth enough for sub-pixel motion.
         let (x, y) = (0.5 * x + 640.0, 0.5 * y + 640.0);
-        let texel = |i: usize, j: usize| self.0[(j % Self::SIDE) * Self::SIDE + i % Self::SIDE];
+        let pixel_of = |i: usize, j: usize| self.0[(j % Self::SIDE) * Self::SIDE + i % Self::SIDE];
         let (i, j, f, g) = (x as usize, y as usize, x.fract(), y.fract());
-        let (a, b, c, d) = (texel(i, j), texel(i + 1, j), texel(i, j + 1), texel(i + 1, j + 1));
+        let (a, b, c, d) = (pixel_of(i, j), pixel_of(i + 1, j), pixel_of(i, j + 1), pixel_of(i + 1, j + 1));
         std::array::from_fn(|k| (1.0 - g) * ((1.0 - f) * a[k] + f * b[k]) + g * ((1.0 - f) * c[k] + f * d[k]))
     }
 }

@@ -78,6 +78,17 @@ describe('veronese convert', () => {
     for (const name of files.filter((name) => name.endsWith('.json'))) JSON.parse(readFileSync(folder.path('all', name), 'utf8'));
   });
 
+  test('labels are indices and no colours, of which two are the same', async (t) => {
+    const folder = temporaryFolder(t);
+    const [width, height] = [16, 16];
+    const labels = Uint8Array.from({ length: width * height }, (_, at) => (at < 7 ? at + 1 : at === 7 ? 128 : 0));
+    const motion = (label) => ({ label, group: label, matrix: [0, 0, 0, 0, 0, 0], pixels: label ? 1 : 248, share: 0, residual: 0, bbox: [0, 0, 1, 1] });
+    folder.file('labels.png', encodeDavis(labels, width, height));
+    folder.file('result.json', JSON.stringify({ width, height, motions: [0, 1, 2, 3, 4, 5, 6, 7, 128].map(motion) }));
+    await converted(folder.path(), '--to', 'veronese');
+    assert.deepEqual(decodeVeronese(JSON.parse(readFileSync(folder.path('veronese.json'), 'utf8'))).labels, labels);
+  });
+
   test('says what is wrong and writes nothing', async (t) => {
     const { folder, out, result } = await segmented(t);
     const files = readdirSync(out);
@@ -108,7 +119,7 @@ describe('veronese convert', () => {
     await refused([bad('foreign', JSON.stringify({ ...result, motions })), '--to', 'coco'], 'invalid-input', /not of the same result/);
     const photo = bad('photo', JSON.stringify(result));
     writeFileSync(join(photo, 'labels.png'), png(pair()[0]));
-    await refused([photo, '--to', 'coco'], 'invalid-input', /no labels|not of the same result/);
+    await refused([photo, '--to', 'coco'], 'invalid-input', /no labels: it is not an 8-bit indexed PNG/);
     assert.deepEqual(readdirSync(out), files);
   });
 });

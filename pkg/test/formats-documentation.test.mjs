@@ -16,6 +16,13 @@ const meta = {
     { label: 1, matrix: [0, 0, 2.5, 0, 0, -1] },
   ],
 };
+const size = { width: 5, height: 4 };
+const frames = [
+  { labels, ...size, image: 'a.png' },
+  { labels: new Uint8Array(20), ...size, image: 'b.png' },
+  { labels: Uint8Array.from([0, ...labels.subarray(0, 19)]), ...size, image: 'c.png' },
+];
+const clip = { clip: 'ring.mp4', names: { 0: 'ground', 1: 'ring' }, labels: [1], tracked: true, frameRate: 10 };
 
 const examples = [...page.matchAll(/```js\n(.*)\n```\n\n```(json|text)\n([\s\S]*?)\n```/g)];
 
@@ -26,7 +33,7 @@ test('there is an example for every encoder', () => {
 
 for (const [, expression, kind, expected] of examples) {
   test(expression, () => {
-    const found = new Function('formats', 'labels', 'meta', `with (formats) { return ${expression} }`)(formats, labels, meta);
+    const found = new Function('formats', 'labels', 'meta', 'frames', 'clip', `with (formats) { return ${expression} }`)(formats, labels, meta, frames, clip);
     if (kind === 'text') assert.equal(found.trimEnd(), expected);
     else assert.deepEqual(JSON.parse(JSON.stringify(found)), JSON.parse(expected));
   });

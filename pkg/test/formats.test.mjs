@@ -4,10 +4,12 @@ import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { decode } from 'fast-png';
 import { unzipSync } from 'fflate';
-import { davisPalette } from 'veronese';
+import { davisPalette, VeroneseError } from 'veronese';
 import * as formats from 'veronese/formats';
 import { drawn, labelImages, present, random } from './support/masks.mjs';
 
+/** The encoders of many frames. */
+const MANY = ['encodeCocoImages', 'encodeCocoVideo', 'encodeCvatImages', 'encodeCvatVideo', 'encodeCvatMots', 'encodeMots', 'encodeMotChallenge', 'encodeLabelStudioVideo'];
 const IMAGES = labelImages(300);
 const each = (check) => IMAGES.forEach(({ labels, width, height }, index) => check(labels, width, height, index));
 const mask = (labels, label) => labels.map((value) => Number(value === label));
@@ -162,6 +164,81 @@ test('MOTS: an archive of 16-bit images, the same bytes every time', () => {
   assert.deepEqual([...png.data], [1001, 1001, 2002, 3003, 0, 0, 2002, 3003]);
 });
 
+describe('frames one after another', () => {
+  const labels = [drawn('0110', '0022'), drawn('0000', '0022'), drawn('1100', '2200')];
+  const meta = { names: { 0: 'ground', 1: 'car', 2: 'car' }, labels: [1, 2], tracked: true };
+
+  for (const name of MANY) {
+    const encode = formats[name];
+    const whole = encode(labels, meta);
+
+    test(`${name}: from any iterable, in one buffer`, async () => {
+      const shared = { ...drawn('0000', '0000') };
+      function* frames() {
+        for (const frame of labels) {
+          shared.labels.set(frame.labels);
+          yield shared;
+        }
+      }
+      async function* later() {
+        yield* frames();
+      }
+      assert.deepEqual(encode(frames(), meta), whole);
+      assert.deepEqual(encode(new Set(labels), meta), whole);
+      const promise = encode(later(), meta);
+      assert.ok(promise instanceof Promise);
+      assert.deepEqual(await promise, whole);
+    });
+
+    test(`${name}: a source that fails, or gives what is no frame, is closed`, async () => {
+      const error = new VeroneseError('cancelled', 'no more');
+      let closed = 0;
+      async function* source(next) {
+        try {
+          yield labels[0];
+          yield next();
+        } finally {
+          closed++;
+        }
+      }
+      await assert.rejects(encode(source(() => { throw error; })), error);
+      await assert.rejects(encode(source(() => ({ ...labels[0], width: 3 }))), { code: 'invalid-input' });
+      await assert.rejects(encode(source(() => drawn('0'))), { code: 'frame-size-mismatch' });
+      assert.equal(closed, 3);
+    });
+  }
+
+  test('labels of one name are instances of one class', () => {
+    const [frame] = labels;
+    const coco = formats.encodeCoco(frame.labels, 4, 2, { names: meta.names });
+    assert.deepEqual(coco.categories, [{ id: 1, name: 'ground' }, { id: 2, name: 'car' }]);
+    assert.deepEqual(coco.annotations.map(({ category_id }) => category_id), [1, 2, 2]);
+    assert.equal(formats.encodeCvatXml(frame.labels, 4, 2, { names: meta.names }).match(/<label>/g).length, 2);
+    const { text, names } = formats.encodeYolo(frame.labels, 4, 2, { names: meta.names });
+    assert.deepEqual([names, text.split('\n').map(([number]) => number)], [['ground', 'car'], ['0', '1', '1', undefined]]);
+    assert.throws(() => formats.encodeYolo(frame.labels, 4, 2, {}, { classes: ['motion-0'] }), { code: 'invalid-input', message: /'motion-1' is not among the classes/ });
+    assert.deepEqual(formats.encodeCocoVideo(labels, meta).categories, [{ id: 2, name: 'car' }]);
+  });
+
+  test('numbers of objects are kept where they are tracked', () => {
+    const ids = (tracked) => formats.encodeCocoVideo(labels, { labels: [0, 2], tracked }).annotations.map(({ id }) => id);
+    assert.deepEqual([ids(false), ids(true)], [[1, 2], [255, 2]]);
+    const tracks = (tracked) => formats.encodeCocoImages(labels, { labels: [2], tracked }).annotations.map(({ attributes }) => attributes?.track_id);
+    assert.deepEqual([tracks(false), tracks(true)], [Array(3).fill(undefined), [2, 2, 2]]);
+  });
+
+  test('times of Label Studio', () => {
+    const times = (more) => {
+      const [{ value }] = formats.encodeLabelStudioVideo(labels, { labels: [2], ...more }).predictions[0].result;
+      return [...value.sequence.map(({ time }) => time), value.duration];
+    };
+    assert.deepEqual(times({}), [0, 0.04, 0.08, 0.12]);
+    assert.deepEqual(times({ frameRate: 2 }), [0, 0.5, 1, 1.5]);
+    assert.deepEqual(times({ timestamps: [10, 10.5, 12] }), [10, 10.5, 12, 3]);
+    assert.deepEqual(times({ timestamps: [10, 10.5, 12], frameRate: 4 }), [10, 10.5, 12, 2.25]);
+  });
+});
+
 describe('veronese.json', () => {
   const meta = { image: 'a.png', names: { 1: 'car' }, motions: [{ label: 1, matrix: [0.1, 0, 1 / 3, 0, -0.1, 1e-300], residual: 2, group: 0 }] };
 
@@ -207,17 +284,10 @@ describe('what is known beside the labels', () => {
 });
 
 describe('wrong input is refused', () => {
-  const calls = {
-    ...Object.fromEntries(
-      Object.entries(formats)
-        .filter(([name]) => !['encodeCocoVideo', 'encodeCvatMots', 'decodeVeronese'].includes(name))
-        .map(([name, encode]) => [name, encode]),
-    ),
-    encodeCocoVideo: (labels, width, height) => formats.encodeCocoVideo([{ labels, width, height }]),
-    encodeCvatMots: (labels, width, height) => formats.encodeCvatMots([{ labels, width, height }]),
-  };
-  for (const [name, encode] of Object.entries(calls)) {
+  const { decodeVeronese: _, ...encoders } = formats;
+  for (const [name, given] of Object.entries(encoders)) {
     test(name, () => {
+      const encode = (labels, width, height) => (MANY.includes(name) ? given([{ labels, width, height }]) : given(labels, width, height));
       const wrong = [[new Uint8Array(5), 3, 2], [new Uint8Array(0), 0, 0], [new Uint8Array(6), 1.5, 4], [new Uint8Array(6), -3, -2], [new Uint8Array(4097), 4097, 1], [new Uint8Array(6), NaN, 2]];
       for (const [labels, width, height] of wrong) {
         assert.throws(() => encode(labels, width, height), { name: 'VeroneseError', code: 'invalid-input' });
@@ -249,7 +319,7 @@ describe('wrong input is refused', () => {
 
   test('frames of two sizes, no frame, two frames of one name, too many labels for MOTS', () => {
     const frames = [drawn('01'), drawn('0', '1')];
-    for (const encode of [formats.encodeCocoVideo, formats.encodeCvatMots]) {
+    for (const encode of MANY.map((name) => formats[name])) {
       assert.throws(() => encode(frames), { code: 'frame-size-mismatch' });
       assert.throws(() => encode([]), { code: 'invalid-input' });
     }
@@ -257,6 +327,10 @@ describe('wrong input is refused', () => {
     assert.throws(() => formats.encodeCvatMots(twice), { code: 'invalid-input' });
     assert.throws(() => formats.encodeCvatMots([{ ...drawn('01'), image: '../a.png' }]), { code: 'invalid-input' });
     const many = { labels: Uint8Array.from({ length: 65 }, (_, at) => at), width: 65, height: 1 };
-    assert.throws(() => formats.encodeCvatMots([many]), { code: 'invalid-input' });
+    for (const encode of [formats.encodeCvatMots, formats.encodeMots]) {
+      assert.throws(() => encode([many]), { code: 'invalid-input' });
+      // Instances of one class are as many as there are labels.
+      encode([many], { names: Object.fromEntries(Array.from(many.labels, (label) => [label, 'car'])) });
+    }
   });
 });

@@ -377,10 +377,10 @@ describe('formats', () => {
   const whole = [labels, 2, 2];
   const ONE = ['encodeCoco', 'encodeCvatXml', 'encodeCvatPoints', 'encodeLabelStudio', 'encodeLabelMe', 'encodeYolo', 'encodeSupervisely', 'encodeWebAnnotation', 'encodeVeronese'];
   const SHAPED = ['encodeCoco', 'encodeCvatXml', 'encodeLabelStudio', 'encodeLabelMe'];
+  const MANY = ['encodeCocoImages', 'encodeCocoVideo', 'encodeCvatImages', 'encodeCvatVideo', 'encodeCvatMots', 'encodeMots', 'encodeMotChallenge', 'encodeLabelStudioVideo'];
   const calls = {
     ...Object.fromEntries(ONE.map((name) => [name, (meta) => formats[name](...whole, meta)])),
-    encodeCocoVideo: (meta) => formats.encodeCocoVideo([frame], meta),
-    encodeCvatMots: (meta) => formats.encodeCvatMots([frame], meta),
+    ...Object.fromEntries(MANY.map((name) => [name, (meta) => formats[name]([frame], meta)])),
   };
 
   // Frames of MOTS become files of an archive, so that they need a name.
@@ -421,13 +421,46 @@ describe('formats', () => {
     });
   }
 
-  for (const name of ['encodeCocoVideo', 'encodeCvatMots']) {
+  test('encodeYolo: classes', async () => {
+    await everywhere((value) => formats.encodeYolo(...whole, {}, { classes: value }), ['undefined']);
+    await everywhere((value) => formats.encodeYolo(...whole, {}, { classes: ['motion-0', 'motion-1', value] }), ['text', 'empty text']);
+  });
+
+  for (const name of ['encodeCocoImages', 'encodeCvatImages', 'encodeCvatVideo', 'encodeLabelStudioVideo']) {
+    test(`${name}: options`, async () => {
+      await everywhere((value) => formats[name]([frame], {}, value), OPTIONS);
+      await everywhere((value) => formats[name]([frame], {}, { shape: value }), ['undefined']);
+      await everywhere((value) => formats[name]([frame], {}, { nonsense: value }), ['undefined']);
+      await everywhere((value) => formats[name]([frame], {}, { modelVersion: value }), ['undefined', ...(name === 'encodeLabelStudioVideo' ? ['text', 'empty text'] : [])]);
+    });
+  }
+
+  for (const name of MANY) {
+    test(`${name}: what is known of the clip`, async () => {
+      await everywhere((value) => formats[name]([frame], { clip: value }), ['undefined', 'text', 'empty text']);
+      await everywhere((value) => formats[name]([frame], { tracked: value }), ['undefined', 'true', 'false']);
+      await everywhere((value) => formats[name]([frame], { frameRate: value }), ['undefined', ...named((value) => Number.isFinite(value) && value > 0)]);
+      await everywhere((value) => formats[name]([frame], { timestamps: value }), ['undefined', 'empty list']);
+      await everywhere((value) => formats[name]([frame], { timestamps: [value] }), FINITE);
+    });
+
+    test(`${name}: frames that come later`, async () => {
+      async function* later(...frames) {
+        yield* frames;
+      }
+      assert.deepEqual(await formats[name](later(frame)), formats[name]([frame]));
+      await everywhere((value) => formats[name](later(frame, value)), []);
+      await everywhere((value) => formats[name](later(frame), value), OPTIONS);
+      await assert.rejects(async () => formats[name](later()), { name: 'VeroneseError', code: 'invalid-input' });
+    });
+
     test(`${name}: frames`, async () => {
       await everywhere((value) => formats[name](value), []);
       await everywhere((value) => formats[name]([frame, value]), []);
       await everywhere((value) => formats[name]([{ ...frame, labels: value }]), []);
       await everywhere((value) => formats[name]([{ ...frame, width: value }]), []);
       await everywhere((value) => formats[name]([frame, { ...frame, image: value }]), imageNames(name));
+      await everywhere((value) => formats[name]([{ ...frame, motions: value }]), ['undefined', 'empty list']);
     });
   }
 

@@ -17,7 +17,7 @@ export interface FormatMotion {
 export interface FormatMeta {
   /** Name of the image that the masks lie on; default `first.png`. */
   image?: string;
-  /** Names by label; default `motion-0`, `motion-1` … */
+  /** Names by label; default `motion-0`, `motion-1` … Labels with the same name are instances of one class. */
   names?: Readonly<Record<number, string>>;
   /** The motions of the masks. */
   motions?: readonly FormatMotion[];
@@ -32,13 +32,36 @@ export interface LabelFrame {
   height: number;
   /** Name of the frame's file. */
   image?: string;
+  /** The motions from this frame to the next; default those of the `meta`. */
+  motions?: readonly FormatMotion[];
+}
+
+/** The frames of a clip in their order. Each is encoded before the next is taken, so that a long clip need not be in memory. */
+export type LabelFrames = Iterable<LabelFrame> | AsyncIterable<LabelFrame>;
+
+/** What frames become: a document, or a promise of it if they are an async iterable. */
+export type Encoded<Frames extends LabelFrames, Document> = Frames extends AsyncIterable<LabelFrame> ? Promise<Document> : Document;
+
+/** Optional information about a clip. */
+export interface ClipMeta extends FormatMeta {
+  /** Name of the clip or of its video file; default `clip`. */
+  clip?: string;
+  /** Frames per second; default from `timestamps`, else 25 in formats that require a rate. */
+  frameRate?: number;
+  /** Time of each frame in seconds; default from `frameRate`. */
+  timestamps?: readonly number[];
+  /**
+   * Whether labels are the numbers of objects, to be kept as ids; default false. Where ids begin at 1, label 0 becomes 255. Formats that
+   * hold nothing but tracks always keep them.
+   */
+  tracked?: boolean;
 }
 
 export interface FormatOptions<Shape extends string> {
   shape?: Shape;
   /**
    * Distance in pixels by which polygons may deviate from the border, to have fewer vertices; default 0: exact. More than 4 million
-   * vertices in one document, which only masks of noise need, throw `invalid-input`.
+   * vertices in one document (20 million in one of many frames), which only masks of noise need, throw `invalid-input`.
    */
   tolerance?: number;
 }
@@ -65,7 +88,7 @@ export interface CocoDocument {
     area: number;
     bbox: [number, number, number, number];
     segmentation: CocoRle | number[][];
-    attributes?: { matrix: Matrix };
+    attributes?: { track_id?: number; matrix?: Matrix };
   }[];
 }
 
@@ -112,6 +135,49 @@ export interface LabelStudioResult {
 export interface LabelStudioTask {
   data: { image: string };
   predictions: { model_version: string; result: LabelStudioResult[] }[];
+}
+
+export interface LabelStudioVideoTask {
+  data: { video: string };
+  predictions: {
+    model_version: string;
+    result: {
+      id: string;
+      type: 'videorectangle';
+      from_name: string;
+      to_name: string;
+      value: {
+        framesCount: number;
+        /** Seconds. */
+        duration: number;
+        labels: string[];
+        sequence: {
+          /** From 1. */
+          frame: number;
+          /** False where the object is gone in the next frame. */
+          enabled: boolean;
+          rotation: 0;
+          /** Percentages of the width and height. */
+          x: number;
+          y: number;
+          width: number;
+          height: number;
+          /** Seconds. */
+          time: number;
+        }[];
+      };
+    }[];
+  }[];
+}
+
+/** The text files of a sequence in the formats of MOTChallenge. */
+export interface MotFiles {
+  /** `gt/gt.txt`: a line for each object in each frame. */
+  gt: string;
+  /** `seqinfo.ini`. */
+  seqinfo: string;
+  /** Names of the classes; a class's number is its position, from 1. */
+  names: string[];
 }
 
 export interface LabelMeShape {
@@ -193,8 +259,15 @@ export function encodeCoco(
   options?: FormatOptions<'rle' | 'polygon'>,
 ): CocoDocument;
 
+/** A COCO instances file of many images; labels with the same name are one category. Throws `frame-size-mismatch` if they differ in size. */
+export function encodeCocoImages<Frames extends LabelFrames>(
+  frames: Frames,
+  meta?: ClipMeta,
+  options?: FormatOptions<'rle' | 'polygon'>,
+): Encoded<Frames, CocoDocument>;
+
 /** A YouTube-VIS file. Throws `frame-size-mismatch` if the frames differ in size. */
-export function encodeCocoVideo(frames: readonly LabelFrame[], meta?: FormatMeta): CocoVideoDocument;
+export function encodeCocoVideo<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, CocoVideoDocument>;
 
 /** A CVAT for images 1.1 file. */
 export function encodeCvatXml(
@@ -205,6 +278,23 @@ export function encodeCvatXml(
   options?: FormatOptions<'mask' | 'polygon'>,
 ): string;
 
+/** A CVAT for images 1.1 file of many images. Throws `frame-size-mismatch` if they differ in size. */
+export function encodeCvatImages<Frames extends LabelFrames>(
+  frames: Frames,
+  meta?: ClipMeta,
+  options?: FormatOptions<'mask' | 'polygon'>,
+): Encoded<Frames, string>;
+
+/**
+ * A CVAT for video 1.1 file: one track per label, with one polygon or box for each frame. Bridges join the parts and holes of a polygon.
+ * Throws `frame-size-mismatch` if the frames differ in size.
+ */
+export function encodeCvatVideo<Frames extends LabelFrames>(
+  frames: Frames,
+  meta?: ClipMeta,
+  options?: FormatOptions<'polygon' | 'box'>,
+): Encoded<Frames, string>;
+
 /** Shapes for CVAT's REST API and SDK. */
 export function encodeCvatPoints(labels: Uint8Array, width: number, height: number, meta?: FormatMeta): CvatShape[];
 
@@ -212,7 +302,13 @@ export function encodeCvatPoints(labels: Uint8Array, width: number, height: numb
  * A zip archive in CVAT's MOTS PNG layout, without the frames, with at most 64 labels. Frame names are paths in the archive; a name
  * that would escape it, or that some operating system does not allow, throws `invalid-input`.
  */
-export function encodeCvatMots(frames: readonly LabelFrame[], meta?: FormatMeta): Uint8Array;
+export function encodeCvatMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, Uint8Array>;
+
+/** The text form of MOTS: masks as COCO run lengths, ids 1000 · class + label. At most 64 classes. */
+export function encodeMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, MotFiles>;
+
+/** MOTChallenge boxes. Frames, ids and corners count from 1, as that benchmark has it. */
+export function encodeMotChallenge<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, MotFiles>;
 
 /** A Label Studio task with its predictions. Names must match the project's labelling configuration. */
 export function encodeLabelStudio(
@@ -223,6 +319,13 @@ export function encodeLabelStudio(
   options?: FormatOptions<'brush' | 'polygon'> & { fromName?: string; toName?: string; modelVersion?: string },
 ): LabelStudioTask;
 
+/** A Label Studio task with boxes on a video, a key frame wherever an object is. */
+export function encodeLabelStudioVideo<Frames extends LabelFrames>(
+  frames: Frames,
+  meta?: ClipMeta,
+  options?: { fromName?: string; toName?: string; modelVersion?: string },
+): Encoded<Frames, LabelStudioVideoTask>;
+
 /** A LabelMe file. */
 export function encodeLabelMe(
   labels: Uint8Array,
@@ -232,13 +335,16 @@ export function encodeLabelMe(
   options?: FormatOptions<'mask' | 'polygon'>,
 ): LabelMeDocument;
 
-/** YOLO segmentation: one line per label; bridges join parts and holes. */
+/**
+ * YOLO segmentation: one line per label; bridges join parts and holes. `classes` gives the names in the order of their numbers, which
+ * all images of a data set share; default the names that are there.
+ */
 export function encodeYolo(
   labels: Uint8Array,
   width: number,
   height: number,
   meta?: FormatMeta,
-  options?: { tolerance?: number },
+  options?: { tolerance?: number; classes?: readonly string[] },
 ): YoloFiles;
 
 /** An 8-bit indexed PNG whose index is the label, in the DAVIS palette. */

@@ -4,11 +4,18 @@ import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
 import { VeroneseError } from '../common/errors.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
-import { FORMATS, type FormatName, isFormatName } from './formats.js';
+import { isFormatName } from './formats.js';
 import type { PairSettings } from './pair.js';
+import type { Range } from './sequence.js';
+import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
 /** Names of the formats, wrapped to fit a terminal. */
-const FORMAT_NAMES = wrapped(Object.keys(FORMATS), 80, '\n' + ' '.repeat(41));
+const FORMAT_NAMES = wrapped(Object.keys(SEQUENCE_FORMATS), 80, '\n' + ' '.repeat(41));
+/** Those that are not for all folders. */
+const formatsFor = (ofPair: boolean, ofTracks: boolean): string =>
+  Object.entries(SEQUENCE_FORMATS)
+    .flatMap(([name, { tracks }]) => (tracks === ofTracks && isFormatName(name) === ofPair ? [name] : []))
+    .join(', ');
 
 export const HELP = `veronese segments two video frames by motion: how many motions there are, what each one is, and which pixels follow it.
 
@@ -35,11 +42,24 @@ export const HELP = `veronese segments two video frames by motion: how many moti
   veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
 
-  veronese convert DIR --to FORMATS      convert the output of pair in DIR for annotation tools; FORMATS are separated by commas:
+  veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; separate FORMATS by commas:
                                          ${FORMAT_NAMES}
-      --grouped              groups instead of motions
-      --image NAME           file name of the image that the masks belong to (default: first.png)
+                                         only of clip: ${formatsFor(false, true)}
+                                         only of pair and clip: ${formatsFor(true, true)}
+                                         only of batch and clip: ${formatsFor(false, false)}
+      --tolerance PIXELS     distance by which polygons may deviate from a mask's border (default: 0)
       --out DIR              output folder (default: the input folder)
+    of pair and batch:
+      --grouped              groups instead of motions
+    of pair:
+      --image NAME           file name of the image that the masks belong to (default: first.png)
+    of batch and clip, where images are named as the frames are:
+      --background           convert the background as well
+      --from N, --until M    convert only frames N to M, both inclusive, counted from 0 (default: all)
+    of clip:
+      --shapes polygon|box   shapes in cvat-video (default: polygon)
+      --video NAME           file name of the video, for cvat-video and label-studio-video (default: the name of DIR)
+      --frame-rate N         frames per second, for formats that need it (default: the clip's, else 25)
 
   veronese points FILE.json [options]    fit motions to {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
       --motions auto|1..10   number of motions (default: auto)
@@ -74,7 +94,20 @@ export type Command =
     } & PairSettings)
   | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
   | ({ name: 'video'; file: string } & SequenceSettings)
-  | { name: 'convert'; folder: string; to: FormatName[]; grouped: boolean; image?: string; out?: string }
+  | {
+      name: 'convert';
+      folder: string;
+      to: SequenceFormatName[];
+      tolerance: number;
+      grouped: boolean;
+      background: boolean;
+      range: Range;
+      image?: string;
+      shapes?: 'polygon' | 'box';
+      video?: string;
+      frameRate?: number;
+      out?: string;
+    }
   | {
       name: 'points';
       file: string;
@@ -108,6 +141,13 @@ const OPTIONS = {
   overlay: { type: 'boolean', default: false },
   to: { type: 'string' },
   image: { type: 'string' },
+  background: { type: 'boolean', default: false },
+  from: { type: 'string', default: '0' },
+  until: { type: 'string' },
+  shapes: { type: 'string' },
+  video: { type: 'string' },
+  'frame-rate': { type: 'string' },
+  tolerance: { type: 'string', default: '0' },
   list: { type: 'string' },
   every: { type: 'string', default: '1' },
   'with-before': { type: 'boolean', default: false },
@@ -122,7 +162,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: ['before', ...OF_PAIRS],
   batch: ['list', ...OF_SEQUENCES],
   video: OF_SEQUENCES,
-  convert: ['to', 'grouped', 'image', 'out'],
+  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'out'],
   points: ['motions', 'method', 'seed'],
 };
 
@@ -148,9 +188,20 @@ export function parseCommand(args: string[]): Command {
   if (name === 'convert') {
     const [folder] = exactly(1, files, "'convert' takes one folder");
     if (values.to === undefined) throw usage("'convert' needs '--to FORMATS'");
-    const image = values.image !== undefined && { image: values.image };
-    const out = values.out !== undefined && { out: values.out };
-    return { name, folder: folder as string, to: formats(values.to), grouped: values.grouped, ...image, ...out };
+    return {
+      name,
+      folder: folder as string,
+      to: formats(values.to),
+      tolerance: decimal('tolerance', values.tolerance),
+      grouped: values.grouped,
+      background: values.background,
+      range: range(values.from, values.until),
+      ...(values.image !== undefined && { image: values.image }),
+      ...(values.shapes !== undefined && { shapes: choice('shapes', values.shapes, 'polygon', 'box') }),
+      ...(values.video !== undefined && { video: values.video }),
+      ...(values['frame-rate'] !== undefined && { frameRate: rate(values['frame-rate']) }),
+      ...(values.out !== undefined && { out: values.out }),
+    };
   }
   for (const name of ['overlay', 'confidence'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
@@ -215,11 +266,34 @@ function seed(text: string): number {
   throw invalid('seed', `a whole number from 0 to ${Number.MAX_SAFE_INTEGER}`, text);
 }
 
-function formats(text: string): FormatName[] {
+function formats(text: string): SequenceFormatName[] {
   const names = [...new Set(text.split(','))];
-  const known: FormatName[] = names.filter(isFormatName);
+  const known: SequenceFormatName[] = names.filter(isSequenceFormatName);
   if (known.length === names.length) return known;
-  throw invalid('to', `formats of ${Object.keys(FORMATS).join(', ')}`, text);
+  throw invalid('to', `formats of ${Object.keys(SEQUENCE_FORMATS).join(', ')}`, text);
+}
+
+function range(from: string, until?: string): Range {
+  const index = (name: string, text: string) => {
+    if (/^\d{1,9}$/.test(text)) return Number(text);
+    throw invalid(name, 'the number of a frame, from 0', text);
+  };
+  const first = index('from', from);
+  if (until === undefined) return { from: first };
+  const last = index('until', until);
+  if (last < first) throw invalid('until', `a frame from ${first}, where '--from' is`, until);
+  return { from: first, until: last };
+}
+
+function decimal(name: string, text: string): number {
+  if (/^\d+(\.\d+)?$/.test(text) && Number.isFinite(Number(text))) return Number(text);
+  throw invalid(name, 'a number from 0', text);
+}
+
+function rate(text: string): number {
+  const value = decimal('frame-rate', text);
+  if (value > 0) return value;
+  throw invalid('frame-rate', 'a number above 0', text);
 }
 
 function wrapped(words: readonly string[], width: number, lineBreak: string): string {

@@ -1,8 +1,8 @@
 // Files of the command line: read with a limit, written whole or not at all.
 
-import { readdirSync, renameSync, rmSync, statSync } from 'node:fs';
+import { mkdirSync, readdirSync, renameSync, rmSync, statSync } from 'node:fs';
 import { mkdir, readFile, stat, writeFile } from 'node:fs/promises';
-import { join } from 'node:path';
+import { dirname, extname, join } from 'node:path';
 import { VeroneseError } from '../common/errors.js';
 
 /** Largest input, bytes: more than the largest frame needs in the most wasteful of the formats. */
@@ -51,6 +51,12 @@ export interface OutputFile {
   bytes: Uint8Array;
 }
 
+/** What goes into a file, at once or piece by piece. */
+export type Content = Uint8Array | string | AsyncIterable<string>;
+
+/** Writes a file. Folders in its path, which is divided by `/`, are made. */
+export type Write = (path: string, content: Content) => Promise<void>;
+
 /** What this program writes; files of an earlier run that this one did not make would be mistaken for its own. */
 export const OURS = /^(mask-\d+|overlay|confidence)\.png$/;
 
@@ -83,7 +89,52 @@ export class Output {
     }
   }
 
-  // Both without a pause, so that no signal is handled in between.
+  /**
+   * Files and folders of files, as many as `work` writes: they are in a folder of their own until it is done, then all take their
+   * places. A folder that is there is replaced if it has nothing but what an earlier run can have written. Returns their names, those
+   * of folders with a `/`. Rejects with what `work` rejects with, or with `write-failed`, leaving nothing behind.
+   */
+  async stage(folder: string, work: (write: Write) => Promise<void>): Promise<string[]> {
+    const part = join(folder, `.convert.${process.pid}.part`);
+    this.#temporary.add(part);
+    const names = new Set<string>();
+    const tried = async <T>(action: () => T | Promise<T>): Promise<T> => {
+      try {
+        return await action();
+      } catch (thrown) {
+        if (thrown instanceof VeroneseError) throw thrown;
+        throw writeFailed(folder, thrown instanceof Error ? thrown.message : String(thrown));
+      }
+    };
+    try {
+      await tried(() => mkdir(part, { recursive: true }));
+      await work((path, content) =>
+        tried(async () => {
+          const place = join(part, ...path.split('/'));
+          names.add(path.split('/')[0] as string);
+          await mkdir(dirname(place), { recursive: true });
+          await writeFile(place, content);
+        }),
+      );
+      return await tried(() => this.#publish(part, folder, [...names]));
+    } finally {
+      this.discard();
+    }
+  }
+
+  // The rest without a pause, so that no signal is handled in between.
+
+  #publish(part: string, folder: string, names: readonly string[]): string[] {
+    const isFolder = (place: string) => statSync(place, { throwIfNoEntry: false })?.isDirectory() === true;
+    for (const name of names) checkReplaceable(join(folder, name), join(part, name));
+    const old = join(part, '.old');
+    mkdirSync(old);
+    for (const name of names) {
+      if (isFolder(join(folder, name))) renameSync(join(folder, name), join(old, name));
+      renameSync(join(part, name), join(folder, name));
+    }
+    return names.map((name) => (isFolder(join(folder, name)) ? `${name}/` : name));
+  }
 
   #clear(folder: string, names: ReadonlySet<string>): void {
     for (const name of readdirSync(folder)) if (OURS.test(name) && !names.has(name)) rmSync(join(folder, name));
@@ -98,7 +149,25 @@ export class Output {
 
   /** Removes what is half-written. */
   discard(): void {
-    for (const path of this.#temporary) rmSync(path, { force: true });
+    for (const path of this.#temporary) rmSync(path, { recursive: true, force: true });
     this.#temporary.clear();
   }
+}
+
+/** Throws unless what is at `place`, if anything, may give way to a new file or folder. */
+function checkReplaceable(place: string, replacement: string): void {
+  const there = statSync(place, { throwIfNoEntry: false });
+  if (!there) return;
+  const isFolder = statSync(replacement).isDirectory();
+  if (there.isDirectory() !== isFolder) throw new Error(`'${place}' is ${isFolder ? 'no' : 'a'} folder`);
+  if (!isFolder) return;
+  const kinds = new Set(filesBelow(replacement).map((name) => extname(name)));
+  const foreign = filesBelow(place).find((name) => !kinds.has(extname(name)));
+  if (foreign !== undefined) throw new Error(`'${join(place, foreign)}' is not of an earlier conversion`);
+}
+
+function filesBelow(folder: string): string[] {
+  return readdirSync(folder, { withFileTypes: true }).flatMap((entry) =>
+    entry.isDirectory() ? filesBelow(join(folder, entry.name)).map((name) => join(entry.name, name)) : [entry.name],
+  );
 }

@@ -1,4 +1,4 @@
-// The formats that `veronese convert` writes: a name, the files, and the encoder.
+// The formats that `veronese convert` writes of one image: a name, the files, and the encoder.
 
 import type { FormatMeta } from '../../types/formats.js';
 import * as formats from '../formats/index.js';
@@ -12,31 +12,34 @@ export interface Masks {
   meta: FormatMeta;
 }
 
-type Encode = (masks: Masks) => OutputFile[];
+/** `tolerance`: of polygons, pixels. */
+type Encode = (masks: Masks, tolerance: number) => OutputFile[];
 
-const json = (name: string, encode: (masks: Masks) => unknown): Encode => (masks) => [text(name, `${JSON.stringify(encode(masks))}\n`)];
+const json = (name: string, encode: (masks: Masks, tolerance: number) => unknown): Encode => {
+  return (masks, tolerance) => [text(name, `${JSON.stringify(encode(masks, tolerance))}\n`)];
+};
 const text = (name: string, content: string): OutputFile => ({ name, bytes: new TextEncoder().encode(content) });
 const all = ({ labels, width, height, meta }: Masks) => [labels, width, height, meta] as const;
 
 export const FORMATS = {
   coco: json('coco.json', (m) => formats.encodeCoco(...all(m), { shape: 'rle' })),
-  'coco-polygon': json('coco-polygon.json', (m) => formats.encodeCoco(...all(m), { shape: 'polygon' })),
+  'coco-polygon': json('coco-polygon.json', (m, tolerance) => formats.encodeCoco(...all(m), { shape: 'polygon', tolerance })),
   'youtube-vis': json('youtube-vis.json', (m) => formats.encodeCocoVideo([frame(m)], m.meta)),
   cvat: (m) => [text('cvat.xml', formats.encodeCvatXml(...all(m), { shape: 'mask' }))],
-  'cvat-polygon': (m) => [text('cvat-polygon.xml', formats.encodeCvatXml(...all(m), { shape: 'polygon' }))],
+  'cvat-polygon': (m, tolerance) => [text('cvat-polygon.xml', formats.encodeCvatXml(...all(m), { shape: 'polygon', tolerance }))],
   'cvat-points': json('cvat-points.json', (m) => formats.encodeCvatPoints(...all(m))),
   'cvat-mots': (m) => [{ name: 'cvat-mots.zip', bytes: formats.encodeCvatMots([frame(m)], m.meta) }],
   'label-studio': json('label-studio.json', (m) => [formats.encodeLabelStudio(...all(m), { shape: 'brush' })]),
-  'label-studio-polygon': json('label-studio-polygon.json', (m) => [formats.encodeLabelStudio(...all(m), { shape: 'polygon' })]),
+  'label-studio-polygon': json('label-studio-polygon.json', (m, tolerance) => [formats.encodeLabelStudio(...all(m), { shape: 'polygon', tolerance })]),
   labelme: json('labelme.json', (m) => formats.encodeLabelMe(...all(m), { shape: 'mask' })),
-  'labelme-polygon': json('labelme-polygon.json', (m) => formats.encodeLabelMe(...all(m), { shape: 'polygon' })),
-  yolo: (m) => {
-    const { text: lines, names } = formats.encodeYolo(...all(m));
+  'labelme-polygon': json('labelme-polygon.json', (m, tolerance) => formats.encodeLabelMe(...all(m), { shape: 'polygon', tolerance })),
+  yolo: (m, tolerance) => {
+    const { text: lines, names } = formats.encodeYolo(...all(m), { tolerance });
     return [text('yolo.txt', lines), text('yolo-names.txt', names.map((name) => `${name}\n`).join(''))];
   },
   davis: (m) => [{ name: 'davis.png', bytes: formats.encodeDavis(m.labels, m.width, m.height) }],
   supervisely: json('supervisely.json', (m) => formats.encodeSupervisely(...all(m))),
-  'web-annotation': json('web-annotation.json', (m) => formats.encodeWebAnnotation(...all(m))),
+  'web-annotation': json('web-annotation.json', (m, tolerance) => formats.encodeWebAnnotation(...all(m), { tolerance })),
   veronese: json('veronese.json', (m) => formats.encodeVeronese(...all(m))),
 } satisfies Record<string, Encode>;
 

@@ -27,10 +27,15 @@ export function reading<T>(read: () => T): T {
   try {
     return read();
   } catch (cause) {
-    if (cause instanceof VeroneseError) throw cause;
-    const reason = cause instanceof Error ? cause.message : 'something was thrown';
-    throw new VeroneseError('invalid-input', `what was given cannot be read: ${reason}`, { cause });
+    throw unreadable(cause);
   }
+}
+
+/** What was thrown while something was read, as an error of ours. */
+export function unreadable(cause: unknown): VeroneseError {
+  if (cause instanceof VeroneseError) return cause;
+  const reason = cause instanceof Error ? cause.message : 'something was thrown';
+  return new VeroneseError('invalid-input', `what was given cannot be read: ${reason}`, { cause });
 }
 
 export function isObject(value: unknown): value is Record<string, unknown> {

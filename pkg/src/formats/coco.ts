@@ -1,8 +1,9 @@
 // A COCO instances file. Polygons are filled ring by ring and united there: holes hang on their outline by a bridge.
 
-import type { CocoDocument, FormatMeta, FormatOptions } from '../../types/formats.js';
+import type { ClipMeta, CocoDocument, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
 import { cocoRle } from './coco-rle.js';
-import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
+import { type Frame, gathered, type Gathering, idOf } from './frames.js';
+import { checkedOptions, imageOf, masksOf } from './input.js';
 import { Outlines } from './outline.js';
 
 export function encodeCoco(
@@ -12,27 +13,57 @@ export function encodeCoco(
   meta: FormatMeta = {},
   options?: FormatOptions<'rle' | 'polygon'>,
 ): CocoDocument {
-  const { shape, tolerance } = checkedOptions(options, ['rle', 'polygon']);
+  const instances = new Instances(options, 'image', false);
   const masks = masksOf(labels, width, height, meta);
-  const outlines = new Outlines(tolerance);
-  return {
-    info: { description: 'Masks of what moves together' },
-    images: [{ id: 1, file_name: imageOf(meta), width, height }],
-    categories: cocoCategories(masks),
-    annotations: masks.map((mask, index) => ({
-      id: index + 1,
-      image_id: 1,
-      category_id: mask.label + 1,
-      iscrowd: 0,
-      area: mask.area,
-      bbox: [mask.left, mask.top, mask.width, mask.height],
-      segmentation: shape === 'rle' ? cocoRle(mask, width, height) : outlines.bridged(mask),
-      ...(mask.motion && { attributes: { matrix: mask.motion.matrix } }),
-    })),
-  };
+  instances.add({ index: 0, image: imageOf(meta), width, height, masks });
+  return instances.finish();
 }
 
-/** COCO counts from 1: label 0 is category 1. */
-export function cocoCategories(masks: readonly Mask[]): { id: number; name: string }[] {
-  return masks.map(({ label, name }) => ({ id: label + 1, name }));
+export function encodeCocoImages<Frames extends LabelFrames>(
+  frames: Frames,
+  meta?: ClipMeta,
+  options?: FormatOptions<'rle' | 'polygon'>,
+): Encoded<Frames, CocoDocument> {
+  return gathered(frames, meta, ({ tracked }) => new Instances(options, 'clip', tracked));
+}
+
+class Instances implements Gathering<CocoDocument> {
+  readonly #shape: 'rle' | 'polygon';
+  readonly #outlines: Outlines;
+  readonly #tracked: boolean;
+  readonly #images: CocoDocument['images'] = [];
+  readonly #annotations: CocoDocument['annotations'] = [];
+  /** Names by the smallest label that has them. */
+  readonly #categories = new Map<number, string>();
+
+  constructor(options: unknown, kind: 'image' | 'clip', tracked: boolean) {
+    const { shape, tolerance } = checkedOptions(options, ['rle', 'polygon']);
+    this.#shape = shape;
+    this.#outlines = new Outlines(tolerance, kind);
+    this.#tracked = tracked;
+  }
+
+  add({ index, image, width, height, masks }: Frame): void {
+    this.#images.push({ id: index + 1, file_name: image, width, height });
+    for (const mask of masks) {
+      this.#categories.set(mask.category, mask.name);
+      const attributes = { ...(this.#tracked && { track_id: idOf(mask.label) }), ...(mask.motion && { matrix: mask.motion.matrix }) };
+      this.#annotations.push({
+        id: this.#annotations.length + 1,
+        image_id: index + 1,
+        category_id: mask.category + 1,
+        iscrowd: 0,
+        area: mask.area,
+        bbox: [mask.left, mask.top, mask.width, mask.height],
+        segmentation: this.#shape === 'rle' ? cocoRle(mask, width, height) : this.#outlines.bridged(mask),
+        ...(Object.keys(attributes).length > 0 && { attributes }),
+      });
+    }
+  }
+
+  finish(): CocoDocument {
+    // COCO counts from 1: label 0 is category 1.
+    const categories = [...this.#categories].sort(([a], [b]) => a - b).map(([category, name]) => ({ id: category + 1, name }));
+    return { info: { description: 'Masks of what moves together' }, images: this.#images, categories, annotations: this.#annotations };
+  }
 }

@@ -1,8 +1,9 @@
-// "CVAT for images 1.1": one image with a <mask> or <polygon> per part.
+// "CVAT for images 1.1": images with a <mask> or <polygon> per part.
 
-import type { FormatMeta, FormatOptions } from '../../types/formats.js';
-import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
-import { Outlines, points } from './outline.js';
+import type { ClipMeta, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
+import { type Frame, gathered, type Gathering } from './frames.js';
+import { checkedOptions, classNames, imageOf, type Mask, masksOf } from './input.js';
+import { Outlines, points, type Ring } from './outline.js';
 import { rowRuns } from './runs.js';
 import { escaped } from './xml.js';
 
@@ -13,29 +14,65 @@ export function encodeCvatXml(
   meta: FormatMeta = {},
   options?: FormatOptions<'mask' | 'polygon'>,
 ): string {
-  const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
+  const images = new Images(options, 'image');
   const masks = masksOf(labels, width, height, meta);
-  const outlines = new Outlines(tolerance);
-  const shapes = masks.flatMap((mask) => (shape === 'mask' ? [maskElement(mask)] : polygonElements(mask, outlines)));
+  images.add({ index: 0, image: imageOf(meta), width, height, masks });
+  return images.finish();
+}
+
+export function encodeCvatImages<Frames extends LabelFrames>(
+  frames: Frames,
+  meta?: ClipMeta,
+  options?: FormatOptions<'mask' | 'polygon'>,
+): Encoded<Frames, string> {
+  return gathered(frames, meta, () => new Images(options, 'clip'));
+}
+
+class Images implements Gathering<string> {
+  readonly #shape: 'mask' | 'polygon';
+  readonly #outlines: Outlines;
+  readonly #names = new Set<string>();
+  readonly #elements: string[] = [];
+  #count = 0;
+
+  constructor(options: unknown, kind: 'image' | 'clip') {
+    const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
+    this.#shape = shape;
+    this.#outlines = new Outlines(tolerance, kind);
+  }
+
+  add({ index, image, width, height, masks }: Frame): void {
+    this.#count++;
+    for (const name of classNames(masks)) this.#names.add(name);
+    this.#elements.push(`  <image id="${index}" name="${escaped(image)}" width="${width}" height="${height}">`);
+    for (const mask of masks) {
+      for (const shape of this.#shape === 'mask' ? [maskElement(mask)] : polygonElements(mask, this.#outlines)) this.#elements.push(shape);
+    }
+    this.#elements.push('  </image>');
+  }
+
+  finish(): string {
+    return [...cvatHead('annotation', this.#count, this.#names), ...this.#elements, '</annotations>', ''].join('\n');
+  }
+}
+
+/** What stands before the annotations. `more` are further elements of the task. */
+export function cvatHead(mode: 'annotation' | 'interpolation', size: number, names: Iterable<string>, more: readonly string[] = []): string[] {
   return [
     '<?xml version="1.0" encoding="utf-8"?>',
     '<annotations>',
     '  <version>1.1</version>',
     '  <meta>',
     '    <task>',
-    '      <size>1</size>',
-    '      <mode>annotation</mode>',
+    `      <size>${size}</size>`,
+    `      <mode>${mode}</mode>`,
     '      <labels>',
-    ...masks.map(({ name }) => `        <label><name>${escaped(name)}</name><attributes></attributes></label>`),
+    ...Array.from(new Set(names), (name) => `        <label><name>${escaped(name)}</name><attributes></attributes></label>`),
     '      </labels>',
+    ...more.map((element) => `      ${element}`),
     '    </task>',
     '  </meta>',
-    `  <image id="0" name="${escaped(imageOf(meta))}" width="${width}" height="${height}">`,
-    ...shapes,
-    '  </image>',
-    '</annotations>',
-    '',
-  ].join('\n');
+  ];
 }
 
 function maskElement({ name, left, top, width, height, pixels }: Mask): string {
@@ -48,8 +85,12 @@ function polygonElements(mask: Mask, outlines: Outlines): string[] {
   const parts = outlines.bridged(mask);
   const group = parts.length > 1 ? ` group_id="${mask.label + 1}"` : '';
   return parts.map((ring) => {
-    const vertices = points(ring).map(([x, y]) => `${x}.00,${y}.00`);
-    const rest = `source="auto" occluded="0" points="${vertices.join(';')}" z_order="0"${group}`;
+    const rest = `source="auto" occluded="0" points="${cvatPoints(ring)}" z_order="0"${group}`;
     return `    <polygon label="${escaped(mask.name)}" ${rest}></polygon>`;
   });
+}
+
+/** The vertices of a polygon. */
+export function cvatPoints(ring: Ring): string {
+  return points(ring).map(([x, y]) => `${x}.00,${y}.00`).join(';');
 }

@@ -1,6 +1,6 @@
 // What every encoder reads: a label image and what is known about its masks. Checked once, here.
 
-import type { FormatMeta, FormatMotion, LabelFrame } from '../../types/formats.js';
+import type { FormatMeta, FormatMotion } from '../../types/formats.js';
 import {
   entriesOf,
   invalidInput,
@@ -14,12 +14,13 @@ import {
   UNLABELLED,
   unknownOf,
 } from '../common/checks.js';
-import { VeroneseError } from '../common/errors.js';
 
 /** One label's pixels inside their bounding box. */
 export interface Mask {
   label: number;
   name: string;
+  /** The smallest label that has the same name: it stands for the class. */
+  category: number;
   /** Top-left corner and size of the bounding box in the image, pixels. */
   left: number;
   top: number;
@@ -42,7 +43,8 @@ export function masksOf(labels: Uint8Array, width: number, height: number, meta:
   for (const [label, box] of boxes.entries()) {
     if (box === undefined || label === UNLABELLED || wanted?.has(label) === false) continue;
     const motion = known.motions?.find((motion) => motion.label === label);
-    masks.push({ ...crop(labels, width, label, box), name: nameOf(label, known), ...(motion && { motion }) });
+    const name = nameOf(label, known);
+    masks.push({ ...crop(labels, width, label, box), name, category: categoryOf(name, label, known), ...(motion && { motion }) });
   }
   return masks;
 }
@@ -51,27 +53,20 @@ export function nameOf(label: number, { names }: Pick<FormatMeta, 'names'>): str
   return names?.[label] ?? `motion-${label}`;
 }
 
+function categoryOf(name: string, label: number, meta: Pick<FormatMeta, 'names'>): number {
+  let category = 0;
+  while (category < label && nameOf(category, meta) !== name) category++;
+  return category;
+}
+
+/** The names of the masks' classes, each once, in the order of the masks. */
+export function classNames(masks: readonly Mask[]): string[] {
+  return [...new Set(masks.map(({ name }) => name))];
+}
+
 /** The name of the first frame's file. */
 export function imageOf({ image }: Pick<FormatMeta, 'image'>): string {
   return image ?? 'first.png';
-}
-
-/** Throws `invalid-input` unless there are frames, all of one size. */
-export function checkFrames(frames: readonly LabelFrame[]): { width: number; height: number } {
-  return reading(() => sizeOf(frames));
-}
-
-function sizeOf(frames: readonly LabelFrame[]): { width: number; height: number } {
-  if (!isListOf(frames, isObject)) throw invalidInput('the frames must be a list of { labels, width, height }');
-  const [first] = frames as readonly LabelFrame[];
-  if (!first) throw invalidInput('there must be one frame at least');
-  for (const { labels, width, height, image } of frames as readonly LabelFrame[]) {
-    checkLabels(labels, width, height);
-    if (!isText(image)) throw invalidInput("a frame's image must be text, the name of its file");
-    if (width === first.width && height === first.height) continue;
-    throw new VeroneseError('frame-size-mismatch', 'the frames must have one size');
-  }
-  return { width: first.width, height: first.height };
 }
 
 export function checkLabels(labels: Uint8Array, width: number, height: number): void {
@@ -83,12 +78,12 @@ export function checkLabels(labels: Uint8Array, width: number, height: number): 
   }
 }
 
-/** What is known beside the labels, as a copy: documents share nothing with what they are made of. */
-export function checkedMeta(meta: unknown): FormatMeta {
+/** What is known beside the labels, as a copy: documents share nothing with what they are made of. `more` may be there as well. */
+export function checkedMeta(meta: unknown, more: readonly string[] = []): FormatMeta {
   return reading(() => {
     if (meta === undefined) return {};
     if (!isObject(meta)) throw invalidInput('what is known beside the labels must be an object');
-    const unknown = unknownOf(meta, ['image', 'names', 'motions', 'labels']);
+    const unknown = unknownOf(meta, ['image', 'names', 'motions', 'labels', ...more]);
     if (unknown !== undefined) throw invalidInput(`nothing is known as ${unknown}`);
     const { image, names, motions, labels } = meta;
     if (!isText(image)) throw invalidInput('image must be text, the name of a file');
@@ -108,14 +103,18 @@ export function checkedMeta(meta: unknown): FormatMeta {
   });
 }
 
-/** Throws `invalid-option`. The first of the shapes is the default; `texts` are options with the values that they have otherwise. */
-export function checkedOptions<Shape extends string, Texts extends Record<string, string>>(
+/**
+ * Throws `invalid-option`. The first of the shapes is the default; `texts` are options with the values that they have otherwise, `more`
+ * those that the caller looks at.
+ */
+export function checkedOptions<Shape extends string, Texts extends Record<string, string>, More extends string>(
   options: unknown,
   shapes: readonly Shape[],
   texts?: Texts,
-): { shape: Shape; tolerance: number } & Texts {
+  more: readonly More[] = [],
+): { shape: Shape; tolerance: number } & Texts & Partial<Record<More, unknown>> {
   return reading(() => {
-    const known = [...(shapes.length > 0 ? ['shape'] : []), 'tolerance', ...Object.keys(texts ?? {})];
+    const known = [...(shapes.length > 0 ? ['shape'] : []), 'tolerance', ...Object.keys(texts ?? {}), ...more];
     const whole = { shape: shapes[0], tolerance: 0, ...texts, ...entriesOf(options, known) };
     const { shape, tolerance } = whole as { shape: unknown; tolerance: unknown };
     if (!(shapes as readonly unknown[]).includes(shape) && shape !== undefined) {
@@ -126,12 +125,12 @@ export function checkedOptions<Shape extends string, Texts extends Record<string
       const value = (whole as Record<string, unknown>)[name];
       if (typeof value !== 'string') throw invalidOption(name, 'text', value);
     }
-    return whole as { shape: Shape; tolerance: number } & Texts;
+    return whole as { shape: Shape; tolerance: number } & Texts & Partial<Record<More, unknown>>;
   });
 }
 
 /** Where there is one. */
-function isText(value: unknown): value is string | undefined {
+export function isText(value: unknown): value is string | undefined {
   return value === undefined || typeof value === 'string';
 }
 
@@ -152,7 +151,7 @@ export function copied(motion: FormatMotion): FormatMotion {
   return { ...motion, matrix: [...matrix], ...(bbox && { bbox: [...bbox] }) };
 }
 
-function isFinite(value: unknown): value is number {
+export function isFinite(value: unknown): value is number {
   return Number.isFinite(value);
 }
 

@@ -24,8 +24,8 @@ interface Hanging {
   start: Int32Array;
 }
 
-/** Most vertices in the outlines of one document. Only masks of noise have more, and files that no tool opens. */
-const MOST_VERTICES = 4_000_000;
+/** Most vertices in the outlines of one document, of one image and of many. Only masks of noise have more, and files that no tool opens. */
+const MOST_VERTICES = { image: 4_000_000, clip: 20_000_000 };
 
 /** Recursion of Douglas and Peucker that is deeper than this splits rings so unevenly that its time is quadratic. */
 const DEEPEST = 64;
@@ -35,11 +35,14 @@ const NONE = -1;
 /** The outlines of the masks of one document. Throws `invalid-input` where they have too many vertices together. */
 export class Outlines {
   readonly #tolerance: number;
-  #left = MOST_VERTICES;
+  readonly #most: number;
+  #left: number;
 
   /** Outlines may leave the border by `tolerance` pixels to have fewer vertices; 0 is exact. */
-  constructor(tolerance = 0) {
+  constructor(tolerance = 0, kind: keyof typeof MOST_VERTICES = 'image') {
     this.#tolerance = tolerance;
+    this.#most = MOST_VERTICES[kind];
+    this.#left = this.#most;
   }
 
   /** Every border of the mask as a ring of its own, to be filled by the even-odd rule: outer ones clockwise, holes the other way. */
@@ -85,7 +88,7 @@ export class Outlines {
   #take(vertices: number): void {
     this.#left -= vertices;
     if (this.#left >= 0) return;
-    const sentence = `the outlines have more than ${MOST_VERTICES} vertices: take a larger tolerance or a format that holds masks`;
+    const sentence = `the outlines have more than ${this.#most} vertices: take a larger tolerance or a format that holds masks`;
     throw new VeroneseError('invalid-input', sentence);
   }
 }

@@ -1,7 +1,8 @@
 // YOLO segmentation: one line per label, its class and one ring in shares of the image's sides.
 
 import type { FormatMeta, YoloFiles } from '../../types/formats.js';
-import { checkedOptions, masksOf } from './input.js';
+import { invalidInput, invalidOption, isListOf, reading } from '../common/checks.js';
+import { checkedOptions, classNames, masksOf } from './input.js';
 import { Outlines } from './outline.js';
 
 /** Enough for an error far below a thousandth of a pixel. */
@@ -12,17 +13,30 @@ export function encodeYolo(
   width: number,
   height: number,
   meta: FormatMeta = {},
-  options?: { tolerance?: number },
+  options?: { tolerance?: number; classes?: readonly string[] },
 ): YoloFiles {
-  const { tolerance } = checkedOptions(options, []);
+  const { tolerance, classes } = checkedOptions(options, [], {}, ['classes']);
   const masks = masksOf(labels, width, height, meta);
+  const names = reading(() => listed(classes)) ?? classNames(masks);
   const outlines = new Outlines(tolerance);
   const [shareX, shareY] = [shares(width), shares(height)];
-  const rings = masks.map((mask) => outlines.single(mask));
-  const lines = rings.map((ring, index) => {
-    return `${index} ${ring.map((value, at) => (at % 2 === 0 ? shareX : shareY)[value]).join(' ')}\n`;
+  const lines = masks.map((mask) => {
+    const ring = outlines.single(mask);
+    return `${numberOf(mask.name, names)} ${ring.map((value, at) => (at % 2 === 0 ? shareX : shareY)[value]).join(' ')}\n`;
   });
-  return { text: lines.join(''), names: masks.map(({ name }) => name) };
+  return { text: lines.join(''), names };
+}
+
+function listed(classes: unknown): string[] | undefined {
+  const isName = (name: unknown) => typeof name === 'string';
+  if (classes === undefined || isListOf(classes, isName)) return classes && [...classes];
+  throw invalidOption('classes', 'a list of names', classes);
+}
+
+function numberOf(name: string, classes: readonly string[]): number {
+  const number = classes.indexOf(name);
+  if (number < 0) throw invalidInput(`'${name}' is not among the classes`);
+  return number;
 }
 
 /** What the whole numbers up to a side are of it, as text: once each and not for every vertex. */

@@ -1,19 +1,14 @@
-// What the encoders write, read by the decoders of the tools it is meant for. They are Python; set-up puts them into
-// .tools/python where there is a Python (scripts/lib/python-packages.mjs says which).
+// What the encoders write, read by the decoders of the tools it is meant for.
 
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
-import { fileURLToPath } from 'node:url';
 import * as formats from 'veronese/formats';
 import { labelImages, present } from '../support/masks.mjs';
+import { decoded, skip } from '../support/python.mjs';
 
-const python = fileURLToPath(
-  new URL(process.platform === 'win32' ? '../../../.tools/python/Scripts/python.exe' : '../../../.tools/python/bin/python', import.meta.url),
-);
 const base64 = (bytes) => Buffer.from(bytes).toString('base64');
 
 function encoded(labels, width, height) {
@@ -40,8 +35,6 @@ function encoded(labels, width, height) {
   };
 }
 
-const skip = !existsSync(python) && 'the decoders are not installed: they need Python 3.10 or newer with venv, then `npm run setup`';
-
 describe('decoded by the tools themselves, the same pixels', { skip }, () => {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-formats-'));
   after(() => rmSync(folder, { recursive: true, force: true }));
@@ -51,10 +44,7 @@ describe('decoded by the tools themselves, the same pixels', { skip }, () => {
   test('the decoders run', () => {
     const cases = images.map(({ labels, width, height }) => ({ labels: base64(labels), width, height, encoded: encoded(labels, width, height) }));
     writeFileSync(join(folder, 'cases.json'), JSON.stringify(cases));
-    const script = fileURLToPath(new URL('../support/decode.py', import.meta.url));
-    const { status, stdout, stderr } = spawnSync(python, ['-B', script, folder], { encoding: 'utf8', maxBuffer: 2 ** 26 });
-    assert.equal(status, 0, stderr);
-    report = JSON.parse(stdout);
+    report = decoded('decode.py', folder);
   });
 
   for (const name of Object.keys(encoded(new Uint8Array(1), 1, 1))) {

@@ -254,4 +254,5 @@ def main(folder):
     json.dump(report, sys.stdout)
 
 
-main(Path(sys.argv[1]))
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -19,6 +19,7 @@ import {
   version,
 } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
+import { type CocoVideoDocument, encodeCocoVideo, encodeCvatVideo, type LabelFrame } from 'veronese/formats';
 import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
 export async function browser(canvas: HTMLCanvasElement, first: ImageData, second: ImageData): Promise<string> {
@@ -53,6 +54,14 @@ export async function node(first: Uint8Array, second: Uint8Array): Promise<Motio
   } finally {
     segmenter.close();
   }
+}
+
+export async function clip(frames: LabelFrame[], later: AsyncIterable<LabelFrame>): Promise<string> {
+  const document: CocoVideoDocument = encodeCocoVideo(frames, { tracked: true, frameRate: 25 });
+  const promise: Promise<string> = encodeCvatVideo(later, { clip: 'a.mp4' }, { shape: 'box' });
+  // @ts-expect-error frames that come later give a promise
+  const text: string = encodeCvatVideo(later);
+  return `${document.videos.length} ${await promise} ${text}`;
 }
 
 export function mistakes(frame: ImageData): void {

@@ -1,0 +1,69 @@
+// The folder of a batch: one folder for each pair, called by its number and its first frame, which the labels belong to.
+
+import { readdirSync } from 'node:fs';
+import { extname, join } from 'node:path';
+import { UNLABELLED } from '../common/checks.js';
+import { VeroneseError } from '../common/errors.js';
+import { readPair } from './pair-folder.js';
+import { CLASS, isFileName, lastOf, type Range, type Sequence, type SequenceFrame, sequenceName } from './sequence.js';
+
+interface PairFolder {
+  index: number;
+  name: string;
+  /** The part of the name that says which frame it was. */
+  frame: string;
+}
+
+/** The pairs' folders by their numbers. Throws `unreadable-file`. */
+export function pairFolders(folder: string): PairFolder[] {
+  const found = foldersIn(folder).flatMap((name): PairFolder[] => {
+    const [, index, frame] = /^(\d{6,})-(.+)$/.exec(name) ?? [];
+    return frame === undefined ? [] : [{ index: Number(index), name, frame }];
+  });
+  return found.sort((a, b) => a.index - b.index);
+}
+
+function foldersIn(folder: string): string[] {
+  try {
+    return readdirSync(folder, { withFileTypes: true }).flatMap((entry) => (entry.isDirectory() ? [entry.name] : []));
+  } catch (thrown) {
+    throw new VeroneseError('unreadable-file', `'${folder}' cannot be read: ${(thrown as Error).message}`);
+  }
+}
+
+/** A label is a motion of one pair: nothing says which motion of the next pair is the same thing. */
+export function openBatch(folder: string, range: Range, background: boolean, grouped: boolean): Sequence {
+  const all = pairFolders(folder);
+  const until = lastOf(range, all.at(-1)?.index ?? 0);
+  const pairs = all.filter(({ index }) => index >= range.from && index <= until);
+  if (pairs.length === 0) throw new VeroneseError('invalid-option', `there is no pair from ${range.from} to ${until}`);
+  const labels = Array.from({ length: UNLABELLED }, (_, label) => label);
+  return {
+    meta: {
+      clip: sequenceName(folder),
+      names: Object.fromEntries(labels.map((label) => [label, label === 0 ? CLASS.background : CLASS.object])),
+      labels: background ? labels : labels.slice(1),
+      tracked: false,
+    },
+    count: pairs.length,
+    async *[Symbol.asyncIterator]() {
+      const taken = new Set<string>();
+      for (const pair of pairs) {
+        const frame = await readFrame(join(folder, pair.name), pair.frame, grouped);
+        const stem = frame.stem.toLowerCase();
+        if (taken.has(stem)) throw new VeroneseError('invalid-input', `two frames have the name '${frame.stem}'`);
+        taken.add(stem);
+        yield frame;
+      }
+    },
+  };
+}
+
+async function readFrame(folder: string, frame: string, grouped: boolean): Promise<SequenceFrame> {
+  const { labels, width, height, motions, inputs } = await readPair(folder, grouped);
+  const [first] = inputs;
+  if (!isFileName(first)) throw new VeroneseError('invalid-input', `'${join(folder, 'result.json')}' does not name its frames: it is not of 'veronese batch'`);
+  // A frame of a video is no file: it is called what ffmpeg would write it to.
+  const image = /#\d+$/.test(first) ? `${frame}.png` : first;
+  return { labels, width, height, image, stem: image.slice(0, image.length - extname(image).length), motions };
+}

@@ -1,0 +1,27 @@
+// Label images and JSON, as the program wrote them, read back.
+
+import { VeroneseError, veroneseError } from '../common/errors.js';
+import { readInput } from './files.js';
+import { decodeIndices } from './indexed-png.js';
+
+/** The labels in an indexed PNG. Throws what reading and decoding throw, the file named. */
+export async function readLabels(path: string): Promise<{ labels: Uint8Array; width: number; height: number }> {
+  const bytes = await readInput(path);
+  try {
+    const { indices, ...size } = decodeIndices(bytes);
+    return { labels: indices, ...size };
+  } catch (thrown) {
+    const { code, message } = veroneseError(thrown);
+    throw new VeroneseError(code, `'${path}' ${message}`);
+  }
+}
+
+/** The value in a file of JSON. Throws `invalid-json`. */
+export async function readJson(path: string): Promise<unknown> {
+  const bytes = await readInput(path);
+  try {
+    return JSON.parse(new TextDecoder().decode(bytes));
+  } catch {
+    throw new VeroneseError('invalid-json', `'${path}' is not JSON`);
+  }
+}

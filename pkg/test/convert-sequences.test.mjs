@@ -1,0 +1,345 @@
+// `veronese convert` of many frames: folders of `clip`, drawn here, and of `batch`, made by the program.
+
+import assert from 'node:assert/strict';
+import { mkdirSync, readdirSync, readFileSync, rmSync, statSync, unlinkSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, test } from 'node:test';
+import { decode } from 'fast-png';
+import { unzipSync } from 'fflate';
+import { decodeVeronese, encodeCocoVideo, encodeCvatVideo, encodeDavis } from 'veronese/formats';
+import { openClip } from '../build/cli/clip-folder.js';
+import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
+import { frame, png } from './support/frames.mjs';
+import { temporaryFolder, veronese } from './support/program.mjs';
+
+const IMAGES = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'cvat-points', 'label-studio', 'label-studio-polygon', 'labelme', 'labelme-polygon', 'yolo', 'davis', 'supervisely', 'web-annotation', 'veronese', 'masks'];
+const TRACKS = ['youtube-vis', 'cvat-video', 'cvat-mots', 'mots', 'mot', 'label-studio-video'];
+
+const read = (...path) => readFileSync(join(...path), 'utf8');
+const json = (...path) => JSON.parse(read(...path));
+const indices = (...path) => Uint8Array.from(decode(readFileSync(join(...path))).data);
+
+/** Every file below, as sorted paths. */
+function files(folder) {
+  return readdirSync(folder, { recursive: true })
+    .filter((name) => statSync(join(folder, name)).isFile())
+    .sort();
+}
+
+async function converted(...args) {
+  const { code, stdout, stderr } = await veronese(['convert', ...args]);
+  assert.equal(stderr, '');
+  assert.equal(code, 0);
+  assert.match(stdout, /^\{.*\}\n$/, 'one line');
+  return JSON.parse(stdout);
+}
+
+/** The call fails with this code, and nothing appears, disappears or stays half-written. */
+async function refused(folder, args, code, sentence, exit = 1) {
+  const before = files(folder);
+  const answer = await veronese(['convert', ...args]);
+  assert.equal(answer.stdout, '');
+  assert.equal(answer.code, exit, answer.stderr);
+  assert.ok(answer.stderr.startsWith(`veronese: error: ${code}: `), answer.stderr);
+  assert.match(answer.stderr, sentence);
+  assert.deepEqual(files(folder), before);
+}
+
+describe('a clip', () => {
+  test('in every format, named as the frames are, without the background', async (t) => {
+    const folder = temporaryFolder(t);
+    const { frames, tracks } = clipFolder(folder.path('clip'), { names: { 2: 'car', 4: 'car' } });
+    const out = folder.path('out');
+    const formats = [...IMAGES, ...TRACKS];
+    const answer = await converted(folder.path('clip'), '--to', formats.join(','), '--out', out);
+    assert.equal(answer.version, 1);
+    assert.equal(answer.frames, frames.length);
+    assert.deepEqual(answer.files.map((name) => name.replace(/\.\w+$|\/$/, '')), formats, 'in the order that was asked for');
+    assert.deepEqual(readdirSync(out).sort(), answer.files.map((name) => name.replace('/', '')).sort());
+
+    const coco = json(out, 'coco.json');
+    assert.deepEqual(coco.images.map(({ file_name }) => file_name), tracks.files);
+    assert.deepEqual(coco.categories, [{ id: 2, name: 'object' }, { id: 3, name: 'car' }], 'classes apart from instances');
+    const sightings = tracks.objects.flatMap(({ id, frames }) => frames.map((sighting) => ({ id, ...sighting }))).sort((a, b) => a.frame - b.frame || a.id - b.id);
+    assert.deepEqual(
+      coco.annotations.map(({ image_id, bbox, area, attributes }) => [image_id - 1, attributes.track_id, area, bbox, attributes.matrix ?? null]),
+      sightings.map(({ frame, id, pixels, bbox, matrix }) => [frame, id, pixels, bbox, matrix]),
+    );
+    const names = (extension) => tracks.frames.map((name) => `${name}${extension}`);
+    assert.deepEqual(readdirSync(join(out, 'labelme')), names('.json'));
+    assert.equal(json(out, 'labelme', 'f002.json').imagePath, 'f002.jpg');
+    assert.deepEqual(readdirSync(join(out, 'supervisely', 'ann')), names('.jpg.json'));
+    assert.deepEqual(readdirSync(join(out, 'yolo', 'labels')), names('.txt'));
+    assert.equal(read(out, 'yolo', 'names.txt'), 'object\ncar\n');
+    assert.deepEqual(read(out, 'yolo', 'labels', 'f002.txt').split('\n').map((line) => line[0]), ['0', '1', '1', undefined]);
+    assert.deepEqual(json(out, 'label-studio.json').map(({ data }) => data.image), tracks.files);
+    assert.deepEqual([...new Set(json(out, 'cvat-points.json').map(({ frame }) => frame))], [0, 1, 2, 3, 4, 5, 6]);
+    frames.forEach((labels, k) => {
+      assert.deepEqual(indices(out, 'davis', 'Annotations', '480p', 'clip', `${tracks.frames[k]}.png`), labels);
+      const document = json(out, 'veronese', `${tracks.frames[k]}.json`);
+      assert.deepEqual(decodeVeronese(document).labels, labels);
+      assert.equal(document.motions.find(({ label }) => label === 1)?.matrix[2], k < 6 ? 1 : undefined);
+    });
+    assert.equal(read(out, 'davis', 'ImageSets', '2017', 'val.txt'), 'clip\n');
+    assert.deepEqual(readdirSync(join(out, 'masks')), ['1', '2', '4']);
+    assert.deepEqual(readdirSync(join(out, 'masks', '2')), ['f000.png', 'f001.png', 'f002.png', 'f005.png', 'f006.png']);
+    assert.deepEqual(indices(out, 'masks', '4', 'f003.png'), frames[3].map((label) => (label === 4 ? 255 : 0)));
+  });
+
+  test('tracks are what the encoders give of all frames', async (t) => {
+    const folder = temporaryFolder(t);
+    const { frames, tracks } = clipFolder(folder.path('clip'));
+    await converted(folder.path('clip'), '--to', 'youtube-vis,cvat-video', '--shapes', 'box', '--video', 'a.mp4');
+    const { width, height } = tracks;
+    const given = frames.map((labels, k) => ({ labels, width, height, image: tracks.files[k] }));
+    const meta = { labels: [1, 2, 4], names: { 1: 'object', 2: 'object', 4: 'object' }, tracked: true, clip: 'a.mp4' };
+    assert.deepEqual(json(folder.path('clip'), 'youtube-vis.json'), encodeCocoVideo(given, meta));
+    assert.equal(read(folder.path('clip'), 'cvat-video.xml'), encodeCvatVideo(given, meta, { shape: 'box' }));
+  });
+
+  test('--background, --from and --until', async (t) => {
+    const folder = temporaryFolder(t);
+    const { frames, tracks } = clipFolder(folder.path('clip'));
+    const out = folder.path('out');
+    const { frames: count } = await converted(folder.path('clip'), '--to', 'coco,youtube-vis,cvat-mots,mot', '--out', out, '--background', '--from', '3', '--until', '4');
+    assert.equal(count, 2);
+    assert.deepEqual(json(out, 'coco.json').images.map(({ file_name }) => file_name), ['f003.jpg', 'f004.jpg']);
+    const video = json(out, 'youtube-vis.json');
+    assert.deepEqual(video.categories, [{ id: 1, name: 'background' }, { id: 2, name: 'object' }]);
+    assert.deepEqual(video.annotations.map(({ id }) => id), [255, 1, 4], 'the object that is gone there is left out, the numbers stay');
+    assert.equal(video.annotations[0].areas[0], frames[3].filter((label) => label === 0).length);
+    assert.equal(video.videos[0].length, 2);
+    const archive = unzipSync(new Uint8Array(readFileSync(join(out, 'cvat-mots.zip'))));
+    assert.deepEqual(Object.keys(archive), ['labels.txt', 'f003.png', 'f004.png'].map((name) => `default/instances/${name}`));
+    const value = { 0: 1255, 1: 2001, 4: 2004, 255: 0 };
+    assert.deepEqual([...decode(archive['default/instances/f004.png']).data], Array.from(frames[4], (label) => value[label]));
+    assert.match(read(out, 'mot', 'seqinfo.ini'), /seqLength=2\n/);
+    assert.equal(read(out, 'mot', 'gt', 'gt.txt').split('\n').length, 7);
+    const { objects } = tracks;
+    await converted(folder.path('clip'), '--to', 'coco', '--out', out, '--from', '6');
+    assert.equal(json(out, 'coco.json').annotations.length, objects.filter(({ last }) => last === 6).length);
+  });
+
+  test('times, where tracks.json or an option says them', async (t) => {
+    const folder = temporaryFolder(t);
+    const times = async (...args) => {
+      await converted(folder.path('clip'), '--to', 'mot,label-studio-video', ...args);
+      const [task] = json(folder.path('clip'), 'label-studio-video.json');
+      const { duration, sequence } = task.predictions[0].result[0].value;
+      const [, rate] = /frameRate=(\d+)/.exec(read(folder.path('clip'), 'mot', 'seqinfo.ini'));
+      return { video: task.data.video, duration, second: sequence[1].time, rate: Number(rate) };
+    };
+    clipFolder(folder.path('clip'), { frameRate: 12.5 });
+    assert.deepEqual(await times(), { video: 'clip', duration: 0.56, second: 0.08, rate: 13 });
+    assert.deepEqual(await times('--frame-rate', '10', '--video', 'boat.mp4'), { video: 'boat.mp4', duration: 0.7, second: 0.1, rate: 10 });
+    clipFolder(folder.path('clip'), { timestamps: [5, 5.5, 6, 6.25, 6.5, 7.5, 8] });
+    assert.deepEqual(await times('--from', '1'), { video: 'clip', duration: 3, second: 0.5, rate: 2 });
+    clipFolder(folder.path('clip'));
+    assert.deepEqual(await times(), { video: 'clip', duration: 0.28, second: 0.04, rate: 25 });
+  });
+
+  test('frames of a video, which are no files, are called what their labels are', async (t) => {
+    const folder = temporaryFolder(t);
+    for (const files of [undefined, [], Array(7).fill('a.mp4'), Array.from({ length: 7 }, (_, k) => `a.mp4#${k}`)]) {
+      clipFolder(folder.path('clip'), { files });
+      const images = [];
+      for await (const { image } of await openClip(folder.path('clip'), { from: 5 }, false)) images.push(image);
+      assert.deepEqual(images, ['f005.png', 'f006.png']);
+    }
+  });
+
+  test('--tolerance has polygons with fewer vertices', async (t) => {
+    const folder = temporaryFolder(t);
+    const round = Uint8Array.from({ length: 60 * 60 }, (_, at) => Number(((at % 60) - 30) ** 2 + (Math.floor(at / 60) - 30) ** 2 < 700));
+    clipFolder(folder.path('clip'), { frames: [round, round], width: 60, height: 60 });
+    const size = async (...args) => {
+      await converted(folder.path('clip'), '--to', 'coco-polygon', ...args);
+      return json(folder.path('clip'), 'coco-polygon.json').annotations[0].segmentation[0].length;
+    };
+    assert.ok((await size('--tolerance', '1.5')) < (await size()) / 2);
+  });
+
+  test('a folder of an earlier conversion is replaced, anything else is left alone', async (t) => {
+    const folder = temporaryFolder(t);
+    const clip = folder.path('clip');
+    clipFolder(clip);
+    await converted(clip, '--to', 'yolo');
+    await converted(clip, '--to', 'yolo', '--from', '5');
+    assert.deepEqual(readdirSync(join(clip, 'yolo', 'labels')), ['f005.txt', 'f006.txt']);
+    writeFileSync(join(clip, 'yolo', 'photo.jpg'), '');
+    await refused(clip, [clip, '--to', 'coco,yolo'], 'write-failed', /photo\.jpg' is not of an earlier conversion/);
+    mkdirSync(join(clip, 'mot'));
+    await converted(clip, '--to', 'mot');
+    mkdirSync(join(clip, 'coco.json'));
+    await refused(clip, [clip, '--to', 'mot,coco'], 'write-failed', /coco\.json' is a folder/);
+    assert.deepEqual(readdirSync(clip).filter((name) => name.startsWith('.')), []);
+  });
+
+  test('says what is wrong with the folder and writes nothing', async (t) => {
+    const folder = temporaryFolder(t);
+    const clip = folder.path('clip');
+    const every = [...IMAGES, ...TRACKS].join(',');
+    const fails = (code, sentence, to = every) => refused(clip, [clip, '--to', to], code, sentence);
+    const frames = drawnClip();
+    const good = tracksOf(frames);
+    const changed = (change) => writeFileSync(join(clip, 'tracks.json'), typeof change === 'string' ? change : JSON.stringify({ ...good, ...change }));
+
+    clipFolder(clip);
+    unlinkSync(join(clip, 'labels', 'f005.png'));
+    await fails('file-not-found', /labels.f005\.png/);
+    for (const name of ['label-studio', 'labelme', 'yolo', 'masks', 'mots']) await fails('file-not-found', /labels.f005\.png/, name);
+    writeFileSync(join(clip, 'labels', 'f005.png'), 'no picture');
+    await fails('unreadable-image', /labels.f005\.png/);
+    writeFileSync(join(clip, 'labels', 'f005.png'), encodeDavis(new Uint8Array(38 * 23), 38, 23));
+    await fails('frame-size-mismatch', /f005\.png' differs in size.*38×23, not 37×23/);
+    const strange = frames[5].map((label) => (label === 4 ? 3 : label));
+    writeFileSync(join(clip, 'labels', 'f005.png'), encodeDavis(strange, 37, 23));
+    await fails('invalid-input', /object 3 has \d+ pixels in '.*f005\.png' and 0 by 'tracks\.json'/);
+    writeFileSync(join(clip, 'labels', 'f005.png'), encodeDavis(frames[4], 37, 23));
+    await fails('invalid-input', /not of the same result/);
+    writeFileSync(join(clip, 'labels', 'f005.png'), png({ data: new Uint8ClampedArray(37 * 23 * 4).fill(7).fill(200, 0, 1), width: 37, height: 23 }));
+    await fails('invalid-input', /f005\.png' has no labels: it is not an 8-bit indexed PNG/);
+
+    clipFolder(clip);
+    changed('{"version": 1');
+    await fails('invalid-json', /tracks\.json' is not JSON/);
+    const [first, ...others] = good.objects;
+    const withFirst = (change) => ({ objects: [{ ...first, ...change }, ...others] });
+    const sighting = (change) => withFirst({ frames: [{ ...first.frames[0], ...change }] });
+    const wrong = [
+      '[]', 'null', { version: 2 }, { width: 0 }, { width: 37.5 }, { height: '23' }, { height: 5000 }, { frames: [] }, { frames: 'f' }, { frames: [1] },
+      { frames: good.frames.map(() => 'f') }, { frames: ['../a', ...good.frames.slice(1)] }, { frames: ['F001', ...good.frames.slice(1)] },
+      { files: ['a'] }, { files: good.files.map(() => 'a/b') }, { objects: {} }, { objects: [null] }, { objects: [...others, ...others] },
+      withFirst({ id: 0 }), withFirst({ id: 255 }), withFirst({ id: '1' }), withFirst({ name: 5 }), withFirst({ frames: null }), sighting({ frame: 7 }),
+      sighting({ frame: -1 }), sighting({ pixels: 0 }), sighting({ pixels: 1e9 }), sighting({ matrix: [1] }), sighting({ matrix: [0, 0, 0, 0, 0, null] }),
+      { background: 5 }, { background: [{ frame: 9, matrix: null }] }, { frameRate: 0 }, { frameRate: '25' }, { timestamps: 5 }, { timestamps: [0] },
+    ];
+    for (const change of wrong) {
+      changed(change);
+      await assert.rejects(openClip(clip, { from: 0 }, false), { code: 'invalid-input', message: /tracks\.json' is not of 'veronese clip': / }, JSON.stringify(change));
+    }
+    await fails('invalid-input', /tracks\.json' is not of 'veronese clip': "timestamps"/);
+    unlinkSync(join(clip, 'tracks.json'));
+    await fails('invalid-input', /no tracks\.json: the clip is not finished/, 'coco');
+  });
+
+  test('says what is wrong with the options and writes nothing', async (t) => {
+    const folder = temporaryFolder(t);
+    const clip = folder.path('clip');
+    clipFolder(clip);
+    const fails = (code, sentence, exit, ...args) => refused(clip, [clip, '--to', 'coco,yolo', ...args], code, sentence, exit);
+    await fails('invalid-option', /no frame 7: the frames are 0 to 6/, 1, '--from', '7');
+    await fails('invalid-option', /no frame 7: the frames are 0 to 6/, 1, '--until', '7');
+    await fails('invalid-option', /no frame 999999999/, 1, '--from', '999999999');
+    for (const value of ['-1', '1e3']) await fails('invalid-option', /'--from' must be/, 2, `--from=${value}`);
+    await fails('invalid-option', /'--until' must be a frame from 4/, 2, '--from', '4', '--until', '3');
+    await fails('invalid-option', /'--shapes' must be 'polygon' or 'box'/, 2, '--shapes', 'mask');
+    await fails('invalid-option', /'--tolerance' must be/, 2, '--tolerance=-1');
+    for (const value of ['0', 'x']) await fails('invalid-option', /'--frame-rate' must be/, 2, `--frame-rate=${value}`);
+    await refused(clip, [join(clip, 'tracks.json'), '--to', 'coco', '--out', clip], 'file-not-found', /labels\.png/);
+    await fails('invalid-option', /'--grouped' is not for/, 1, '--grouped');
+    await fails('invalid-option', /'--image' is not for/, 1, '--image', 'a.png');
+    await refused(clip, [clip, '--to', 'coco', '--out', join(clip, 'tracks.json')], 'write-failed', /it is a file/);
+  });
+
+  test('stopped by a signal it leaves nothing half-written', async (t) => {
+    const folder = temporaryFolder(t);
+    const clip = folder.path('clip');
+    const noise = Uint8Array.from({ length: 512 * 512 }, (_, at) => Math.imul(at, 0x9e3779b1) >>> 31);
+    clipFolder(clip, { frames: Array(12).fill(noise), width: 512, height: 512 });
+    const before = files(clip);
+    const { code, stdout } = await veronese(['convert', clip, '--to', 'labelme-polygon,coco'], {
+      onStart: (child) => {
+        const look = setInterval(() => {
+          const part = readdirSync(clip).find((name) => name.endsWith('.part'));
+          if (part && files(join(clip, part)).length > 0) child.kill('SIGINT');
+        }, 5);
+        child.once('close', () => clearInterval(look));
+      },
+    });
+    assert.equal(code, 130);
+    assert.equal(stdout, '');
+    assert.deepEqual(files(clip), before);
+  });
+});
+
+describe('a batch', () => {
+  async function batch(t, ...options) {
+    const folder = temporaryFolder(t);
+    for (let k = 0; k < 4; k++) folder.file(`a${k}.png`, png(frame(k)));
+    const { code, stderr } = await veronese(['batch', folder.path('a*.png'), '--out', folder.path('out'), '--jobs', '1', ...options]);
+    assert.equal(code, 0, stderr);
+    const pairs = readdirSync(folder.path('out'));
+    return { folder, out: folder.path('out'), pairs };
+  }
+
+  test('in every format of images, named as the frames are, without the background', async (t) => {
+    const { folder, out, pairs } = await batch(t);
+    const to = folder.path('to');
+    const { files: written, frames } = await converted(out, '--to', IMAGES.join(','), '--out', to);
+    assert.equal(frames, 3);
+    assert.equal(written.length, IMAGES.length);
+    const coco = json(to, 'coco.json');
+    assert.deepEqual(coco.images.map(({ file_name }) => file_name), ['a0.png', 'a1.png', 'a2.png'], 'the last frame has no pair');
+    assert.deepEqual(coco.categories, [{ id: 2, name: 'object' }]);
+    assert.ok(coco.annotations.length >= 3, `${coco.annotations.length} masks`);
+    pairs.forEach((pair, k) => {
+      const labels = indices(out, pair, 'labels.png');
+      assert.deepEqual(indices(to, 'davis', 'Annotations', '480p', 'out', `a${k}.png`), labels);
+      const { motions } = json(out, pair, 'result.json');
+      const here = coco.annotations.filter(({ image_id }) => image_id === k + 1);
+      assert.deepEqual(here.map(({ area, bbox, attributes }) => [area, bbox, attributes]), motions.slice(1).map(({ pixels, bbox, matrix }) => [pixels, bbox, { matrix }]));
+    });
+    await converted(out, '--to', 'coco', '--out', to, '--background', '--from', '1', '--until', '1');
+    const [background, ...rest] = json(to, 'coco.json').annotations;
+    assert.equal(background.area, indices(out, pairs[1], 'labels.png').filter((label) => label === 0).length);
+    assert.equal(rest.length, json(out, pairs[1], 'result.json').motions.length - 1);
+    assert.deepEqual(json(to, 'coco.json').images.map(({ file_name }) => file_name), ['a1.png']);
+  });
+
+  test('--grouped', async (t) => {
+    const { out, pairs } = await batch(t);
+    const pair = join(out, pairs[0]);
+    const result = json(pair, 'result.json');
+    writeFileSync(join(pair, 'result.json'), JSON.stringify({ ...result, motions: result.motions.map((motion) => ({ ...motion, group: 0 })) }));
+    await converted(out, '--to', 'coco', '--grouped', '--until', '0');
+    assert.deepEqual(json(out, 'coco.json').annotations, []);
+  });
+
+  test('says what is wrong and writes nothing', async (t) => {
+    const { out, pairs } = await batch(t);
+    for (const name of TRACKS) await refused(out, [out, '--to', `coco,${name}`], 'invalid-input', /holds tracks, and .* a batch does not know an object again/);
+    await refused(out, [out, '--to', 'coco', '--from', '3'], 'invalid-option', /no frame 3: the frames are 0 to 2/);
+    await refused(out, [out, '--to', 'coco', '--video', 'a.mp4'], 'invalid-option', /'--video' is not for/);
+    const report = join(out, pairs[1], 'result.json');
+    const text = readFileSync(report, 'utf8');
+    const { inputs, ...nameless } = JSON.parse(text);
+    writeFileSync(report, JSON.stringify(nameless));
+    await refused(out, [out, '--to', 'coco'], 'invalid-input', /does not name its frames/);
+    writeFileSync(report, JSON.stringify({ ...nameless, inputs: [{ name: 'A0.png' }, inputs[1]] }));
+    await refused(out, [out, '--to', 'coco'], 'invalid-input', /two frames have the name 'A0'/);
+    writeFileSync(report, JSON.stringify({ ...nameless, inputs: [{ name: '../a.png' }, inputs[1]] }));
+    await refused(out, [out, '--to', 'labelme'], 'invalid-input', /does not name its frames/);
+    writeFileSync(report, text.slice(1));
+    await refused(out, [out, '--to', 'coco'], 'invalid-json', /result\.json/);
+    rmSync(report);
+    await refused(out, [out, '--to', 'coco,yolo'], 'file-not-found', /result\.json/);
+    rmSync(join(out, pairs[1]), { recursive: true });
+    await refused(out, [out, '--to', 'coco', '--from', '1', '--until', '1'], 'invalid-option', /there is no pair from 1 to 1/);
+    await converted(out, '--to', 'coco');
+    assert.deepEqual(json(out, 'coco.json').images.map(({ file_name }) => file_name), ['a0.png', 'a2.png'], 'a pair that failed is left out');
+  });
+});
+
+test('a pair takes no format of many frames, and no option of theirs', async (t) => {
+  const folder = temporaryFolder(t);
+  const [first, second] = [0, 1].map((k) => folder.file(`${k}.png`, png(frame(k))));
+  const out = folder.path('out');
+  await veronese(['pair', first, second, '--out', out]);
+  for (const name of ['cvat-video', 'mots', 'mot', 'label-studio-video', 'masks']) {
+    await refused(out, [out, '--to', name], 'invalid-input', /is for many frames/);
+  }
+  for (const option of ['--background', '--from=1', '--until=0', '--shapes=box', '--video=a.mp4', '--frame-rate=5']) {
+    await refused(out, [out, '--to', 'coco', option], 'invalid-option', /is not for/);
+  }
+});

@@ -1,0 +1,81 @@
+// The reader of label images: every filter that an encoder may choose, and files that are damaged.
+
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { deflateSync } from 'node:zlib';
+import { encodeIndexedPng } from 'veronese/codecs';
+import { encodeDavis } from 'veronese/formats';
+import { decodeIndices } from '../build/cli/indexed-png.js';
+import { png } from './support/frames.mjs';
+import { labelImages, random } from './support/masks.mjs';
+
+/** What a byte is predicted to be, by the number of the filter, as the PNG specification has it. */
+const PREDICTED = [
+  () => 0,
+  (left) => left,
+  (left, above) => above,
+  (left, above) => Math.floor((left + above) / 2),
+  (left, above, corner) => {
+    const estimate = left + above - corner;
+    return [left, above, corner].reduce((best, value) => (Math.abs(estimate - value) < Math.abs(estimate - best) ? value : best));
+  },
+];
+
+function chunk(name, content) {
+  const length = Buffer.alloc(4);
+  length.writeUInt32BE(content.length);
+  return Buffer.concat([length, Buffer.from(name), content, Buffer.alloc(4)]);
+}
+
+/** Row y has filter `filters[y % filters.length]`; the data are in two chunks. */
+function filtered({ labels, width, height }, filters) {
+  const at = (x, y) => (x < 0 || y < 0 ? 0 : labels[y * width + x]);
+  const rows = [];
+  for (let y = 0; y < height; y++) {
+    const filter = filters[y % filters.length];
+    rows.push(filter);
+    for (let x = 0; x < width; x++) rows.push((at(x, y) - PREDICTED[filter](at(x - 1, y), at(x, y - 1), at(x - 1, y - 1))) & 255);
+  }
+  const data = deflateSync(Buffer.from(rows));
+  const header = Buffer.from([0, 0, 0, 0, 0, 0, 0, 0, 8, 3, 0, 0, 0]);
+  header.writeUInt32BE(width, 0);
+  header.writeUInt32BE(height, 4);
+  const parts = [data.subarray(0, 7), data.subarray(7)].map((part) => chunk('IDAT', part));
+  return Buffer.concat([Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), chunk('IHDR', header), chunk('PLTE', Buffer.alloc(768)), ...parts, chunk('IEND', Buffer.alloc(0))]);
+}
+
+const next = random(5);
+const noise = { labels: Uint8Array.from({ length: 31 * 17 }, () => next() * 256), width: 31, height: 17 };
+
+test('every filter', () => {
+  for (const filters of [[0], [1], [2], [3], [4], [4, 3, 2, 1, 0]]) {
+    for (const image of [noise, ...labelImages(20)]) {
+      const { indices, width, height } = decodeIndices(filtered(image, filters));
+      assert.deepEqual({ labels: indices, width, height }, image);
+    }
+  }
+});
+
+test('what the encoders of the package write', async () => {
+  const palette = Array.from({ length: 256 }, () => [0, 0, 0]);
+  for (const { labels, width, height } of [noise, ...labelImages(20)]) {
+    assert.deepEqual(decodeIndices(await encodeIndexedPng(width, height, labels, palette)).indices, labels);
+    assert.deepEqual(decodeIndices(encodeDavis(labels, width, height)).indices, labels);
+  }
+});
+
+test('other pictures and damaged ones are refused', () => {
+  const file = filtered(noise, [4]);
+  const changed = (at, value) => Buffer.from(file).fill(value, at, at + 1);
+  const refused = (bytes, code) => assert.throws(() => decodeIndices(bytes), { name: 'VeroneseError', code });
+  for (let length = 0; length < file.length - 16; length += 5) refused(file.subarray(0, length), 'unreadable-image');
+  // In the header: the name, the height, the depth, the colour type and the interlacing.
+  refused(changed(12, 0), 'unreadable-image');
+  refused(changed(23, 16), 'unreadable-image');
+  refused(changed(23, 18), 'unreadable-image');
+  refused(changed(20, 1), 'unreadable-image');
+  for (const [at, value] of [[24, 4], [25, 2], [28, 1]]) refused(changed(at, value), 'invalid-input');
+  refused(filtered({ ...noise, height: 0 }, [0]), 'unreadable-image');
+  refused(filtered(noise, [0]).fill(9, 41 + 768 + 20, 41 + 768 + 30), 'unreadable-image');
+  refused(png({ data: new Uint8ClampedArray(16), width: 2, height: 2 }), 'invalid-input');
+});
