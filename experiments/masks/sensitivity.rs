@@ -7,7 +7,8 @@ use veronese::Tuned;
 
 use crate::Failure;
 use crate::cases::{Case, Set};
-use crate::measure::{Method, Outcome, Variant, in_parallel, of_variant};
+use crate::measure::{Method, Outcome, Variant, of_variant};
+use crate::parallel::in_parallel;
 use crate::scores::Scores;
 
 /// What a constant is multiplied by.
