@@ -260,7 +260,9 @@ impl ClipSegmenter {
                 Plane::filled(finest.width(), finest.height(), 0.0)
             }
         };
-        let record = Rc::new(Record { index: self.count, frame, pyramid, odds, onward, back });
+        // The pyramid's levels have told all they can.
+        let (appearance, reduction) = (pyramid.appearance(&frame).clone(), pyramid.reduction);
+        let record = Rc::new(Record { index: self.count, frame, appearance, reduction, odds, onward, back });
         self.count += 1;
         let odds = record.odds.clone();
         let foreground = self.rounds[0].push(record, odds)?;
@@ -282,7 +284,7 @@ impl ClipSegmenter {
         let working = self.identities.assign(&record, &mask);
         let of = working.iter().max().map_or(1, |&most| usize::from(most) + 1);
         let labels = upsample(&working, record.size(), of, record.frame.luminance());
-        let scale = |motion: &AffineMotion| motion.scaled(record.pyramid.reduction as f64);
+        let scale = |motion: &AffineMotion| motion.scaled(record.reduction as f64);
         let background = record.onward.as_ref().map(|onward| scale(&onward.motions[BACKGROUND]));
         let mut objects = boxes(&labels, record.frame.width());
         for object in &mut objects {

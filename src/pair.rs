@@ -164,7 +164,7 @@ impl<'a> Pair<'a> {
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
-        let appearance = pyramid.appearance(first, base.max(draft) + 1);
+        let appearance = pyramid.appearance(first);
         Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
     }
 

@@ -312,7 +312,7 @@ fn moves(record: &Record, pixels: &[usize]) -> bool {
 
 /// Share of each colour among some pixels.
 fn histogram(record: &Record, pixels: &[usize]) -> Vec<f32> {
-    let palette = &record.appearance().palette;
+    let palette = &record.appearance.palette;
     let mut shares = vec![0.0; COLOURS];
     let share = 1.0 / pixels.len().max(1) as f32;
     pixels.iter().for_each(|&p| shares[palette.index(p)] += share);

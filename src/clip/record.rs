@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::evidence::Flow;
-use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::frame::pyramid::Appearance;
 use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
 
@@ -13,7 +13,9 @@ pub(crate) struct Record {
     /// Position in the clip, from 0.
     pub(crate) index: usize,
     pub(crate) frame: Rc<Frame>,
-    pub(crate) pyramid: Rc<FramePyramid>,
+    pub(crate) appearance: Rc<Appearance>,
+    /// Full-size pixels per working pixel.
+    pub(crate) reduction: usize,
     /// Log-odds of object against background from the frame's pairs, nats; zero where there is no pair.
     pub(crate) odds: Plane,
     /// To the next frame; none at the end of a scene.
@@ -28,13 +30,9 @@ impl Record {
         [self.odds.width(), self.odds.height()]
     }
 
-    pub(crate) fn appearance(&self) -> &Appearance {
-        self.pyramid.appearance(&self.frame, 1)
-    }
-
     /// Prices of borders between labels.
     pub(crate) fn borders(&self, smoothness: f32) -> Borders {
-        Borders::new(&self.appearance().pictures[0], EDGE_NOISE, smoothness)
+        Borders::new(&self.appearance.pictures[0], EDGE_NOISE, smoothness)
     }
 }
 

@@ -67,7 +67,7 @@ pub(crate) struct FramePyramid {
     pub(crate) reduction: usize,
     /// Luminance of the working size without blur.
     unblurred: Plane,
-    appearance: OnceCell<Appearance>,
+    appearance: OnceCell<Rc<Appearance>>,
 }
 
 /// What labels follow in the first frame of a pair.
@@ -89,18 +89,17 @@ impl FramePyramid {
         FramePyramid { levels, reduction: 1 << halvings, unblurred, appearance: OnceCell::new() }
     }
 
-    /// The appearance of the frame, which must be the one that this was made of, at its `count` finest levels. It is computed the
-    /// first time.
-    pub(crate) fn appearance(&self, frame: &Frame, count: usize) -> &Appearance {
+    /// The appearance of the frame, which must be the one that this was made of. It is computed the first time.
+    pub(crate) fn appearance(&self, frame: &Frame) -> &Rc<Appearance> {
         self.appearance.get_or_init(|| {
             let (width, height) = (self.unblurred.width(), self.unblurred.height());
             let palette = Palette::new(frame, width, height);
             let mut pictures = vec![Picture { luminance: self.unblurred.clone(), colours: colours(frame, width) }];
-            while pictures.len() < count {
+            while pictures.len() < self.levels.len() {
                 let half = pictures[pictures.len() - 1].halved();
                 pictures.push(half);
             }
-            Appearance { pictures, palette }
+            Rc::new(Appearance { pictures, palette })
         })
     }
 }
