@@ -3,8 +3,8 @@
 //! Calls on frames and calls on measurements share little code. The package builds a module for each, so that pages that only segment
 //! frames do not load the algebra for measurements.
 //!
-//! Results are copies: nothing refers to the memory of the module, and nothing needs freeing. Every error is an `Error` named
-//! `VeroneseError` with a stable `code`.
+//! Results are copies: nothing refers to the memory of the module. Nothing needs freeing except a clip that is abandoned. Every error is
+//! an `Error` named `VeroneseError` with a stable `code`.
 //!
 //! **Pitfalls.** A view of WebAssembly memory (`Uint8Array::view`, `ImageData` over a Rust slice) becomes invalid when the memory grows, so
 //! always copy. An exception that unwinds Rust frames, such as a panic, does not restore the stack pointer. The instance must not be
@@ -15,6 +15,8 @@ use wasm_bindgen::prelude::*;
 
 use crate::{Error, MAX_MOTIONS, MotionCount, Stage};
 
+#[cfg(feature = "frames")]
+mod clip;
 #[cfg(feature = "codecs")]
 mod files;
 #[cfg(feature = "frames")]
@@ -23,6 +25,8 @@ mod plain;
 #[cfg(feature = "points")]
 mod points;
 
+#[cfg(feature = "frames")]
+pub use clip::{begin_clip, end_clip, finish_clip, push_clip};
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};
 #[cfg(feature = "frames")]

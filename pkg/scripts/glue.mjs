@@ -4,7 +4,8 @@
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { deflateSync } from 'node:zlib';
 
-const FRAME_CALLS = ['segmentPair', 'relabel', 'paintLabels', 'paintLabelsOffscreen'];
+const CLIP_CALLS = ['beginClip', 'pushClip', 'finishClip', 'endClip'];
+const FRAME_CALLS = ['segmentPair', 'relabel', ...CLIP_CALLS, 'paintLabels', 'paintLabelsOffscreen'];
 const POINT_CALLS = ['fitMotions'];
 const FILE_CALLS = ['decodeImage', 'encodeIndexedPng', 'encodeGreyPng', 'encodeColourPng'];
 const MODULES = [

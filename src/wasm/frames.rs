@@ -173,7 +173,7 @@ fn frames(first: &JsValue, second: &JsValue, before: &JsValue) -> Result<(Frame,
 }
 
 /// A frame from `{ data, width, height }`. The size is checked before bytes are copied.
-fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, Failure> {
+pub(super) fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, Failure> {
     let shape = || Failure::input(format!("{which} must be {{ data, width, height }} with RGBA bytes, like ImageData"));
     let get = |name: &str| Reflect::get(pixels, &name.into()).map_err(|_| shape());
     let side = |name: &str| match get(name)?.as_f64() {
@@ -205,9 +205,7 @@ fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
     for (name, value) in entries(value)? {
         match name.as_str() {
             "motions" => options.motions = motions(&value)?,
-            "quality" => {
-                options.quality = choice("quality", &value, &[("fast", Quality::Fast), ("best", Quality::Best)])?;
-            }
+            "quality" => options.quality = quality(&value)?,
             "markUnknown" => options.mark_unknown = flag("markUnknown", &value)?,
             "confidence" => options.confidence = flag("confidence", &value)?,
             "seed" => options.seed = seed(&value)?,
@@ -215,6 +213,10 @@ fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
         }
     }
     Ok(options)
+}
+
+pub(super) fn quality(value: &JsValue) -> Result<Quality, Failure> {
+    choice("quality", value, &[("fast", Quality::Fast), ("best", Quality::Best)])
 }
 
 fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {

@@ -21,6 +21,11 @@ export interface FramesGlue extends Glue {
     onStage: OnStage,
   ): unknown;
 
+  beginClip(clip: number, options: unknown): void;
+  pushClip(clip: number, frame: unknown): unknown;
+  finishClip(clip: number): unknown;
+  endClip(clip: number): void;
+
   paintLabels(context: CanvasRenderingContext2D, ...rest: PaintArguments): void;
   paintLabelsOffscreen(context: OffscreenCanvasRenderingContext2D, ...rest: PaintArguments): void;
 }
