@@ -233,12 +233,59 @@ describe('direct calls and workers', () => {
   });
 });
 
+/** Everything that an iterator gives. */
+async function all(outcomes) {
+  const list = [];
+  for await (const { input, ...rest } of outcomes) list.push(rest);
+  return list;
+}
+
+/** What cannot even be awaited or iterated is an error of the source, which is passed on as it is. */
+const awaited = (value) => (value === VALUES.throwing || value === VALUES['revoked proxy'] ? undefined : value);
+const iterated = (value) => (ArrayBuffer.isView(value) ? undefined : value);
+
+/** The arguments of a clip, as those of the other calls. */
+const CLIPS = {
+  frames: [(v) => [iterated(v)], ['empty text', 'empty list']],
+  'a frame': [(v) => [[first, awaited(v)]], []],
+  data: [(v) => [[first, { ...second, data: v }]], []],
+  width: [(v) => [[first, { ...second, width: v }]], []],
+  read: [(v) => [{ length: 2, read: v }], []],
+  length: [(v) => [{ length: v, read: (index) => [first, second][index] }], ['zero', 'one']],
+  'what is read': [(v) => [{ length: 2, read: (index) => (index === 0 ? first : awaited(v)) }], []],
+  options: [(v) => [[first, second], v], OPTIONS],
+  motions: [(v) => [[first, second], { motions: v }], ['undefined', 'one']],
+  quality: [(v) => [[first, second], { quality: v }], ['undefined']],
+  seed: [(v) => [[first, second], { seed: v }], ['undefined', 'zero', 'one', '300', 'more than 32 bits']],
+  lookAhead: [(v) => [[first, second], { lookAhead: v }], ['undefined', 'zero', 'one']],
+  signal: [(v) => [[first, second], { signal: v }], ['undefined']],
+  onProgress: [(v) => [[first, second], { onProgress: v }], ['undefined', 'function']],
+  transfer: [(v) => [[structuredClone(first), structuredClone(second)], { transfer: v }], ['undefined', 'true', 'false']],
+  markUnknown: [(v) => [[first, second], { markUnknown: v }], ['undefined']],
+  'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
+};
+
+describe('clips, directly and in workers', () => {
+  for (const [place, [args, harmless]] of Object.entries(CLIPS)) {
+    test(place, async (t) => {
+      let started = 0;
+      const worker = () => {
+        started += 1;
+        return new Worker(new URL('../dist/worker-node.js', import.meta.url));
+      };
+      const segmenter = new index.Segmenter(undefined, { worker });
+      t.after(() => segmenter.close());
+      await everywhere((value) => all(index.segmentClip(...args(value))), harmless, async (value, direct) => {
+        const there = await outcome(() => all(segmenter.segmentClip(...args(value))));
+        if (!isDeepStrictEqual(there, direct)) assert.fail(`in a worker: ${inspect(there)}, directly: ${inspect(direct)}`);
+      });
+      assert.equal((await segmenter.segmentPair(first, second)).width, 16);
+      assert.equal(started, 1, 'no clip has ended the worker');
+    });
+  }
+});
+
 describe('segmentPairs and pools', () => {
-  const all = async (outcomes) => {
-    const list = [];
-    for await (const { input, ...rest } of outcomes) list.push(rest);
-    return list;
-  };
 
   test('pairs that are none', () => {
     const iterable = (value) => [VALUES['empty list'], VALUES['list of null'], VALUES['sparse list']].includes(value) || (ArrayBuffer.isView(value) && !(value instanceof DataView)) || value === VALUES.map || typeof value === 'string';

@@ -6,7 +6,7 @@ import { describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { segmentPairs, VeroneseError } from 'veronese';
-import { inOrder } from '../build/pool/ordered.js';
+import { inOrder } from '../build/calls/ordered.js';
 import { pair } from './support/frames.mjs';
 import { random } from './support/masks.mjs';
 import { failure } from './support/shapes.mjs';

@@ -3,7 +3,7 @@ import { describe, test } from 'node:test';
 import { setTimeout } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { segmentPair, segmentPairs, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
-import { inOrder } from '../build/pool/ordered.js';
+import { inOrder } from '../build/calls/ordered.js';
 import { frame, pair } from './support/frames.mjs';
 import { failure, timeless } from './support/shapes.mjs';
 

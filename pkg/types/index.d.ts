@@ -177,6 +177,87 @@ export interface PointMeasurements {
   derivatives: Float64Array;
 }
 
+/**
+ * The frames of a clip, all of one size, in order. An iterable or async iterable is a stream: a frame is asked for when the one before it
+ * is done, and may reuse its buffer. `{ length, read(index) }` is a whole clip, read in order.
+ */
+export type ClipSource =
+  | Iterable<Pixels | Promise<Pixels>>
+  | AsyncIterable<Pixels>
+  | { readonly length: number; read(index: number): Pixels | Promise<Pixels> };
+
+/** Progress of a clip: work on a frame begins. */
+export interface ClipProgress {
+  /** Index of the frame, from 0. */
+  frame: number;
+  /** Number of frames, if the source has a `length`. */
+  of: number | undefined;
+}
+
+/** Options of {@link segmentClip}; `motions` is the number of motions in each pair of consecutive frames. */
+export interface ClipOptions extends Omit<SegmentOptions, 'markUnknown' | 'confidence' | 'before' | 'onProgress'> {
+  /**
+   * Number of frames that each frame waits for, 0 to 8, or `'whole'`: as many as matter, 16. More frames give better masks. Default: 8
+   * for a stream, `'whole'` for a whole clip.
+   */
+  lookAhead?: number | 'whole' | undefined;
+  /** Called for each frame before it is segmented. If it throws, the clip ends with that exception. */
+  onProgress?: ((progress: ClipProgress) => void) | undefined;
+}
+
+/** An object in one frame of a clip. */
+export interface ClipObject {
+  /** 1 to 254, the same in all frames. */
+  id: number;
+  /** Number of its pixels. */
+  pixels: number;
+  /** Bounding box of its pixels: x, y, width, height. */
+  bbox: [number, number, number, number];
+  /** Mean probability that its pixels belong to an object, 0 to 1. */
+  confidence: number;
+  /** Motion of its largest part to the next frame; null if the scene has no next frame. */
+  matrix: Matrix | null;
+}
+
+/** One frame of a clip, segmented. */
+export interface ClipFrame {
+  /** Index of the frame, from 0. */
+  index: number;
+  /** One label per pixel, row by row: 0 for the background, otherwise the number of an object. */
+  labels: Uint8Array;
+  /** The visible objects by number. */
+  objects: ClipObject[];
+  /** Motion of the background to the next frame; null if the scene has no next frame. */
+  background: Matrix | null;
+}
+
+/** One object through a clip. */
+export interface ClipTrack {
+  id: number;
+  /** Index of the first frame that shows it, */
+  first: number;
+  /** and of the last. */
+  last: number;
+  /** One entry for each frame that shows it. */
+  frames: ({ frame: number } & Omit<ClipObject, 'id'>)[];
+}
+
+/** What {@link Clip.tracks} returns. */
+export interface ClipTracks {
+  /** By number, which is the order of appearance. */
+  objects: ClipTrack[];
+  /** Motion of the background from a frame to the next one, where there is one. */
+  background: { frame: number; matrix: Matrix }[];
+  /** Number of objects beyond 254, which count as background. Known when the clip is finished. */
+  dropped: number;
+}
+
+/** The frames of a clip, in order, as they are finished. Leaving the loop frees what the clip holds. */
+export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
+  /** The objects of the frames returned so far: complete after the last frame. */
+  tracks(): ClipTracks;
+}
+
 /** The source of the WebAssembly module. */
 export type WasmSource = URL | string | Response | BufferSource | WebAssembly.Module;
 
@@ -246,6 +327,19 @@ export function initPoints(source?: WasmSource | Promise<WasmSource>): Promise<v
 
 /** Segments two frames by motion: how many motions there are, what each one is, and which pixels follow it. */
 export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOptions): Promise<Segmentation>;
+
+/**
+ * Segments a clip: objects that move get a number that they keep from their first frame to their last. Objects are numbered by first
+ * appearance, then by size, then by their topmost, leftmost pixel.
+ *
+ * A frame comes back when the frames it waits for have come (`lookAhead`), the rest at the end. A frame is taken from the source only when
+ * the reader waits for one. If the source throws or a frame is unusable, the frames before it come first, then the error.
+ *
+ * The call occupies its thread while it works on a frame; `signal` is checked between frames. Another direct call that fails inside the
+ * module or is cancelled there in the meantime takes the clip with it, which then rejects with code `internal`; a {@link Segmenter} keeps
+ * its clip.
+ */
+export function segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
 
 /**
  * Solves the labels of a segmentation again, given a person's evidence about single pixels. The motions do not change.
@@ -345,6 +439,11 @@ export class Segmenter {
     options?: RelabelOptions,
   ): Promise<Segmentation>;
   fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit>;
+  /**
+   * As {@link segmentClip}. The worker keeps the clip from the first frame to the last; a second clip waits for that, other calls run
+   * between the frames. A cancelled clip stops at once; its worker stays.
+   */
+  segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
   /**
    * Starts the worker and segments a small built-in pair in it for half a second or more, so that the engine fully compiles the hot code.
    * Without it, a first call takes two to three times as long as later ones. One worker warms up for all instances of the module on the

@@ -2,6 +2,9 @@
 
 import type {
   CallOptions,
+  Clip,
+  ClipOptions,
+  ClipSource,
   FitOptions,
   Milliseconds,
   MotionFit,
@@ -19,7 +22,8 @@ import { colourBytes, davisPalette } from '../common/palette.js';
 import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
-import type { CallTask, Corrected, Result } from './messages.js';
+import { clipOf } from './clip.js';
+import type { CallTask, ClipTask, Corrected, Result } from './messages.js';
 import { taken } from './taking.js';
 import { fitCall, relabelCall, segmentCall, start } from './tasks.js';
 
@@ -51,6 +55,9 @@ export class Api {
   readonly fitMotions = (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> =>
     start(() => fitCall(measurements, options), this.perform);
 
+  readonly segmentClip = (frames: ClipSource, options?: ClipOptions): Clip =>
+    clipOf(frames, options, async () => ({ perform: this.perform, release: () => undefined }));
+
   /** What was checked and taken, here or on the other side of a worker. */
   readonly perform = (task: CallTask, call: CallOptions): Promise<Result> => {
     if (task.call === 'fitMotions') {
@@ -59,6 +66,7 @@ export class Api {
         glue.fitMotions(positions, derivatives, task.settings, onStage),
       );
     }
+    if (!('frames' in task)) return step(this.#frames, call, task);
     const [first, second, before] = task.frames;
     if (task.call === 'segmentPair') {
       return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
@@ -114,6 +122,17 @@ async function run<T extends { milliseconds: Milliseconds }, G extends Glue>(
   } catch (thrown) {
     throw thrownByListener ? thrownByListener.thrown : thrown;
   }
+}
+
+/** One step of a clip. The event loop turns before it, or nobody could abort what a source without pauses is fed into. */
+async function step(core: Core<FramesGlue>, { signal }: CallOptions, task: ClipTask): Promise<Result> {
+  await new Promise((resolve) => setTimeout(resolve));
+  if (signal?.aborted) throw cancelled(signal);
+  return core.call((glue) => {
+    if (task.call === 'beginClip') return glue.beginClip(task.clip, task.settings);
+    if (task.call === 'pushClip') return glue.pushClip(task.clip, task.frame);
+    return task.call === 'finishClip' ? glue.finishClip(task.clip) : glue.endClip(task.clip);
+  }) as Promise<Result>;
 }
 
 function paintArguments(context: unknown, segmentation: unknown, options: unknown) {

@@ -1,6 +1,6 @@
 // What the page and its worker say to each other.
 
-import type { MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
+import type { ClipFrame, MotionFit, Pixels, PointMeasurements, Progress, Segmentation } from '../../types/index.js';
 import type { ErrorMessage } from '../common/errors.js';
 import { buffersOf } from './taking.js';
 
@@ -23,15 +23,28 @@ export interface Correction {
 export type CallTask =
   | { call: 'segmentPair'; frames: Frames; settings: Settings }
   | { call: 'relabel'; frames: Frames; correction: Correction }
-  | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings };
+  | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
+  | ClipTask;
+
+/** The steps of a clip, which is known by its number between them. */
+export type ClipTask =
+  | { call: 'beginClip'; clip: number; settings: Settings }
+  | { call: 'pushClip'; clip: number; frame: Pixels }
+  | { call: 'finishClip' | 'endClip'; clip: number };
 
 export type Task = CallTask | { call: 'warmUp' };
 
 /** What `relabel` changes of a segmentation. */
 export type Corrected = Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>;
 
-/** What a task gives. */
-export type Result = Segmentation | Corrected | MotionFit | undefined;
+/** The frames of a clip that still waited at its end, and the number of objects for which no number was left. */
+export interface ClipEnd {
+  frames: ClipFrame[];
+  dropped: number;
+}
+
+/** What a task gives; null where its clip is not there any more. */
+export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
@@ -43,8 +56,9 @@ export type Reply<R = Result> =
 
 /** What is handed over to a worker instead of copied. */
 export function buffersOfTask(task: Task): ArrayBuffer[] {
-  if (task.call === 'warmUp') return [];
   if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
+  if (task.call === 'pushClip') return buffersOf([task.frame.data]);
+  if (!('frames' in task)) return [];
   const said = task.call === 'relabel' ? [task.correction.labels, task.correction.sets] : [];
   return buffersOf([...task.frames.map((frame) => frame?.data), ...said]);
 }

@@ -40,11 +40,14 @@ export interface Call<T> {
   finish: (result: Result) => T;
 }
 
+/** Does a task, here or in a worker. */
+export type Perform = (task: CallTask, options: CallOptions) => Promise<Result>;
+
 /**
  * Checks and takes at once; what is thrown becomes a rejection. Not an `async` function: while it waited it would hold what it was
  * given, the caller's arrays.
  */
-export function start<T>(prepare: () => Call<T>, perform: (task: CallTask, options: CallOptions) => Promise<Result>): Promise<T> {
+export function start<T>(prepare: () => Call<T>, perform: Perform): Promise<T> {
   try {
     const { task, options, finish } = reading(prepare);
     return perform(task, options).then(finish);

@@ -4,7 +4,7 @@ import { basename, extname, join } from 'node:path';
 import { Worker } from 'node:worker_threads';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { core } from '../entries/codecs.js';
-import { inOrder } from '../pool/ordered.js';
+import { inOrder } from '../calls/ordered.js';
 import { WorkerPool } from '../pool/pool.js';
 import { spawnWith } from '../pool/threads.js';
 import type { SequenceCommand } from './arguments.js';

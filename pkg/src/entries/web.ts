@@ -4,7 +4,7 @@ import { packageFor } from './package.js';
 
 export { davisPalette, groupLabels, VeroneseError, version } from './package.js';
 
-export const { init, initPoints, segmentPair, relabel, fitMotions, paintLabels, Segmenter, SegmenterPool, segmentPairs } = packageFor({
+export const { init, initPoints, segmentPair, segmentClip, relabel, fitMotions, paintLabels, Segmenter, SegmenterPool, segmentPairs } = packageFor({
   frames: new URL('../wasm/veronese_bg.wasm', import.meta.url),
   points: new URL('../wasm/points/veronese_points_bg.wasm', import.meta.url),
   // Bundlers look for this very expression.

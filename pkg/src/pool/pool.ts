@@ -1,4 +1,5 @@
-// Tasks for a number of workers: each does one at a time, each task is cancelled at once by ending its worker.
+// Tasks for a number of workers: each does one at a time, each task is cancelled at once by ending its worker, unless the worker is
+// kept for tasks that build on each other.
 
 import type { CallOptions, Progress } from '../../types/index.js';
 import type { Reply, Request } from '../calls/messages.js';
@@ -14,14 +15,36 @@ export interface Thread<Task> {
 
 export type Spawn<Task, Result> = (onReply: (reply: Reply<Result>) => void, onDeath: (reason: string) => void) => Thread<Task>;
 
+/** A worker that is kept for tasks that build on each other. */
+export interface Claim<Task, Result> {
+  /** Rejects where the worker was ended since. */
+  run: (task: Task, options?: CallOptions) => Promise<Result>;
+  release: () => void;
+}
+
+/** What {@link Claim} is to the pool. */
+interface Claiming {
+  /** Why its worker is gone. */
+  lost?: VeroneseError;
+}
+
+interface Claimant {
+  give: (claim: Claiming) => void;
+  reject: (reason: VeroneseError) => void;
+}
+
 interface Job<Task, Result> {
   task: Task;
+  /** The only worker that may do it is the one with this claim. */
+  claim: Claiming | undefined;
   signal: AbortSignal | undefined;
   onProgress: ((progress: Progress) => void) | undefined;
   resolve: (result: Result) => void;
   reject: (reason: unknown) => void;
   /** No longer listens to the signal. */
   release: () => void;
+  /** Whether the caller has an answer. */
+  settled: boolean;
 }
 
 /** Gives a compiled module, the same for every worker: always the same function where it is the same module. */
@@ -35,19 +58,23 @@ interface Lane<Task, Result> {
   job: Job<Task, Result> | undefined;
   /** Whether its worker knows of the job. */
   told: boolean;
+  /** Who keeps its worker. */
+  claim: Claiming | undefined;
 }
 
 export class WorkerPool<Task, Result> {
   readonly #spawn: Spawn<Task, Result>;
   readonly #supply: (task: Task) => Module;
   readonly #waiting: Job<Task, Result>[] = [];
+  readonly #claimants: Claimant[] = [];
   readonly #lanes: Lane<Task, Result>[];
 
   /** `supply`: which module a task needs. */
   constructor(spawn: Spawn<Task, Result>, supply: (task: Task) => Module, size: number) {
     this.#spawn = spawn;
     this.#supply = supply;
-    this.#lanes = Array.from({ length: size }, () => ({ thread: undefined, modules: new Set(), job: undefined, told: false }));
+    const free = { thread: undefined, job: undefined, told: false, claim: undefined };
+    this.#lanes = Array.from({ length: size }, () => ({ ...free, modules: new Set() }));
   }
 
   get size(): number {
@@ -55,12 +82,58 @@ export class WorkerPool<Task, Result> {
   }
 
   /** Tasks begin in the order of the calls. */
-  run(task: Task, { signal, onProgress }: CallOptions = {}): Promise<Result> {
+  run(task: Task, options?: CallOptions): Promise<Result> {
+    return this.#run(task, options);
+  }
+
+  /** Keeps a worker; each is kept for one claim at a time, in the order of the calls. Other tasks go on in between. */
+  claim(signal?: AbortSignal): Promise<Claim<Task, Result>> {
     if (signal?.aborted) return Promise.reject(cancelled(signal));
+    return new Promise((resolve, reject) => {
+      const onAbort = () => {
+        this.#claimants.splice(this.#claimants.indexOf(claimant), 1);
+        reject(cancelled(signal));
+      };
+      const claimant: Claimant = {
+        give: (claim) => {
+          signal?.removeEventListener('abort', onAbort);
+          resolve({ run: (task, options) => this.#run(task, options, claim), release: () => this.#release(claim) });
+        },
+        reject: (reason) => {
+          signal?.removeEventListener('abort', onAbort);
+          reject(reason);
+        },
+      };
+      signal?.addEventListener('abort', onAbort);
+      this.#claimants.push(claimant);
+      this.#assign();
+    });
+  }
+
+  #assign(): void {
+    const free = this.#lanes.filter(({ claim }) => !claim);
+    // Rather a worker that has nothing to do, and rather one that is there.
+    free.sort((one, other) => Number(!!one.job) - Number(!!other.job) || Number(!one.thread) - Number(!other.thread));
+    for (const lane of free) {
+      const claimant = this.#claimants.shift();
+      if (!claimant) return;
+      lane.claim = {};
+      claimant.give(lane.claim);
+    }
+  }
+
+  #release(claim: Claiming): void {
+    for (const lane of this.#lanes) if (lane.claim === claim) lane.claim = undefined;
+    this.#assign();
+  }
+
+  #run(task: Task, { signal, onProgress }: CallOptions = {}, claim?: Claiming): Promise<Result> {
+    if (signal?.aborted) return Promise.reject(cancelled(signal));
+    if (claim?.lost) return Promise.reject(claim.lost);
     return new Promise((resolve, reject) => {
       const onAbort = () => this.#cancel(job);
       const release = () => signal?.removeEventListener('abort', onAbort);
-      const job: Job<Task, Result> = { task, signal, onProgress, resolve, reject, release };
+      const job: Job<Task, Result> = { task, claim, signal, onProgress, resolve, reject, release, settled: false };
       signal?.addEventListener('abort', onAbort);
       this.#waiting.push(job);
       this.#next();
@@ -70,43 +143,58 @@ export class WorkerPool<Task, Result> {
   /** Ends all workers; a later call starts fresh ones. */
   close(): void {
     const jobs = this.#waiting.splice(0);
+    const claimants = this.#claimants.splice(0);
     for (const lane of this.#lanes) {
       if (lane.job) jobs.push(lane.job);
-      this.#end(lane);
+      this.#end(lane, cancelled());
     }
     for (const job of jobs) this.#settle(job, () => job.reject(cancelled(job.signal)));
+    for (const claimant of claimants) claimant.reject(cancelled());
   }
 
   #cancel(job: Job<Task, Result>, reason: unknown = cancelled(job.signal)): void {
     const lane = this.#lanes.find((lane) => lane.job === job);
-    if (lane?.told) this.#end(lane);
-    else if (lane) lane.job = undefined;
-    else this.#waiting.splice(this.#waiting.indexOf(job), 1);
+    // A worker that is kept goes on: what it does is not waited for, what it holds is not lost.
+    if (lane?.told && !lane.claim) this.#end(lane);
+    else if (lane && !lane.told) lane.job = undefined;
+    else if (!lane) this.#waiting.splice(this.#waiting.indexOf(job), 1);
     this.#settle(job, () => job.reject(reason));
     this.#next();
   }
 
   #settle(job: Job<Task, Result>, how: () => void): void {
+    if (job.settled) return;
+    job.settled = true;
     job.release();
     how();
   }
 
-  /** Ends a worker and whatever it does. */
-  #end(lane: Lane<Task, Result>): void {
+  /** Ends a worker and whatever it does. `reason`: what those who keep it are told. */
+  #end(lane: Lane<Task, Result>, reason?: VeroneseError): void {
+    const { claim } = lane;
     lane.thread?.terminate();
     lane.thread = undefined;
     lane.modules.clear();
     lane.job = undefined;
     lane.told = false;
+    lane.claim = undefined;
+    if (!claim || !reason) return;
+    claim.lost = reason;
+    const orphans = this.#waiting.filter((job) => job.claim === claim);
+    for (const job of orphans) {
+      this.#waiting.splice(this.#waiting.indexOf(job), 1);
+      this.#settle(job, () => job.reject(reason));
+    }
   }
 
   #next(): void {
     const idle = this.#lanes.filter(({ job }) => !job);
-    // A worker that is there already costs nothing.
-    idle.sort((one, other) => Number(!one.thread) - Number(!other.thread));
+    // Those that are kept have work to come; a worker that is there already costs nothing.
+    idle.sort((one, other) => Number(!!one.claim) - Number(!!other.claim) || Number(!one.thread) - Number(!other.thread));
     for (const lane of idle) {
-      const job = this.#waiting.shift();
-      if (!job) return;
+      const job = this.#waiting.find(({ claim }) => !claim || claim === lane.claim);
+      if (!job) continue;
+      this.#waiting.splice(this.#waiting.indexOf(job), 1);
       lane.job = job;
       lane.told = false;
       void this.#start(lane, job);
@@ -137,8 +225,10 @@ export class WorkerPool<Task, Result> {
       (reason) => {
         if (lane.thread !== thread) return;
         const { job } = lane;
-        this.#end(lane);
-        if (job) this.#settle(job, () => job.reject(new VeroneseError('worker-failed', `the worker stopped: ${reason}`)));
+        const failed = new VeroneseError('worker-failed', `the worker stopped: ${reason}`);
+        this.#end(lane, failed);
+        if (job) this.#settle(job, () => job.reject(failed));
+        this.#assign();
         this.#next();
       },
     );
@@ -149,6 +239,7 @@ export class WorkerPool<Task, Result> {
     const { job } = lane;
     if (!job) return;
     if (reply.kind === 'progress') {
+      if (job.settled) return;
       try {
         job.onProgress?.(reply.progress);
       } catch (thrown) {

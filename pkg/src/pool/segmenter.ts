@@ -2,6 +2,9 @@
 
 import type {
   CallOptions,
+  Clip,
+  ClipOptions,
+  ClipSource,
   FitOptions,
   MotionFit,
   PairInput,
@@ -18,12 +21,13 @@ import type {
   WasmSource,
   WorkerLike,
 } from '../../types/index.js';
+import { clipOf } from '../calls/clip.js';
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
+import { inOrder } from '../calls/ordered.js';
 import { fitCall, parted, relabelCall, segmentCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
 import type { Core, Glue } from '../module/core.js';
-import { inOrder } from './ordered.js';
 import { WorkerPool } from './pool.js';
 import { spawnWith } from './threads.js';
 
@@ -72,6 +76,13 @@ export function segmenters(host: Host) {
 
     fitMotions(measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> {
       return start(() => fitCall(measurements, options), this.#perform);
+    }
+
+    segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
+      return clipOf(frames, options, async (signal) => {
+        const claim = await this.#pool.claim(signal);
+        return { perform: claim.run, release: claim.release };
+      });
     }
 
     async warmUp(): Promise<void> {

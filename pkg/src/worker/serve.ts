@@ -2,7 +2,7 @@
 
 import type { Segmentation } from '../../types/index.js';
 import { Api } from '../calls/api.js';
-import type { Reply, Request, Result } from '../calls/messages.js';
+import type { ClipEnd, Reply, Request, Result } from '../calls/messages.js';
 import { buffersOf } from '../calls/taking.js';
 import { errorMessage } from '../common/errors.js';
 import { Core } from '../module/core.js';
@@ -31,6 +31,6 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
 
 /** What is handed over instead of copied. */
 function buffersOfResult(result: Result): ArrayBuffer[] {
-  const { labels, confidence }: Partial<Pick<Segmentation, 'labels' | 'confidence'>> = result ?? {};
-  return buffersOf([labels, confidence]);
+  const { labels, confidence, frames = [] }: Partial<Pick<Segmentation, 'labels' | 'confidence'> & ClipEnd> = result ?? {};
+  return buffersOf([labels, confidence, ...frames.map((frame) => frame.labels)]);
 }

@@ -1,6 +1,8 @@
 // What a user writes; compiled under strict settings, never run.
 
 import {
+  type ClipFrame,
+  type ClipTracks,
   davisPalette,
   type ErrorCode,
   fitMotions,
@@ -13,6 +15,7 @@ import {
   type Segmentation,
   Segmenter,
   SegmenterPool,
+  segmentClip,
   segmentPair,
   segmentPairs,
   VeroneseError,
@@ -62,6 +65,18 @@ export async function clip(frames: LabelFrame[], later: AsyncIterable<LabelFrame
   // @ts-expect-error frames that come later give a promise
   const text: string = encodeCvatVideo(later);
   return `${document.videos.length} ${await promise} ${text}`;
+}
+
+export async function follow(frames: AsyncIterable<ImageData>, read: (index: number) => Promise<Pixels>): Promise<ClipTracks> {
+  const stream = segmentClip(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', seed: 1, onProgress: ({ frame, of }) => console.log(frame, of) });
+  for await (const { index, labels, objects, background } of stream) console.log(index, labels.length, objects[0]?.matrix?.[2], background);
+  const segmenter = new Segmenter();
+  const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'whole', signal: AbortSignal.timeout(1000) });
+  const first: IteratorResult<ClipFrame, void> = await whole.next();
+  if (!first.done) console.log(first.value.index);
+  // @ts-expect-error nothing marks what is unknown in a clip
+  segmentClip([], { markUnknown: true });
+  return whole.tracks();
 }
 
 export function mistakes(frame: ImageData): void {

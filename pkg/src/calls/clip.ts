@@ -1,0 +1,144 @@
+// Clips: frames in, labelled frames out, and at the end what became of each object. The same for direct calls and for workers.
+
+import type { Clip, ClipFrame, ClipOptions, ClipProgress, ClipSource, Pixels } from '../../types/index.js';
+import { invalidInput, isWhole, reading } from '../common/checks.js';
+import { cancelled, VeroneseError } from '../common/errors.js';
+import type { ClipEnd, Result, Settings } from './messages.js';
+import { inOrder } from './ordered.js';
+import { taken } from './taking.js';
+import { checkedPixels, parted, type Perform } from './tasks.js';
+import { Tracks } from './tracks.js';
+
+/** Frames that each frame of a stream waits for, unless the caller says otherwise: the most that a stream may. */
+const LOOK_AHEAD_OF_STREAMS = 8;
+
+/** Where a clip stays between its frames: in this thread, or in a worker that is kept for it. */
+export interface Place {
+  perform: Perform;
+  release: () => void;
+}
+
+/** Clips so far: no two have the same number, so that none is taken for another in a module that was replaced after a panic. */
+let clips = 0;
+
+/** Nothing is looked at, opened or taken before the first frame is asked for. `keep` finds a place for the clip. */
+export function clipOf(frames: ClipSource, options: ClipOptions | undefined, keep: (signal?: AbortSignal) => Promise<Place>): Clip {
+  const tracks = new Tracks();
+  return Object.assign(segmented(frames, options, keep, tracks), { tracks: () => tracks.value() });
+}
+
+async function* segmented(
+  frames: ClipSource,
+  options: ClipOptions | undefined,
+  keep: (signal?: AbortSignal) => Promise<Place>,
+  tracks: Tracks,
+): AsyncGenerator<ClipFrame, void, undefined> {
+  const { source, of, signal, onProgress, transfer, settings } = reading(() => asked(frames, options));
+  if (signal?.aborted) throw cancelled(signal);
+  const { perform, release } = await keep(signal);
+  const clip = clips++;
+  let open = false;
+  let size: Pixels | undefined;
+  /** Whether an error was in the work and not in a frame: the clip cannot go on. */
+  let lost = false;
+
+  const work = async (input: unknown, index: number): Promise<Answer> => {
+    try {
+      const frame = reading(() => takenFrame(input, index, size, transfer));
+      size ??= frame;
+      lost = true;
+      onProgress?.({ frame: index, of });
+      const answer = { frame: held(await perform({ call: 'pushClip', clip, frame }, { signal })) as ClipFrame | undefined };
+      lost = false;
+      return answer;
+    } catch (thrown) {
+      return { failure: { thrown } };
+    }
+  };
+
+  try {
+    await perform({ call: 'beginClip', clip, settings }, { signal }).catch((thrown) => {
+      // A worker may begin what its caller no longer waits for.
+      open = signal?.aborted === true;
+      throw thrown;
+    });
+    open = true;
+    let failure: Answer['failure'];
+    try {
+      for await (const answer of inOrder(source, work, { room: 1, signal, stop: () => cancelled(signal) })) {
+        if (answer.failure) throw answer.failure.thrown;
+        if (answer.frame) yield tracks.with(answer.frame);
+      }
+    } catch (thrown) {
+      if (lost || signal?.aborted) throw thrown;
+      failure = { thrown };
+    }
+    // Where the source failed, what it had given comes first.
+    const { frames: rest, dropped } = held(await perform({ call: 'finishClip', clip }, { signal })) as ClipEnd;
+    open = false;
+    tracks.dropped = dropped;
+    for (const frame of rest) {
+      if (signal?.aborted) throw cancelled(signal);
+      yield tracks.with(frame);
+    }
+    if (failure) throw failure.thrown;
+  } finally {
+    // Nobody waits for it. Where it fails, nothing is left to be ended.
+    if (open) void perform({ call: 'endClip', clip }, {}).catch(() => undefined).finally(release);
+    else release();
+  }
+}
+
+interface Answer {
+  frame?: ClipFrame | undefined;
+  failure?: { thrown: unknown };
+}
+
+interface Asked {
+  source: Iterable<unknown> | AsyncIterable<unknown>;
+  /** Number of frames, where it is known. */
+  of: number | undefined;
+  signal: AbortSignal | undefined;
+  onProgress: ((progress: ClipProgress) => void) | undefined;
+  transfer: boolean;
+  settings: Settings;
+}
+
+function asked(frames: unknown, options: unknown): Asked {
+  const { call, transfer, settings } = parted(options, ['motions', 'quality', 'seed', 'lookAhead']);
+  const rest = { signal: call.signal, onProgress: call.onProgress as Asked['onProgress'], transfer };
+  const settingsFor = (stream: boolean) => {
+    const { lookAhead = stream ? LOOK_AHEAD_OF_STREAMS : 'whole', ...others } = settings;
+    // Without a number the core waits for as many frames as matter.
+    return lookAhead === 'whole' ? others : { ...others, lookAhead };
+  };
+  const { length, read } = Object(frames) as { length: unknown; read: unknown };
+  if (typeof read === 'function') {
+    if (!isWhole(length, 0, Infinity)) throw invalidInput("the frames: 'length' must be a whole number");
+    return { source: inPlace(frames as Parameters<typeof inPlace>[0], length), of: length, settings: settingsFor(false), ...rest };
+  }
+  const source = Object(frames) as Partial<Iterable<unknown> & AsyncIterable<unknown>>;
+  if (typeof source[Symbol.asyncIterator] !== 'function' && typeof source[Symbol.iterator] !== 'function') {
+    throw invalidInput('the frames must be an iterable or async iterable of pixels, or { length, read(index) }');
+  }
+  return { source: source as Asked['source'], of: undefined, settings: settingsFor(true), ...rest };
+}
+
+function* inPlace(frames: { read: (index: number) => unknown }, length: number): Generator<unknown, void, undefined> {
+  for (let index = 0; index < length; index++) yield frames.read(index);
+}
+
+/** The call's own copy of a frame that fits those before it. */
+function takenFrame(input: unknown, index: number, size: Pixels | undefined, transfer: boolean): Pixels {
+  const { data, width, height } = checkedPixels(`frame ${index}`, input);
+  if (size && (width !== size.width || height !== size.height)) {
+    const sizes = `${width}×${height} pixels, those before have ${size.width}×${size.height}`;
+    throw new VeroneseError('frame-size-mismatch', `frame ${index} has ${sizes}`);
+  }
+  return { data: taken([data], transfer)[0] as Uint8Array, width, height };
+}
+
+function held(result: Result): Result {
+  if (result === null) throw new VeroneseError('internal', 'the clip was lost when another call failed');
+  return result;
+}

@@ -1,0 +1,382 @@
+// Clips: directly and in workers.
+
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
+import { Worker } from 'node:worker_threads';
+import { segmentClip, segmentPair, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
+import { frame, pair } from './support/frames.mjs';
+import { checkMatrix, failure, timeless } from './support/shapes.mjs';
+
+const COUNT = 7;
+const SIZE = { width: 64, height: 48 };
+const FAST = { quality: 'fast', lookAhead: 1 };
+
+/** The frames of a short clip, in which a square moves over a background at rest. */
+const frames = (count = COUNT) => Array.from({ length: count }, (_, k) => frame(k / 2, SIZE));
+
+async function all(clip) {
+  const list = [];
+  for await (const one of clip) list.push(one);
+  return list;
+}
+
+/** What a clip gives before it fails, and its error. */
+async function until(clip) {
+  const given = [];
+  const error = await failure((async () => {
+    for await (const { index } of clip) given.push(index);
+  })());
+  return { given, error };
+}
+
+/** A segmenter that ends with the test and counts its workers. */
+function segmenter(t) {
+  const counted = { started: 0, workers: [] };
+  const worker = () => {
+    const made = new Worker(new URL('../dist/worker-node.js', import.meta.url));
+    counted.started += 1;
+    counted.workers.push(made);
+    return made;
+  };
+  counted.segmenter = new Segmenter(undefined, { worker });
+  t.after(() => counted.segmenter.close());
+  return counted;
+}
+
+/** A signal that is aborted after some milliseconds, which the process waits for. */
+function after(milliseconds) {
+  const controller = new AbortController();
+  void setTimeout(milliseconds).then(() => controller.abort());
+  return controller.signal;
+}
+
+/** A source that counts what is taken from it and says whether it was closed. */
+function source(list) {
+  const taken = { count: 0, closed: false };
+  taken.frames = (function* () {
+    try {
+      for (const one of list) {
+        taken.count += 1;
+        yield one;
+      }
+    } finally {
+      taken.closed = true;
+    }
+  })();
+  return taken;
+}
+
+describe('segmentClip', () => {
+  test('gives every frame, in order, with objects that fit the labels, and their tracks', async () => {
+    const clip = segmentClip(frames(), FAST);
+    const given = await all(clip);
+    assert.deepEqual(given.map(({ index }) => index), Array.from({ length: COUNT }, (_, k) => k));
+    for (const { index, labels, objects, background } of given) {
+      assert.ok(labels instanceof Uint8Array);
+      assert.equal(labels.length, SIZE.width * SIZE.height);
+      assert.deepEqual(new Set(labels), new Set([0, ...objects.map(({ id }) => id)]));
+      const last = index === COUNT - 1;
+      if (last) assert.equal(background, null);
+      else checkMatrix(background);
+      for (const { id, pixels, bbox: [x, y, w, h], confidence, matrix } of objects) {
+        assert.equal(pixels, labels.filter((label) => label === id).length);
+        const inside = labels.filter((label, p) => label === id && p % SIZE.width >= x && p % SIZE.width < x + w && Math.floor(p / SIZE.width) >= y && Math.floor(p / SIZE.width) < y + h);
+        assert.equal(inside.length, pixels);
+        assert.ok(confidence > 0.5 && confidence <= 1);
+        if (last) assert.equal(matrix, null);
+        else checkMatrix(matrix);
+      }
+    }
+    assert.deepEqual(given.map(({ objects }) => objects.map(({ id }) => id)), Array(COUNT).fill([1]), 'the square keeps its number');
+
+    const { objects: [square, ...others], background, dropped } = clip.tracks();
+    assert.deepEqual([others, dropped], [[], 0]);
+    assert.deepEqual([square.id, square.first, square.last], [1, 0, COUNT - 1]);
+    assert.deepEqual(square.frames, given.map(({ index, objects: [{ id: _, ...seen }] }) => ({ frame: index, ...seen })));
+    assert.deepEqual(background, given.slice(0, -1).map(({ index, background }) => ({ frame: index, matrix: background })));
+  });
+
+  test('takes iterables, promises, async iterables, and frames in place', async () => {
+    const expected = await all(segmentClip(frames(), FAST));
+    assert.deepEqual(await all(segmentClip(frames().map((one) => Promise.resolve(one)), FAST)), expected);
+    assert.deepEqual(await all(segmentClip((async function* () { yield* frames(); })(), FAST)), expected);
+    const read = [];
+    const place = { length: COUNT, read: (index) => (read.push(index), index % 2 ? frames()[index] : Promise.resolve(frames()[index])) };
+    assert.deepEqual(await all(segmentClip(place, FAST)), expected);
+    assert.deepEqual(read, Array.from({ length: COUNT }, (_, k) => k));
+  });
+
+  test('waits for 8 frames of a stream and for a whole short clip, unless told otherwise', async () => {
+    const taken = async (options, inPlace) => {
+      let count = 0;
+      const list = frames(12).map((one) => () => ((count += 1), one));
+      const stream = (function* () { for (const one of list) yield one(); })();
+      const clip = segmentClip(inPlace ? { length: list.length, read: (index) => list[index]() } : stream, { quality: 'fast', ...options });
+      await clip.next();
+      await clip.return();
+      return count;
+    };
+    assert.equal(await taken({}), 10, 'the frame, 8 more, and the one that shows the motion of the last');
+    assert.equal(await taken({ lookAhead: 0 }), 2);
+    assert.equal(await taken({ lookAhead: 0 }, true), 2);
+    assert.equal(await taken({}, true), 12);
+    assert.equal(await taken({ lookAhead: 'whole' }), 12);
+  });
+
+  test('asks for a frame only when the reader waits for one, and lets the source reuse its buffer', async () => {
+    const buffer = frame(0, SIZE);
+    let asked = 0;
+    const reusing = (function* () {
+      for (const one of frames()) {
+        asked += 1;
+        buffer.data.set(one.data);
+        yield buffer;
+      }
+    })();
+    const clip = segmentClip(reusing, FAST);
+    await setTimeout(20);
+    assert.equal(asked, 0);
+    const given = [(await clip.next()).value];
+    assert.equal(asked, 3);
+    await setTimeout(20);
+    assert.equal(asked, 3);
+    given.push(...(await all(clip)));
+    assert.deepEqual(given, await all(segmentClip(frames(), FAST)));
+  });
+
+  test('transfers frames where it is asked to', async () => {
+    const list = frames(2);
+    await all(segmentClip(list, { ...FAST, transfer: true }));
+    assert.deepEqual(list.map(({ data }) => data.length), [0, 0]);
+  });
+
+  test('reports progress', async () => {
+    const progress = [];
+    const onProgress = (one) => progress.push(one);
+    await all(segmentClip(frames(2), { ...FAST, onProgress }));
+    await all(segmentClip({ length: 2, read: (index) => frames(2)[index] }, { ...FAST, onProgress }));
+    const told = (of) => [{ frame: 0, of }, { frame: 1, of }];
+    assert.deepEqual(progress, [...told(undefined), ...told(2)]);
+  });
+
+  test('no frames and one frame', async () => {
+    assert.deepEqual(await all(segmentClip([])), []);
+    const [only, ...others] = await all(segmentClip(frames(1)));
+    assert.deepEqual([others, only.objects, only.background], [[], [], null]);
+    assert.ok(only.labels.every((label) => label === 0));
+  });
+
+  test('several clips in one thread do not disturb each other', async () => {
+    const expected = await all(segmentClip(frames(4), FAST));
+    const [one, other] = [segmentClip(frames(4), FAST), segmentClip(frames(4), FAST)];
+    for (const frame of expected) {
+      assert.deepEqual((await one.next()).value, frame);
+      assert.deepEqual((await other.next()).value, frame);
+    }
+  });
+
+  test('a clip whose module was replaced says so, and takes no other clip for its own', async () => {
+    const mine = new Error('mine');
+    const lost = segmentClip(frames(), FAST);
+    await lost.next();
+    assert.equal(await failure(segmentPair(...pair(), { onProgress: () => { throw mine; } })), mine);
+    const next = segmentClip(frames(), FAST);
+    const [first] = [(await next.next()).value];
+    const { error } = await until(lost);
+    assert.deepEqual([error.code, /lost/.test(error.message)], ['internal', true]);
+    assert.deepEqual([first, ...(await all(next))], await all(segmentClip(frames(), FAST)));
+  });
+});
+
+/** Both ways to segment a clip. */
+const WAYS = {
+  directly: () => segmentClip,
+  'in a worker': (t) => {
+    const { segmenter: made } = segmenter(t);
+    return (...args) => made.segmentClip(...args);
+  },
+};
+
+for (const [way, make] of Object.entries(WAYS)) {
+  describe(`a clip ${way}`, () => {
+    test('whose source throws gives first what there was', async (t) => {
+      const mine = new Error('mine');
+      const failing = async function* () {
+        yield* frames(3);
+        throw mine;
+      };
+      assert.deepEqual(await until(make(t)(failing(), FAST)), { given: [0, 1, 2], error: mine });
+      const place = { length: 5, read: (index) => (index < 3 ? frames()[index] : Promise.reject(mine)) };
+      assert.deepEqual(await until(make(t)(place, FAST)), { given: [0, 1, 2], error: mine });
+    });
+
+    test('with a frame that does not fit gives first those before it, and closes its source', async (t) => {
+      const cases = [
+        ['frame-size-mismatch', frame(0, { width: 70, height: 48 })],
+        ['invalid-input', { ...SIZE, data: 'text' }],
+        ['invalid-input', undefined],
+        ['frame-size-unsupported', { width: 1, height: 1, data: new Uint8Array(4) }],
+        ['pixel-count-mismatch', { ...SIZE, data: new Uint8Array(4) }],
+      ];
+      for (const [code, bad] of cases) {
+        const taken = source([...frames(3), bad, ...frames(3)]);
+        const { given, error } = await until(make(t)(taken.frames, FAST));
+        assert.ok(error instanceof VeroneseError);
+        assert.deepEqual([given, error.code, taken.count, taken.closed], [[0, 1, 2], code, 4, true]);
+        assert.match(error.message, /frame/);
+      }
+      assert.match((await until(make(t)([frame(0, SIZE), {}], FAST))).error.message, /^frame 1 /);
+    });
+
+    test('refuses options and frames before it takes anything', async (t) => {
+      const cases = [
+        [{ lookAhead: 9 }, /lookAhead/],
+        [{ lookAhead: -1 }, /lookAhead/],
+        [{ lookAhead: 'all' }, /lookAhead/],
+        [{ motions: 11 }, /motions/],
+        [{ quality: 'good' }, /quality/],
+        [{ markUnknown: true }, /there is no option 'markUnknown'/],
+        [{ before: frame(0) }, /there is no option 'before'/],
+        [{ signal: {} }, /signal/],
+        [{ onProgress: 5 }, /onProgress/],
+      ];
+      for (const [options, message] of cases) {
+        const taken = source(frames(2));
+        const { error } = await until(make(t)(taken.frames, options));
+        assert.deepEqual([error.code, taken.count], ['invalid-option', 0]);
+        assert.match(error.message, message);
+      }
+      for (const none of [undefined, null, 5, {}, { length: 2 }, { length: -1, read() {} }, { length: Infinity, read() {} }]) {
+        assert.equal((await until(make(t)(none))).error.code, 'invalid-input');
+      }
+    });
+
+    test('is cancelled between frames, and closes its source', async (t) => {
+      const controller = new AbortController();
+      const taken = source(frames());
+      const given = [];
+      const error = await failure((async () => {
+        for await (const { index } of make(t)(taken.frames, { ...FAST, signal: controller.signal })) {
+          given.push(index);
+          if (index === 1) controller.abort('enough');
+        }
+      })());
+      assert.deepEqual([given, error.code, error.cause, taken.closed], [[0, 1], 'cancelled', 'enough', true]);
+      const before = source(frames());
+      const early = await until(make(t)(before.frames, { signal: AbortSignal.abort() }));
+      assert.deepEqual([early.error.code, before.count], ['cancelled', 0]);
+    });
+
+    test('is cancelled by a timer while a source without pauses feeds it, and while a source lets it wait', async (t) => {
+      const endless = (function* () { for (;;) yield frame(0, SIZE); })();
+      assert.equal((await until(make(t)(endless, { ...FAST, signal: after(300) }))).error.code, 'cancelled');
+      const controller = new AbortController();
+      let closed = false;
+      const iterator = {
+        next: () => {
+          void setTimeout(20).then(() => controller.abort());
+          return new Promise(() => {});
+        },
+        return: async () => ((closed = true), {}),
+      };
+      const silent = { [Symbol.asyncIterator]: () => iterator };
+      assert.equal((await until(make(t)(silent, { signal: controller.signal }))).error.code, 'cancelled');
+      assert.equal(closed, true);
+    });
+
+    test('whose listener throws ends with that', async (t) => {
+      const mine = new Error('mine');
+      const onProgress = ({ frame }) => {
+        if (frame === 3) throw mine;
+      };
+      const taken = source(frames());
+      assert.deepEqual(await until(make(t)(taken.frames, { ...FAST, onProgress })), { given: [0], error: mine });
+      assert.equal(taken.closed, true);
+    });
+
+    test('that the reader leaves closes its source, and the next clip works', async (t) => {
+      const segment = make(t);
+      const taken = source(frames());
+      for await (const { index } of segment(taken.frames, FAST)) if (index === 1) break;
+      assert.equal(taken.closed, true);
+      assert.ok(taken.count < COUNT);
+      assert.equal((await all(segment(frames(3), FAST))).length, 3);
+    });
+  });
+}
+
+describe('Segmenter.segmentClip', () => {
+  test('gives the same bits as a direct call, in one worker', async (t) => {
+    const counted = segmenter(t);
+    const [there, here] = [counted.segmenter.segmentClip(frames(), FAST), segmentClip(frames(), FAST)];
+    assert.deepEqual(await all(there), await all(here));
+    assert.deepEqual(there.tracks(), here.tracks());
+    assert.equal(counted.started, 1);
+  });
+
+  test('keeps its worker when it is cancelled, left or fails, and when another call is cancelled beside it', async (t) => {
+    const counted = segmenter(t);
+    const expected = await all(segmentClip(frames(), FAST));
+    // In the middle of a frame.
+    const controller = new AbortController();
+    const onProgress = ({ frame }) => frame === 2 && controller.abort();
+    const { error } = await until(counted.segmenter.segmentClip(frames(), { ...FAST, onProgress, signal: controller.signal }));
+    assert.equal(error.code, 'cancelled');
+    for await (const _ of counted.segmenter.segmentClip(frames(), FAST)) break;
+    await until(counted.segmenter.segmentClip([frame(0, SIZE), undefined], FAST));
+    // Between two frames of a clip.
+    const clip = counted.segmenter.segmentClip(frames(), FAST);
+    const given = [(await clip.next()).value];
+    const beside = new AbortController();
+    const pairs = [
+      counted.segmenter.segmentPair(...pair(), { signal: beside.signal, onProgress: () => beside.abort() }),
+      counted.segmenter.segmentPair(...pair()),
+    ];
+    assert.equal((await failure(pairs[0])).code, 'cancelled');
+    assert.deepEqual(timeless(await pairs[1]), timeless(await segmentPair(...pair())));
+    given.push(...(await all(clip)));
+    assert.deepEqual(given, expected);
+    assert.equal(counted.started, 1, 'one worker did all of it');
+  });
+
+  test('a second clip waits for the first, and can be cancelled while it does', async (t) => {
+    const { segmenter: made } = segmenter(t);
+    const first = made.segmentClip(frames(3), FAST);
+    await first.next();
+    const taken = source(frames(3));
+    const second = made.segmentClip(taken.frames, FAST);
+    const answer = second.next();
+    assert.equal((await until(made.segmentClip(frames(), { signal: after(50) }))).error.code, 'cancelled');
+    assert.equal(taken.count, 0);
+    assert.equal((await all(first)).length, 2);
+    assert.equal((await answer).value.index, 0);
+    assert.equal((await all(second)).length, 2);
+  });
+
+  test('clips of a pool run side by side, and pairs go to the other workers', async (t) => {
+    const pool = new SegmenterPool({ jobs: 2 });
+    t.after(() => pool.close());
+    const clips = [pool.segmentClip(frames(3), FAST), pool.segmentClip(frames(3), FAST)];
+    await Promise.all(clips.map((clip) => clip.next()));
+    assert.equal((await pool.segmentPair(...pair())).width, 64);
+    for (const clip of clips) assert.equal((await all(clip)).length, 2);
+  });
+
+  test('a worker that dies, and one that is closed, end the clip with an error; a later clip gets a fresh worker', async (t) => {
+    const counted = segmenter(t);
+    const dying = counted.segmenter.segmentClip(frames(), FAST);
+    await dying.next();
+    await counted.workers[0].terminate();
+    assert.equal((await until(dying)).error.code, 'worker-failed');
+    const closing = counted.segmenter.segmentClip(frames(), FAST);
+    await closing.next();
+    const waiting = until(counted.segmenter.segmentClip(frames(), FAST));
+    await setTimeout(0);
+    counted.segmenter.close();
+    assert.equal((await until(closing)).error.code, 'cancelled');
+    assert.equal((await waiting).error.code, 'cancelled');
+    assert.equal((await all(counted.segmenter.segmentClip(frames(3), FAST))).length, 3);
+    assert.equal(counted.started, 3);
+  });
+});
