@@ -321,6 +321,12 @@ describe('usage', () => {
     'another quality': ['invalid-option', ['pair', 'a', 'b', '--quality', 'good']],
     'another method': ['invalid-option', ['points', 'a', '--method', 'ours']],
     'a negative seed': ['invalid-option', ['pair', 'a', 'b', '--seed=-1']],
+    'a clip without frames': ['usage', ['clip', '--out', 'a']],
+    'a clip without --out': ['usage', ['clip', 'a']],
+    'an option of pairs for a clip': ['usage', ['clip', 'a', '--out', 'b', '--grouped']],
+    'a look-ahead below 0': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead=-1']],
+    'a look-ahead above 8': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', '9']],
+    'a look-ahead in words': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', 'whole']],
     'a seed too large': ['invalid-option', ['pair', 'a', 'b', '--seed', '9007199254740992']],
   };
   for (const [title, [code, args]] of Object.entries(wrong)) {
@@ -332,7 +338,7 @@ describe('usage', () => {
       const { code, stdout, stderr } = await veronese(args);
       assert.equal(code, 0);
       assert.equal(stderr, '');
-      for (const word of ['pair', 'points', '--before', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--confidence', '--overlay', '--method']) {
+      for (const word of ['pair', 'points', 'clip', '--look-ahead', '--before', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--confidence', '--overlay', '--method']) {
         assert.ok(stdout.includes(word), word);
       }
     }

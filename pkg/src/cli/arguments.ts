@@ -9,6 +9,9 @@ import type { PairSettings } from './pair.js';
 import type { Range } from './sequence.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
+/** Frames that a frame may wait for in a stream: what the core takes. */
+const LONGEST_LOOK_AHEAD = 8;
+
 /** Names of the formats, wrapped to fit a terminal. */
 const FORMAT_NAMES = wrapped(Object.keys(SEQUENCE_FORMATS), 80, '\n' + ' '.repeat(41));
 /** Those that are not for all folders. */
@@ -42,6 +45,17 @@ export const HELP = `veronese segments two video frames by motion: how many moti
   veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
 
+  veronese clip FRAMES... | VIDEO --out DIR [options]
+                                         follow what moves through a clip: objects keep their number; FRAMES as for batch, VIDEO as for video
+      --list FILE            read frames from FILE, one path per line (- reads standard input)
+      --every K              use only every K-th frame (default: 1)
+      --motions auto|1..10   number of motions in each pair of frames (default: auto)
+      --quality fast|best    speed or accuracy (default: best)
+      --look-ahead N         let each frame wait for N others, 0 to 8 (default: as many as matter)
+      --seed N               random seed (default: 1)
+      --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
+      --overlay              also write overlay/NAME.png: the frames with each object in its colour
+
   veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; separate FORMATS by commas:
                                          ${FORMAT_NAMES}
                                          only of clip: ${formatsFor(false, true)}
@@ -68,7 +82,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
 
   veronese --help | --version
 
-Prints one line of JSON on stdout; batch and video print one line per pair.
+Prints one line of JSON on stdout; batch and video print one line per pair, clip one line per frame and a last one.
 Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
 `;
 
@@ -80,6 +94,14 @@ export interface SequenceSettings extends PairSettings {
   /** The part of all pairs to process; `index` counts from 0. */
   shard: { index: number; of: number };
   out?: string;
+}
+
+export interface ClipSettings {
+  motions: 'auto' | number;
+  quality: 'fast' | 'best';
+  /** Of a whole clip where there is no number. */
+  lookAhead: number | 'whole';
+  seed: number;
 }
 
 export type Command =
@@ -94,6 +116,15 @@ export type Command =
     } & PairSettings)
   | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
   | ({ name: 'video'; file: string } & SequenceSettings)
+  | {
+      name: 'clip';
+      frames: string[];
+      list?: string;
+      every: number;
+      options: ClipSettings;
+      overlay: boolean;
+      out: string;
+    }
   | {
       name: 'convert';
       folder: string;
@@ -117,6 +148,7 @@ export type Command =
 export type PairCommand = Extract<Command, { name: 'pair' }>;
 export type PointsCommand = Extract<Command, { name: 'points' }>;
 export type ConvertCommand = Extract<Command, { name: 'convert' }>;
+export type ClipCommand = Extract<Command, { name: 'clip' }>;
 export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
 export type WorkCommand = PairCommand | PointsCommand;
 
@@ -153,6 +185,7 @@ const OPTIONS = {
   'with-before': { type: 'boolean', default: false },
   jobs: { type: 'string', short: 'j' },
   shard: { type: 'string', default: '1/1' },
+  'look-ahead': { type: 'string' },
 } as const;
 
 const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
@@ -162,6 +195,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: ['before', ...OF_PAIRS],
   batch: ['list', ...OF_SEQUENCES],
   video: OF_SEQUENCES,
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'seed', 'out', 'overlay'],
   convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'out'],
   points: ['motions', 'method', 'seed'],
 };
@@ -203,6 +237,17 @@ export function parseCommand(args: string[]): Command {
       ...(values.out !== undefined && { out: values.out }),
     };
   }
+  if (name === 'clip') {
+    const { list, out, overlay, 'look-ahead': lookAhead } = values;
+    checkFrames(name, files, list);
+    if (out === undefined) throw usage("'clip' needs '--out DIR'");
+    const options: ClipSettings = {
+      ...shared,
+      quality: choice('quality', values.quality, 'fast', 'best'),
+      lookAhead: lookAhead === undefined ? 'whole' : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
+    };
+    return { name, frames: files, ...(list !== undefined && { list }), every: every(values.every), options, overlay, out };
+  }
   for (const name of ['overlay', 'confidence'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
   }
@@ -224,17 +269,16 @@ export function parseCommand(args: string[]): Command {
   }
   const sequence: SequenceSettings = {
     ...settings,
-    every: whole('every', values.every, 1_000_000),
+    every: every(values.every),
     withBefore: values['with-before'],
-    jobs: values.jobs === undefined ? availableParallelism() : whole('jobs', values.jobs, MOST_JOBS),
+    jobs: values.jobs === undefined ? availableParallelism() : whole('jobs', values.jobs, 1, MOST_JOBS),
     shard: shard(values.shard),
   };
   if (name === 'video') {
     const [file] = exactly(1, files, "'video' takes one file");
     return { name, file: file as string, ...sequence };
   }
-  if (files.length === 0 && values.list === undefined) throw usage("'batch' takes frames, or a list of them");
-  if (files.includes('')) throw usage("a frame's name is empty");
+  checkFrames('batch', files, values.list);
   return { name: 'batch', frames: files, ...(values.list !== undefined && { list: values.list }), ...sequence };
 }
 
@@ -247,6 +291,11 @@ function parsed(args: string[]) {
     const sentence = text.split(/[.\n]\s/)[0]?.replace(/\.$/, '') ?? text;
     throw usage(sentence.charAt(0).toLowerCase() + sentence.slice(1));
   }
+}
+
+function checkFrames(command: string, files: string[], list: string | undefined): void {
+  if (files.length === 0 && list === undefined) throw usage(`'${command}' takes frames, or a list of them`);
+  if (files.includes('')) throw usage("a frame's name is empty");
 }
 
 function exactly(count: number, files: string[], sentence: string): string[] {
@@ -306,10 +355,14 @@ function wrapped(words: readonly string[], width: number, lineBreak: string): st
   return text;
 }
 
-function whole(name: string, text: string, most: number): number {
+function every(text: string): number {
+  return whole('every', text, 1, 1_000_000);
+}
+
+function whole(name: string, text: string, least: number, most: number): number {
   const value = Number(text);
-  if (/^\d+$/.test(text) && value >= 1 && value <= most) return value;
-  throw invalid(name, `a whole number from 1 to ${most}`, text);
+  if (/^\d+$/.test(text) && value >= least && value <= most) return value;
+  throw invalid(name, `a whole number from ${least} to ${most}`, text);
 }
 
 function shard(text: string): { index: number; of: number } {

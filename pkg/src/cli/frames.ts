@@ -14,6 +14,8 @@ export interface Frame {
   /** Of a frame that is no file to read: its content, and what its results are called by. */
   bytes?: Uint8Array;
   stem?: string;
+  /** Of a frame of a video: its position there, from 0. */
+  number?: number;
 }
 
 /**
@@ -23,6 +25,12 @@ export interface Frame {
 export function findFrames(names: readonly string[], list?: string): string[] {
   const listed = list === undefined ? [] : linesOf(list);
   return [...names.flatMap(framesOf), ...listed];
+}
+
+/** Whether it names a file that is no image, so that a command that takes both has to do with a video. */
+export function isVideo(name: string): boolean {
+  const kind = kindOf(name);
+  return kind === undefined ? !MAGIC.test(name) && !IMAGE.test(name) : kind === 'file' && !IMAGE.test(name);
 }
 
 function framesOf(name: string): string[] {

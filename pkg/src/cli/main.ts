@@ -3,7 +3,7 @@
 import { Worker } from 'node:worker_threads';
 import { version } from '../calls/version.js';
 import { VeroneseError } from '../common/errors.js';
-import { type Command, filesOf, HELP, parseCommand, type SequenceCommand } from './arguments.js';
+import { type ClipCommand, type Command, filesOf, HELP, parseCommand, type SequenceCommand } from './arguments.js';
 import { batch } from './batch.js';
 import { checkFolder, Output, readInput } from './files.js';
 import { complain, print } from './terminal.js';
@@ -26,6 +26,7 @@ export async function main(args: string[]): Promise<void> {
   process.on('SIGTERM', () => stop(output, EXIT.terminated));
   try {
     if (command.name === 'batch' || command.name === 'video') await batch(command);
+    else if (command.name === 'clip') await (await import('./clip.js')).clip(command);
     else await print(await answer(command, output));
   } catch (thrown) {
     complain(thrown);
@@ -33,7 +34,7 @@ export async function main(args: string[]): Promise<void> {
   }
 }
 
-async function answer(command: Exclude<Command, SequenceCommand>, output: Output): Promise<string> {
+async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, output: Output): Promise<string> {
   if (command.name === 'help') return HELP;
   if (command.name === 'version') return `veronese ${version}\n`;
   if (command.name === 'convert') return (await import('./convert.js')).convert(command, output);

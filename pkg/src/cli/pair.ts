@@ -54,7 +54,8 @@ async function images({ grouped, overlay: wanted }: PairSettings, segmentation: 
   return files;
 }
 
-async function decoded({ name, bytes }: InputFile): Promise<Picture> {
+/** The picture in a file; the error of one that is none names it. */
+export async function decoded({ name, bytes }: InputFile): Promise<Picture> {
   try {
     return await decodeImage(bytes);
   } catch (thrown) {

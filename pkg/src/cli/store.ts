@@ -59,12 +59,15 @@ export function recordFiles(report: Report, job: string, inputs: readonly InputF
 /** A mark of this machine, so that two of them may write into one shared folder. */
 const HOST = sha256(hostname()).slice(0, 8);
 
+/** What something is called while it is written. */
+export const temporary = (name: string): string => `.${name}.${HOST}-${process.pid}.part`;
+
 /**
  * Writes a pair's folder. All of it happens between two turns of the event loop, so a signal comes before or after it; and since
  * the folder gets its name when it is complete, so does the end of the process.
  */
 export function writePair(out: string, name: string, files: readonly OutputFile[]): void {
-  const part = join(out, `.${name}.${HOST}-${process.pid}.part`);
+  const part = join(out, temporary(name));
   const folder = join(out, name);
   try {
     rmSync(part, { recursive: true, force: true });

@@ -42,12 +42,19 @@ export class ProgressBar {
   readonly #stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'>;
   readonly #total: number | undefined;
   readonly #now: () => number;
+  readonly #unit: string;
   readonly #started: number;
   #drawn = -Infinity;
 
-  /** `total`: the number of pairs, where it is known. */
-  constructor(total: number | undefined, stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'> = process.stderr, now = () => performance.now()) {
+  /** `total`: the number of pairs (or of what `unit` says), where it is known. */
+  constructor(
+    total: number | undefined,
+    stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'> = process.stderr,
+    now = () => performance.now(),
+    unit = 'pairs',
+  ) {
     this.#total = total;
+    this.#unit = unit;
     this.#stream = stream;
     this.#now = now;
     this.#started = now();
@@ -57,7 +64,7 @@ export class ProgressBar {
     const now = this.#now();
     if (!this.#stream.isTTY || now - this.#drawn < INTERVAL) return;
     this.#drawn = now;
-    this.#stream.write(`\r\u001b[K${line(tally, this.#total, (now - this.#started) / 1000)}`);
+    this.#stream.write(`\r\u001b[K${line(tally, this.#total, (now - this.#started) / 1000, this.#unit)}`);
   }
 
   /** Takes the line away, for what is to be read there. */
@@ -66,13 +73,13 @@ export class ProgressBar {
   }
 }
 
-function line({ done, skipped, failed }: Tally, total: number | undefined, seconds: number): string {
+function line({ done, skipped, failed }: Tally, total: number | undefined, seconds: number, unit: string): string {
   const finished = done + skipped + failed;
   const rate = seconds > 0 ? done / seconds : 0;
-  const parts = [`${finished}${total === undefined ? '' : ` of ${total}`} pairs`];
+  const parts = [`${finished}${total === undefined ? '' : ` of ${total}`} ${unit}`];
   if (skipped > 0) parts.push(`${skipped} done before`);
   if (failed > 0) parts.push(`${failed} failed`);
-  if (rate > 0) parts.push(`${rate.toFixed(1)} pairs/s`);
+  if (rate > 0) parts.push(`${rate.toFixed(1)} ${unit}/s`);
   if (total !== undefined && rate > 0) parts.push(`${Math.ceil((total - finished) / rate)} s left`);
   if (total === undefined || total === 0) return parts.join(', ');
   const full = Math.round((WIDTH * finished) / total);

@@ -39,7 +39,7 @@ export async function* videoFrames(file: string, every: number): AsyncGenerator<
   try {
     let number = 0;
     for await (const bytes of pixmaps(ffmpeg.stdout)) {
-      yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, bytes };
+      yield { name: `${basename(file)}#${number}`, stem: `frame-${String(number).padStart(6, '0')}`, number, bytes };
       number += every;
     }
     const problem = await ended;
