@@ -79,7 +79,7 @@ describe('veronese clip', () => {
 
     const { images, job, settings, ...tracks } = tracksOf(out);
     assert.deepEqual(tracks, JSON.parse(JSON.stringify({ version: 1, ...SIZE, frames: NAMES, files, ...direct.tracks() })));
-    assert.deepEqual(settings, { motions: 'auto', quality: 'fast', lookAhead: 'whole', seed: 3, every: 1, overlay: true, software: `veronese ${version}` });
+    assert.deepEqual(settings, { motions: 'auto', quality: 'fast', lookAhead: 'all', seed: 3, every: 1, overlay: true, software: `veronese ${version}` });
     assert.deepEqual(Object.keys(images).sort(), [...files.map((name) => `labels/${name}`), ...files.map((name) => `overlay/${name}`)]);
   });
 

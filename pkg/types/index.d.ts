@@ -197,10 +197,10 @@ export interface ClipProgress {
 /** Options of {@link segmentClip}; `motions` is the number of motions in each pair of consecutive frames. */
 export interface ClipOptions extends Omit<SegmentOptions, 'markUnknown' | 'confidence' | 'before' | 'onProgress'> {
   /**
-   * Number of frames that each frame waits for, 0 to 8, or `'whole'`: as many as matter, 16. More frames give better masks. Default: 8
-   * for a stream, `'whole'` for a whole clip.
+   * Number of frames that each frame waits for, 0 to 8, or `'all'`: as many as matter, 16. More frames give better masks. Default: 8
+   * for a stream, `'all'` for a whole clip.
    */
-  lookAhead?: number | 'whole' | undefined;
+  lookAhead?: number | 'all' | undefined;
   /** Called for each frame before it is segmented. If it throws, the clip ends with that exception. */
   onProgress?: ((progress: ClipProgress) => void) | undefined;
 }
@@ -215,7 +215,7 @@ export interface ClipObject {
   bbox: [number, number, number, number];
   /** Mean probability that its pixels belong to an object, 0 to 1. */
   confidence: number;
-  /** Motion of its largest part to the next frame; null if the scene has no next frame. */
+  /** Motion of its largest part to the next frame; null if there is none. In a stream, its motion from the frame before, continued. */
   matrix: Matrix | null;
 }
 
@@ -227,7 +227,7 @@ export interface ClipFrame {
   labels: Uint8Array;
   /** The visible objects by number. */
   objects: ClipObject[];
-  /** Motion of the background to the next frame; null if the scene has no next frame. */
+  /** Motion of the background to the next frame; null if there is none. In a stream, its motion from the frame before, continued. */
   background: Matrix | null;
 }
 

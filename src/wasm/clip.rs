@@ -18,8 +18,8 @@ thread_local! {
     static CLIPS: RefCell<Vec<(u32, ClipSegmenter)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `seed` and `lookAhead`; without the last,
-/// frames wait as in a whole clip.
+/// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `seed` and `lookAhead` (`'all'`, the
+/// default, stands for a whole clip).
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
@@ -75,17 +75,19 @@ fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {
             "motions" => options.pair.motions = motions(&value)?,
             "quality" => options.pair.quality = quality(&value)?,
             "seed" => options.pair.seed = seed(&value)?,
-            "lookAhead" => options.look_ahead = Some(look_ahead(&value)?),
+            "lookAhead" => options.look_ahead = look_ahead(&value)?,
             _ => return Err(unknown(&name, "motions, quality, seed, lookAhead")),
         }
     }
     Ok(options)
 }
 
-fn look_ahead(value: &JsValue) -> Result<usize, Failure> {
-    match value.as_f64() {
-        Some(frames) if (0.0..=MAX_LOOK_AHEAD as f64).contains(&frames) && frames == frames.floor() => Ok(frames as usize),
-        _ => Err(invalid("lookAhead", &format!("a whole number from 0 to {MAX_LOOK_AHEAD}"), value)),
+/// None for `'all'`.
+fn look_ahead(value: &JsValue) -> Result<Option<usize>, Failure> {
+    match (value.as_string().as_deref(), value.as_f64()) {
+        (Some("all"), _) => Ok(None),
+        (_, Some(n)) if (0.0..=MAX_LOOK_AHEAD as f64).contains(&n) && n == n.floor() => Ok(Some(n as usize)),
+        _ => Err(invalid("lookAhead", &format!("'all' or a whole number from 0 to {MAX_LOOK_AHEAD}"), value)),
     }
 }
 

@@ -107,21 +107,16 @@ interface Asked {
 function asked(frames: unknown, options: unknown): Asked {
   const { call, transfer, settings } = parted(options, ['motions', 'quality', 'seed', 'lookAhead']);
   const rest = { signal: call.signal, onProgress: call.onProgress as Asked['onProgress'], transfer };
-  const settingsFor = (stream: boolean) => {
-    const { lookAhead = stream ? LOOK_AHEAD_OF_STREAMS : 'whole', ...others } = settings;
-    // Without a number the core waits for as many frames as matter.
-    return lookAhead === 'whole' ? others : { ...others, lookAhead };
-  };
   const { length, read } = Object(frames) as { length: unknown; read: unknown };
   if (typeof read === 'function') {
     if (!isWhole(length, 0, Infinity)) throw invalidInput("the frames: 'length' must be a whole number");
-    return { source: inPlace(frames as Parameters<typeof inPlace>[0], length), of: length, settings: settingsFor(false), ...rest };
+    return { source: inPlace(frames as Parameters<typeof inPlace>[0], length), of: length, settings: { lookAhead: 'all', ...settings }, ...rest };
   }
   const source = Object(frames) as Partial<Iterable<unknown> & AsyncIterable<unknown>>;
   if (typeof source[Symbol.asyncIterator] !== 'function' && typeof source[Symbol.iterator] !== 'function') {
     throw invalidInput('the frames must be an iterable or async iterable of pixels, or { length, read(index) }');
   }
-  return { source: source as Asked['source'], of: undefined, settings: settingsFor(true), ...rest };
+  return { source: source as Asked['source'], of: undefined, settings: { lookAhead: LOOK_AHEAD_OF_STREAMS, ...settings }, ...rest };
 }
 
 function* inPlace(frames: { read: (index: number) => unknown }, length: number): Generator<unknown, void, undefined> {

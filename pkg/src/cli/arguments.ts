@@ -100,7 +100,7 @@ export interface ClipSettings {
   motions: 'auto' | number;
   quality: 'fast' | 'best';
   /** Of a whole clip where there is no number. */
-  lookAhead: number | 'whole';
+  lookAhead: number | 'all';
   seed: number;
 }
 
@@ -244,7 +244,7 @@ export function parseCommand(args: string[]): Command {
     const options: ClipSettings = {
       ...shared,
       quality: choice('quality', values.quality, 'fast', 'best'),
-      lookAhead: lookAhead === undefined ? 'whole' : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
+      lookAhead: lookAhead === undefined ? 'all' : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
     };
     return { name, frames: files, ...(list !== undefined && { list }), every: every(values.every), options, overlay, out };
   }

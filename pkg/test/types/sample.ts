@@ -71,7 +71,7 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const stream = segmentClip(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', seed: 1, onProgress: ({ frame, of }) => console.log(frame, of) });
   for await (const { index, labels, objects, background } of stream) console.log(index, labels.length, objects[0]?.matrix?.[2], background);
   const segmenter = new Segmenter();
-  const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'whole', signal: AbortSignal.timeout(1000) });
+  const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'all', signal: AbortSignal.timeout(1000) });
   const first: IteratorResult<ClipFrame, void> = await whole.next();
   if (!first.done) console.log(first.value.index);
   // @ts-expect-error nothing marks what is unknown in a clip
