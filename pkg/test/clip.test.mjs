@@ -12,7 +12,7 @@ const COUNT = 7;
 const SIZE = { width: 64, height: 48 };
 const FAST = { quality: 'fast', lookAhead: 1 };
 
-/** The frames of a short clip, in which a square moves over a background at rest. */
+/** A short clip of a square that moves over a static background. */
 const frames = (count = COUNT) => Array.from({ length: count }, (_, k) => frame(k / 2, SIZE));
 
 async function all(clip) {
@@ -21,7 +21,7 @@ async function all(clip) {
   return list;
 }
 
-/** What a clip gives before it fails, and its error. */
+/** The indices that a clip returns before it fails, and its error. */
 async function until(clip) {
   const given = [];
   const error = await failure((async () => {

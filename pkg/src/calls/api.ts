@@ -124,7 +124,7 @@ async function run<T extends { milliseconds: Milliseconds }, G extends Glue>(
   }
 }
 
-/** One step of a clip. The event loop turns before it, or nobody could abort what a source without pauses is fed into. */
+/** One step of a clip. It yields to the event loop first; otherwise nothing could abort a clip whose source never waits. */
 async function step(core: Core<FramesGlue>, { signal }: CallOptions, task: ClipTask): Promise<Result> {
   await new Promise((resolve) => setTimeout(resolve));
   if (signal?.aborted) throw cancelled(signal);

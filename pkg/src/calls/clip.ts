@@ -1,4 +1,4 @@
-// Clips: frames in, labelled frames out, and at the end what became of each object. The same for direct calls and for workers.
+// Clips: frames in, labelled frames and tracks out. Direct calls and workers share this.
 
 import type { Clip, ClipFrame, ClipOptions, ClipProgress, ClipSource, Pixels } from '../../types/index.js';
 import { invalidInput, isWhole, reading } from '../common/checks.js';
@@ -9,37 +9,37 @@ import { taken } from './taking.js';
 import { checkedPixels, parted, type Perform } from './tasks.js';
 import { Tracks } from './tracks.js';
 
-/** Frames that each frame of a stream waits for, unless the caller says otherwise: the most that a stream may. */
+/** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
 
-/** Where a clip stays between its frames: in this thread, or in a worker that is kept for it. */
+/** Where a clip is kept between its frames: in this thread, or in a worker reserved for it. */
 export interface Place {
   perform: Perform;
   release: () => void;
 }
 
-/** Clips so far: no two have the same number, so that none is taken for another in a module that was replaced after a panic. */
+/** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
 let clips = 0;
 
-/** Nothing is looked at, opened or taken before the first frame is asked for. `keep` finds a place for the clip. */
-export function clipOf(frames: ClipSource, options: ClipOptions | undefined, keep: (signal?: AbortSignal) => Promise<Place>): Clip {
+/** `reserve` finds a place for the clip. Arguments are checked when the first frame is requested, as generators do. */
+export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>): Clip {
   const tracks = new Tracks();
-  return Object.assign(segmented(frames, options, keep, tracks), { tracks: () => tracks.value() });
+  return Object.assign(segmented(frames, options, reserve, tracks), { tracks: () => tracks.value() });
 }
 
 async function* segmented(
   frames: ClipSource,
   options: ClipOptions | undefined,
-  keep: (signal?: AbortSignal) => Promise<Place>,
+  reserve: (signal?: AbortSignal) => Promise<Place>,
   tracks: Tracks,
 ): AsyncGenerator<ClipFrame, void, undefined> {
   const { source, of, signal, onProgress, transfer, settings } = reading(() => asked(frames, options));
   if (signal?.aborted) throw cancelled(signal);
-  const { perform, release } = await keep(signal);
+  const { perform, release } = await reserve(signal);
   const clip = clips++;
   let open = false;
   let size: Pixels | undefined;
-  /** Whether an error was in the work and not in a frame: the clip cannot go on. */
+  /** Whether the clip cannot continue, because a step of it failed and not a frame. */
   let lost = false;
 
   const work = async (input: unknown, index: number): Promise<Answer> => {
@@ -48,7 +48,7 @@ async function* segmented(
       size ??= frame;
       lost = true;
       onProgress?.({ frame: index, of });
-      const answer = { frame: held(await perform({ call: 'pushClip', clip, frame }, { signal })) as ClipFrame | undefined };
+      const answer = { frame: found(await perform({ call: 'pushClip', clip, frame }, { signal })) as ClipFrame | undefined };
       lost = false;
       return answer;
     } catch (thrown) {
@@ -58,7 +58,7 @@ async function* segmented(
 
   try {
     await perform({ call: 'beginClip', clip, settings }, { signal }).catch((thrown) => {
-      // A worker may begin what its caller no longer waits for.
+      // The worker may still begin a clip that was cancelled.
       open = signal?.aborted === true;
       throw thrown;
     });
@@ -67,23 +67,23 @@ async function* segmented(
     try {
       for await (const answer of inOrder(source, work, { room: 1, signal, stop: () => cancelled(signal) })) {
         if (answer.failure) throw answer.failure.thrown;
-        if (answer.frame) yield tracks.with(answer.frame);
+        if (answer.frame) yield tracks.add(answer.frame);
       }
     } catch (thrown) {
       if (lost || signal?.aborted) throw thrown;
       failure = { thrown };
     }
-    // Where the source failed, what it had given comes first.
-    const { frames: rest, dropped } = held(await perform({ call: 'finishClip', clip }, { signal })) as ClipEnd;
+    // If the source failed, the frames before come first.
+    const { frames: rest, dropped } = found(await perform({ call: 'finishClip', clip }, { signal })) as ClipEnd;
     open = false;
     tracks.dropped = dropped;
     for (const frame of rest) {
       if (signal?.aborted) throw cancelled(signal);
-      yield tracks.with(frame);
+      yield tracks.add(frame);
     }
     if (failure) throw failure.thrown;
   } finally {
-    // Nobody waits for it. Where it fails, nothing is left to be ended.
+    // Not awaited. If it fails, the clip is gone already.
     if (open) void perform({ call: 'endClip', clip }, {}).catch(() => undefined).finally(release);
     else release();
   }
@@ -96,7 +96,7 @@ interface Answer {
 
 interface Asked {
   source: Iterable<unknown> | AsyncIterable<unknown>;
-  /** Number of frames, where it is known. */
+  /** Number of frames, if known. */
   of: number | undefined;
   signal: AbortSignal | undefined;
   onProgress: ((progress: ClipProgress) => void) | undefined;
@@ -110,7 +110,7 @@ function asked(frames: unknown, options: unknown): Asked {
   const { length, read } = Object(frames) as { length: unknown; read: unknown };
   if (typeof read === 'function') {
     if (!isWhole(length, 0, Infinity)) throw invalidInput("the frames: 'length' must be a whole number");
-    return { source: inPlace(frames as Parameters<typeof inPlace>[0], length), of: length, settings: { lookAhead: 'all', ...settings }, ...rest };
+    return { source: readEach(frames as Parameters<typeof readEach>[0], length), of: length, settings: { lookAhead: 'all', ...settings }, ...rest };
   }
   const source = Object(frames) as Partial<Iterable<unknown> & AsyncIterable<unknown>>;
   if (typeof source[Symbol.asyncIterator] !== 'function' && typeof source[Symbol.iterator] !== 'function') {
@@ -119,11 +119,11 @@ function asked(frames: unknown, options: unknown): Asked {
   return { source: source as Asked['source'], of: undefined, settings: { lookAhead: LOOK_AHEAD_OF_STREAMS, ...settings }, ...rest };
 }
 
-function* inPlace(frames: { read: (index: number) => unknown }, length: number): Generator<unknown, void, undefined> {
+function* readEach(frames: { read: (index: number) => unknown }, length: number): Generator<unknown, void, undefined> {
   for (let index = 0; index < length; index++) yield frames.read(index);
 }
 
-/** The call's own copy of a frame that fits those before it. */
+/** A copy of a frame, checked against the size of the frames before. */
 function takenFrame(input: unknown, index: number, size: Pixels | undefined, transfer: boolean): Pixels {
   const { data, width, height } = checkedPixels(`frame ${index}`, input);
   if (size && (width !== size.width || height !== size.height)) {
@@ -133,7 +133,8 @@ function takenFrame(input: unknown, index: number, size: Pixels | undefined, tra
   return { data: taken([data], transfer)[0] as Uint8Array, width, height };
 }
 
-function held(result: Result): Result {
+/** The result of a step, if its clip still exists. */
+function found(result: Result): Result {
   if (result === null) throw new VeroneseError('internal', 'the clip was lost when another call failed');
   return result;
 }

@@ -26,7 +26,7 @@ export type CallTask =
   | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
   | ClipTask;
 
-/** The steps of a clip, which is known by its number between them. */
+/** The steps of a clip. `clip` is its number. */
 export type ClipTask =
   | { call: 'beginClip'; clip: number; settings: Settings }
   | { call: 'pushClip'; clip: number; frame: Pixels }
@@ -37,13 +37,13 @@ export type Task = CallTask | { call: 'warmUp' };
 /** What `relabel` changes of a segmentation. */
 export type Corrected = Pick<Segmentation, 'motions' | 'unlabelled' | 'labels' | 'milliseconds'>;
 
-/** The frames of a clip that still waited at its end, and the number of objects for which no number was left. */
+/** The frames that were still waiting at the end of a clip, and the number of objects beyond the last number. */
 export interface ClipEnd {
   frames: ClipFrame[];
   dropped: number;
 }
 
-/** What a task gives; null where its clip is not there any more. */
+/** The result of a task; null if its clip no longer exists. */
 export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */

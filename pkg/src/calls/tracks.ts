@@ -1,4 +1,4 @@
-// What became of each object of a clip, gathered frame by frame.
+// The tracks of a clip's objects, collected frame by frame.
 
 import type { ClipFrame, ClipTrack, ClipTracks } from '../../types/index.js';
 
@@ -7,8 +7,8 @@ export class Tracks {
   readonly #background: ClipTracks['background'] = [];
   dropped = 0;
 
-  /** Takes note of the next frame, and gives it back. */
-  with(frame: ClipFrame): ClipFrame {
+  /** Adds the next frame and returns it. */
+  add(frame: ClipFrame): ClipFrame {
     const { index, objects, background } = frame;
     for (const { id, ...seen } of objects) {
       const track = this.#objects.get(id) ?? { id, first: index, last: index, frames: [] };
@@ -20,7 +20,7 @@ export class Tracks {
     return frame;
   }
 
-  /** A copy: the caller may write to it. */
+  /** A copy, which the caller may change. */
   value(): ClipTracks {
     const objects = [...this.#objects.values()].sort((one, other) => one.id - other.id);
     return structuredClone({ objects, background: this.#background, dropped: this.dropped });

@@ -9,7 +9,7 @@ import type { PairSettings } from './pair.js';
 import type { Range } from './sequence.js';
 import { isSequenceFormatName, SEQUENCE_FORMATS, type SequenceFormatName } from './sequence-formats.js';
 
-/** Frames that a frame may wait for in a stream: what the core takes. */
+/** Largest look-ahead, as in the core. */
 const LONGEST_LOOK_AHEAD = 8;
 
 /** Names of the formats, wrapped to fit a terminal. */
@@ -99,7 +99,6 @@ export interface SequenceSettings extends PairSettings {
 export interface ClipSettings {
   motions: 'auto' | number;
   quality: 'fast' | 'best';
-  /** Of a whole clip where there is no number. */
   lookAhead: number | 'all';
   seed: number;
 }

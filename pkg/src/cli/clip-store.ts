@@ -1,4 +1,4 @@
-// The results of a clip in a folder: images of each frame as they come, and tracks.json last, which says what they were made of.
+// The results of a clip in a folder: the images of each frame, and last tracks.json, which records what they were made from.
 
 import { appendFileSync, existsSync, mkdirSync, readFileSync, renameSync, rmdirSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
@@ -7,7 +7,7 @@ import { writeFailed } from './files.js';
 import { jsonLine } from './pair.js';
 import { removeLeftovers, sha256, temporary } from './store.js';
 
-/** What tracks.json holds. */
+/** The content of tracks.json. */
 export interface Record extends ClipTracks {
   version: 1;
   width: number;
@@ -19,7 +19,7 @@ export interface Record extends ClipTracks {
   settings: object;
   /** Hashes of the images. */
   images: { [path: string]: string };
-  /** Hash of everything that decides what the files hold, and of the rest of this record. */
+  /** Hash of the settings, the frames and the rest of this record. */
   job: string;
 }
 
@@ -31,7 +31,7 @@ export interface FrameFile {
 }
 
 const TRACKS = 'tracks.json';
-/** Names of all frames that may have images here while there is no tracks.json. */
+/** While there is no tracks.json: names of all frames that may have images in the folder. */
 const JOURNAL = '.clip.names';
 const FOLDERS = ['labels', 'overlay'];
 
@@ -55,11 +55,11 @@ export class ClipStore {
       const whole = Object.entries(record.images).every(([path, hash]) => sha256(readFileSync(join(this.#out, path))) === hash);
       return whole ? record : undefined;
     } catch {
-      return undefined; // Not there, or not ours: to be done. What is wrong with a frame is said when it is.
+      return undefined; // Missing, foreign or damaged. A bad frame is reported when the clip is segmented.
     }
   }
 
-  /** The folder, if there is one, is unfinished from now on. Throws `write-failed`, as do all that write. */
+  /** Marks the folder, if it exists, as unfinished. Throws `write-failed`, as all methods that write do. */
   begin(): void {
     if (!existsSync(this.#out)) return;
     this.#writing(() => {
@@ -70,7 +70,7 @@ export class ClipStore {
     });
   }
 
-  /** Writes a frame's images, by their folders. */
+  /** Writes the images of a frame; the keys are their folders. */
   write(stem: string, images: { [folder: string]: Uint8Array }): void {
     this.#writing(() => {
       mkdirSync(this.#out, { recursive: true });
@@ -83,7 +83,7 @@ export class ClipStore {
     });
   }
 
-  /** Removes images of frames that are no longer there, and writes the record. */
+  /** Removes images of frames that do not belong to the clip, and writes the record. */
   end(frames: readonly (FrameFile & { width: number; height: number })[], tracks: ClipTracks): void {
     const { width = 0, height = 0 } = frames[0] ?? {};
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
@@ -99,7 +99,7 @@ export class ClipStore {
     });
   }
 
-  /** The hash of contents and settings that a result is recognised by. */
+  /** Hash of the settings, names and contents. */
   #jobOf(frames: readonly FrameFile[]): string {
     return sha256(JSON.stringify({ settings: this.#settings, frames: frames.map(({ stem, file, sha256 }) => [stem, file, sha256]) }));
   }
@@ -108,7 +108,7 @@ export class ClipStore {
     appendFileSync(join(this.#out, JOURNAL), `${name}\n`);
   }
 
-  /** Names of frames in a file, none where there is no such file or it is not ours. */
+  /** Names of frames in a file; none if it is missing or foreign. */
   #namesOf(file: string, parse: (text: string) => unknown[]): string[] {
     try {
       const names = parse(readFileSync(join(this.#out, file), 'utf8'));
@@ -118,7 +118,7 @@ export class ClipStore {
     }
   }
 
-  /** Between two turns of the event loop, so that a signal comes before or after it. */
+  /** Synchronous, so that no signal is handled in the middle. */
   #write(folder: string, name: string, content: Uint8Array | string): void {
     const part = join(folder, temporary(name));
     try {
@@ -134,7 +134,7 @@ export class ClipStore {
     try {
       rmdirSync(join(this.#out, folder));
     } catch {
-      // It holds something, or is not there.
+      // It is not empty, or does not exist.
     }
   }
 
@@ -147,7 +147,7 @@ export class ClipStore {
   }
 }
 
-/** The text of a record tells by itself whether it is still what was written. */
+/** Adds the hash that detects changes. */
 function sealed(content: Omit<Record, 'job'>, job: string): Record {
   return { ...content, job: sha256(job + jsonLine(content)) };
 }

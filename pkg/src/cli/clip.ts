@@ -1,4 +1,4 @@
-// `clip`: the labels of every frame as they come, one line of JSON for each, and what became of each object at the end.
+// `clip`: writes the labels of each frame, prints a line of JSON for each, and writes the tracks at the end.
 
 import { basename, extname } from 'node:path';
 import type { Picture } from '../../types/codecs.js';
@@ -17,13 +17,13 @@ import { sha256 } from './store.js';
 import { print, ProgressBar } from './terminal.js';
 import { videoFrames } from './video.js';
 
-/** A frame of the clip, with what its results are called by. */
+/** A frame of the clip with the name of its results. */
 type Named = Frame & { stem: string };
 
-/** A frame that was read, with its pixels until its labels are written. */
+/** A frame that was read. It has its pixels until its labels are written. */
 type Taken = FrameFile & { width: number; height: number; picture?: Picture | undefined };
 
-/** Throws at the end what is wrong with a frame; the labels of those before it stay. */
+/** If a frame is bad, writes the labels of the frames before it and throws. */
 export async function clip(command: ClipCommand): Promise<void> {
   const { out, options, every, overlay: wanted } = command;
   checkFolder(out);
@@ -57,7 +57,7 @@ export async function clip(command: ClipCommand): Promise<void> {
   }
 }
 
-/** The frames, as often as they are asked for, and their number where it is known before. */
+/** Reads the frames on each call; `count` is their number, if known in advance. */
 function framesOf({ frames: names, list, every }: ClipCommand): { frames: () => Iterable<Named> | AsyncIterable<Named>; count: number | undefined } {
   const [name = ''] = names;
   if (names.length === 1 && list === undefined && isVideo(name)) return { frames: () => ofVideo(name, every), count: undefined };
@@ -73,7 +73,7 @@ function framesOf({ frames: names, list, every }: ClipCommand): { frames: () => 
   return { frames: () => frames, count: frames.length };
 }
 
-/** Not a single frame of a video that has one only. */
+/** Frames of a video. Throws before the first frame if there is only one. */
 async function* ofVideo(file: string, every: number): AsyncGenerator<Named, void, undefined> {
   let last: Named | undefined;
   let count = 0;
@@ -126,7 +126,7 @@ function warn(dropped: number): void {
   process.stderr.write(`veronese: warning: ${dropped} more objects were seen when all 254 numbers had been given; they count as background\n`);
 }
 
-/** What was printed when the clip was segmented. */
+/** Prints what the run that wrote the record printed. */
 async function report({ frames, objects }: Record): Promise<void> {
   for (const [frame, name] of frames.entries()) {
     const seen = objects.filter((object) => object.frames.some((entry) => entry.frame === frame));

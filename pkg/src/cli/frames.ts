@@ -27,7 +27,7 @@ export function findFrames(names: readonly string[], list?: string): string[] {
   return [...names.flatMap(framesOf), ...listed];
 }
 
-/** Whether it names a file that is no image, so that a command that takes both has to do with a video. */
+/** Whether a name is that of a file which is not an image: a video, for commands that take both. */
 export function isVideo(name: string): boolean {
   const kind = kindOf(name);
   return kind === undefined ? !MAGIC.test(name) && !IMAGE.test(name) : kind === 'file' && !IMAGE.test(name);

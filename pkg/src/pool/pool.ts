@@ -1,5 +1,5 @@
-// Tasks for a number of workers: each does one at a time, each task is cancelled at once by ending its worker, unless the worker is
-// kept for tasks that build on each other.
+// Tasks for a number of workers. Each worker does one at a time. A task is cancelled at once by ending its worker, unless the worker
+// is reserved for a sequence of tasks that share state.
 
 import type { CallOptions, Progress } from '../../types/index.js';
 import type { Reply, Request } from '../calls/messages.js';
@@ -15,16 +15,16 @@ export interface Thread<Task> {
 
 export type Spawn<Task, Result> = (onReply: (reply: Reply<Result>) => void, onDeath: (reason: string) => void) => Thread<Task>;
 
-/** A worker that is kept for tasks that build on each other. */
+/** A worker reserved for a sequence of tasks that share state. */
 export interface Claim<Task, Result> {
-  /** Rejects where the worker was ended since. */
+  /** Rejects if the worker has ended since. */
   run: (task: Task, options?: CallOptions) => Promise<Result>;
   release: () => void;
 }
 
-/** What {@link Claim} is to the pool. */
+/** A {@link Claim} inside the pool. */
 interface Claiming {
-  /** Why its worker is gone. */
+  /** Why its worker has ended. */
   lost?: VeroneseError;
 }
 
@@ -35,7 +35,7 @@ interface Claimant {
 
 interface Job<Task, Result> {
   task: Task;
-  /** The only worker that may do it is the one with this claim. */
+  /** If given, only the worker with this claim may do the job. */
   claim: Claiming | undefined;
   signal: AbortSignal | undefined;
   onProgress: ((progress: Progress) => void) | undefined;
@@ -58,7 +58,7 @@ interface Lane<Task, Result> {
   job: Job<Task, Result> | undefined;
   /** Whether its worker knows of the job. */
   told: boolean;
-  /** Who keeps its worker. */
+  /** The claim on its worker. */
   claim: Claiming | undefined;
 }
 
@@ -86,7 +86,7 @@ export class WorkerPool<Task, Result> {
     return this.#run(task, options);
   }
 
-  /** Keeps a worker; each is kept for one claim at a time, in the order of the calls. Other tasks go on in between. */
+  /** Reserves a worker. A worker has one claim at a time; claims are met in the order of the calls. Other tasks run in between. */
   claim(signal?: AbortSignal): Promise<Claim<Task, Result>> {
     if (signal?.aborted) return Promise.reject(cancelled(signal));
     return new Promise((resolve, reject) => {
@@ -112,7 +112,7 @@ export class WorkerPool<Task, Result> {
 
   #assign(): void {
     const free = this.#lanes.filter(({ claim }) => !claim);
-    // Rather a worker that has nothing to do, and rather one that is there.
+    // Idle workers first, then those that have started.
     free.sort((one, other) => Number(!!one.job) - Number(!!other.job) || Number(!one.thread) - Number(!other.thread));
     for (const lane of free) {
       const claimant = this.#claimants.shift();
@@ -154,7 +154,7 @@ export class WorkerPool<Task, Result> {
 
   #cancel(job: Job<Task, Result>, reason: unknown = cancelled(job.signal)): void {
     const lane = this.#lanes.find((lane) => lane.job === job);
-    // A worker that is kept goes on: what it does is not waited for, what it holds is not lost.
+    // A reserved worker finishes the task, because its state would be lost.
     if (lane?.told && !lane.claim) this.#end(lane);
     else if (lane && !lane.told) lane.job = undefined;
     else if (!lane) this.#waiting.splice(this.#waiting.indexOf(job), 1);
@@ -169,7 +169,7 @@ export class WorkerPool<Task, Result> {
     how();
   }
 
-  /** Ends a worker and whatever it does. `reason`: what those who keep it are told. */
+  /** Ends a worker and its task. `reason` is reported to the claim on it. */
   #end(lane: Lane<Task, Result>, reason?: VeroneseError): void {
     const { claim } = lane;
     lane.thread?.terminate();
@@ -189,7 +189,7 @@ export class WorkerPool<Task, Result> {
 
   #next(): void {
     const idle = this.#lanes.filter(({ job }) => !job);
-    // Those that are kept have work to come; a worker that is there already costs nothing.
+    // Reserved workers last, since they expect more tasks; then those that have not started.
     idle.sort((one, other) => Number(!!one.claim) - Number(!!other.claim) || Number(!one.thread) - Number(!other.thread));
     for (const lane of idle) {
       const job = this.#waiting.find(({ claim }) => !claim || claim === lane.claim);
