@@ -83,6 +83,16 @@ describe('veronese clip', () => {
     assert.deepEqual(Object.keys(images).sort(), [...files.map((name) => `labels/${name}`), ...files.map((name) => `overlay/${name}`)]);
   });
 
+  test('can be converted', async (t) => {
+    const { frames, out } = clip(t);
+    await run([frames, '--out', out]);
+    const { code, stderr } = await veronese(['convert', out, '--to', 'youtube-vis']);
+    assert.equal(code, 0, stderr);
+    const { videos, annotations } = JSON.parse(readFileSync(join(out, 'youtube-vis.json'), 'utf8'));
+    assert.deepEqual(videos[0].file_names, tracksOf(out).files);
+    assert.deepEqual(annotations.map(({ segmentations }) => segmentations.length), tracksOf(out).objects.map(() => COUNT));
+  });
+
   test('--look-ahead, --motions and --every reach the call', async (t) => {
     const { frames, out } = clip(t);
     await run([frames, '--out', out, '--look-ahead', '0', '--motions', '2', '--every', '2']);

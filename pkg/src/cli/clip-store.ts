@@ -3,6 +3,7 @@
 import { appendFileSync, existsSync, mkdirSync, readFileSync, renameSync, rmdirSync, rmSync, writeFileSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import type { ClipTracks } from '../../types/index.js';
+import { LABELS, TRACKS } from './clip-folder.js';
 import { writeFailed } from './files.js';
 import { jsonLine } from './pair.js';
 import { removeLeftovers, sha256, temporary } from './store.js';
@@ -30,10 +31,9 @@ export interface FrameFile {
   sha256: string;
 }
 
-const TRACKS = 'tracks.json';
 /** While there is no tracks.json: names of all frames that may have images in the folder. */
 const JOURNAL = '.clip.names';
-const FOLDERS = ['labels', 'overlay'];
+const FOLDERS = [LABELS, 'overlay'];
 
 export class ClipStore {
   readonly #out: string;
