@@ -117,10 +117,13 @@ impl<'a> LabelState<'a> {
         let motions = found.selected.into_iter().map(|scored| scored.motion).collect();
         let level = &pair.levels[pair.draft];
         let labels = Buffer::filled(level.width() * level.height(), 0);
-        LabelState { runner_up: found.runner_up, ..LabelState::resumed(pair, motions, labels, settings) }
+        let mut state =
+            LabelState { runner_up: found.runner_up, ..LabelState::resumed(pair, motions, labels, settings) };
+        state.reset_costs();
+        state
     }
 
-    /// The state of a labelling whose motions and labels, of the draft level, are known.
+    /// The state of a labelling whose motions and labels, of the draft level, are known. It has no costs until occlusion is corrected.
     pub(super) fn resumed(
         pair: &'a Pair<'_>,
         motions: Vec<AffineMotion>,
@@ -128,7 +131,7 @@ impl<'a> LabelState<'a> {
         settings: &'a Settings,
     ) -> LabelState<'a> {
         let level = &pair.levels[pair.draft];
-        let mut state = LabelState {
+        LabelState {
             level,
             settings,
             borders: borders(pair, pair.draft, settings),
@@ -139,9 +142,7 @@ impl<'a> LabelState<'a> {
             excluded: Vec::new(),
             motions,
             runner_up: None,
-        };
-        state.reset_costs();
-        state
+        }
     }
 
     fn size(&self) -> (usize, usize) {
