@@ -32,17 +32,17 @@ use identity::Identities;
 use record::Record;
 use round::{Foreground, Round};
 
-/// Frames that a frame of a whole clip waits for. Evidence from farther away has decayed to a few per cent.
+/// Frames that a frame of a whole clip waits for, half of them in each round. Evidence from eight frames away has decayed to a sixth in
+/// the first round and to a seventeenth in the second.
 const WHOLE_CLIP: usize = 16;
 /// Largest look-ahead of a stream, frames.
 pub const MAX_LOOK_AHEAD: usize = 8;
-/// Share of a frame's evidence that is left a frame later, in both rounds.
+/// Share of a frame's evidence that is left a frame later, in each round. Of ten real clips, .9 for the first and .85 for the second
+/// change J by less than .001.
 const DECAYS: [f32; 2] = [0.8, 0.7];
-/// Weight of the pairs' odds in the second round, …
+/// Weight of the pairs' odds in the second round; on ten real clips .8 costs .003 J, …
 const SECOND_ROUND_ODDS: f32 = 0.5;
-/// … limited to this many nats …
-const MOST_ODDS: f32 = 5.0;
-/// … and what the cut of the first round adds for or against an object, nats.
+/// … and what the cut of the first round adds for or against an object, nats; 2.5 costs .003.
 const FIRST_CUT: f32 = 1.5;
 
 /// Options of a [`ClipSegmenter`].
@@ -180,6 +180,7 @@ impl ClipSegmenter {
         let back = self.solve(&newest, &last, Some(&onward.reversed()), settings);
         self.prior = Some(back.reversed());
         let [onward, back] = if onward.is_cut() && back.is_cut() {
+            self.prior = None;
             [None, None]
         } else {
             [onward, back].map(|solution| Some((odds(&solution), flow(solution))))
@@ -228,6 +229,7 @@ impl ClipSegmenter {
         while let Some(foreground) = self.rounds[1].next() {
             frames.push(self.labelled(foreground));
         }
+        (self.count, self.prior) = (0, None);
         frames
     }
 
@@ -274,7 +276,7 @@ impl ClipSegmenter {
         let mut odds = record.odds.clone();
         for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
             let cut = if object > 0 { FIRST_CUT } else { -FIRST_CUT };
-            *odds = SECOND_ROUND_ODDS * odds.clamp(-MOST_ODDS, MOST_ODDS) + cut;
+            *odds = SECOND_ROUND_ODDS * *odds + cut;
         }
         let foreground = self.rounds[1].push(record, odds)?;
         Some(self.labelled(foreground))

@@ -182,6 +182,9 @@ fn a_stream_gives_every_frame_after_its_look_ahead() {
         }
         assert_eq!(clip.finish().len(), look_ahead);
         assert!(clip.finish().is_empty());
+        // Another clip begins at 0 again.
+        let again = clip.push(frames[0].clone()).unwrap().into_iter().chain(clip.finish());
+        assert_eq!(again.map(|frame| frame.index).collect::<Vec<_>>(), [0]);
     }
 }
 

@@ -18,8 +18,7 @@ pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
 const ROUND_TRIP: f64 = 1.5;
 
 /// The labels of another frame where the motions of this one's pixels lead; `unknown` where that is outside, or something else was in
-/// front. `return_flow` is the other frame's flow to
-/// this one, if it was measured.
+/// front. `return_flow` is the other frame's flow to this one, if it was measured.
 pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&Flow>, unknown: u8) -> Vec<u8> {
     let (width, height) = (along.width, labels.len() / along.width);
     let mut carried = Vec::with_capacity(labels.len());

@@ -8,7 +8,7 @@ use crate::pair::solution::Solution;
 use crate::view::cost::inverse;
 use crate::workspace::Buffer;
 
-/// Odds beyond ±4 nats, probabilities of .018 and .982, are no more certain than that: a pair's mistakes are not.
+/// Odds beyond ±4 nats, probabilities of .018 and .982, are no more certain than that: a pair's mistakes are not. Not varied.
 const MOST_ODDS: f32 = 4.0;
 /// Probability added to both sides of the odds.
 const PRIOR: f32 = 0.01;

@@ -36,5 +36,5 @@ impl Record {
     }
 }
 
-/// Noise that the edges of a frame stand out from, grey levels. Frames of clips are compressed more often than noisy.
+/// Noise that the edges of a frame stand out from, grey levels. Frames of clips are compressed more often than noisy. Not varied.
 const EDGE_NOISE: f32 = 1.0;

@@ -31,8 +31,7 @@ pub(crate) struct Solution {
     unexplained: f32,
 }
 
-/// Share of the largest cost, in the mean, above which two frames show different scenes. Pairs of the same scene stay below .35, ten
-/// real clips joined at random are above .6.
+/// Share of the largest cost, in the mean, above which two frames show different scenes. Not varied; tests/clip.rs has a cut.
 const CUT: f32 = 0.5;
 
 impl Solution {
@@ -51,7 +50,7 @@ pub(crate) struct Prior {
     enough: f64,
 }
 
-/// Expected motions are enough where they cost no more than this share more than expected.
+/// Expected motions are enough where they cost no more than this share more than expected. Not varied.
 const TOLERANCE: f64 = 0.05;
 
 impl Solution {
