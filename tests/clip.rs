@@ -4,7 +4,9 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
-use veronese::clip::{ClipFrame, ClipOptions, ClipSegmenter, MAX_LOOK_AHEAD};
+use veronese::clip::{
+    ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, StreamSegmenter,
+};
 use veronese::{Error, Frame, Quality, Random, SegmentOptions};
 
 const SIZE: [usize; 2] = [160, 120];
@@ -78,10 +80,26 @@ fn options(quality: Quality, look_ahead: Option<usize>) -> ClipOptions {
     ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead }
 }
 
+fn whole(frames: &[Frame], options: ClipOptions) -> SegmentedClip {
+    let mut segmenter = ClipSegmenter::new(options).unwrap();
+    frames.iter().for_each(|frame| drop(segmenter.push(frame.clone()).unwrap()));
+    segmenter.conclude()
+}
+
+fn frames_of(clip: &SegmentedClip, frames: &[Frame]) -> Vec<ClipFrame> {
+    frames.iter().enumerate().map(|(t, frame)| clip.frame(t, frame).unwrap()).collect()
+}
+
+/// As a stream if there is a look-ahead.
 fn segment(frames: &[Frame], options: ClipOptions) -> Vec<ClipFrame> {
-    let mut clip = ClipSegmenter::new(options).unwrap();
-    let mut done: Vec<ClipFrame> = frames.iter().filter_map(|frame| clip.push(frame.clone()).unwrap()).collect();
-    done.extend(clip.finish());
+    let done = if options.look_ahead.is_some() {
+        let mut stream = StreamSegmenter::new(options).unwrap();
+        let mut done: Vec<ClipFrame> = frames.iter().filter_map(|frame| stream.push(frame.clone()).unwrap()).collect();
+        done.extend(stream.finish());
+        done
+    } else {
+        frames_of(&whole(frames, options), frames)
+    };
     assert_eq!(done.iter().map(|frame| frame.index).collect::<Vec<_>>(), (0..frames.len()).collect::<Vec<_>>());
     for frame in &done {
         for object in &frame.objects {
@@ -175,7 +193,7 @@ fn a_stream_gives_every_frame_after_its_look_ahead() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 44.0])];
     let (frames, _) = scene(1, &things, 6);
     for look_ahead in [0, 1, 3] {
-        let mut clip = ClipSegmenter::new(options(Quality::Fast, Some(look_ahead))).unwrap();
+        let mut clip = StreamSegmenter::new(options(Quality::Fast, Some(look_ahead))).unwrap();
         for (t, frame) in frames.iter().enumerate() {
             let done = clip.push(frame.clone()).unwrap().map(|frame| frame.index);
             assert_eq!(done, t.checked_sub(look_ahead), "frame {t}, look-ahead {look_ahead}");
@@ -207,10 +225,177 @@ fn mistakes_have_a_code_and_the_clip_goes_on() {
     assert!(matches!(mistaken, Err(Error::InvalidOption { name: "lookAhead", .. })));
     let (frames, _) = scene(1, &[], 3);
     let small = Frame::from_rgba(32, 32, vec![0u8; 4 * 32 * 32]).unwrap();
-    let mut clip = ClipSegmenter::new(options(Quality::Fast, Some(0))).unwrap();
-    assert!(clip.push(frames[0].clone()).unwrap().is_some());
-    assert!(matches!(clip.push(small), Err(Error::FrameSizeMismatch { .. })));
-    assert_eq!(clip.push(frames[1].clone()).unwrap().unwrap().index, 1);
+    let mut stream = StreamSegmenter::new(options(Quality::Fast, Some(0))).unwrap();
+    assert!(stream.push(frames[0].clone()).unwrap().is_some());
+    assert!(matches!(stream.push(small.clone()), Err(Error::FrameSizeMismatch { .. })));
+    assert_eq!(stream.push(frames[1].clone()).unwrap().unwrap().index, 1);
+
+    let mut segmenter = ClipSegmenter::new(options(Quality::Fast, None)).unwrap();
+    segmenter.push(frames[0].clone()).unwrap();
+    assert!(matches!(segmenter.push(small.clone()), Err(Error::FrameSizeMismatch { .. })));
+    segmenter.push(frames[1].clone()).unwrap();
+    let mut clip = segmenter.conclude();
+    assert_eq!(clip.len(), 2);
+    assert!(matches!(clip.frame(2, &frames[2]), Err(Error::InvalidOption { name: "frame", .. })));
+    assert!(matches!(clip.frame(0, &small), Err(Error::FrameSizeMismatch { .. })));
+    assert!(matches!(clip.correct(2, &[255; 160 * 120]), Err(Error::InvalidOption { name: "frame", .. })));
+    assert!(matches!(clip.correct(0, &[255; 12]), Err(Error::InvalidOption { name: "corrections", .. })));
+    assert!(matches!(clip.renumber(0, 3), Err(Error::InvalidOption { name: "objects", .. })));
+    let mut correction = clip.correct(0, &[255; 160 * 120]).unwrap();
+    assert!(matches!(correction.take(&mut clip, &small), Err(Error::FrameSizeMismatch { .. })));
+    assert_eq!(correction.wanted(), Some(0), "it waits for the right frame");
+}
+
+/// Corrects a frame; returns the frames that have changed.
+fn correct(clip: &mut SegmentedClip, frames: &[Frame], index: usize, labels: &[u8]) -> Vec<usize> {
+    let mut correction = clip.correct(index, labels).unwrap();
+    while let Some(wanted) = correction.wanted() {
+        correction.take(clip, &frames[wanted]).unwrap();
+    }
+    correction.changed().to_vec()
+}
+
+/// A box that moves before, between and after frames in which it rests, and one that always rests.
+fn moving_and_resting() -> (Vec<Frame>, Vec<Vec<usize>>) {
+    let things = [thing(2, [34.0, 30.0], |t| [10.0 + 4.0 * t as f32, 20.0]), thing(3, [40.0, 26.0], |_| [90.0, 80.0])];
+    scene(1, &things, 12)
+}
+
+#[test]
+fn a_corrected_mask_holds_and_spreads_both_ways() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let before = frames_of(&clip, &frames);
+    assert_eq!(carrier(&before[5].labels, &truths[5], 2).unwrap().0, 0, "what rests is background");
+    let moving = one_number(&before, &truths, 1, 0..12);
+
+    let mask: Vec<u8> = truths[5].iter().map(|&t| [0, moving, 9][t]).collect();
+    let changed = correct(&mut clip, &frames, 5, &mask);
+    assert!(changed.len() > 8, "{changed:?}");
+    let after = frames_of(&clip, &frames);
+    assert_eq!(after[5].labels, mask, "the mask holds to the pixel");
+    assert_eq!(one_number(&after, &truths, 2, 1..11), 9);
+    assert_eq!(one_number(&after, &truths, 1, 0..12), moving);
+
+    // Nothing said in the same frame takes it all back.
+    let restored = correct(&mut clip, &frames, 5, &[255; 160 * 120]);
+    assert_eq!(restored, changed);
+    for (restored, before) in frames_of(&clip, &frames).iter().zip(&before) {
+        assert_eq!(restored.labels, before.labels);
+    }
+}
+
+#[test]
+fn a_stroke_takes_the_region_around_it_along() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let stroke = |p: usize| (95..125).contains(&(p % SIZE[0])) && (88..96).contains(&(p / SIZE[0]));
+    let ground = |p: usize| p / SIZE[0] == 116 || p / SIZE[0] == 72 || p % SIZE[0] == 84 || p % SIZE[0] == 138;
+    let said = |p: usize| {
+        if stroke(p) {
+            7
+        } else if ground(p) {
+            0
+        } else {
+            255
+        }
+    };
+    correct(&mut clip, &frames, 6, &(0..SIZE[0] * SIZE[1]).map(said).collect::<Vec<u8>>());
+    let done = frames_of(&clip, &frames);
+    for t in [3, 6, 9] {
+        let (label, iou) = carrier(&done[t].labels, &truths[t], 2).unwrap();
+        assert!(label == 7 && iou > 0.6, "frame {t}: {label}, {iou}");
+    }
+}
+
+#[test]
+fn a_new_number_of_an_object_lasts() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mask: Vec<u8> = truths[2].iter().map(|&t| if t == 1 { 40 } else { 255 }).collect();
+    correct(&mut clip, &frames, 2, &mask);
+    assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 40);
+}
+
+#[test]
+fn objects_can_be_merged_and_removed() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let moving = one_number(&frames_of(&clip, &frames), &truths, 1, 0..12);
+    clip.renumber(moving, 30).unwrap();
+    assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 30);
+    clip.renumber(30, 0).unwrap();
+    assert!(
+        frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label != moving && label != 30))
+    );
+}
+
+#[test]
+fn a_saved_clip_is_the_same_and_a_damaged_one_is_refused() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mask: Vec<u8> = truths[5].iter().map(|&t| if t == 2 { 9 } else { 255 }).collect();
+    correct(&mut clip, &frames, 5, &mask);
+    let bytes = clip.to_bytes();
+    let again = SegmentedClip::from_bytes(&bytes).unwrap();
+    for (one, other) in frames_of(&clip, &frames).iter().zip(frames_of(&again, &frames)) {
+        assert_eq!((&one.labels, &one.objects), (&other.labels, &other.objects));
+    }
+    for damaged in [&bytes[..bytes.len() - 1], &bytes[1..], &[][..]] {
+        assert!(matches!(SegmentedClip::from_bytes(damaged), Err(Error::InvalidOption { name: "state", .. })));
+    }
+    // No byte can be changed so that anything breaks later.
+    for place in (0..bytes.len()).step_by(97) {
+        let mut damaged = bytes.clone();
+        damaged[place] ^= 0x5a;
+        if let Ok(clip) = SegmentedClip::from_bytes(&damaged) {
+            let _ = clip.frame(0, &frames[0]);
+            let _ = clip.frame(5, &frames[5]);
+        }
+    }
+}
+
+#[test]
+fn a_clip_goes_on_from_known_pairs_to_the_same_labels() {
+    let (frames, _) = moving_and_resting();
+    for look_ahead in [None, Some(1)] {
+        let options = options(Quality::Fast, look_ahead);
+        let mut segmenter = ClipSegmenter::new(options).unwrap();
+        let known: Vec<Vec<u8>> =
+            frames.iter().map(|frame| segmenter.push(frame.clone()).unwrap().to_bytes()).collect();
+        let straight = segmenter.conclude().to_bytes();
+        let mut segmenter = ClipSegmenter::new(options).unwrap();
+        for (t, frame) in frames.iter().enumerate() {
+            if t < 7 {
+                let pairs = FramePairs::from_bytes(&known[t]).unwrap();
+                segmenter.push_known(frame.clone(), &pairs).unwrap();
+            } else {
+                segmenter.push(frame.clone()).unwrap();
+            }
+        }
+        assert!(straight == segmenter.conclude().to_bytes());
+    }
+    let pairs = ClipSegmenter::new(options(Quality::Fast, None)).unwrap().push(frames[0].clone()).unwrap();
+    assert!(FramePairs::from_bytes(&pairs.to_bytes()[..4]).is_err());
+}
+
+#[test]
+fn undecided_pixels_are_marked_when_asked() {
+    let (frames, _) = moving_and_resting();
+    let marked = ClipOptions {
+        pair: SegmentOptions { mark_unknown: true, ..options(Quality::Fast, None).pair },
+        ..options(Quality::Fast, None)
+    };
+    let clip = whole(&frames, marked);
+    let plain = whole(&frames, options(Quality::Fast, None));
+    let (mut unknown, mut all) = (0, 0);
+    for (marked, plain) in frames_of(&clip, &frames).iter().zip(frames_of(&plain, &frames)) {
+        assert!(marked.labels.iter().zip(&plain.labels).all(|(&m, &p)| m == 255 || m == p));
+        assert!(marked.objects.iter().all(|object| object.id != 255));
+        unknown += marked.labels.iter().filter(|&&label| label == 255).count();
+        all += marked.labels.len();
+    }
+    assert!(unknown > 0 && unknown < all / 10, "{unknown} of {all}");
 }
 
 #[test]

@@ -62,12 +62,11 @@ pub(crate) struct Found {
 /// The clip segmenter's labels of every frame, an object the same number in all.
 fn clip_labels(frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
     let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
-    let mut found = Vec::new();
     for frame in frames {
-        found.extend(segmenter.push(frame.clone())?);
+        segmenter.push(frame.clone())?;
     }
-    found.extend(segmenter.finish());
-    Ok(found.into_iter().map(|frame| frame.labels).collect())
+    let clip = segmenter.conclude();
+    frames.iter().enumerate().map(|(index, frame)| Ok(clip.frame(index, frame)?.labels)).collect()
 }
 
 /// What a method finds in a clip; `None` if it does not exist here. Labels of other programs are in `peers`, by method and clip.

@@ -1,10 +1,15 @@
-//! What a pair tells about the pixels of its first frame: the odds that each belongs to an object, and where each goes.
+//! What a pair tells about the pixels of its first frame: the odds that each belongs to an object, and where each goes. And how this is
+//! kept.
 
+use serde::{Deserialize, Serialize};
+
+use super::runs::Runs;
 use crate::frame::Plane;
+use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::counts;
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::pair::solution::Solution;
+use crate::pair::solution::{Prior, Solution};
 use crate::view::cost::inverse;
 use crate::workspace::Buffer;
 
@@ -12,6 +17,8 @@ use crate::workspace::Buffer;
 const MOST_ODDS: f32 = 4.0;
 /// Probability added to both sides of the odds.
 const PRIOR: f32 = 0.01;
+/// Odds are multiples of this many nats, so that they take little room when they are kept.
+const STEP: f32 = 0.25;
 
 /// The motion of every pixel of a frame to another frame. The first motion is that of the background.
 #[derive(Clone, Debug)]
@@ -27,6 +34,19 @@ pub(crate) struct Flow {
 }
 
 impl Flow {
+    /// The flow of a frame where nothing moves.
+    pub(crate) fn still([width, height]: [usize; 2]) -> Flow {
+        let labels = Buffer::filled(width * height, BACKGROUND as u8);
+        Flow { width, labels, motions: vec![AffineMotion::STATIC], measured: false }
+    }
+
+    /// The motion that most of some pixels have, if there are any.
+    pub(crate) fn most_frequent(&self, pixels: impl Iterator<Item = usize>) -> Option<usize> {
+        let mut counts = vec![0usize; self.motions.len()];
+        pixels.for_each(|p| counts[usize::from(self.labels[p])] += 1);
+        (0..counts.len()).rev().max_by_key(|&k| counts[k]).filter(|&k| counts[k] > 0)
+    }
+
     /// Displacement of the pixel (x, y).
     #[inline(always)]
     pub(crate) fn at(&self, x: usize, y: usize) -> [f64; 2] {
@@ -37,6 +57,92 @@ impl Flow {
     pub(crate) fn continued(&self) -> Flow {
         let motions = self.motions.iter().map(|motion| inverse(motion).unwrap_or(AffineMotion::STATIC)).collect();
         Flow { motions, measured: false, ..self.clone() }
+    }
+}
+
+/// A [`Flow`] as it is kept.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct KeptFlow {
+    labels: Runs,
+    motions: Vec<AffineMotion>,
+    measured: bool,
+}
+
+impl KeptFlow {
+    pub(crate) fn of(flow: &Flow) -> KeptFlow {
+        KeptFlow { labels: Runs::of(&flow.labels), motions: flow.motions.clone(), measured: flow.measured }
+    }
+
+    pub(crate) fn flow(&self, width: usize) -> Flow {
+        Flow { width, labels: self.labels.values(), motions: self.motions.clone(), measured: self.measured }
+    }
+
+    pub(crate) fn is_valid(&self, pixels: usize) -> bool {
+        let known = |label: u8| usize::from(label) < self.motions.len();
+        self.labels.is_valid(pixels)
+            && self.labels.each().all(|(label, _)| known(label))
+            && self.motions.iter().all(AffineMotion::is_finite)
+    }
+}
+
+/// Odds as they are kept: multiples of a step.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct KeptOdds(Runs);
+
+impl KeptOdds {
+    pub(crate) fn of(odds: &Plane) -> KeptOdds {
+        let code = |odds: &f32| (libm::roundf(odds / STEP).clamp(-127.0, 127.0) + 128.0) as u8;
+        KeptOdds(Runs::of(&odds.values().iter().map(code).collect::<Buffer<u8>>()))
+    }
+
+    pub(crate) fn odds(&self, width: usize, height: usize) -> Plane {
+        let decoded = self.0.values().iter().map(|&code| STEP * (f32::from(code) - 128.0)).collect();
+        Plane::from_buffer(width, height, decoded)
+    }
+
+    pub(crate) fn is_valid(&self, pixels: usize) -> bool {
+        self.0.is_valid(pixels)
+    }
+}
+
+/// What solving the pairs of one more frame has told.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct KeptPairs {
+    /// From the frame before to this one.
+    onward: Option<(KeptOdds, KeptFlow)>,
+    /// From this frame to the one before.
+    back: Option<(KeptOdds, KeptFlow)>,
+    /// What is expected of the next pair.
+    prior: Option<Prior>,
+}
+
+/// [`KeptPairs`] in use.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Pairs {
+    pub(crate) onward: Option<(Plane, Flow)>,
+    pub(crate) back: Option<(Plane, Flow)>,
+    pub(crate) prior: Option<Prior>,
+}
+
+impl Pairs {
+    pub(crate) fn kept(&self) -> KeptPairs {
+        let kept =
+            |view: &Option<(Plane, Flow)>| view.as_ref().map(|(odds, flow)| (KeptOdds::of(odds), KeptFlow::of(flow)));
+        KeptPairs { onward: kept(&self.onward), back: kept(&self.back), prior: self.prior.clone() }
+    }
+}
+
+impl KeptPairs {
+    pub(crate) fn pairs(&self, [width, height]: [usize; 2]) -> Pairs {
+        let view = |kept: &Option<(KeptOdds, KeptFlow)>| {
+            kept.as_ref().map(|(odds, flow)| (odds.odds(width, height), flow.flow(width)))
+        };
+        Pairs { onward: view(&self.onward), back: view(&self.back), prior: self.prior.clone() }
+    }
+
+    pub(crate) fn is_valid(&self, pixels: usize) -> bool {
+        let valid = |(odds, flow): &(KeptOdds, KeptFlow)| odds.is_valid(pixels) && flow.is_valid(pixels);
+        [&self.onward, &self.back].into_iter().flatten().all(valid) && self.prior.as_ref().is_none_or(Prior::is_valid)
     }
 }
 
@@ -53,7 +159,7 @@ pub(crate) fn odds(solution: &Solution) -> Plane {
         sum.values_mut().iter_mut().zip(probability.values()).for_each(|(s, p)| *s += p);
     }
     for (odds, ground) in odds.values_mut().iter_mut().zip(ground.values()) {
-        *odds = libm::logf(*odds / ground).clamp(-MOST_ODDS, MOST_ODDS);
+        *odds = STEP * libm::roundf(libm::logf(*odds / ground).clamp(-MOST_ODDS, MOST_ODDS) / STEP);
     }
     odds
 }

@@ -14,8 +14,6 @@ pub(crate) struct Record {
     pub(crate) index: usize,
     pub(crate) frame: Rc<Frame>,
     pub(crate) appearance: Rc<Appearance>,
-    /// Full-size pixels per working pixel.
-    pub(crate) reduction: usize,
     /// Log-odds of object against background from the frame's pairs, nats; zero where there is no pair.
     pub(crate) odds: Plane,
     /// To the next frame; none at the end of a scene.

@@ -77,7 +77,12 @@ impl Round {
         if self.waiting.len() > self.delay { self.next() } else { None }
     }
 
-    /// The frame that has waited longest.
+    /// The record of the frame that has waited longest.
+    pub(crate) fn oldest(&self) -> Option<&Record> {
+        self.waiting.front().map(|waiting| &*waiting.record)
+    }
+
+    /// The frame that has waited longest leaves.
     pub(crate) fn next(&mut self) -> Option<Foreground> {
         let odds = self.with_future();
         let Waiting { record, .. } = self.waiting.pop_front()?;

@@ -183,6 +183,11 @@ impl Settings {
         }
     }
 
+    /// Width and height of the working size of frames of the given width and height.
+    pub(crate) fn working_size(&self, size: [usize; 2]) -> [usize; 2] {
+        size.map(|side| (0..self.halvings).fold(side, |side, _| side.div_ceil(2)))
+    }
+
     /// The pyramid of a frame.
     pub(crate) fn pyramid(&self, frame: &Frame) -> FramePyramid {
         FramePyramid::new(frame, self.halvings, self.smallest_side)

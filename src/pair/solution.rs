@@ -1,5 +1,7 @@
 //! A pair solved at the working size, for those who go on from there: no numbering, no full-size labels, no evidence for the number.
 
+use serde::{Deserialize, Serialize};
+
 use super::settings::{Part, Settings};
 use super::{Pair, hypothesis, labels};
 use crate::frame::pyramid::FramePyramid;
@@ -42,7 +44,7 @@ impl Solution {
 }
 
 /// What is expected of a pair.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Prior {
     /// Motions, pixels of the working size; the first is that of the background.
     pub(crate) motions: Vec<AffineMotion>,
@@ -52,6 +54,13 @@ pub(crate) struct Prior {
 
 /// Expected motions are enough where they cost no more than this share more than expected. Not varied.
 const TOLERANCE: f64 = 0.05;
+
+impl Prior {
+    /// Whether a prior from outside the program can be used.
+    pub(crate) fn is_valid(&self) -> bool {
+        !self.motions.is_empty() && self.motions.iter().all(AffineMotion::is_finite)
+    }
+}
 
 impl Solution {
     /// What to expect of a pair in which everything keeps its motion; no search where that explains it about as well.

@@ -1,0 +1,99 @@
+//! What is said of a frame: its labels at full size, and its objects.
+
+use super::evidence::Flow;
+use super::{ClipFrame, ClipObject};
+use crate::frame::Plane;
+use crate::labelling::BACKGROUND;
+use crate::labelling::resolution::upsampling::upsample;
+use crate::motion::AffineMotion;
+
+/// A frame at the working size.
+pub(crate) struct WorkingFrame<'a> {
+    pub(crate) index: usize,
+    /// The object of every pixel, 0 for the background.
+    pub(crate) labels: &'a [u8],
+    /// Odds of object against background, nats.
+    pub(crate) odds: &'a Plane,
+    /// To the next frame of the scene, if there is one.
+    pub(crate) onward: Option<&'a Flow>,
+    /// Whether pixels whose odds do not decide are marked.
+    pub(crate) mark_unknown: bool,
+}
+
+/// Odds within ±1 nat, probabilities of .27 to .73, do not tell an object from the background. Not varied.
+const UNDECIDED: f32 = 1.0;
+/// The label of a pixel that is marked.
+const UNLABELLED: u8 = u8::MAX;
+
+impl WorkingFrame<'_> {
+    /// The frame described at the size of its luminance.
+    pub(crate) fn described(&self, luminance: &Plane) -> ClipFrame {
+        let mut labels = self.upsampled(luminance);
+        if self.mark_unknown {
+            self.mark_undecided(&mut labels, luminance.width());
+        }
+        self.describe(labels, luminance.width())
+    }
+
+    /// The labels at full size.
+    pub(crate) fn upsampled(&self, luminance: &Plane) -> Vec<u8> {
+        let size = [self.odds.width(), self.odds.height()];
+        let of = self.labels.iter().max().map_or(1, |&most| usize::from(most) + 1);
+        upsample(self.labels, size, of, luminance)
+    }
+
+    fn reduction(&self, width: usize) -> usize {
+        width.div_ceil(self.odds.width()).next_power_of_two()
+    }
+
+    fn mark_undecided(&self, labels: &mut [u8], width: usize) {
+        let (step, last) = (self.reduction(width), [self.odds.width() - 1, self.odds.height() - 1]);
+        for (p, label) in labels.iter_mut().enumerate() {
+            let (x, y) = ((p % width / step).min(last[0]), (p / width / step).min(last[1]));
+            if self.odds.at(x, y).abs() < UNDECIDED {
+                *label = UNLABELLED;
+            }
+        }
+    }
+
+    /// What these labels of full size say of the objects.
+    pub(crate) fn describe(&self, labels: Vec<u8>, width: usize) -> ClipFrame {
+        let scale = |motion: &AffineMotion| motion.scaled(self.reduction(width) as f64);
+        let background = self.onward.map(|onward| scale(&onward.motions[BACKGROUND]));
+        let mut objects = boxes(&labels, width);
+        for object in &mut objects {
+            let pixels = || (0..self.labels.len()).filter(|&p| self.labels[p] == object.id);
+            object.confidence = mean_probability(self.odds, pixels());
+            object.matrix = self.onward.map(|onward| {
+                let of_largest_part = onward.most_frequent(pixels()).unwrap_or(BACKGROUND);
+                scale(&onward.motions[of_largest_part])
+            });
+        }
+        ClipFrame { index: self.index, labels, objects, background }
+    }
+}
+
+/// Pixels and bounding box of every object of some labels.
+fn boxes(labels: &[u8], width: usize) -> Vec<ClipObject> {
+    let mut corners = [[usize::MAX, usize::MAX, 0, 0]; 256];
+    let mut pixels = [0usize; 256];
+    for (p, &label) in labels.iter().enumerate() {
+        let (k, x, y) = (usize::from(label), p % width, p / width);
+        let [left, top, right, bottom] = corners[k];
+        corners[k] = [left.min(x), top.min(y), right.max(x + 1), bottom.max(y + 1)];
+        pixels[k] += 1;
+    }
+    let described = |k: u8| {
+        let ([left, top, right, bottom], pixels) = (corners[usize::from(k)], pixels[usize::from(k)]);
+        let bbox = [left, top, right.wrapping_sub(left), bottom.wrapping_sub(top)];
+        (pixels > 0).then_some(ClipObject { id: k, pixels, bbox, confidence: 0.0, matrix: None })
+    };
+    (1..UNLABELLED).filter_map(described).collect()
+}
+
+/// Mean probability of an object at some pixels.
+fn mean_probability(odds: &Plane, pixels: impl Iterator<Item = usize>) -> f64 {
+    let probability = |odds: f32| f64::from(1.0 / (1.0 + libm::expf(-odds)));
+    let (sum, count) = pixels.fold((0.0, 0usize), |(sum, count), p| (sum + probability(odds.values()[p]), count + 1));
+    sum / count.max(1) as f64
+}

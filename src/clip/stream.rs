@@ -1,0 +1,75 @@
+//! Clips whose frames come once.
+
+use super::description::WorkingFrame;
+use super::tracker::{Tracked, Tracker};
+use super::{ClipFrame, ClipOptions, MAX_LOOK_AHEAD};
+use crate::error::Result;
+use crate::frame::Frame;
+
+/// Segments a clip whose frames come once, as from a camera. Frames go in one after another and come out, in order, with labels that
+/// last.
+///
+/// ```
+/// use veronese::clip::{ClipOptions, StreamSegmenter};
+/// use veronese::scene::{self, SceneOptions};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
+/// let mut stream = StreamSegmenter::new(ClipOptions { look_ahead: Some(0), ..ClipOptions::default() })?;
+/// let mut frames = Vec::new();
+/// for frame in [scene.first(), scene.second()] {
+///     frames.extend(stream.push(frame.clone())?);
+/// }
+/// frames.extend(stream.finish());
+/// assert_eq!(frames.len(), 2);
+/// assert!(frames.iter().all(|frame| frame.labels.len() == 160 * 120));
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct StreamSegmenter {
+    tracker: Tracker,
+}
+
+impl StreamSegmenter {
+    /// A segmenter for one stream. Without a look-ahead, frames wait for [`MAX_LOOK_AHEAD`] others.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`](crate::Error::InvalidOption) for a look-ahead above [`MAX_LOOK_AHEAD`] or a number of motions out of
+    /// range.
+    pub fn new(options: ClipOptions) -> Result<StreamSegmenter> {
+        let look_ahead = Some(options.look_ahead.unwrap_or(MAX_LOOK_AHEAD));
+        Ok(StreamSegmenter { tracker: Tracker::new(ClipOptions { look_ahead, ..options })? })
+    }
+
+    /// Takes the next frame. Returns a frame that has waited long enough, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch); the stream may go on with another frame.
+    pub fn push(&mut self, frame: Frame) -> Result<Option<ClipFrame>> {
+        let (tracked, _) = self.tracker.push(frame, None)?;
+        Ok(tracked.map(|tracked| self.described(&tracked)))
+    }
+
+    /// The frames that still wait. The segmenter is then ready for another stream, whose objects get new numbers.
+    pub fn finish(&mut self) -> Vec<ClipFrame> {
+        let rest = self.tracker.finish();
+        rest.iter().map(|tracked| self.described(tracked)).collect()
+    }
+
+    /// Number of objects that were seen when all numbers had been given, and count as background.
+    pub fn dropped(&self) -> usize {
+        self.tracker.dropped()
+    }
+
+    fn described(&self, Tracked { record, labels, odds, goes_on }: &Tracked) -> ClipFrame {
+        let working = WorkingFrame {
+            index: record.index,
+            labels,
+            odds,
+            onward: record.onward.as_ref().filter(|_| *goes_on),
+            mark_unknown: self.tracker.options().pair.mark_unknown,
+        };
+        working.described(record.frame.luminance())
+    }
+}

@@ -1,0 +1,239 @@
+//! Frames in, objects of the working size out.
+
+use std::rc::Rc;
+
+use super::evidence::{Flow, Pairs, flow, odds};
+use super::identity::Identities;
+use super::record::Record;
+use super::round::{Foreground, Round};
+use super::{ClipOptions, MAX_LOOK_AHEAD};
+use crate::error::{Error, Result};
+use crate::frame::pyramid::FramePyramid;
+use crate::frame::{Frame, Plane};
+use crate::pair::settings::Settings;
+use crate::pair::solution::{Prior, Solution, solve};
+use crate::workspace;
+
+/// Frames that a frame of a whole clip waits for, half of them in each round. Evidence from eight frames away has decayed to a sixth in
+/// the first round and to a seventeenth in the second.
+const WHOLE_CLIP: usize = 16;
+/// Share of a frame's evidence that is left a frame later, in each round. Of ten real clips, .9 for the first and .85 for the second
+/// change J by less than .001.
+const DECAYS: [f32; 2] = [0.8, 0.7];
+/// Weight of the pairs' odds in the second round; on ten real clips .8 costs .003 J, …
+const SECOND_ROUND_ODDS: f32 = 0.5;
+/// … and what the cut of the first round adds for or against an object, nats; 2.5 costs .003.
+const FIRST_CUT: f32 = 1.5;
+
+/// Follows objects through a clip.
+#[derive(Debug)]
+pub(crate) struct Tracker {
+    options: ClipOptions,
+    /// Width and height of the frames, once there is one.
+    size: Option<[usize; 2]>,
+    /// Frames so far.
+    count: usize,
+    last: Option<Newest>,
+    /// Whether the newest frame waits for its pair with the next one.
+    waits: bool,
+    /// What is expected of the next pair.
+    prior: Option<Prior>,
+    rounds: [Round; 2],
+    identities: Identities,
+}
+
+/// The newest frame.
+#[derive(Clone, Debug)]
+struct Newest {
+    frame: Rc<Frame>,
+    pyramid: Rc<FramePyramid>,
+    /// Odds and flow of the pair with the frame before.
+    back: Option<(Plane, Flow)>,
+}
+
+/// A frame whose objects are known.
+#[derive(Debug)]
+pub(crate) struct Tracked {
+    pub(crate) record: Rc<Record>,
+    /// The object of every working pixel, 0 for the background.
+    pub(crate) labels: Vec<u8>,
+    /// Odds of object against background with the evidence of other frames, nats.
+    pub(crate) odds: Plane,
+    /// Whether the clip goes on with a frame of the same scene, as far as that is known.
+    pub(crate) goes_on: bool,
+}
+
+impl Tracker {
+    pub(crate) fn new(options: ClipOptions) -> Result<Tracker> {
+        options.pair.motions.validate()?;
+        if options.look_ahead.is_some_and(|frames| frames > MAX_LOOK_AHEAD) {
+            let reason = format!("must be 0 to {MAX_LOOK_AHEAD}");
+            return Err(Error::InvalidOption { name: "lookAhead", reason });
+        }
+        // A stream has its frames' future in the first round alone.
+        let delays = options.look_ahead.map_or([WHOLE_CLIP / 2; 2], |frames| [frames, 0]);
+        let solver = Settings::solver(options.pair.quality);
+        let rounds = [0, 1].map(|k| Round::new(DECAYS[k], delays[k], solver));
+        let identities = Identities::new();
+        Ok(Tracker { options, size: None, count: 0, last: None, waits: false, prior: None, rounds, identities })
+    }
+
+    pub(crate) fn options(&self) -> &ClipOptions {
+        &self.options
+    }
+
+    /// Width and height of the frames, once there is one.
+    pub(crate) fn size(&self) -> Option<[usize; 2]> {
+        self.size
+    }
+
+    /// Takes the next frame. Returns a frame that has waited long enough, if there is one, and what the new frame's pairs have told.
+    /// `known` has been told before by the same frames: nothing is solved again.
+    pub(crate) fn push(&mut self, frame: Frame, known: Option<Pairs>) -> Result<(Option<Tracked>, Pairs)> {
+        let size = [frame.width(), frame.height()];
+        if let Some([width, height]) = self.size
+            && [width, height] != size
+        {
+            return Err(Error::FrameSizeMismatch { first: (width, height), second: (size[0], size[1]) });
+        }
+        self.size = Some(size);
+        let _call = workspace::begin(size);
+        let settings = Settings::new(&self.options.pair, size);
+        let pyramid = Rc::new(settings.pyramid(&frame));
+        let newest = Newest { frame: Rc::new(frame), pyramid, back: None };
+        let Some(last) = self.last.take() else {
+            self.waits = self.options.look_ahead != Some(0);
+            self.last = Some(newest.clone());
+            let tracked = if self.waits { None } else { self.advance(newest, None, None) };
+            return Ok((tracked, Pairs::default()));
+        };
+        let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
+            None => self.both_ways(&last, &newest, &settings),
+            Some(_) => self.backward(&last, &newest, &settings),
+        });
+        Ok((self.take(last, newest, pairs.clone()), pairs))
+    }
+
+    /// In a whole clip a frame has a pair with each of its neighbours.
+    fn both_ways(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
+        let onward = self.solve(last, newest, self.prior.as_ref(), settings);
+        let back = self.solve(newest, last, Some(&onward.reversed()), settings);
+        if onward.is_cut() && back.is_cut() {
+            return Pairs::default();
+        }
+        let prior = Some(back.reversed());
+        let [onward, back] = [onward, back].map(|solution| Some((odds(&solution), flow(solution))));
+        Pairs { onward, back, prior }
+    }
+
+    /// In a stream a frame has its pair with the frame before, near what was found there. Only the first frame may wait for the next.
+    fn backward(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
+        let back = self.solve(newest, last, self.prior.as_ref(), settings);
+        if back.is_cut() {
+            return Pairs::default();
+        }
+        let onward = self.waits.then(|| self.solve(last, newest, None, settings));
+        let prior = Some(back.prior());
+        let [onward, back] = [onward, Some(back)].map(|view| view.map(|solution| (odds(&solution), flow(solution))));
+        Pairs { onward, back, prior }
+    }
+
+    fn solve(&self, first: &Newest, second: &Newest, prior: Option<&Prior>, settings: &Settings) -> Solution {
+        solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior, self.options.pair.seed)
+    }
+
+    /// Goes on with what the pairs of the last frame and the newest one have told.
+    fn take(&mut self, last: Newest, newest: Newest, Pairs { onward, back, prior }: Pairs) -> Option<Tracked> {
+        self.prior = prior;
+        let newest = Newest { back, ..newest };
+        self.last = Some(newest.clone());
+        if self.options.look_ahead.is_none() {
+            let (odds, onward) = onward.unzip();
+            return self.advance(last, odds, onward);
+        }
+        if std::mem::take(&mut self.waits) {
+            // With a look-ahead it does not come out yet.
+            let (odds, onward) = onward.unzip();
+            self.advance(last, odds, onward);
+        }
+        // The newest frame is expected to go on as it came.
+        let expected = newest.back.as_ref().map(|(_, back)| back.continued());
+        self.advance(newest, None, expected)
+    }
+
+    /// The frames that still wait, in order. The tracker is then ready for another clip, whose objects get new numbers.
+    pub(crate) fn finish(&mut self) -> Vec<Tracked> {
+        let Some(last) = self.last.take() else { return Vec::new() };
+        let _call = workspace::begin([last.frame.width(), last.frame.height()]);
+        let mut frames = Vec::new();
+        if self.waits {
+            frames.extend(self.advance(last, None, None));
+        }
+        while let Some(foreground) = self.rounds[0].next() {
+            frames.extend(self.second_round(foreground));
+        }
+        while let Some(foreground) = self.rounds[1].next() {
+            frames.push(self.tracked(foreground));
+        }
+        (self.count, self.size, self.waits, self.prior) = (0, None, false, None);
+        frames
+    }
+
+    /// Number of objects that were seen when all numbers had been given, and count as background.
+    pub(crate) fn dropped(&self) -> usize {
+        self.identities.dropped
+    }
+
+    /// Hands a frame to the rounds, with what is known of its way to the next one.
+    fn advance(
+        &mut self,
+        Newest { frame, pyramid, back }: Newest,
+        onward_odds: Option<Plane>,
+        onward: Option<Flow>,
+    ) -> Option<Tracked> {
+        let (back_odds, back) = back.unzip();
+        let odds = match (onward_odds, back_odds) {
+            (Some(mut odds), Some(other)) => {
+                odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o = 0.5 * (*o + b));
+                odds
+            }
+            (Some(only), None) | (None, Some(only)) => only,
+            (None, None) => {
+                let finest = &pyramid.levels[0].luminance;
+                Plane::filled(finest.width(), finest.height(), 0.0)
+            }
+        };
+        // The pyramid's levels have told all they can.
+        let appearance = pyramid.appearance(&frame).clone();
+        let record = Rc::new(Record { index: self.count, frame, appearance, odds, onward, back });
+        self.count += 1;
+        let odds = record.odds.clone();
+        let foreground = self.rounds[0].push(record, odds)?;
+        self.second_round(foreground)
+    }
+
+    /// The second round starts from the pairs' odds and the first round's cut.
+    fn second_round(&mut self, Foreground { record, mask, .. }: Foreground) -> Option<Tracked> {
+        let mut odds = record.odds.clone();
+        for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
+            let cut = if object > 0 { FIRST_CUT } else { -FIRST_CUT };
+            *odds = SECOND_ROUND_ODDS * *odds + cut;
+        }
+        let foreground = self.rounds[1].push(record, odds)?;
+        Some(self.tracked(foreground))
+    }
+
+    fn tracked(&mut self, Foreground { record, odds, mask }: Foreground) -> Tracked {
+        let labels = self.identities.assign(&record, &mask);
+        let goes_on = match &record.onward {
+            None => false,
+            Some(onward) if onward.measured => true,
+            // A stream knows the frames that it has looked ahead to.
+            Some(_) => match self.rounds[0].oldest() {
+                Some(next) => next.back.is_some(),
+                None => self.last.is_some() && self.options.look_ahead == Some(0),
+            },
+        };
+        Tracked { record, labels, odds, goes_on }
+    }
+}

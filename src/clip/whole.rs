@@ -1,0 +1,371 @@
+//! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
+
+use serde::{Deserialize, Serialize};
+
+use super::correction::ClipCorrection;
+use super::description::WorkingFrame;
+use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs};
+use super::runs::Runs;
+use super::tracker::{Tracked, Tracker};
+use super::{ClipFrame, ClipOptions};
+use crate::error::{Error, Result};
+use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
+use crate::options::{Quality, SegmentOptions};
+use crate::pair::settings::Settings;
+use crate::workspace::{self, Buffer};
+
+/// Segments a whole clip. Frames go in one after another; [`conclude`](Self::conclude) gives the segmented clip.
+///
+/// ```
+/// use veronese::clip::{ClipOptions, ClipSegmenter};
+/// use veronese::scene::{self, SceneOptions};
+///
+/// # fn main() -> veronese::Result<()> {
+/// let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
+/// let frames = [scene.first(), scene.second()];
+/// let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
+/// for frame in frames {
+///     segmenter.push(frame.clone())?;
+/// }
+/// let clip = segmenter.conclude();
+/// let first = clip.frame(0, frames[0])?;
+/// assert_eq!(first.labels.len(), 160 * 120);
+/// assert_eq!(first.objects[0].id, 1);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug)]
+pub struct ClipSegmenter {
+    tracker: Tracker,
+    frames: Vec<FrameState>,
+}
+
+/// What the pairs of a frame have told: nearly all the work of [`ClipSegmenter::push`].
+///
+/// A clip that was interrupted goes on from there: [`ClipSegmenter::push_known`] does not solve the frame's pairs again.
+#[derive(Clone, Debug)]
+pub struct FramePairs(KeptPairs);
+
+/// Marks the bytes of [`FramePairs`] and of a [`SegmentedClip`], with the version of their format.
+const PAIRS_FORMAT: &[u8; 8] = b"VERPAIR1";
+const CLIP_FORMAT: &[u8; 8] = b"VERCLIP1";
+
+impl FramePairs {
+    /// The bytes of these pairs, for [`from_bytes`](Self::from_bytes) of the same version.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        to_bytes(PAIRS_FORMAT, &self.0)
+    }
+
+    /// Pairs from their bytes.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for other bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<FramePairs> {
+        from_bytes(PAIRS_FORMAT, bytes).map(FramePairs)
+    }
+}
+
+impl ClipSegmenter {
+    /// A segmenter for one clip.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
+    pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
+        Ok(ClipSegmenter { tracker: Tracker::new(options)?, frames: Vec::new() })
+    }
+
+    /// Takes the next frame. What it returns need not be kept.
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`]; the clip may go on with another frame.
+    pub fn push(&mut self, frame: Frame) -> Result<FramePairs> {
+        let (tracked, pairs) = self.tracker.push(frame, None)?;
+        self.frames.extend(tracked.map(FrameState::new));
+        Ok(FramePairs(pairs.kept()))
+    }
+
+    /// Takes the next frame, whose pairs were solved before by [`push`](Self::push): with the same options, of the same frames up to this
+    /// one.
+    ///
+    /// # Errors
+    /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs of frames of another size.
+    pub fn push_known(&mut self, frame: Frame, FramePairs(pairs): &FramePairs) -> Result<()> {
+        let working = working_size(&self.tracker.options().pair, [frame.width(), frame.height()]);
+        if !pairs.is_valid(working[0] * working[1]) {
+            return Err(invalid("pairs", "they are of frames of another size"));
+        }
+        let (tracked, _) = self.tracker.push(frame, Some(pairs.pairs(working)))?;
+        self.frames.extend(tracked.map(FrameState::new));
+        Ok(())
+    }
+
+    /// The clip of the frames so far.
+    pub fn conclude(mut self) -> SegmentedClip {
+        let size = self.tracker.size().unwrap_or_default();
+        let options = self.tracker.options().pair;
+        let dropped = self.tracker.dropped();
+        self.frames.extend(self.tracker.finish().into_iter().map(FrameState::new));
+        if let Some(last) = self.frames.last_mut() {
+            last.onward = None;
+        }
+        let numbers = (0..=u8::MAX).collect();
+        let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
+        SegmentedClip { size, mark_unknown, best, dropped, numbers, frames: self.frames }
+    }
+}
+
+/// A clip whose objects are known in every frame. It keeps some kilobytes per frame and not the frames themselves.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SegmentedClip {
+    /// Width and height of the frames.
+    size: [usize; 2],
+    mark_unknown: bool,
+    /// Whether the quality is the best.
+    best: bool,
+    dropped: usize,
+    /// The number that each object is given, itself unless it was merged or removed.
+    numbers: Vec<u8>,
+    pub(super) frames: Vec<FrameState>,
+}
+
+/// A frame of a segmented clip, working size.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct FrameState {
+    /// As the clip was segmented.
+    found: Labelling,
+    pub(super) corrected: Option<Corrected>,
+    /// To the next frame of the scene.
+    onward: Option<KeptFlow>,
+    /// To the frame before.
+    back: Option<KeptFlow>,
+}
+
+/// Labels with their odds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Labelling {
+    labels: Runs,
+    odds: KeptOdds,
+}
+
+/// What a correction has made of a frame.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Corrected {
+    pub(super) labelling: Labelling,
+    /// The frame that was corrected.
+    pub(super) origin: usize,
+    /// In the frame that was corrected, what was said there of each full-size pixel: a label, or 255 for nothing.
+    pub(super) said: Option<Runs>,
+}
+
+impl FrameState {
+    fn new(Tracked { record, labels, odds, goes_on }: Tracked) -> FrameState {
+        FrameState {
+            found: Labelling::of(&labels, &odds),
+            corrected: None,
+            onward: record.onward.as_ref().filter(|_| goes_on).map(KeptFlow::of),
+            back: record.back.as_ref().map(KeptFlow::of),
+        }
+    }
+
+    fn labelling(&self) -> &Labelling {
+        self.corrected.as_ref().map_or(&self.found, |corrected| &corrected.labelling)
+    }
+
+    fn is_valid(&self, index: usize, frames: usize, pixels: usize, full: usize) -> bool {
+        let valid = |labelling: &Labelling| labelling.labels.is_valid(pixels) && labelling.odds.is_valid(pixels);
+        let corrected = |Corrected { labelling, origin, said }: &Corrected| {
+            let said_there = if *origin == index { said.as_ref() } else { None };
+            valid(labelling)
+                && *origin < frames
+                && said.is_some() == (*origin == index)
+                && said_there.is_none_or(|said| said.is_valid(full))
+        };
+        valid(&self.found)
+            && self.corrected.as_ref().is_none_or(corrected)
+            && [&self.onward, &self.back].into_iter().flatten().all(|flow| flow.is_valid(pixels))
+    }
+}
+
+impl Labelling {
+    pub(super) fn of(labels: &[u8], odds: &Plane) -> Labelling {
+        Labelling { labels: Runs::of(labels), odds: KeptOdds::of(odds) }
+    }
+
+    fn labels(&self) -> Buffer<u8> {
+        self.labels.values()
+    }
+
+    fn odds(&self, [width, height]: [usize; 2]) -> Plane {
+        self.odds.odds(width, height)
+    }
+}
+
+impl SegmentedClip {
+    /// Number of frames.
+    pub fn len(&self) -> usize {
+        self.frames.len()
+    }
+
+    /// Whether there is no frame.
+    pub fn is_empty(&self) -> bool {
+        self.frames.is_empty()
+    }
+
+    /// Number of objects that were seen when all numbers had been given, and count as background.
+    pub fn dropped(&self) -> usize {
+        self.dropped
+    }
+
+    /// The labels and objects of a frame, which must be the one that was segmented.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), [`Error::FrameSizeMismatch`].
+    pub fn frame(&self, index: usize, frame: &Frame) -> Result<ClipFrame> {
+        self.check(index, frame)?;
+        let _call = workspace::begin(self.size);
+        let state = &self.frames[index];
+        let labelling = state.labelling();
+        let mut labels = labelling.labels();
+        labels.iter_mut().for_each(|label| *label = self.numbers[usize::from(*label)]);
+        let (odds, onward) = (labelling.odds(self.working_size()), self.onward(index));
+        let working = WorkingFrame {
+            index,
+            labels: &labels,
+            odds: &odds,
+            onward: onward.as_ref(),
+            mark_unknown: self.mark_unknown,
+        };
+        let Some(said) = state.corrected.as_ref().and_then(|corrected| corrected.said.as_ref()) else {
+            return Ok(working.described(frame.luminance()));
+        };
+        let mut full = working.described(frame.luminance()).labels;
+        for (label, &said) in full.iter_mut().zip(said.values().iter()).filter(|(_, said)| **said != NOTHING_SAID) {
+            *label = self.numbers[usize::from(said)];
+        }
+        Ok(working.describe(full, frame.width()))
+    }
+
+    /// Begins a correction: `labels` has for every pixel of a frame what is certain there, 0 for the background, the number of an object,
+    /// a new number for a new object, or 255 where nothing is said. A correction replaces an earlier one of the same frame. Numbers are
+    /// those before any [`renumber`](Self::renumber).
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), or labels that do not fill the frame.
+    pub fn correct(&mut self, index: usize, labels: &[u8]) -> Result<ClipCorrection> {
+        self.check_index(index)?;
+        let [width, height] = self.size;
+        if labels.len() != width * height {
+            let reason = format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len());
+            return Err(Error::InvalidOption { name: "corrections", reason });
+        }
+        Ok(ClipCorrection::new(self, index, labels))
+    }
+
+    /// Gives every pixel of an object another number for the whole clip: that of another object to merge them, 0 to make it background.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] if either is 255, or `object` 0.
+    pub fn renumber(&mut self, object: u8, number: u8) -> Result<()> {
+        if object == 0 || object == NOTHING_SAID || number == NOTHING_SAID {
+            let reason =
+                format!("object {object} cannot get the number {number}: objects are 1 to 254, the background is 0");
+            return Err(Error::InvalidOption { name: "objects", reason });
+        }
+        let number = self.numbers[usize::from(number)];
+        self.numbers.iter_mut().filter(|given| **given == object).for_each(|given| *given = number);
+        Ok(())
+    }
+
+    /// The bytes of this clip, for [`from_bytes`](Self::from_bytes) of the same version.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        to_bytes(CLIP_FORMAT, self)
+    }
+
+    /// A clip from its bytes.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for other bytes.
+    pub fn from_bytes(bytes: &[u8]) -> Result<SegmentedClip> {
+        let clip: SegmentedClip = from_bytes(CLIP_FORMAT, bytes)?;
+        if clip.is_valid() { Ok(clip) } else { Err(invalid("state", "it is damaged")) }
+    }
+
+    fn is_valid(&self) -> bool {
+        let [width, height] = self.size;
+        if self.frames.is_empty() {
+            return self.size == [0, 0] && self.numbers.len() == 256;
+        }
+        if ![width, height].iter().all(|side| (MIN_SIDE..=MAX_SIDE).contains(side)) || self.numbers.len() != 256 {
+            return false;
+        }
+        let [w, h] = self.working_size();
+        let valid = |(index, frame): (usize, &FrameState)| frame.is_valid(index, self.len(), w * h, width * height);
+        self.frames.iter().enumerate().all(valid)
+    }
+
+    fn check_index(&self, index: usize) -> Result<()> {
+        let reason = || format!("there is no frame {index} in a clip of {} frames", self.len());
+        if index < self.len() { Ok(()) } else { Err(Error::InvalidOption { name: "frame", reason: reason() }) }
+    }
+
+    pub(super) fn check(&self, index: usize, frame: &Frame) -> Result<()> {
+        self.check_index(index)?;
+        let (first, second) = ((self.size[0], self.size[1]), (frame.width(), frame.height()));
+        if first == second { Ok(()) } else { Err(Error::FrameSizeMismatch { first, second }) }
+    }
+
+    pub(super) fn settings(&self) -> Settings {
+        let quality = if self.best { Quality::Best } else { Quality::Fast };
+        Settings::new(&SegmentOptions { quality, ..Default::default() }, self.size)
+    }
+
+    pub(super) fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// Width and height of the working size.
+    pub(super) fn working_size(&self) -> [usize; 2] {
+        self.settings().working_size(self.size)
+    }
+
+    /// Labels and odds of a frame as the clip was segmented.
+    pub(super) fn found(&self, index: usize) -> (Buffer<u8>, Plane) {
+        let found = &self.frames[index].found;
+        (found.labels(), found.odds(self.working_size()))
+    }
+
+    /// To the next frame of the scene; after the last one there is none.
+    pub(super) fn onward(&self, index: usize) -> Option<Flow> {
+        self.frames[index].onward.as_ref().map(|flow| flow.flow(self.working_size()[0]))
+    }
+
+    /// To the frame before; before the first one of a scene there is none.
+    pub(super) fn back(&self, index: usize) -> Option<Flow> {
+        self.frames[index].back.as_ref().map(|flow| flow.flow(self.working_size()[0]))
+    }
+}
+
+/// The label of a pixel of which a correction says nothing.
+pub(super) const NOTHING_SAID: u8 = u8::MAX;
+
+fn invalid(name: &'static str, reason: &str) -> Error {
+    Error::InvalidOption { name, reason: reason.into() }
+}
+
+fn working_size(options: &SegmentOptions, size: [usize; 2]) -> [usize; 2] {
+    Settings::new(options, size).working_size(size)
+}
+
+/// A format's mark and a value.
+fn to_bytes(format: &[u8], value: &impl Serialize) -> Vec<u8> {
+    // Writing to memory cannot fail.
+    postcard::to_extend(value, format.to_vec()).unwrap_or_default()
+}
+
+fn from_bytes<T: for<'a> Deserialize<'a>>(format: &[u8], bytes: &[u8]) -> Result<T> {
+    let rest = bytes.strip_prefix(format).ok_or_else(|| invalid("state", "these bytes are not of this version"))?;
+    match postcard::take_from_bytes(rest) {
+        Ok((value, [])) => Ok(value),
+        _ => Err(invalid("state", "it is damaged")),
+    }
+}
