@@ -36,12 +36,14 @@ const HOLD: f32 = 0.95;
 const WEAKEST: f32 = 0.1;
 /// Frames without any change after which a correction has ended.
 const QUIET: usize = 3;
-/// Price of a label other than the one found, at full certainty …
-const FOUND: f32 = 1.5;
+/// Price of a label other than the one found, at full certainty: in the corrected frame, where the person knows better, and in others …
+const FOUND: [f32; 2] = [0.5, 1.5];
 /// … of one other than what the correction carries here …
 const CARRIED: f32 = 3.0;
 /// … and weight of the colours, per nat.
 const COLOUR_WEIGHT: f32 = 0.5;
+/// Weight of a pixel of the corrected frame of which nothing was said when colours are learned.
+const UNSAID: f32 = 0.1;
 /// Price of a border.
 const SMOOTHNESS: f32 = 6.0;
 /// Odds, nats, from which a found label is certain …
@@ -218,10 +220,11 @@ impl ClipCorrection {
         let known: Vec<u8> =
             said.iter().zip(&found[..]).map(|(&s, &f)| if s == NOTHING_SAID { f } else { s }).collect();
         let numbers = numbers([&said, &known]);
-        self.colours.learn(&appearance.palette, &said, |p| f32::from(u8::from(said[p] != NOTHING_SAID)));
+        self.colours.learn(&appearance.palette, &known, |p| if said[p] == NOTHING_SAID { UNSAID } else { 1.0 });
         let colours = self.colours.prices(&numbers);
         let mut costs = planes(numbers.len(), size, |k, p| {
-            other_than(known[p], numbers[k], odds.values()[p]) + COLOUR_WEIGHT * colours[k][appearance.palette.index(p)]
+            FOUND[0] * other_than(known[p], numbers[k], odds.values()[p])
+                + COLOUR_WEIGHT * colours[k][appearance.palette.index(p)]
         });
         let set = |label: &u8| numbers.iter().position(|number| number == label).map_or(0, |k| 1 << k);
         let allowed: Vec<u16> = said.iter().map(set).collect();
@@ -268,7 +271,7 @@ impl ClipCorrection {
             let all: f32 = carried.iter().map(|plane| plane.values()[p]).sum();
             let share = if all > 0.0 { carried[k].values()[p] / all } else { 0.0 };
             let g = governed.values()[p];
-            (1.0 - g) * other_than(renamed[p], numbers[k], odds.values()[p])
+            (1.0 - g) * FOUND[1] * other_than(renamed[p], numbers[k], odds.values()[p])
                 + g * CARRIED * (1.0 - share)
                 + reach(p) * COLOUR_WEIGHT * colours[k][appearance.palette.index(p)]
         });
@@ -334,9 +337,9 @@ fn planes(labels: usize, [width, height]: [usize; 2], cost: impl Fn(usize, usize
     (0..labels).map(plane).collect()
 }
 
-/// Price of a label where another one was found with some odds.
+/// How certain it is that a pixel has another label than this, 0…1: one was found with some odds.
 fn other_than(found: u8, label: u8, odds: f32) -> f32 {
-    if found == label { 0.0 } else { FOUND * (odds.abs() / CERTAIN).min(1.0) }
+    if found == label { 0.0 } else { (odds.abs() / CERTAIN).min(1.0) }
 }
 
 /// The background and the labels of some pixels, those of the first list first, as many as can be solved.
