@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::correction::ClipCorrection;
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs};
+use super::grouping::Census;
 use super::runs::Runs;
 use super::tracker::{Tracked, Tracker};
 use super::{ClipFrame, ClipOptions};
@@ -107,6 +108,16 @@ impl ClipSegmenter {
         self.frames.extend(self.tracker.finish().into_iter().map(FrameState::new));
         if let Some(last) = self.frames.last_mut() {
             last.onward = None;
+        }
+        let working = working_size(&options, size);
+        let mut census = Census::new();
+        for (index, frame) in self.frames.iter().enumerate() {
+            let onward = frame.onward.as_ref().map(|flow| flow.flow(working[0]));
+            census.add(index, &frame.found.labels(), working[0], onward.as_ref(), frame.back.is_none());
+        }
+        let numbers = census.final_numbers();
+        for frame in &mut self.frames {
+            frame.found.labels = frame.found.labels.map(|label| numbers[usize::from(label)]);
         }
         let numbers = (0..=u8::MAX).collect();
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
