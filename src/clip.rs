@@ -31,6 +31,8 @@ use crate::options::SegmentOptions;
 
 pub use correction::ClipCorrection;
 pub use stream::StreamSegmenter;
+#[doc(hidden)]
+pub use tracker::ClipPart;
 pub use whole::{ClipSegmenter, FramePairs, SegmentedClip};
 
 /// Largest look-ahead of a stream, frames.
