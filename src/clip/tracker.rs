@@ -48,6 +48,8 @@ pub enum ClipPart {
 pub(crate) struct Tracker {
     options: ClipOptions,
     without: Option<ClipPart>,
+    /// Whether frames are kept until they leave.
+    keeps_frames: bool,
     /// Width and height of the frames, once there is one.
     size: Option<[usize; 2]>,
     /// Frames so far.
@@ -83,8 +85,8 @@ pub(crate) struct Tracked {
 }
 
 impl Tracker {
-    /// A tracker, in ablation studies without one part.
-    pub(crate) fn new(options: ClipOptions, without: Option<ClipPart>) -> Result<Tracker> {
+    /// A tracker that keeps frames until they leave, or only what it needs of them; in ablation studies without one part.
+    pub(crate) fn new(options: ClipOptions, keeps_frames: bool, without: Option<ClipPart>) -> Result<Tracker> {
         options.pair.motions.validate()?;
         if options.look_ahead.is_some_and(|frames| frames > MAX_LOOK_AHEAD) {
             let reason = format!("must be 0 to {MAX_LOOK_AHEAD}");
@@ -99,6 +101,7 @@ impl Tracker {
         Ok(Tracker {
             options,
             without,
+            keeps_frames,
             size: None,
             count: 0,
             last: None,
@@ -245,6 +248,7 @@ impl Tracker {
         };
         // The pyramid's levels have told all they can.
         let appearance = pyramid.appearance(&frame).clone();
+        let frame = Some(frame).filter(|_| self.keeps_frames);
         let record = Rc::new(Record { index: self.count, frame, appearance, odds, onward, back });
         self.count += 1;
         let odds = record.odds.clone();

@@ -72,7 +72,7 @@ impl ClipSegmenter {
     /// # Errors
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
-        Ok(ClipSegmenter { tracker: Tracker::new(options, None)?, frames: Vec::new() })
+        Ok(ClipSegmenter { tracker: Tracker::new(options, false, None)?, frames: Vec::new() })
     }
 
     /// [`new`](Self::new) without one part, for ablation studies.
@@ -82,7 +82,7 @@ impl ClipSegmenter {
     #[cfg(feature = "ablation")]
     #[doc(hidden)]
     pub fn without(part: ClipPart, options: ClipOptions) -> Result<ClipSegmenter> {
-        Ok(ClipSegmenter { tracker: Tracker::new(options, Some(part))?, frames: Vec::new() })
+        Ok(ClipSegmenter { tracker: Tracker::new(options, false, Some(part))?, frames: Vec::new() })
     }
 
     /// Takes the next frame. What it returns need not be kept.
