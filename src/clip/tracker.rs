@@ -132,7 +132,11 @@ impl Tracker {
         }
         self.size = Some(size);
         let _call = workspace::begin(size);
-        let settings = Settings::new(&self.options.pair, size);
+        // Frames are kept in streams alone.
+        let settings = match self.keeps_frames {
+            false => Settings::new(&self.options.pair, size),
+            true => Settings::of_stream(&self.options.pair, size),
+        };
         let pyramid = Rc::new(settings.pyramid(&frame));
         let newest = Newest { frame: Rc::new(frame), pyramid, back: None };
         let Some(last) = self.last.take() else {
