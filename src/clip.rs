@@ -4,7 +4,7 @@
 //! 2. Two rounds carry the evidence along the motions, learn colours and cut the foreground (`clip/round.rs`). The second starts from the
 //!    first one's cut.
 //! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
-//! 4. Of a whole clip, parts that move together are joined, and what lasted a few frames is dropped (`clip/grouping.rs`).
+//! 4. Of a whole clip, objects that part are followed back to where they were one (`clip/parting.rs`), parts that move together are joined, and what lasted a few frames is dropped (`clip/grouping.rs`).
 //! 5. Labels are upsampled along the edges of the full frame (`clip/description.rs`).
 //!
 //! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels of the working size, and its
@@ -17,6 +17,7 @@ mod description;
 mod evidence;
 mod grouping;
 mod identity;
+mod parting;
 mod record;
 mod round;
 mod runs;

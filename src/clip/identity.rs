@@ -17,9 +17,9 @@ use crate::components::{Components, Connectivity, components};
 use crate::labelling::regions::description::smallest_share;
 use crate::labelling::solver::MAX_LABELS;
 use crate::order::descending;
-use object::Object;
+use object::{Apart, Object};
 use sharing::share;
-use sight::{Sight, is_still, mean_motion, telling};
+use sight::{Sight, is_still, telling};
 
 // The constants below were set by hand on ten real clips and on tests/clip.rs, and were not varied.
 
@@ -38,13 +38,25 @@ const GROWTH: f64 = 4.0;
 /// Two pieces of an object are two objects when one has moved this far relative to the other, in roots of its size. What covers the
 /// middle of an object leaves its pieces where they are.
 const APART: f64 = 0.5;
+/// They are also two when neither has moved with the other for this many frames in a row.
+const APART_FRAMES: usize = 6;
 /// Share of an object that a piece must have to be one.
 const SMALLEST_PIECE: f64 = 0.2;
+
+/// An object that was a part of another one before a frame.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Parting {
+    pub(crate) frame: usize,
+    pub(crate) from: u8,
+    pub(crate) new: u8,
+}
 
 /// The objects of a clip so far.
 #[derive(Debug)]
 pub(crate) struct Identities {
     objects: Vec<Object>,
+    /// In order.
+    pub(crate) parted: Vec<Parting>,
     /// The last frame and its labels.
     last: Option<(Rc<Record>, Vec<u8>)>,
     /// Number of the next new object.
@@ -55,7 +67,7 @@ pub(crate) struct Identities {
 
 impl Identities {
     pub(crate) fn new() -> Identities {
-        Identities { objects: Vec::new(), last: None, next: 1, dropped: 0 }
+        Identities { objects: Vec::new(), parted: Vec::new(), last: None, next: 1, dropped: 0 }
     }
 
     /// The object of every working pixel of the next frame, 0 for the background; `mask` is 1 on its foreground.
@@ -210,18 +222,18 @@ impl Identities {
             let large = |c: &&usize| found.list[**c].size as f64 >= SMALLEST_PIECE * whole as f64;
             let second = pieces.iter().skip(1).find(large).copied();
             let Some(second) = second else {
-                self.objects[k].apart = [0.0; 2];
+                self.objects[k].apart = Apart::default();
                 continue;
             };
-            let motion = |c: usize| mean_motion(along, &pixels_of(&found, c));
-            let ([u, v], [r, s]) = (motion(pieces[0]), motion(second));
-            let [x, y] = &mut self.objects[k].apart;
-            (*x, *y) = (*x + u - r, *y + v - s);
-            if (*x * *x + *y * *y).sqrt() > APART * (found.list[second].size as f64).sqrt()
-                && let Some(new) = self.new_number()
-            {
-                pixels_of(&found, second).iter().for_each(|&p| labels[p] = new);
-                self.objects[k].apart = [0.0; 2];
+            let [one, other] = [pieces[0], second].map(|c| pixels_of(&found, c));
+            let apart = &mut self.objects[k].apart;
+            apart.add(along, &one, &other);
+            if apart.distance() > APART * (other.len() as f64).sqrt() || apart.frames >= APART_FRAMES {
+                self.objects[k].apart = Apart::default();
+                if let Some(new) = self.new_number() {
+                    other.iter().for_each(|&p| labels[p] = new);
+                    self.parted.push(Parting { frame: record.index, from: number, new });
+                }
             }
         }
     }

@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use super::evidence::{Flow, Pairs, flow, odds};
-use super::identity::Identities;
+use super::identity::{Identities, Parting};
 use super::record::Record;
 use super::round::{Foreground, Round};
 use super::{ClipOptions, MAX_LOOK_AHEAD};
@@ -226,6 +226,11 @@ impl Tracker {
     /// Number of objects that were seen when all numbers had been given, and count as background.
     pub(crate) fn dropped(&self) -> usize {
         self.identities.dropped
+    }
+
+    /// Objects that were parts of others at first, in order.
+    pub(crate) fn parted(&self) -> &[Parting] {
+        &self.identities.parted
     }
 
     /// Hands a frame to the rounds, with what is known of its way to the next one.

@@ -6,6 +6,8 @@ use super::correction::ClipCorrection;
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs};
 use super::grouping::Census;
+use super::identity::Parting;
+use super::parting::divide;
 use super::runs::Runs;
 use super::tracker::{ClipPart, Tracked, Tracker};
 use super::{ClipFrame, ClipOptions};
@@ -120,11 +122,28 @@ impl ClipSegmenter {
             last.onward = None;
         }
         if self.tracker.has(ClipPart::Grouping) {
-            self.group(working_size(&options, size)[0]);
+            let width = working_size(&options, size)[0];
+            self.part(width);
+            self.group(width);
         }
         let numbers = (0..=u8::MAX).collect();
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
         SegmentedClip { size, mark_unknown, best, dropped, numbers, frames: self.frames }
+    }
+
+    /// Divides what was one object before it was two.
+    fn part(&mut self, width: usize) {
+        for &Parting { frame, from, new } in self.tracker.parted().iter().rev() {
+            for t in (0..frame).rev() {
+                let [Some(here), Some(later)] = [t, t + 1].map(|t| self.frames.get(t)) else { break };
+                let Some(onward) = here.onward.as_ref().map(|flow| flow.flow(width)) else { break };
+                let mut labels = here.found.labels();
+                if !divide(&mut labels, &later.found.labels(), &onward, from, new) {
+                    break;
+                }
+                self.frames[t].found.labels = Runs::of(&labels);
+            }
+        }
     }
 
     /// Gives the objects the numbers that the whole clip tells.

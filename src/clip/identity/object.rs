@@ -1,7 +1,9 @@
 //! An object as last seen, and where it is expected.
 
 use super::sight::{Sight, is_still, mean_motion, moves};
+use crate::clip::evidence::Flow;
 use crate::clip::record::Record;
+use crate::labelling::BACKGROUND;
 
 // The constants below were set by hand on ten real clips and on tests/clip.rs, and were not varied, except as said.
 
@@ -21,6 +23,8 @@ const SEARCH_GROWTH: f64 = 0.1;
 const SAME_MOTION: f64 = 1.0;
 /// … and this share of its displacement.
 const SAME_SPEED: f64 = 0.25;
+/// Two pieces have different motions where these differ by this many working pixels, and by this share of how far the piece moves.
+const OTHER_MOTION: [f64; 2] = [0.5, 0.25];
 
 /// An object.
 #[derive(Clone, Debug)]
@@ -32,13 +36,48 @@ pub(crate) struct Object {
     in_sight: f64,
     /// Frames since it was seen.
     pub(crate) hidden: usize,
-    /// How far its largest pieces have moved relative to each other since they came apart, working pixels.
-    pub(crate) apart: [f64; 2],
+    /// How its two largest pieces have moved since they came apart.
+    pub(crate) apart: Apart,
+}
+
+/// How two pieces of an object have moved relative to each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Apart {
+    /// Displacement of the second relative to the first, working pixels.
+    moved: [f64; 2],
+    /// Frames in a row in which they had different motions.
+    pub(crate) frames: usize,
+}
+
+impl Apart {
+    /// One frame more.
+    pub(crate) fn add(&mut self, along: &Flow, one: &[usize], other: &[usize]) {
+        let [u, v] = mean_motion(along, one);
+        let [r, s] = mean_motion(along, other);
+        self.moved = [self.moved[0] + r - u, self.moved[1] + s - v];
+        // Pieces of a body that turns have different displacements, but one motion.
+        let differs = |(one, other): (&[usize], &[usize])| {
+            let motion = along.motions[along.most_frequent(one.iter().copied()).unwrap_or(BACKGROUND)];
+            let n = other.len() as f64;
+            let place = |p: usize| ((p % along.width) as f64, (p / along.width) as f64);
+            let [x, y] = other.iter().map(|&p| place(p)).fold([0.0; 2], |[a, b], (x, y)| [a + x / n, b + y / n]);
+            let ([u, v], [r, s]) = (motion.flow(x, y), mean_motion(along, other));
+            let [a, b] = along.motions[BACKGROUND].flow(x, y);
+            let (difference, own) = (libm::hypot(u - r, v - s), libm::hypot(r - a, s - b));
+            difference > OTHER_MOTION[0] && difference > OTHER_MOTION[1] * own
+        };
+        self.frames = if differs((one, other)) && differs((other, one)) { self.frames + 1 } else { 0 };
+    }
+
+    /// How far they have moved relative to each other, working pixels.
+    pub(crate) fn distance(&self) -> f64 {
+        libm::hypot(self.moved[0], self.moved[1])
+    }
 }
 
 impl Object {
     pub(crate) fn new(number: u8, whole: Sight) -> Object {
-        Object { number, in_sight: whole.size, whole, hidden: 0, apart: [0.0; 2] }
+        Object { number, in_sight: whole.size, whole, hidden: 0, apart: Apart::default() }
     }
 
     /// One frame further.

@@ -1,0 +1,37 @@
+//! Objects that part were two from the start: the pixels of each are followed back to the frames in which they were one.
+
+use super::evidence::Flow;
+use crate::components::absorb_small;
+
+/// An object is followed back while at least this share of its pixels is found in the frame before. Not varied.
+const FOUND: f64 = 0.5;
+/// Pixels of one object within another that are fewer than this share of its own are taken for the other's.
+const SMALLEST: f64 = 0.05;
+
+/// Divides what has the number `from` in a frame, whose flow to the next one is `onward`, between it and `new`, as their pixels have
+/// these numbers in the next frame, `later`. Tells whether `new` was found.
+pub(super) fn divide(labels: &mut [u8], later: &[u8], onward: &Flow, from: u8, new: u8) -> bool {
+    let (width, height) = (onward.width, labels.len() / onward.width);
+    let mut carried: Vec<u8> = labels.iter().map(|&label| u8::from(label == from)).collect();
+    for (p, here) in carried.iter_mut().enumerate().filter(|(_, here)| **here > 0) {
+        let (x, y) = (p % width, p / width);
+        let [u, v] = onward.at(x, y);
+        let (px, py) = (x as f64 + u + 0.5, y as f64 + v + 0.5);
+        let inside = px >= 0.0 && py >= 0.0 && px < width as f64 && py < height as f64;
+        if inside && later[py as usize * width + px as usize] == new {
+            *here = 2;
+        }
+    }
+    let count = |labels: &[u8], number: u8| labels.iter().filter(|&&label| label == number).count();
+    let (found, expected) = (count(&carried, 2), count(later, new));
+    if (found as f64) < FOUND * expected as f64 {
+        return false;
+    }
+    absorb_small(&mut carried, width, (SMALLEST * found as f64) as usize);
+    labels
+        .iter_mut()
+        .zip(&carried)
+        .filter(|(label, here)| **label == from && **here == 2)
+        .for_each(|(label, _)| *label = new);
+    true
+}
