@@ -211,9 +211,33 @@ impl SegmentedClip {
         self.frames.is_empty()
     }
 
+    /// Width and height of the frames; 0 if there is none.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
     /// Number of objects that were seen when all numbers had been given, and count as background.
     pub fn dropped(&self) -> usize {
         self.dropped
+    }
+
+    /// Whether pixels whose evidence does not decide are to have the label 255 from now on.
+    pub fn mark_unknown(&mut self, mark: bool) {
+        self.mark_unknown = mark;
+    }
+
+    /// Indices of the frames in which an object is, by its number of now.
+    pub fn frames_with(&self, object: u8) -> Vec<usize> {
+        let is_there = |frame: &FrameState| {
+            let said = frame.corrected.as_ref().and_then(|corrected| corrected.said.as_ref());
+            let labels = [Some(&frame.labelling().labels), said];
+            labels
+                .into_iter()
+                .flatten()
+                .flat_map(Runs::each)
+                .any(|(label, _)| self.numbers[usize::from(label)] == object)
+        };
+        (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
     }
 
     /// The labels and objects of a frame, which must be the one that was segmented.
@@ -317,10 +341,6 @@ impl SegmentedClip {
     pub(super) fn settings(&self) -> Settings {
         let quality = if self.best { Quality::Best } else { Quality::Fast };
         Settings::new(&SegmentOptions { quality, ..Default::default() }, self.size)
-    }
-
-    pub(super) fn size(&self) -> [usize; 2] {
-        self.size
     }
 
     /// Width and height of the working size.
