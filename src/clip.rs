@@ -4,7 +4,8 @@
 //! 2. Two rounds carry the evidence along the motions, learn colours and cut the foreground (`clip/round.rs`). The second starts from the
 //!    first one's cut.
 //! 3. The foreground of each frame is handed to the objects of the frame before, or to new ones (`clip/identity.rs`).
-//! 4. Labels are upsampled along the edges of the full frame (`clip/description.rs`).
+//! 4. Of a whole clip, parts that move together are joined, and what lasted a few frames is dropped (`clip/grouping.rs`).
+//! 5. Labels are upsampled along the edges of the full frame (`clip/description.rs`).
 //!
 //! A [`StreamSegmenter`] does all this frame by frame. A [`ClipSegmenter`] keeps the labels of the working size, and its
 //! [`SegmentedClip`] gives any frame, as often as it is asked, takes corrections and can be saved.
@@ -14,6 +15,7 @@ mod colours;
 mod correction;
 mod description;
 mod evidence;
+mod grouping;
 mod identity;
 mod record;
 mod round;
@@ -29,6 +31,8 @@ use crate::options::SegmentOptions;
 
 pub use correction::ClipCorrection;
 pub use stream::StreamSegmenter;
+#[doc(hidden)]
+pub use tracker::ClipPart;
 pub use whole::{ClipSegmenter, FramePairs, SegmentedClip};
 
 /// Largest look-ahead of a stream, frames.

@@ -173,6 +173,16 @@ fn one_that_was_hidden_gets_its_number_back() {
 }
 
 #[test]
+fn parts_that_move_together_are_one_object() {
+    // A post of the background stands before it in all frames: it is never in sight as a whole.
+    let things = [thing(2, [70.0, 30.0], |t| [20.0 + 2.0 * t as f32, 44.0]), thing(4, [12.0, 120.0], |_| [74.0, 0.0])];
+    let (frames, truths) = scene(1, &things, 12);
+    let done = segment(&frames, options(Quality::Best, None));
+    one_number(&done, &truths, 1, 0..12);
+    assert!(done.iter().all(|frame| frame.objects.len() == 1), "one object and no other");
+}
+
+#[test]
 fn a_cut_ends_all_objects() {
     let one = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 44.0])];
     let other = [thing(6, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 50.0])];

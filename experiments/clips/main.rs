@@ -18,6 +18,7 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use methods::Method;
 use parallel::in_parallel;
 
 const HELP: &str = "\
@@ -30,6 +31,7 @@ Scores labels that persist through time, of generated and real clips, in two ste
   --only A,B         only clips whose name contains one of these
   --out DIR          output folder; default out/clips
   --shared DIR       folder with real clips, if it exists; default ../shared
+  --ablation         also measure the clip segmenter without each of its parts
   --write-docs       also write docs/clips.md and docs/images/clips-*.png
 ";
 
@@ -39,6 +41,7 @@ struct Options {
     only: Vec<String>,
     out: PathBuf,
     shared: PathBuf,
+    ablation: bool,
     write_docs: bool,
 }
 
@@ -66,6 +69,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         only: Vec::new(),
         out: PathBuf::from("out/clips"),
         shared: PathBuf::from("../shared"),
+        ablation: false,
         write_docs: false,
     };
     while let Some(name) = arguments.next() {
@@ -74,6 +78,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--help" | "-h" => return Ok(None),
             "frames" | "measure" => options.step = name,
             "--quick" => options.quick = true,
+            "--ablation" => options.ablation = true,
             "--write-docs" => options.write_docs = true,
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--out" => options.out = PathBuf::from(value()?),
@@ -108,7 +113,11 @@ fn run(options: &Options) -> Result<(), Failure> {
     if cases.iter().all(cases::Case::is_generated) && !options.quick && options.only.is_empty() {
         eprintln!("{} has no clips: only the generated ones are measured.", options.shared.display());
     }
-    let measured = measure::all(&cases, out)?;
+    let mut methods = Method::ALL.to_vec();
+    if options.ablation {
+        methods.extend(Method::ABLATIONS);
+    }
+    let measured = measure::all(&cases, &methods, out)?;
     fs::write(out.join("table.csv"), figures::csv(&measured)).map_err(cannot)?;
     fs::write(out.join("clips.json"), serde_json::to_string_pretty(&figures::all(&measured))?).map_err(cannot)?;
     for one in &measured {

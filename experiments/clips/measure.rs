@@ -44,23 +44,23 @@ impl Measured {
 
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
-/// All methods on all clips. Labels are written to `labels/METHOD/CLIP/NNNNN.png` in `out`; what other programs found is read from
+/// Some methods on all clips. Labels are written to `labels/METHOD/CLIP/NNNNN.png` in `out`; what other programs found is read from
 /// there.
-pub(crate) fn all(cases: &[Case], out: &Path) -> Result<Vec<Measured>> {
+pub(crate) fn all(cases: &[Case], methods: &[Method], out: &Path) -> Result<Vec<Measured>> {
     in_parallel(cases, |case| {
-        let measured = measure(case, &out.join("labels"))?;
+        let measured = measure(case, methods, &out.join("labels"))?;
         let main = measured.own().map(|own| format!("{} {:.3}", own.method.name(), own.scores.j_tracks));
         eprintln!("{}: J of tracks, {}", case.name, main.unwrap_or_default());
         Ok(measured)
     })
 }
 
-fn measure(case: &Case, labels: &Path) -> Result<Measured> {
+fn measure(case: &Case, methods: &[Method], labels: &Path) -> Result<Measured> {
     let data = case.load()?;
     let first = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?;
     let size = [first.width(), first.height()];
     let (mut outcomes, mut picture) = (Vec::new(), None);
-    for method in Method::ALL {
+    for &method in methods {
         let Some(found) = found(method, &case.name, &data, labels)? else { continue };
         let scores = scores(&data.truths, &found.labels, size[0]);
         if found.milliseconds.is_some() {

@@ -3,17 +3,19 @@
 use std::path::Path;
 use std::time::Instant;
 
-use veronese::clip::{ClipOptions, ClipSegmenter};
+use veronese::clip::{ClipOptions, ClipPart, ClipSegmenter, StreamSegmenter};
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
 use crate::cases::{Data, labels};
 use crate::linking::pair_by_pair;
 
 /// In the order of the tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Method {
     /// The clip segmenter.
     Clip,
+    /// The stream segmenter with a look-ahead.
+    Stream(Quality, usize),
     /// Each pair by itself, its masks linked.
     Pairs,
     /// The same, fast.
@@ -23,31 +25,69 @@ pub(crate) enum Method {
     /// OpenCV: background subtraction.
     Mog2,
     Knn,
+    /// The clip segmenter without one of its parts.
+    Without(ClipPart),
 }
 
 impl Method {
-    pub(crate) const ALL: [Method; 6] =
-        [Method::Clip, Method::Pairs, Method::PairsFast, Method::Flow, Method::Mog2, Method::Knn];
+    pub(crate) const ALL: [Method; 9] = [
+        Method::Clip,
+        Method::Stream(Quality::Best, 4),
+        Method::Stream(Quality::Fast, 4),
+        Method::Stream(Quality::Fast, 0),
+        Method::Pairs,
+        Method::PairsFast,
+        Method::Flow,
+        Method::Mog2,
+        Method::Knn,
+    ];
+
+    pub(crate) const ABLATIONS: [Method; 6] = [
+        Method::Without(ClipPart::WarmStart),
+        Method::Without(ClipPart::BothDirections),
+        Method::Without(ClipPart::Carrying),
+        Method::Without(ClipPart::Colours),
+        Method::Without(ClipPart::SecondRound),
+        Method::Without(ClipPart::Grouping),
+    ];
 
     pub(crate) fn name(self) -> &'static str {
         match self {
             Method::Clip => "clip",
+            Method::Stream(Quality::Best, _) => "stream",
+            Method::Stream(Quality::Fast, 0) => "live",
+            Method::Stream(Quality::Fast, _) => "stream-fast",
             Method::Pairs => "pairs",
             Method::PairsFast => "pairs-fast",
             Method::Flow => "flow",
             Method::Mog2 => "mog2",
             Method::Knn => "knn",
+            Method::Without(ClipPart::WarmStart) => "no-warm-start",
+            Method::Without(ClipPart::BothDirections) => "no-both-directions",
+            Method::Without(ClipPart::Carrying) => "no-carrying",
+            Method::Without(ClipPart::Colours) => "no-colours",
+            Method::Without(ClipPart::SecondRound) => "no-second-round",
+            Method::Without(ClipPart::Grouping) => "no-grouping",
         }
     }
 
     pub(crate) fn title(self) -> &'static str {
         match self {
             Method::Clip => "clip",
+            Method::Stream(Quality::Best, _) => "stream, look-ahead 4",
+            Method::Stream(Quality::Fast, 0) => "stream, fast, look-ahead 0",
+            Method::Stream(Quality::Fast, _) => "stream, fast, look-ahead 4",
             Method::Pairs => "pair by pair",
             Method::PairsFast => "pair by pair, fast",
             Method::Flow => "OpenCV, DIS flow",
             Method::Mog2 => "OpenCV, MOG2",
             Method::Knn => "OpenCV, KNN",
+            Method::Without(ClipPart::WarmStart) => "without a warm start",
+            Method::Without(ClipPart::BothDirections) => "without the evidence of backward pairs",
+            Method::Without(ClipPart::Carrying) => "without the evidence of other frames",
+            Method::Without(ClipPart::Colours) => "without colours",
+            Method::Without(ClipPart::SecondRound) => "without the second round",
+            Method::Without(ClipPart::Grouping) => "without grouping",
         }
     }
 }
@@ -60,13 +100,24 @@ pub(crate) struct Found {
 }
 
 /// The clip segmenter's labels of every frame, an object the same number in all.
-fn clip_labels(frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
-    let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
+fn clip_labels(mut segmenter: ClipSegmenter, frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
     for frame in frames {
         segmenter.push(frame.clone())?;
     }
     let clip = segmenter.conclude();
     frames.iter().enumerate().map(|(index, frame)| Ok(clip.frame(index, frame)?.labels)).collect()
+}
+
+/// The same of the stream segmenter.
+fn stream_labels(quality: Quality, look_ahead: usize, frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
+    let pair = SegmentOptions { quality, ..SegmentOptions::default() };
+    let mut segmenter = StreamSegmenter::new(ClipOptions { pair, look_ahead: Some(look_ahead) })?;
+    let mut found = Vec::new();
+    for frame in frames {
+        found.extend(segmenter.push(frame.clone())?);
+    }
+    found.extend(segmenter.finish());
+    Ok(found.into_iter().map(|frame| frame.labels).collect())
 }
 
 /// What a method finds in a clip; `None` if it does not exist here. Labels of other programs are in `peers`, by method and clip.
@@ -79,7 +130,11 @@ pub(crate) fn found(
     let start = Instant::now();
     let pairs = |quality| pair_by_pair(&data.frames, &SegmentOptions { quality, ..SegmentOptions::default() });
     let own = match method {
-        Method::Clip => Some(clip_labels(&data.frames)?),
+        Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames)?),
+        Method::Without(part) => {
+            Some(clip_labels(ClipSegmenter::without(part, ClipOptions::default())?, &data.frames)?)
+        }
+        Method::Stream(quality, look_ahead) => Some(stream_labels(quality, look_ahead, &data.frames)?),
         Method::Pairs => Some(pairs(Quality::Best)?),
         Method::PairsFast => Some(pairs(Quality::Fast)?),
         Method::Flow | Method::Mog2 | Method::Knn => None,

@@ -19,7 +19,7 @@ const HEAD: &str = "\
 This page measures labels that persist through time: an object should have one label in all frames of a clip. All of it is written by
 
 ```sh
-npm run bench:clips -- --write-docs
+npm run bench:clips -- --ablation --write-docs
 ```
 
 which measures every clip again. The seeds are fixed, so all figures of ours except the times are the same on every machine.
@@ -38,7 +38,7 @@ pixels of the clip.
 - **IDF1**: F measure of detections with the right identity, at an IoU of 0.5;
 - **n right**: share of clips with the right number of labels (labels below 0.2 % of every frame do not count).
 
-*clip* is the clip segmenter. *pair by pair* segments each frame with the next by `segment_pair` and takes its groups; a mask keeps
+*clip* is the clip segmenter on the whole clip, *stream* has its frames once and waits for four or none. *pair by pair* segments each frame with the next by `segment_pair` and takes its groups; a mask keeps
 its number if, carried along its motions, it overlaps a mask of the next frame (IoU of 0.1, best first). The peers are OpenCV's, in
 experiments/clips/peers.py: dense flow (DIS) with one affine background motion by RANSAC and Otsu's threshold of what differs from
 it, and the background subtractors MOG2 and KNN; their connected regions are linked in the same way.
@@ -75,6 +75,7 @@ impl Page<'_> {
             self.real(&mut text);
             text.push_str(REAL);
         }
+        self.ablation(&mut text);
         text.truncate(text.trim_end().len());
         text.push('\n');
         text
@@ -130,6 +131,33 @@ impl Page<'_> {
             "\nSwitches are per object and 30 frames; times are milliseconds per frame of native code on one core of a machine in use, with \
              another clip running on the other core.\n\n",
         );
+    }
+
+    /// The clip segmenter without each of its parts, if that was measured.
+    fn ablation(&self, text: &mut String) {
+        let there = |method: &Method| self.measured.iter().any(|one| one.of(*method).is_some());
+        let methods: Vec<Method> = Method::ABLATIONS.into_iter().filter(there).collect();
+        if methods.is_empty() {
+            return;
+        }
+        text.push_str(
+            "## What each part is worth\n\nThe clip segmenter without one of its parts.\n\n| | generated clips: auto | assigned | switches | \
+             n right | real clips: auto | one click | tracks | F tracks | switches |\n|---|---|---|---|---|---|---|---|---|---|\n",
+        );
+        for method in [Method::Clip].into_iter().chain(methods) {
+            let of = |generated: bool, name: &str, digits: usize| {
+                let clips = self.measured.iter().filter(|one| one.case.is_generated() == generated);
+                let figure = FIGURES.iter().find(|(other, _)| *other == name);
+                let value = figure.map(|(_, figure)| mean(clips.filter_map(|one| one.of(method)), *figure));
+                number(value.unwrap_or(f64::NAN), digits)
+            };
+            let generated = ["j_auto", "assigned"].map(|name| of(true, name, 3)).join(" | ");
+            let real = ["j_auto", "j_track", "j_tracks", "f_tracks"].map(|name| of(false, name, 3)).join(" | ");
+            let (switches, right) = ([true, false].map(|of_| of(of_, "switches", 2)), of(true, "n_right", 2));
+            let [first, second] = switches;
+            let _ = writeln!(text, "| {} | {generated} | {first} | {right} | {real} | {second} |", method.title());
+        }
+        text.push('\n');
     }
 
     /// The methods whose figures of single clips are shown.

@@ -12,7 +12,8 @@ use crate::labelling::terms::smoothness::Borders;
 pub(crate) struct Record {
     /// Position in the clip, from 0.
     pub(crate) index: usize,
-    pub(crate) frame: Rc<Frame>,
+    /// In a stream, which describes a frame when it leaves.
+    pub(crate) frame: Option<Rc<Frame>>,
     pub(crate) appearance: Rc<Appearance>,
     /// Log-odds of object against background from the frame's pairs, nats; zero where there is no pair.
     pub(crate) odds: Plane,

@@ -38,6 +38,8 @@ pub(crate) struct Round {
     /// Frames that each frame waits for.
     delay: usize,
     solver: Solver,
+    /// Weight of the colours.
+    colours_weight: f32,
     waiting: VecDeque<Waiting>,
     /// Evidence of the newest frame with that of the frames before it.
     past: Option<Plane>,
@@ -63,7 +65,15 @@ pub(crate) struct Foreground {
 
 impl Round {
     pub(crate) fn new(decay: f32, delay: usize, solver: Solver) -> Round {
-        Round { decay, delay, solver, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
+        let colours_weight = COLOUR_WEIGHT;
+        Round { decay, delay, solver, colours_weight, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
+    }
+
+    /// The same without one of its parts, for ablation studies.
+    pub(crate) fn without(self, carrying: bool, colours: bool) -> Round {
+        let decay = if carrying { 0.0 } else { self.decay };
+        let colours_weight = if colours { 0.0 } else { self.colours_weight };
+        Round { decay, colours_weight, ..self }
     }
 
     /// Takes the next frame with its own odds; returns one that has waited long enough.
@@ -103,7 +113,7 @@ impl Round {
         }
         let ratios = all.ratios();
         let price = |(p, odds): (usize, &f32)| {
-            ODDS_WEIGHT * odds.clamp(-MOST_ODDS, MOST_ODDS) + COLOUR_WEIGHT * ratios[appearance.palette.index(p)]
+            ODDS_WEIGHT * odds.clamp(-MOST_ODDS, MOST_ODDS) + self.colours_weight * ratios[appearance.palette.index(p)]
         };
         let [width, height] = record.size();
         let odds = odds.into_iter().next()?;

@@ -34,6 +34,11 @@ impl Runs {
         values
     }
 
+    /// The runs with other values.
+    pub(crate) fn map(&self, value: impl Fn(u8) -> u8) -> Runs {
+        Runs::of(&self.values().iter().map(|&v| value(v)).collect::<Buffer<u8>>())
+    }
+
     /// Whether these are runs of `pixels` values.
     pub(crate) fn is_valid(&self, pixels: usize) -> bool {
         self.each().try_fold(0usize, |sum, (_, length)| sum.checked_add(length)) == Some(pixels)

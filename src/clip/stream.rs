@@ -39,7 +39,7 @@ impl StreamSegmenter {
     /// range.
     pub fn new(options: ClipOptions) -> Result<StreamSegmenter> {
         let look_ahead = Some(options.look_ahead.unwrap_or(MAX_LOOK_AHEAD));
-        Ok(StreamSegmenter { tracker: Tracker::new(ClipOptions { look_ahead, ..options })? })
+        Ok(StreamSegmenter { tracker: Tracker::new(ClipOptions { look_ahead, ..options }, true, None)? })
     }
 
     /// Takes the next frame. Returns a frame that has waited long enough, if there is one.
@@ -48,13 +48,13 @@ impl StreamSegmenter {
     /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch); the stream may go on with another frame.
     pub fn push(&mut self, frame: Frame) -> Result<Option<ClipFrame>> {
         let (tracked, _) = self.tracker.push(frame, None)?;
-        Ok(tracked.map(|tracked| self.described(&tracked)))
+        Ok(tracked.and_then(|tracked| self.described(&tracked)))
     }
 
     /// The frames that still wait. The segmenter is then ready for another stream, whose objects get new numbers.
     pub fn finish(&mut self) -> Vec<ClipFrame> {
         let rest = self.tracker.finish();
-        rest.iter().map(|tracked| self.described(tracked)).collect()
+        rest.iter().filter_map(|tracked| self.described(tracked)).collect()
     }
 
     /// Number of objects that were seen when all numbers had been given, and count as background.
@@ -62,7 +62,7 @@ impl StreamSegmenter {
         self.tracker.dropped()
     }
 
-    fn described(&self, Tracked { record, labels, odds, goes_on }: &Tracked) -> ClipFrame {
+    fn described(&self, Tracked { record, labels, odds, goes_on }: &Tracked) -> Option<ClipFrame> {
         let working = WorkingFrame {
             index: record.index,
             labels,
@@ -70,6 +70,6 @@ impl StreamSegmenter {
             onward: record.onward.as_ref().filter(|_| *goes_on),
             mark_unknown: self.tracker.options().pair.mark_unknown,
         };
-        working.described(record.frame.luminance())
+        record.frame.as_ref().map(|frame| working.described(frame.luminance()))
     }
 }

@@ -25,10 +25,31 @@ const SECOND_ROUND_ODDS: f32 = 0.5;
 /// … and what the cut of the first round adds for or against an object, nats; 2.5 costs .003.
 const FIRST_CUT: f32 = 1.5;
 
+/// A part of the clip segmenter that can be left out, for ablation studies. Without the feature `ablation` all parts are enabled. Not
+/// covered by semantic versioning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClipPart {
+    /// Motions of the pair before as candidates.
+    WarmStart,
+    /// Evidence of the pair with the frame before; its motions are still used.
+    BothDirections,
+    /// Evidence of other frames.
+    Carrying,
+    /// Colours learned from the clip.
+    Colours,
+    /// The second round.
+    SecondRound,
+    /// Joining of parts that move together, and dropping of objects of a few frames.
+    Grouping,
+}
+
 /// Follows objects through a clip.
 #[derive(Debug)]
 pub(crate) struct Tracker {
     options: ClipOptions,
+    without: Option<ClipPart>,
+    /// Whether frames are kept until they leave.
+    keeps_frames: bool,
     /// Width and height of the frames, once there is one.
     size: Option<[usize; 2]>,
     /// Frames so far.
@@ -64,7 +85,8 @@ pub(crate) struct Tracked {
 }
 
 impl Tracker {
-    pub(crate) fn new(options: ClipOptions) -> Result<Tracker> {
+    /// A tracker that keeps frames until they leave, or only what it needs of them; in ablation studies without one part.
+    pub(crate) fn new(options: ClipOptions, keeps_frames: bool, without: Option<ClipPart>) -> Result<Tracker> {
         options.pair.motions.validate()?;
         if options.look_ahead.is_some_and(|frames| frames > MAX_LOOK_AHEAD) {
             let reason = format!("must be 0 to {MAX_LOOK_AHEAD}");
@@ -73,9 +95,21 @@ impl Tracker {
         // A stream has its frames' future in the first round alone.
         let delays = options.look_ahead.map_or([WHOLE_CLIP / 2; 2], |frames| [frames, 0]);
         let solver = Settings::solver(options.pair.quality);
-        let rounds = [0, 1].map(|k| Round::new(DECAYS[k], delays[k], solver));
+        let [carrying, colours] = [ClipPart::Carrying, ClipPart::Colours].map(|part| without == Some(part));
+        let rounds = [0, 1].map(|k| Round::new(DECAYS[k], delays[k], solver).without(carrying, colours));
         let identities = Identities::new();
-        Ok(Tracker { options, size: None, count: 0, last: None, waits: false, prior: None, rounds, identities })
+        Ok(Tracker {
+            options,
+            without,
+            keeps_frames,
+            size: None,
+            count: 0,
+            last: None,
+            waits: false,
+            prior: None,
+            rounds,
+            identities,
+        })
     }
 
     pub(crate) fn options(&self) -> &ClipOptions {
@@ -138,7 +172,13 @@ impl Tracker {
         Pairs { onward, back, prior }
     }
 
+    /// Whether a part takes part.
+    pub(crate) fn has(&self, part: ClipPart) -> bool {
+        self.without != Some(part)
+    }
+
     fn solve(&self, first: &Newest, second: &Newest, prior: Option<&Prior>, settings: &Settings) -> Solution {
+        let prior = prior.filter(|_| self.has(ClipPart::WarmStart));
         solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior, self.options.pair.seed)
     }
 
@@ -191,7 +231,10 @@ impl Tracker {
         onward_odds: Option<Plane>,
         onward: Option<Flow>,
     ) -> Option<Tracked> {
-        let (back_odds, back) = back.unzip();
+        let (mut back_odds, back) = back.unzip();
+        if onward_odds.is_some() && !self.has(ClipPart::BothDirections) {
+            back_odds = None;
+        }
         let odds = match (onward_odds, back_odds) {
             (Some(mut odds), Some(other)) => {
                 odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o = 0.5 * (*o + b));
@@ -205,6 +248,7 @@ impl Tracker {
         };
         // The pyramid's levels have told all they can.
         let appearance = pyramid.appearance(&frame).clone();
+        let frame = Some(frame).filter(|_| self.keeps_frames);
         let record = Rc::new(Record { index: self.count, frame, appearance, odds, onward, back });
         self.count += 1;
         let odds = record.odds.clone();
@@ -213,7 +257,11 @@ impl Tracker {
     }
 
     /// The second round starts from the pairs' odds and the first round's cut.
-    fn second_round(&mut self, Foreground { record, mask, .. }: Foreground) -> Option<Tracked> {
+    fn second_round(&mut self, first: Foreground) -> Option<Tracked> {
+        if !self.has(ClipPart::SecondRound) {
+            return Some(self.tracked(first));
+        }
+        let Foreground { record, mask, .. } = first;
         let mut odds = record.odds.clone();
         for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
             let cut = if object > 0 { FIRST_CUT } else { -FIRST_CUT };

@@ -5,8 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::correction::ClipCorrection;
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs};
+use super::grouping::Census;
 use super::runs::Runs;
-use super::tracker::{Tracked, Tracker};
+use super::tracker::{ClipPart, Tracked, Tracker};
 use super::{ClipFrame, ClipOptions};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
@@ -71,7 +72,17 @@ impl ClipSegmenter {
     /// # Errors
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
-        Ok(ClipSegmenter { tracker: Tracker::new(options)?, frames: Vec::new() })
+        Ok(ClipSegmenter { tracker: Tracker::new(options, false, None)?, frames: Vec::new() })
+    }
+
+    /// [`new`](Self::new) without one part, for ablation studies.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    #[cfg(feature = "ablation")]
+    #[doc(hidden)]
+    pub fn without(part: ClipPart, options: ClipOptions) -> Result<ClipSegmenter> {
+        Ok(ClipSegmenter { tracker: Tracker::new(options, false, Some(part))?, frames: Vec::new() })
     }
 
     /// Takes the next frame. What it returns need not be kept.
@@ -108,9 +119,25 @@ impl ClipSegmenter {
         if let Some(last) = self.frames.last_mut() {
             last.onward = None;
         }
+        if self.tracker.has(ClipPart::Grouping) {
+            self.group(working_size(&options, size)[0]);
+        }
         let numbers = (0..=u8::MAX).collect();
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
         SegmentedClip { size, mark_unknown, best, dropped, numbers, frames: self.frames }
+    }
+
+    /// Gives the objects the numbers that the whole clip tells.
+    fn group(&mut self, width: usize) {
+        let mut census = Census::new();
+        for (index, frame) in self.frames.iter().enumerate() {
+            let onward = frame.onward.as_ref().map(|flow| flow.flow(width));
+            census.add(index, &frame.found.labels(), width, onward.as_ref(), frame.back.is_none());
+        }
+        let numbers = census.final_numbers();
+        for frame in &mut self.frames {
+            frame.found.labels = frame.found.labels.map(|label| numbers[usize::from(label)]);
+        }
     }
 }
 

@@ -1,0 +1,192 @@
+//! What only the whole clip tells of its objects: which of them are parts of one, which are none, and their final numbers.
+//!
+//! Parts that move together while they are seen together are one object (the Gestalt law of common fate). An object of a few frames in a
+//! longer scene is a mistake of single pairs. Objects are numbered by first appearance, then by size there, then by their topmost,
+//! leftmost pixel.
+
+use super::evidence::Flow;
+use super::identity::MAX_OBJECTS;
+use crate::labelling::BACKGROUND;
+
+// The constants below were set by hand on generated clips and confirmed on ten real ones.
+
+/// Frames in which two objects must be seen moving together.
+const TOGETHER: usize = 5;
+/// Largest difference of their motions, as a share of their displacement relative to the background …
+const SAME_MOTION: f64 = 0.2;
+/// … in frames where that is at least this many working pixels.
+const MOVING: f64 = 0.5;
+/// Largest distance between their bounding boxes, in roots of the smaller one's pixels.
+const NEAR: f64 = 1.0;
+/// An object seen in fewer frames than this, neither in the first nor in the last frame of its scene, is none.
+const LASTING: usize = 4;
+
+/// All objects of a clip, counted frame by frame.
+pub(crate) struct Census {
+    lives: Vec<Option<Life>>,
+    /// Pairs of objects that were seen together, in order.
+    meetings: Vec<Meeting>,
+    /// First frame of every scene.
+    scenes: Vec<usize>,
+    /// Frames so far.
+    count: usize,
+}
+
+/// When an object was seen.
+struct Life {
+    scene: usize,
+    frames: usize,
+    last: usize,
+    /// First frame, and there the pixels it lacks, and its first pixel: what it is numbered by.
+    order: (usize, usize, usize),
+}
+
+/// How two objects moved while they were seen together.
+struct Meeting {
+    numbers: [u8; 2],
+    /// Frames in which they moved.
+    frames: usize,
+    /// Sum of the differences of their motions, and of their displacements relative to the background, working pixels.
+    difference: f64,
+    displacement: f64,
+    /// Smallest distance, in roots of the smaller one's pixels.
+    distance: f64,
+}
+
+/// An object in one frame.
+struct Sight {
+    number: u8,
+    pixels: usize,
+    first: usize,
+    centre: [f64; 2],
+    /// First and last column, first and last row.
+    bounds: [usize; 4],
+    /// Mean displacement to the next frame.
+    displacement: [f64; 2],
+    /// Index of the motion that most of its pixels have.
+    motion: usize,
+}
+
+impl Census {
+    pub(crate) fn new() -> Census {
+        Census { lives: (0..=MAX_OBJECTS).map(|_| None).collect(), meetings: Vec::new(), scenes: Vec::new(), count: 0 }
+    }
+
+    /// Counts the objects of the next frame. `onward` is its flow to the next frame of its scene.
+    pub(crate) fn add(&mut self, index: usize, labels: &[u8], width: usize, onward: Option<&Flow>, begins_scene: bool) {
+        self.count = index + 1;
+        if begins_scene {
+            self.scenes.push(index);
+        }
+        let scene = self.scenes.len().saturating_sub(1);
+        let sights = sights(labels, width, onward);
+        for sight in &sights {
+            let order = (index, labels.len() - sight.pixels, sight.first);
+            let life =
+                self.lives[usize::from(sight.number)].get_or_insert(Life { scene, frames: 0, last: index, order });
+            life.frames += 1;
+            life.last = index;
+        }
+        let Some(onward) = onward else { return };
+        for (k, one) in sights.iter().enumerate() {
+            sights[k + 1..].iter().for_each(|other| self.meet(one, other, onward));
+        }
+    }
+
+    fn meet(&mut self, one: &Sight, other: &Sight, onward: &Flow) {
+        let numbers = [one.number, other.number];
+        let known = self.meetings.iter().position(|meeting| meeting.numbers == numbers);
+        let place = known.unwrap_or_else(|| {
+            let unmet = Meeting { numbers, frames: 0, difference: 0.0, displacement: 0.0, distance: f64::INFINITY };
+            self.meetings.push(unmet);
+            self.meetings.len() - 1
+        });
+        let meeting = &mut self.meetings[place];
+        let at = |motion: usize, [x, y]: [f64; 2]| onward.motions[motion].flow(x, y);
+        let length = |[u, v]: [f64; 2], [r, s]: [f64; 2]| ((u - r) * (u - r) + (v - s) * (v - s)).sqrt();
+        // Where the motion of each would take the other.
+        let difference = length(at(one.motion, other.centre), other.displacement)
+            + length(at(other.motion, one.centre), one.displacement);
+        let moved = |sight: &Sight| length(at(BACKGROUND, sight.centre), sight.displacement);
+        if moved(one) >= MOVING && moved(other) >= MOVING {
+            meeting.frames += 1;
+            meeting.difference += difference;
+            meeting.displacement += moved(one) + moved(other);
+        }
+        let gap = |k: usize| {
+            let (a, b) = (&one.bounds, &other.bounds);
+            (b[k].saturating_sub(a[k + 1])).max(a[k].saturating_sub(b[k + 1])) as f64
+        };
+        let root = (one.pixels.min(other.pixels) as f64).sqrt();
+        meeting.distance = meeting.distance.min(length([gap(0), gap(2)], [0.0; 2]) / root);
+    }
+
+    /// The final number of each object, by the number it has; those that are none have 0.
+    pub(crate) fn final_numbers(&self) -> [u8; 256] {
+        let mut group: Vec<usize> = (0..self.lives.len()).collect();
+        for meeting in self.meetings.iter().filter(|meeting| meeting.is_of_one_object()) {
+            let [one, other] = meeting.numbers.map(|number| group[usize::from(number)]);
+            group.iter_mut().filter(|group| **group == one.max(other)).for_each(|group| *group = one.min(other));
+        }
+        let mut orders: Vec<(usize, usize, usize, usize)> = Vec::new();
+        for object in 1..group.len() {
+            let lives = || (0..group.len()).filter(|&k| group[k] == object).filter_map(|k| self.lives[k].as_ref());
+            let lasts = lives().any(|life| {
+                let ends = self.scenes.get(life.scene + 1).unwrap_or(&self.count);
+                life.frames >= LASTING || life.order.0 == self.scenes[life.scene] || life.last + 1 == *ends
+            });
+            if let Some(&(frame, lacking, first)) = lives().map(|life| &life.order).min()
+                && lasts
+            {
+                orders.push((frame, lacking, first, object));
+            }
+        }
+        orders.sort_unstable();
+        let mut numbers = [0u8; 256];
+        for (k, group) in group.iter().enumerate().skip(1) {
+            let place = orders.iter().position(|(.., object)| object == group);
+            numbers[k] = place.map_or(0, |place| place as u8 + 1);
+        }
+        numbers
+    }
+}
+
+impl Meeting {
+    fn is_of_one_object(&self) -> bool {
+        self.frames >= TOGETHER && self.difference <= SAME_MOTION * self.displacement && self.distance <= NEAR
+    }
+}
+
+/// The objects of a frame, by number.
+fn sights(labels: &[u8], width: usize, onward: Option<&Flow>) -> Vec<Sight> {
+    let mut sights: Vec<Option<Sight>> = (0..=MAX_OBJECTS).map(|_| None).collect();
+    for (p, &number) in labels.iter().enumerate().filter(|(_, label)| **label > 0) {
+        let (x, y) = (p % width, p / width);
+        let sight = sights[usize::from(number)].get_or_insert(Sight {
+            number,
+            pixels: 0,
+            first: p,
+            centre: [0.0; 2],
+            bounds: [x, x, y, y],
+            displacement: [0.0; 2],
+            motion: BACKGROUND,
+        });
+        sight.pixels += 1;
+        let [left, right, top, bottom] = sight.bounds;
+        sight.bounds = [left.min(x), right.max(x), top, bottom.max(y)];
+        let [u, v] = onward.map_or([0.0; 2], |onward| onward.at(x, y));
+        let sums = [[x as f64, y as f64], [u, v]];
+        [&mut sight.centre, &mut sight.displacement].into_iter().zip(sums).for_each(|(sum, [a, b])| {
+            sum[0] += a;
+            sum[1] += b;
+        });
+    }
+    let mut sights: Vec<Sight> = sights.into_iter().flatten().collect();
+    for sight in &mut sights {
+        let pixels = sight.pixels as f64;
+        [&mut sight.centre, &mut sight.displacement].into_iter().flatten().for_each(|sum| *sum /= pixels);
+        let pixels_of = (0..labels.len()).filter(|&p| labels[p] == sight.number);
+        sight.motion = onward.and_then(|onward| onward.most_frequent(pixels_of)).unwrap_or(BACKGROUND);
+    }
+    sights
+}
