@@ -119,7 +119,8 @@ impl ClipSegmenter {
         if let Some(last) = self.frames.last_mut() {
             last.onward = None;
         }
-        if self.tracker.has(ClipPart::Grouping) {
+        // A clip with a look-ahead has the numbers of its stream, so that what is said of one holds for the other.
+        if self.tracker.options().look_ahead.is_none() && self.tracker.has(ClipPart::Grouping) {
             self.group(working_size(&options, size)[0]);
         }
         let numbers = (0..=u8::MAX).collect();

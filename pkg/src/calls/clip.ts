@@ -7,14 +7,8 @@ import { asked } from './clip/asked.js';
 import { Frames } from './clip/frames.js';
 import { type Place, PlacedClip } from './clip/place.js';
 import { streamed } from './clip/stream.js';
-import { Tracks } from './clip/tracks.js';
+import { type Told, Tracks } from './clip/tracks.js';
 import { segmentedTwice } from './clip/whole.js';
-
-/** What a clip has told besides its frames. */
-export interface Told {
-  tracks: Tracks;
-  state?: Uint8Array;
-}
 
 /** `reserve` finds a place for the clip. Arguments are checked when the first frame is requested, as generators do. */
 export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>): Clip {

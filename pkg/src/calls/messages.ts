@@ -73,8 +73,8 @@ export type Reply<R = Result> =
 export function buffersOfTask(task: Task): ArrayBuffer[] {
   if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
   if ('clip' in task) {
-    const { frame, ...rest } = task as Partial<Record<string, unknown> & { frame: Pixels }>;
-    return buffersOf([frame?.data, ...Object.values(rest).filter((value) => value instanceof Uint8Array)]);
+    const { frame, known, state, labels } = task as Partial<{ frame: Pixels; known: Uint8Array; state: Uint8Array; labels: Uint8Array }>;
+    return buffersOf([frame?.data, known, state, labels]);
   }
   if (!('frames' in task)) return [];
   const said = task.call === 'relabel' ? [task.correction.labels, task.correction.sets] : [];

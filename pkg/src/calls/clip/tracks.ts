@@ -2,6 +2,12 @@
 
 import type { ClipFrame, ClipTrack, ClipTracks } from '../../../types/index.js';
 
+/** What a clip has told besides its frames. */
+export interface Told {
+  tracks: Tracks;
+  state?: Uint8Array;
+}
+
 export class Tracks {
   readonly #objects = new Map<number, ClipTrack>();
   readonly #background: ClipTracks['background'] = [];

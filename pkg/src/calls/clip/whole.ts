@@ -3,12 +3,12 @@
 import type { ClipFrame } from '../../../types/index.js';
 import { checkedBytes } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import type { Told } from '../clip.js';
 import type { ClipSummary } from '../messages.js';
 import { taken } from '../taking.js';
 import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
+import type { Told } from './tracks.js';
 
 /** If the source fails, the frames before come first. */
 export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: Asked, told: Told): AsyncGenerator<ClipFrame, void, undefined> {
@@ -28,8 +28,8 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: As
     onProgress?.({ frame: index, of, stage: 'labels' });
     yield told.tracks.add(await clip.step<ClipFrame>({ call: 'clipFrame', index, frame }));
   }
-  const { thrown } = frames.failure ?? failure ?? {};
-  if (frames.failure ?? failure) throw thrown;
+  const failed = frames.failure ?? failure;
+  if (failed) throw failed.thrown;
 }
 
 /** Solves the pairs that are not known. */
