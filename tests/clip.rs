@@ -151,6 +151,40 @@ fn two_that_cross_keep_their_numbers() {
     assert_ne!(one_number(&done, &truths, 1, 0..20), one_number(&done, &truths, 2, 0..20));
 }
 
+/// Two that cross, the first of which is wholly behind the other for a while: checks that it has the same number again.
+fn assert_covered_and_back(things: [Thing; 2], count: usize) {
+    let (frames, truths) = scene(1, &things, count);
+    let hidden: Vec<usize> = (0..count).filter(|&t| !truths[t].contains(&1)).collect();
+    let done = segment(&frames, options(Quality::Best, None));
+    let in_front = one_number(&done, &truths, 2, 0..count);
+    let before = one_number(&done, &truths, 1, 0..hidden[0] - 1);
+    assert_ne!(before, in_front);
+    // The first strip of it that comes out may be too small to have a motion.
+    assert_eq!(one_number(&done, &truths, 1, hidden[hidden.len() - 1] + 3..count), before);
+}
+
+#[test]
+fn one_that_was_covered_by_another_gets_its_number_back() {
+    let things = [
+        thing(2, [26.0, 24.0], |t| [10.0 + 5.0 * t as f32, 46.0]),
+        thing(3, [38.0, 40.0], |t| [110.0 - 5.0 * t as f32, 38.0]),
+    ];
+    assert_covered_and_back(things, 20);
+}
+
+#[test]
+fn repeated_frames_do_not_stop_what_is_covered() {
+    // Frame 7 repeats frame 6 and frame 12 repeats frame 11, where the one is hidden.
+    fn moment(t: usize) -> f32 {
+        (t - usize::from(t > 6) - usize::from(t > 11)) as f32
+    }
+    let things = [
+        thing(2, [26.0, 24.0], |t| [10.0 + 5.0 * moment(t), 46.0]),
+        thing(3, [38.0, 40.0], |t| [110.0 - 5.0 * moment(t), 38.0]),
+    ];
+    assert_covered_and_back(things, 22);
+}
+
 #[test]
 fn one_that_stops_is_still_itself() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * if t < 6 { t } else { (t - 4).max(6) } as f32, 44.0])];

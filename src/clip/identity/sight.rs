@@ -1,0 +1,82 @@
+//! What is seen of a thing in one frame: a set of pixels, in figures.
+
+use crate::clip::evidence::Flow;
+use crate::clip::record::Record;
+use crate::frame::palette::COLOURS;
+use crate::labelling::is_background;
+
+/// Displacement of the background, working pixels, below which a pair without objects shows twice the same. Not varied.
+const STILL: f64 = 0.1;
+
+/// Some pixels of a frame in figures.
+#[derive(Clone, Debug)]
+pub(crate) struct Sight {
+    /// Number of working pixels.
+    pub(crate) size: f64,
+    /// Their centre.
+    pub(crate) centre: [f64; 2],
+    /// Their mean displacement in a frame, working pixels.
+    pub(crate) velocity: [f64; 2],
+    /// Share of each colour.
+    pub(crate) colours: Vec<f32>,
+}
+
+impl Sight {
+    pub(crate) fn of(record: &Record, pixels: &[usize]) -> Sight {
+        let (width, palette) = (record.size()[0], &record.appearance.palette);
+        let size = pixels.len().max(1) as f64;
+        let (mut centre, mut colours) = ([0.0; 2], vec![0.0; COLOURS]);
+        for &p in pixels {
+            centre = [centre[0] + (p % width) as f64 / size, centre[1] + (p / width) as f64 / size];
+            colours[palette.index(p)] += 1.0 / size as f32;
+        }
+        Sight { size, centre, velocity: velocity(record, pixels), colours }
+    }
+
+    /// Overlap of the colours of both, 0…1.
+    pub(crate) fn alike(&self, other: &Sight) -> f64 {
+        self.colours.iter().zip(&other.colours).map(|(a, b)| f64::from(a.min(*b))).sum()
+    }
+}
+
+/// The pair that tells how the pixels of a frame move: that with the next frame or, at the end of a scene or where the next frame repeats
+/// this one, that with the frame before.
+pub(crate) fn telling(record: &Record) -> Option<&Flow> {
+    record.onward.as_ref().filter(|onward| !is_still(onward)).or(record.back.as_ref()).or(record.onward.as_ref())
+}
+
+/// Whether nothing moves in a pair, neither the camera nor an object: recordings repeat frames.
+pub(crate) fn is_still(flow: &Flow) -> bool {
+    let [right, bottom] = [flow.width - 1, flow.labels.len() / flow.width - 1];
+    let still = |(x, y): (usize, usize)| {
+        let [u, v] = flow.at(x, y);
+        u * u + v * v < STILL * STILL
+    };
+    flow.labels.iter().all(|&label| is_background(label))
+        && [(0, 0), (right, 0), (0, bottom), (right, bottom)].into_iter().all(still)
+}
+
+/// Mean displacement of some pixels along a flow.
+pub(crate) fn mean_motion(along: &Flow, pixels: &[usize]) -> [f64; 2] {
+    let (n, width) = (pixels.len().max(1) as f64, along.width);
+    let sums = pixels.iter().fold([0.0, 0.0], |[a, b], &p| {
+        let [u, v] = along.at(p % width, p / width);
+        [a + u, b + v]
+    });
+    sums.map(|sum| sum / n)
+}
+
+/// Mean displacement of some pixels from this frame to the next one, as far as it is known.
+fn velocity(record: &Record, pixels: &[usize]) -> [f64; 2] {
+    match (telling(record), &record.onward) {
+        (Some(along), Some(onward)) if std::ptr::eq(along, onward) => mean_motion(along, pixels),
+        (Some(back), _) => mean_motion(back, pixels).map(|v| -v),
+        (None, _) => [0.0; 2],
+    }
+}
+
+/// Whether most of some pixels have another motion than the background.
+pub(crate) fn moves(record: &Record, pixels: &[usize]) -> bool {
+    telling(record)
+        .is_some_and(|flow| 2 * pixels.iter().filter(|&&p| !is_background(flow.labels[p])).count() > pixels.len())
+}
