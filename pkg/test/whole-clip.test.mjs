@@ -305,7 +305,7 @@ describe('clips', () => {
   });
 
   test('a state is bytes of any kind: damaged ones never end the module', async () => {
-    for (let at = 8; at < whole.state.length; at += 97) {
+    for (let at = 8; at < whole.state.length; at += 311) {
       const state = whole.state.slice();
       state[at] ^= 255;
       const clip = all(segmentClip(list, { state, corrections: [{ frame: 3, labels: mask(9, 0) }] }));
