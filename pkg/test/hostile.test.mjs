@@ -274,8 +274,8 @@ const CLIPS = {
   state: [(v) => [[first, second], { state: v }], ['undefined']],
   changesOnly: [(v) => [[first, second], { changesOnly: v }], ['undefined', 'true', 'false']],
   onPairs: [(v) => [[first, second], { onPairs: v }], ['undefined', 'function']],
-  knownPairs: [(v) => [[first, second], { knownPairs: v }], ['undefined', 'function']],
-  'known pairs': [(v) => [[first, second], { knownPairs: () => awaited(v) }], ['undefined']],
+  knownPairs: [(v) => [[first, second], { knownPairs: v }], ['undefined']],
+  'known pairs': [(v) => [[first, second], { knownPairs: () => awaited(v) }], ['undefined', 'throwing', 'revoked proxy']],
   'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
 };
 

@@ -14,7 +14,9 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
   if (!isObject(value)) throw wrong('must be an object');
   const unknown = unknownOf(value, ['merge', 'delete', 'background', 'names']);
   if (unknown !== undefined) throw wrong(`there is no edit ${unknown}`);
-  const { merge = [], names = {} } = value;
+  // What an object inherits, such as the methods of a map, was not given.
+  const given: Record<string, unknown> = { ...value };
+  const { merge = [], names = {} } = given;
   const isMerged = (list: unknown): list is number[] => isListOf(list, isObjectNumber) && list.length >= 2;
   if (!isListOf(merge, isMerged)) throw wrong(`'merge' must be lists of two or more objects, ${RANGE}`);
   const numbers = new Map<number, number>();
@@ -25,7 +27,7 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
   };
   for (const [first = 0, ...others] of merge) for (const other of others) give(other, first);
   for (const name of ['delete', 'background']) {
-    const { [name]: objects = [] } = value;
+    const { [name]: objects = [] } = given;
     if (!isListOf(objects, isObjectNumber)) throw wrong(`'${name}' must be a list of objects, ${RANGE}`);
     for (const object of objects) give(object, 0);
   }

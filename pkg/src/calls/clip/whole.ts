@@ -20,8 +20,7 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: As
   told.state = await clip.step<Uint8Array>({ call: 'saveClip' });
   told.tracks.dropped = dropped;
   told.tracks.names = task.edits.names;
-  const all = Array.from({ length }, (_, index) => index);
-  const indices = task.changesOnly ? all.filter((index) => changed.has(index)) : all;
+  const indices = [...upTo(length)].filter((index) => !task.changesOnly || changed.has(index));
   let done = 0;
   for await (const frame of frames.each(reads(read, indices), { indices, transfer })) {
     const index = indices[done++] as number;
@@ -36,11 +35,11 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: As
 async function solved(clip: PlacedClip, frames: Frames, task: Asked): Promise<ClipSummary> {
   const { read, length: of } = task.source as Whole;
   let index = 0;
-  for await (const frame of frames.each(reads(read, Array.from({ length: of }).keys()))) {
+  for await (const frame of frames.each(reads(read, upTo(of)))) {
     if (index === 0) checkSizes(task, frame);
     task.onProgress?.({ frame: index, of, stage: 'pairs' });
     const known = await task.knownPairs?.(index);
-    const bytes = known && (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
+    const bytes = known === undefined ? undefined : (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
     const pairs = await clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(bytes && { known: bytes }) });
     if (pairs) await task.onPairs?.(index, pairs);
     index += 1;
@@ -80,6 +79,11 @@ async function edited(clip: PlacedClip, frames: Frames, { source, corrections, e
     for (const index of seen) changed.add(index);
   }
   return changed;
+}
+
+/** Numbers from 0, one by one: a source may claim any length. */
+function* upTo(length: number): Generator<number, void, undefined> {
+  for (let index = 0; index < length; index++) yield index;
 }
 
 function checkSizes({ corrections }: Asked, { width, height }: { width: number; height: number }): void {
