@@ -275,7 +275,6 @@ const CLIPS = {
   changesOnly: [(v) => [[first, second], { changesOnly: v }], ['undefined', 'true', 'false']],
   onPairs: [(v) => [[first, second], { onPairs: v }], ['undefined', 'function']],
   knownPairs: [(v) => [[first, second], { knownPairs: v }], ['undefined']],
-  'known pairs': [(v) => [[first, second], { knownPairs: () => awaited(v) }], ['undefined', 'throwing', 'revoked proxy']],
   'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
 };
 
