@@ -83,6 +83,8 @@ pub(crate) struct Settings {
 const WORK_SIDE_BEST: usize = 448;
 /// The same with quality `fast`. For speed.
 const WORK_SIDE_FAST: usize = 320;
+/// The same in a stream with quality `fast`. For speed.
+const WORK_SIDE_STREAM: usize = BASE_SIDE;
 /// Longer side of the level on which motions are selected and labels drafted at most, pixels, unless frames are halved. Chosen on generated
 /// scenes.
 const SELECTION_SIDE: usize = 320;
@@ -105,6 +107,11 @@ fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
         halvings += 1;
     }
     halvings
+}
+
+/// λ of quality `fast` for frames that are halved so many times.
+fn fast_smoothness(halvings: usize) -> f32 {
+    tuned(Tuned::Smoothness, SMOOTHNESS[usize::from(halvings > 1)])
 }
 
 impl Settings {
@@ -155,10 +162,7 @@ impl Settings {
                 visibility_rounds: 1,
                 gain_window: tuned(Tuned::GainWindow, 1.5),
                 coherence: Coherence {
-                    smoothness: tuned(
-                        Tuned::Smoothness,
-                        SMOOTHNESS[usize::from(halvings_to(WORK_SIDE_FAST, size) > 1)],
-                    ),
+                    smoothness: fast_smoothness(halvings_to(WORK_SIDE_FAST, size)),
                     solver: Solver::FAST,
                     sharpening: Solver::LIGHT,
                     ..best.coherence
@@ -173,6 +177,17 @@ impl Settings {
             settings.price = [1.0, 1.0];
         }
         settings
+    }
+
+    /// The settings for the pairs of a stream. A fast one works at the size of its drafts.
+    pub(crate) fn of_stream(options: &SegmentOptions, size: [usize; 2]) -> Settings {
+        let settings = Settings::new(options, size);
+        if options.quality == Quality::Best {
+            return settings;
+        }
+        let halvings = halvings_to(WORK_SIDE_STREAM, size);
+        let coherence = Coherence { smoothness: fast_smoothness(halvings), ..settings.coherence };
+        Settings { halvings, coherence, ..settings }
     }
 
     /// The solver of final labels.
