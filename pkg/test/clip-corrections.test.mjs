@@ -192,7 +192,7 @@ test('the progress bar says what is done with the frames', () => {
   let text = '';
   const bar = new ProgressBar(undefined, { isTTY: true, write: (piece) => (text += piece) }, () => 0, 'frames', 'labels: ');
   bar.update({ done: 3, skipped: 0, failed: 0 });
-  assert.equal(text, '\r\u001b[K' + 'labels: 3 frames');
+  assert.match(text, /labels: 3 frames$/);
 });
 
 describe('an interrupted clip', () => {

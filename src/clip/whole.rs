@@ -119,7 +119,7 @@ impl ClipSegmenter {
         if let Some(last) = self.frames.last_mut() {
             last.onward = None;
         }
-        // A clip with a look-ahead has the numbers of its stream, so that what is said of one holds for the other.
+        // With a look-ahead only what a stream knows is used, so that what is said of its objects holds here.
         if self.tracker.options().look_ahead.is_none() && self.tracker.has(ClipPart::Grouping) {
             self.group(working_size(&options, size)[0]);
         }
