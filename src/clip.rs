@@ -29,6 +29,7 @@ use serde::Serialize;
 
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
+use crate::pair::settings::Settings;
 
 pub use correction::ClipCorrection;
 pub use stream::StreamSegmenter;
@@ -48,6 +49,16 @@ pub struct ClipOptions {
     /// Frames whose evidence each frame waits for, 0…[`MAX_LOOK_AHEAD`]; a frame is then compared with the one before it alone. None
     /// stands for as many as can matter, and for comparisons with both neighbours.
     pub look_ahead: Option<usize>,
+}
+
+impl ClipOptions {
+    /// The settings for the pairs of frames of the given width and height.
+    fn settings(&self, size: [usize; 2]) -> Settings {
+        match self.look_ahead {
+            Some(_) => Settings::of_stream(&self.pair, size),
+            None => Settings::new(&self.pair, size),
+        }
+    }
 }
 
 /// One frame of a clip, segmented.

@@ -366,7 +366,9 @@ fn objects_can_be_merged_and_removed() {
     let (frames, truths) = moving_and_resting();
     let mut clip = whole(&frames, options(Quality::Fast, None));
     let moving = one_number(&frames_of(&clip, &frames), &truths, 1, 0..12);
+    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), ((0..12).collect(), vec![]));
     clip.renumber(moving, 30).unwrap();
+    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (vec![], (0..12).collect()));
     assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 30);
     clip.renumber(30, 0).unwrap();
     assert!(

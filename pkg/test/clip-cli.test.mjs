@@ -66,7 +66,7 @@ describe('veronese clip', () => {
 
     const files = NAMES.map((name) => `${name}.png`);
     assert.deepEqual([readdirSync(out).sort(), readdirSync(join(out, 'labels')), readdirSync(join(out, 'overlay'))],
-      [['labels', 'overlay', 'tracks.json'], files, files]);
+      [['.clip', 'labels', 'overlay', 'tracks.json'], files, files]);
     for (const { index, labels } of expected) {
       const picture = decode(readFileSync(join(out, 'labels', `f${index}.png`)));
       assert.deepEqual([picture.width, picture.height, picture.depth, picture.channels], [64, 48, 8, 1]);
@@ -79,7 +79,7 @@ describe('veronese clip', () => {
 
     const { images, job, settings, ...tracks } = tracksOf(out);
     assert.deepEqual(tracks, JSON.parse(JSON.stringify({ version: 1, ...SIZE, frames: NAMES, files, ...direct.tracks() })));
-    assert.deepEqual(settings, { motions: 'auto', quality: 'fast', lookAhead: 'all', seed: 3, every: 1, overlay: true, software: `veronese ${version}` });
+    assert.deepEqual(settings, { motions: 'auto', quality: 'fast', lookAhead: 'all', markUnknown: false, seed: 3, every: 1, overlay: true, software: `veronese ${version}` });
     assert.deepEqual(Object.keys(images).sort(), [...files.map((name) => `labels/${name}`), ...files.map((name) => `overlay/${name}`)]);
   });
 

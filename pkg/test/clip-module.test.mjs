@@ -14,7 +14,7 @@ describe('clips in the module', () => {
   test('holds clips by number, several at a time, until they end', async () => {
     await glue.instantiate(new WebAssembly.Module(bytes));
     const [one, other] = [4_000_000_001, 4_000_000_002];
-    for (const clip of [one, other]) glue.beginClip(clip, { quality: 'fast', lookAhead: 1 });
+    for (const clip of [one, other]) glue.beginClip(clip, false, { quality: 'fast', lookAhead: 1 });
     assert.equal(glue.pushClip(one, frame(0, SIZE)), undefined);
     assert.equal(glue.pushClip(one, frame(1, SIZE)).index, 0);
     assert.equal(glue.pushClip(other, frame(0, { width: 32, height: 32 })), undefined);
@@ -31,13 +31,42 @@ describe('clips in the module', () => {
     }
   });
 
+  test('holds a whole clip: its pairs, then its labels, each call at its time', async () => {
+    await glue.instantiate(new WebAssembly.Module(bytes));
+    const [clip, again] = [4_000_000_003, 4_000_000_004];
+    glue.beginClip(clip, true, { quality: 'fast' });
+    const pairs = [0, 1, 2].map((t) => glue.pushClip(clip, frame(t, SIZE)));
+    assert.ok(pairs.every((pair) => pair instanceof Uint8Array));
+    const nothing = new Uint8Array(64 * 48).fill(255);
+    const early = () => [glue.saveClip(clip), glue.clipFrame(clip, 0, frame(0, SIZE)), glue.correctClip(clip, 0, nothing), glue.takeCorrection(clip, frame(0, SIZE)), glue.renumberClip(clip, 1, 2), glue.pushClip(again, frame(0, SIZE)), glue.concludeClip(again)];
+    assert.deepEqual(early(), Array(7).fill(null));
+    const summary = { length: 3, ...SIZE, dropped: 0 };
+    assert.deepEqual(glue.concludeClip(clip), summary);
+    assert.equal(glue.pushClip(clip, frame(3, SIZE)), null, 'it is concluded');
+    assert.equal(glue.takeCorrection(clip, frame(0, SIZE)), null, 'no correction has begun');
+    assert.throws(() => glue.clipFrame(clip, 3, frame(3, SIZE)), { code: 'invalid-option' });
+    assert.throws(() => glue.correctClip(clip, 3, nothing), { code: 'invalid-option' });
+    assert.throws(() => glue.correctClip(clip, 0, nothing.slice(1)), { code: 'invalid-option' });
+    assert.throws(() => glue.renumberClip(clip, 0, 1), { code: 'invalid-option' });
+
+    glue.beginClip(again, true, { quality: 'fast' });
+    assert.deepEqual([0, 1, 2].map((t) => glue.pushClip(again, frame(t, SIZE), pairs[t])), Array(3).fill(undefined));
+    glue.concludeClip(again);
+    const state = glue.saveClip(clip);
+    assert.deepEqual(glue.saveClip(again), state);
+    assert.deepEqual(glue.restoreClip(again, state, false), summary);
+    assert.deepEqual(glue.clipFrame(again, 1, frame(1, SIZE)), glue.clipFrame(clip, 1, frame(1, SIZE)));
+    for (const one of [clip, again]) glue.endClip(one);
+    assert.equal(glue.saveClip(again), null);
+  });
+
   test('refuses options by name', async () => {
     await glue.instantiate(new WebAssembly.Module(bytes));
     for (const lookAhead of [-1, 9, 0.5, NaN, '1', 'whole', null, true, [], {}]) {
-      assert.throws(() => glue.beginClip(1, { lookAhead }), { code: 'invalid-option', message: /'lookAhead': must be 'all' or a whole number from 0 to 8, not / });
+      assert.throws(() => glue.beginClip(1, true, { lookAhead }), { code: 'invalid-option', message: /'lookAhead': must be 'all' or a whole number from 0 to 8, not / });
     }
-    for (const options of [{ motions: 0 }, { quality: 'good' }, { seed: -1 }, { markUnknown: true }, 5]) {
-      assert.throws(() => glue.beginClip(1, options), { code: 'invalid-option' });
+    for (const options of [{ motions: 0 }, { quality: 'good' }, { seed: -1 }, { markUnknown: 1 }, { confidence: true }, 5]) {
+      assert.throws(() => glue.beginClip(1, true, options), { code: 'invalid-option' });
     }
     assert.equal(glue.finishClip(1), null, 'nothing was begun');
   });

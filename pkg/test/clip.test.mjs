@@ -69,7 +69,7 @@ function source(list) {
 
 describe('segmentClip', () => {
   test('gives every frame, in order, with objects that fit the labels, and their tracks', async () => {
-    const clip = segmentClip(frames(), { quality: 'fast', lookAhead: 'all' });
+    const clip = segmentClip({ length: COUNT, read: (index) => frames()[index] }, { quality: 'fast' });
     const given = await all(clip);
     assert.deepEqual(given.map(({ index }) => index), Array.from({ length: COUNT }, (_, k) => k));
     for (const { index, labels, objects, background } of given) {
@@ -120,8 +120,7 @@ describe('segmentClip', () => {
     assert.equal(await taken({}), 9);
     assert.equal(await taken({ lookAhead: 0 }), 1);
     assert.equal(await taken({ lookAhead: 2 }, true), 3);
-    assert.equal(await taken({}, true), 12);
-    assert.equal(await taken({ lookAhead: 'all' }), 12);
+    assert.equal(await taken({}, true), 12 + 1);
   });
 
   test('asks for a frame only when the reader waits for one, and lets the source reuse its buffer', async () => {
@@ -154,10 +153,12 @@ describe('segmentClip', () => {
   test('reports progress', async () => {
     const progress = [];
     const onProgress = (one) => progress.push(one);
+    const place = { length: 2, read: (index) => frames(2)[index] };
     await all(segmentClip(frames(2), { ...FAST, onProgress }));
-    await all(segmentClip({ length: 2, read: (index) => frames(2)[index] }, { ...FAST, onProgress }));
-    const told = (of) => [{ frame: 0, of }, { frame: 1, of }];
-    assert.deepEqual(progress, [...told(undefined), ...told(2)]);
+    await all(segmentClip(place, { ...FAST, onProgress }));
+    await all(segmentClip(place, { quality: 'fast', onProgress }));
+    const told = (of, stage = 'pairs') => [{ frame: 0, of, stage }, { frame: 1, of, stage }];
+    assert.deepEqual(progress, [...told(undefined), ...told(2), ...told(2), ...told(2, 'labels')]);
   });
 
   test('no frames and one frame', async () => {
@@ -236,7 +237,8 @@ for (const [way, make] of Object.entries(WAYS)) {
         [{ lookAhead: 'whole' }, /lookAhead/],
         [{ motions: 11 }, /motions/],
         [{ quality: 'good' }, /quality/],
-        [{ markUnknown: true }, /there is no option 'markUnknown'/],
+        [{ markUnknown: 1 }, /markUnknown/],
+        [{ confidence: true }, /there is no option 'confidence'/],
         [{ before: frame(0) }, /there is no option 'before'/],
         [{ signal: {} }, /signal/],
         [{ onProgress: 5 }, /onProgress/],

@@ -179,7 +179,8 @@ export interface PointMeasurements {
 
 /**
  * The frames of a clip, all of one size, in order. An iterable or async iterable is a stream: a frame is asked for when the one before it
- * is done, and may reuse its buffer. `{ length, read(index) }` is a whole clip, read in order.
+ * is done, and may reuse its buffer. `{ length, read(index) }` is a whole clip: each frame is read for its pairs, then for its labels, and
+ * in any order for corrections, and must be the same each time. An array is a stream unless an option needs a whole clip.
  */
 export type ClipSource =
   | Iterable<Pixels | Promise<Pixels>>
@@ -192,16 +193,74 @@ export interface ClipProgress {
   frame: number;
   /** Number of frames, if the source has a `length`. */
   of: number | undefined;
+  /**
+   * What is done with it. A stream has the stage `pairs` alone. A whole clip has `pairs` for all frames, `corrections` for those that
+   * corrections reach, and `labels` for all frames as they are returned.
+   */
+  stage: 'pairs' | 'corrections' | 'labels';
+}
+
+/** What a person says of one frame of a clip. */
+export interface ClipCorrection {
+  /** Index of the frame, from 0. Each frame has one correction at most. */
+  frame: number;
+  /**
+   * What is certain of each pixel, row by row: 0 for the background, the number of an object, a number that no object has for a new object,
+   * or 255 where nothing is said.
+   */
+  labels: Uint8Array;
+}
+
+/** What becomes of whole objects. Numbers that no object has change nothing. */
+export interface ClipEdits {
+  /** Lists of objects that are one; the first number is kept. */
+  merge?: readonly (readonly number[])[] | undefined;
+  /** Objects that are none: they become background. */
+  delete?: readonly number[] | undefined;
+  /** The same as `delete`. */
+  background?: readonly number[] | undefined;
+  /** Names by number, for {@link ClipTrack.name}. */
+  names?: Readonly<Record<number, string>> | undefined;
 }
 
 /** Options of {@link segmentClip}; `motions` is the number of motions in each pair of consecutive frames. */
-export interface ClipOptions extends Omit<SegmentOptions, 'markUnknown' | 'confidence' | 'before' | 'onProgress'> {
+export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'before' | 'onProgress'> {
+  /** Gives the label 255 to pixels whose evidence does not tell an object from the background. Default: false. */
+  markUnknown?: boolean | undefined;
   /**
-   * Number of frames that each frame waits for, 0 to 8, or `'all'`: as many as matter, 16. More frames give better masks. Default: 8
-   * for a stream, `'all'` for a whole clip.
+   * Number of frames that each frame waits for, 0 to 8, or `'all'`: as many as matter, of a whole clip. More frames give better masks.
+   * Default: 8 for a stream, `'all'` for a whole clip. A number makes a stream of `{ length, read(index) }`, unless one of the options
+   * below is given: they need a whole clip.
    */
   lookAhead?: number | 'all' | undefined;
-  /** Called for each frame before it is segmented. If it throws, the clip ends with that exception. */
+  /**
+   * What a person says of some frames, with the numbers of an earlier run. It holds there to the pixel, and spreads to the frames before
+   * and after until they contradict it; a frame follows the nearest correction.
+   */
+  corrections?: readonly ClipCorrection[] | undefined;
+  /** What becomes of whole objects, after the corrections. */
+  edits?: ClipEdits | undefined;
+  /**
+   * What {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
+   * `motions`, `quality`, `seed` and `lookAhead` are those of the state. A correction replaces an earlier one of its frame (one that says
+   * nothing takes it back); corrections refer to the numbers before any edit, and edits stay.
+   */
+  state?: Uint8Array | undefined;
+  /** Returns only the frames that `corrections` and `edits` change. Default: false. */
+  changesOnly?: boolean | undefined;
+  /**
+   * Called with what the pairs of each frame have told, nearly all the work, as bytes. Kept and handed back by `knownPairs` they let a run
+   * that was interrupted continue with the same results.
+   */
+  onPairs?: ((index: number, pairs: Uint8Array) => void | Promise<void>) | undefined;
+  /**
+   * Gives what `onPairs` was called with, if it is known: for the same options, the same frame and the same frames before it. Bytes that
+   * are damaged or of another version of this package count as unknown.
+   */
+  knownPairs?: ((index: number) => Uint8Array | undefined | Promise<Uint8Array | undefined>) | undefined;
+  /** `true`: frames are transferred; those of a whole clip only when they are read for their labels. See {@link CallOptions}. */
+  transfer?: boolean | undefined;
+  /** Called for each frame before work on it begins. If it throws, the clip ends with that exception. */
   onProgress?: ((progress: ClipProgress) => void) | undefined;
 }
 
@@ -223,7 +282,7 @@ export interface ClipObject {
 export interface ClipFrame {
   /** Index of the frame, from 0. */
   index: number;
-  /** One label per pixel, row by row: 0 for the background, otherwise the number of an object. */
+  /** One label per pixel, row by row: 0 for the background, 255 for a pixel marked as unknown, otherwise the number of an object. */
   labels: Uint8Array;
   /** The visible objects by number. */
   objects: ClipObject[];
@@ -234,6 +293,8 @@ export interface ClipFrame {
 /** One object through a clip. */
 export interface ClipTrack {
   id: number;
+  /** As {@link ClipEdits} says. */
+  name?: string;
   /** Index of the first frame that shows it, */
   first: number;
   /** and of the last. */
@@ -254,8 +315,13 @@ export interface ClipTracks {
 
 /** The frames of a clip, in order, as they are finished. Leaving the loop frees what the clip holds. */
 export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
-  /** The objects of the frames returned so far: complete after the last frame. */
+  /** The objects of the frames returned so far: complete after the last frame, whose objects have no matrix. */
   tracks(): ClipTracks;
+  /**
+   * What is known of a whole clip, corrections and edits included, for the option `state`: some kilobytes per frame, for the same version
+   * of this package. Undefined before the first frame has been returned, and for a stream.
+   */
+  state(): Promise<Uint8Array | undefined>;
 }
 
 /** The source of the WebAssembly module. */
@@ -332,8 +398,9 @@ export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOpti
  * Segments a clip: objects that move get a number that they keep from their first frame to their last. Objects are numbered by first
  * appearance, then by size, then by their topmost, leftmost pixel.
  *
- * A frame comes back when the frames it waits for have come (`lookAhead`), the rest at the end. A frame is taken from the source only when
- * the reader waits for one. If the source throws or a frame is unusable, the frames before it come first, then the error.
+ * A stream returns a frame when the frames it waits for have come (`lookAhead`), the rest at the end. A whole clip, with
+ * `{ length, read(index) }`, solves all pairs before it returns the first frame, and takes corrections. A frame is taken from the source
+ * only when the reader waits for one. If the source throws or a frame is unusable, the frames before it come first, then the error.
  *
  * The call occupies its thread while it works on a frame; `signal` is checked between frames. Another direct call that fails inside the
  * module or is cancelled there in the meantime takes the clip with it, which then rejects with code `internal`; a {@link Segmenter} keeps

@@ -48,8 +48,8 @@ pub enum ClipPart {
 pub(crate) struct Tracker {
     options: ClipOptions,
     without: Option<ClipPart>,
-    /// Whether the frames come once and leave described: a stream.
-    is_stream: bool,
+    /// Whether frames are kept until they leave, to be described then.
+    keeps_frames: bool,
     /// Width and height of the frames, once there is one.
     size: Option<[usize; 2]>,
     /// Frames so far.
@@ -85,8 +85,8 @@ pub(crate) struct Tracked {
 }
 
 impl Tracker {
-    /// A tracker for a stream, which keeps frames until they leave, or for a whole clip; in ablation studies without one part.
-    pub(crate) fn new(options: ClipOptions, is_stream: bool, without: Option<ClipPart>) -> Result<Tracker> {
+    /// A tracker that keeps frames until they leave, or only what it needs of them; in ablation studies without one part.
+    pub(crate) fn new(options: ClipOptions, keeps_frames: bool, without: Option<ClipPart>) -> Result<Tracker> {
         options.pair.motions.validate()?;
         if options.look_ahead.is_some_and(|frames| frames > MAX_LOOK_AHEAD) {
             let reason = format!("must be 0 to {MAX_LOOK_AHEAD}");
@@ -101,7 +101,7 @@ impl Tracker {
         Ok(Tracker {
             options,
             without,
-            is_stream,
+            keeps_frames,
             size: None,
             count: 0,
             last: None,
@@ -132,11 +132,7 @@ impl Tracker {
         }
         self.size = Some(size);
         let _call = workspace::begin(size);
-        let settings = if self.is_stream {
-            Settings::of_stream(&self.options.pair, size)
-        } else {
-            Settings::new(&self.options.pair, size)
-        };
+        let settings = self.options.settings(size);
         let pyramid = Rc::new(settings.pyramid(&frame));
         let newest = Newest { frame: Rc::new(frame), pyramid, back: None };
         let Some(last) = self.last.take() else {
@@ -257,7 +253,7 @@ impl Tracker {
         };
         // The pyramid's levels have told all they can.
         let appearance = pyramid.appearance(&frame).clone();
-        let frame = Some(frame).filter(|_| self.is_stream);
+        let frame = Some(frame).filter(|_| self.keeps_frames);
         let record = Rc::new(Record { index: self.count, frame, appearance, odds, onward, back });
         self.count += 1;
         let odds = record.odds.clone();

@@ -103,7 +103,8 @@ impl ClipSegmenter {
     /// # Errors
     /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs of frames of another size.
     pub fn push_known(&mut self, frame: Frame, FramePairs(pairs): &FramePairs) -> Result<()> {
-        let working = working_size(&self.tracker.options().pair, [frame.width(), frame.height()]);
+        let size = [frame.width(), frame.height()];
+        let working = self.tracker.options().settings(size).working_size(size);
         if !pairs.is_valid(working[0] * working[1]) {
             return Err(invalid("pairs", "they are of frames of another size"));
         }
@@ -115,20 +116,22 @@ impl ClipSegmenter {
     /// The clip of the frames so far.
     pub fn conclude(mut self) -> SegmentedClip {
         let size = self.tracker.size().unwrap_or_default();
-        let options = self.tracker.options().pair;
+        let ClipOptions { pair: options, look_ahead } = *self.tracker.options();
         let dropped = self.tracker.dropped();
         self.frames.extend(self.tracker.finish().into_iter().map(FrameState::new));
         if let Some(last) = self.frames.last_mut() {
             last.onward = None;
         }
-        if self.tracker.has(ClipPart::Grouping) {
-            let width = working_size(&options, size)[0];
+        // With a look-ahead only what a stream knows is used, so that what is said of its objects holds here.
+        if look_ahead.is_none() && self.tracker.has(ClipPart::Grouping) {
+            let width = self.tracker.options().settings(size).working_size(size)[0];
             self.part(width);
             self.group(width);
         }
         let numbers = (0..=u8::MAX).collect();
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
-        SegmentedClip { size, mark_unknown, best, dropped, numbers, frames: self.frames }
+        let stream = look_ahead.is_some();
+        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, frames: self.frames }
     }
 
     /// Divides what was one object before it was two.
@@ -168,6 +171,8 @@ pub struct SegmentedClip {
     mark_unknown: bool,
     /// Whether the quality is the best.
     best: bool,
+    /// Whether the clip was segmented as a stream is, with a look-ahead.
+    stream: bool,
     dropped: usize,
     /// The number that each object is given, itself unless it was merged or removed.
     numbers: Vec<u8>,
@@ -257,9 +262,33 @@ impl SegmentedClip {
         self.frames.is_empty()
     }
 
+    /// Width and height of the frames; 0 if there is none.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
     /// Number of objects that were seen when all numbers had been given, and count as background.
     pub fn dropped(&self) -> usize {
         self.dropped
+    }
+
+    /// Whether pixels whose evidence does not decide are to have the label 255 from now on.
+    pub fn mark_unknown(&mut self, mark: bool) {
+        self.mark_unknown = mark;
+    }
+
+    /// Indices of the frames in which an object is, by its number of now.
+    pub fn frames_with(&self, object: u8) -> Vec<usize> {
+        let is_there = |frame: &FrameState| {
+            let said = frame.corrected.as_ref().and_then(|corrected| corrected.said.as_ref());
+            let labels = [Some(&frame.labelling().labels), said];
+            labels
+                .into_iter()
+                .flatten()
+                .flat_map(Runs::each)
+                .any(|(label, _)| self.numbers[usize::from(label)] == object)
+        };
+        (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
     }
 
     /// The labels and objects of a frame, which must be the one that was segmented.
@@ -362,11 +391,8 @@ impl SegmentedClip {
 
     pub(super) fn settings(&self) -> Settings {
         let quality = if self.best { Quality::Best } else { Quality::Fast };
-        Settings::new(&SegmentOptions { quality, ..Default::default() }, self.size)
-    }
-
-    pub(super) fn size(&self) -> [usize; 2] {
-        self.size
+        let pair = SegmentOptions { quality, ..SegmentOptions::default() };
+        ClipOptions { pair, look_ahead: self.stream.then_some(0) }.settings(self.size)
     }
 
     /// Width and height of the working size.
@@ -396,10 +422,6 @@ pub(super) const NOTHING_SAID: u8 = u8::MAX;
 
 fn invalid(name: &'static str, reason: &str) -> Error {
     Error::InvalidOption { name, reason: reason.into() }
-}
-
-fn working_size(options: &SegmentOptions, size: [usize; 2]) -> [usize; 2] {
-    Settings::new(options, size).working_size(size)
 }
 
 /// A format's mark and a value.

@@ -1,71 +1,228 @@
-//! Calls on clips. The segmenter of a clip stays in the module between calls; the caller gives it a number.
+//! Calls on clips. What there is of a clip stays in the module between calls; the caller gives it a number.
+//!
+//! A stream is pushed frame by frame until it is finished. A whole clip is pushed, then concluded (or restored from its saved state); after
+//! that it gives labels of any frame and takes corrections. All calls return `null` if there is no such clip, or it is not that far.
 //!
 //! The handle is a number, not an exported object, because the package replaces the instance after a panic: a pointer into the old instance
 //! would be used in the new one. A number that is used only once is simply not found there.
 
 use std::cell::RefCell;
 
+use js_sys::Uint8Array;
 use wasm_bindgen::prelude::*;
 
-use super::frames::{frame_from_pixels, quality};
-use super::plain::{Record, numbers};
+use super::frames::{flag, frame_from_pixels, quality};
+use super::plain::{Record, list, numbers};
 use super::{Failure, entries, invalid, motions, seed, unknown};
-use crate::AffineMotion;
-use crate::clip::{ClipFrame, ClipObject, ClipOptions, ClipSegmenter, MAX_LOOK_AHEAD};
+use crate::clip::{
+    ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip,
+    StreamSegmenter,
+};
+use crate::{AffineMotion, Error, Frame};
 
 thread_local! {
     /// Clips in progress; rarely more than one.
-    static CLIPS: RefCell<Vec<(u32, ClipSegmenter)>> = const { RefCell::new(Vec::new()) };
+    static CLIPS: RefCell<Vec<(u32, Clip)>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `seed` and `lookAhead` (`'all'`, the
-/// default, stands for a whole clip).
+/// What there is of a clip.
+enum Clip {
+    Stream(StreamSegmenter),
+    Pairs(ClipSegmenter),
+    Segmented(SegmentedClip, Option<ClipCorrection>),
+}
+
+/// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `markUnknown`, `seed` and `lookAhead`
+/// (`'all'`, the default, stands for as many frames as matter).
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
 #[wasm_bindgen(js_name = beginClip)]
-pub fn begin_clip(clip: u32, options: &JsValue) -> Result<(), JsValue> {
-    let segmenter = ClipSegmenter::new(clip_options(options)?).map_err(Failure::from)?;
-    CLIPS.with_borrow_mut(|clips| clips.push((clip, segmenter)));
+pub fn begin_clip(clip: u32, whole: bool, options: &JsValue) -> Result<(), JsValue> {
+    let options = clip_options(options)?;
+    let begun = if whole {
+        ClipSegmenter::new(options).map(Clip::Pairs)
+    } else {
+        StreamSegmenter::new(options).map(Clip::Stream)
+    };
+    keep(clip, begun.map_err(Failure::from)?);
     Ok(())
 }
 
-/// Adds a frame, `{ data, width, height }`. Returns a frame that has waited long enough as `{ index, labels, objects, background }`,
-/// `undefined` if there is none, or `null` if there is no such clip.
+/// Adds a frame, `{ data, width, height }`. A stream returns a frame that has waited long enough as `{ index, labels, objects,
+/// background }`, or `undefined` if there is none. A whole clip returns what the frame's pairs have told as bytes, or `undefined` if these
+/// bytes were `known`; bytes that are damaged or of another version count as unknown.
 ///
 /// # Errors
 /// A `VeroneseError` of code `frame-size-mismatch`, or `invalid-input` for a malformed frame. The clip can continue with another frame.
 #[wasm_bindgen(js_name = pushClip)]
-pub fn push_clip(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
+pub fn push_clip(clip: u32, frame: &JsValue, known: Option<Vec<u8>>) -> Result<JsValue, JsValue> {
     let frame = frame_from_pixels("the frame", frame)?;
-    let pushed = CLIPS.with_borrow_mut(|clips| {
-        let (_, segmenter) = clips.iter_mut().find(|(number, _)| *number == clip)?;
-        Some(segmenter.push(frame))
-    });
-    let Some(pushed) = pushed else { return Ok(JsValue::NULL) };
-    Ok(pushed.map_err(Failure::from)?.as_ref().map_or(JsValue::UNDEFINED, clip_frame))
+    step(clip, |clip| match clip {
+        Clip::Stream(stream) => {
+            Some(stream.push(frame).map(|frame| frame.map_or(JsValue::UNDEFINED, |frame| clip_frame(&frame))))
+        }
+        Clip::Pairs(segmenter) => Some(push_pairs(segmenter, frame, known)),
+        Clip::Segmented(..) => None,
+    })
 }
 
-/// Ends a clip. Returns `{ frames, dropped }`: the frames that were still waiting, and the number of objects beyond the last number. Returns
-/// `null` if there is no such clip.
+fn push_pairs(segmenter: &mut ClipSegmenter, frame: Frame, known: Option<Vec<u8>>) -> Result<JsValue, Error> {
+    if let Some(pairs) = known.and_then(|bytes| FramePairs::from_bytes(&bytes).ok()) {
+        match segmenter.push_known(frame.clone(), &pairs) {
+            Err(Error::InvalidOption { .. }) => {}
+            pushed => return pushed.map(|()| JsValue::UNDEFINED),
+        }
+    }
+    segmenter.push(frame).map(|pairs| bytes(&pairs.to_bytes()))
+}
+
+/// Ends a stream. Returns `{ frames, dropped }`: the frames that were still waiting, and the number of objects beyond the last number.
 #[wasm_bindgen(js_name = finishClip)]
 pub fn finish_clip(clip: u32) -> JsValue {
-    let Some(mut segmenter) = take(clip) else { return JsValue::NULL };
-    let frames = segmenter.finish();
-    Record::new().list("frames", &frames, clip_frame).count("dropped", segmenter.dropped()).into_value()
+    match take(clip) {
+        Some(Clip::Stream(mut stream)) => {
+            let frames = stream.finish();
+            Record::new().list("frames", &frames, clip_frame).count("dropped", stream.dropped()).into_value()
+        }
+        _ => JsValue::NULL,
+    }
 }
 
-/// Ends a clip early and frees its memory. Does nothing if there is no such clip.
+/// Concludes a whole clip of the frames so far. Returns what [`restore_clip`] does.
+#[wasm_bindgen(js_name = concludeClip)]
+pub fn conclude_clip(clip: u32) -> JsValue {
+    match take(clip) {
+        Some(Clip::Pairs(segmenter)) => keep_segmented(clip, segmenter.conclude()),
+        _ => JsValue::NULL,
+    }
+}
+
+/// Puts a concluded clip, from the bytes of [`save_clip`], in the place of one that has begun. Returns `{ length, width, height, dropped }`.
+///
+/// # Errors
+/// A `VeroneseError` of code `invalid-option` for other bytes.
+#[wasm_bindgen(js_name = restoreClip)]
+pub fn restore_clip(clip: u32, state: &[u8], mark_unknown: bool) -> Result<JsValue, JsValue> {
+    let mut segmented = SegmentedClip::from_bytes(state).map_err(Failure::from)?;
+    segmented.mark_unknown(mark_unknown);
+    end_clip(clip);
+    Ok(keep_segmented(clip, segmented))
+}
+
+/// The bytes of a concluded clip, for [`restore_clip`].
+#[wasm_bindgen(js_name = saveClip)]
+pub fn save_clip(clip: u32) -> Result<JsValue, JsValue> {
+    segmented(clip, |clip, _| Ok(bytes(&clip.to_bytes())))
+}
+
+/// A frame of a concluded clip, as [`push_clip`] of a stream returns it.
+///
+/// # Errors
+/// A `VeroneseError` of code `invalid-option`, `frame-size-mismatch` or `invalid-input`.
+#[wasm_bindgen(js_name = clipFrame)]
+pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue, JsValue> {
+    let frame = frame_from_pixels("the frame", frame)?;
+    segmented(clip, |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
+}
+
+/// Begins a correction of a concluded clip: what is certain of every pixel of a frame, 255 for nothing. It first wants that frame.
+///
+/// # Errors
+/// A `VeroneseError` of code `invalid-option`.
+#[wasm_bindgen(js_name = correctClip)]
+pub fn correct_clip(clip: u32, index: usize, labels: &[u8]) -> Result<JsValue, JsValue> {
+    segmented(clip, |clip, correction| {
+        *correction = Some(clip.correct(index, labels)?);
+        Ok(JsValue::UNDEFINED)
+    })
+}
+
+/// Takes the frame that the correction wants. Returns the index of the next one, or at the end the list of those that have changed.
+///
+/// # Errors
+/// A `VeroneseError` of code `frame-size-mismatch` or `invalid-input`.
+#[wasm_bindgen(js_name = takeCorrection)]
+pub fn take_correction(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
+    let frame = frame_from_pixels("the frame", frame)?;
+    segmented(clip, |clip, correction| {
+        let Some(under_way) = correction else { return Ok(JsValue::NULL) };
+        under_way.take(clip, &frame)?;
+        Ok(match under_way.wanted() {
+            Some(index) => (index as f64).into(),
+            None => indices(under_way.changed()),
+        })
+    })
+}
+
+/// Gives an object another number, 0 to make it background. Returns the indices of the frames where it was.
+///
+/// # Errors
+/// A `VeroneseError` of code `invalid-option`.
+#[wasm_bindgen(js_name = renumberClip)]
+pub fn renumber_clip(clip: u32, object: u8, number: u8) -> Result<JsValue, JsValue> {
+    segmented(clip, |clip, _| {
+        let seen = clip.frames_with(object);
+        clip.renumber(object, number)?;
+        Ok(indices(&seen))
+    })
+}
+
+/// Ends a clip and frees its memory. Does nothing if there is no such clip.
 #[wasm_bindgen(js_name = endClip)]
 pub fn end_clip(clip: u32) {
     drop(take(clip));
 }
 
-fn take(clip: u32) -> Option<ClipSegmenter> {
+fn keep(number: u32, clip: Clip) {
+    CLIPS.with_borrow_mut(|clips| clips.push((number, clip)));
+}
+
+fn keep_segmented(number: u32, clip: SegmentedClip) -> JsValue {
+    let [width, height] = clip.size();
+    let described = Record::new()
+        .count("length", clip.len())
+        .count("width", width)
+        .count("height", height)
+        .count("dropped", clip.dropped())
+        .into_value();
+    keep(number, Clip::Segmented(clip, None));
+    described
+}
+
+fn take(clip: u32) -> Option<Clip> {
     CLIPS.with_borrow_mut(|clips| {
         let place = clips.iter().position(|(number, _)| *number == clip)?;
         Some(clips.swap_remove(place).1)
     })
+}
+
+/// What `work` makes of a clip, or `null`.
+fn step(clip: u32, work: impl FnOnce(&mut Clip) -> Option<Result<JsValue, Error>>) -> Result<JsValue, JsValue> {
+    let done = CLIPS.with_borrow_mut(|clips| {
+        let (_, clip) = clips.iter_mut().find(|(number, _)| *number == clip)?;
+        work(clip)
+    });
+    Ok(done.transpose().map_err(Failure::from)?.unwrap_or(JsValue::NULL))
+}
+
+/// [`step`] for a clip that is concluded.
+fn segmented(
+    clip: u32,
+    work: impl FnOnce(&mut SegmentedClip, &mut Option<ClipCorrection>) -> Result<JsValue, Error>,
+) -> Result<JsValue, JsValue> {
+    step(clip, |clip| match clip {
+        Clip::Segmented(clip, correction) => Some(work(clip, correction)),
+        _ => None,
+    })
+}
+
+fn bytes(bytes: &[u8]) -> JsValue {
+    Uint8Array::from(bytes).into()
+}
+
+fn indices(indices: &[usize]) -> JsValue {
+    list(indices, |index| (*index as f64).into())
 }
 
 fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {
@@ -74,9 +231,10 @@ fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {
         match name.as_str() {
             "motions" => options.pair.motions = motions(&value)?,
             "quality" => options.pair.quality = quality(&value)?,
+            "markUnknown" => options.pair.mark_unknown = flag("markUnknown", &value)?,
             "seed" => options.pair.seed = seed(&value)?,
             "lookAhead" => options.look_ahead = look_ahead(&value)?,
-            _ => return Err(unknown(&name, "motions, quality, seed, lookAhead")),
+            _ => return Err(unknown(&name, "motions, quality, markUnknown, seed, lookAhead")),
         }
     }
     Ok(options)

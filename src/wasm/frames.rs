@@ -219,7 +219,7 @@ pub(super) fn quality(value: &JsValue) -> Result<Quality, Failure> {
     choice("quality", value, &[("fast", Quality::Fast), ("best", Quality::Best)])
 }
 
-fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
+pub(super) fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
     value.as_bool().ok_or_else(|| invalid(name, "true or false", value))
 }
 

@@ -128,11 +128,19 @@ async function run<T extends { milliseconds: Milliseconds }, G extends Glue>(
 async function step(core: Core<FramesGlue>, { signal }: CallOptions, task: ClipTask): Promise<Result> {
   await new Promise((resolve) => setTimeout(resolve));
   if (signal?.aborted) throw cancelled(signal);
-  return core.call((glue) => {
-    if (task.call === 'beginClip') return glue.beginClip(task.clip, task.settings);
-    if (task.call === 'pushClip') return glue.pushClip(task.clip, task.frame);
-    return task.call === 'finishClip' ? glue.finishClip(task.clip) : glue.endClip(task.clip);
-  }) as Promise<Result>;
+  return core.call((glue) => stepOf(glue, task)) as Promise<Result>;
+}
+
+function stepOf(glue: FramesGlue, task: ClipTask): unknown {
+  const { clip } = task;
+  if (task.call === 'beginClip') return glue.beginClip(clip, task.whole, task.settings);
+  if (task.call === 'pushClip') return glue.pushClip(clip, task.frame, task.known);
+  if (task.call === 'restoreClip') return glue.restoreClip(clip, task.state, task.markUnknown);
+  if (task.call === 'correctClip') return glue.correctClip(clip, task.index, task.labels);
+  if (task.call === 'takeCorrection') return glue.takeCorrection(clip, task.frame);
+  if (task.call === 'renumberClip') return glue.renumberClip(clip, task.object, task.number);
+  if (task.call === 'clipFrame') return glue.clipFrame(clip, task.index, task.frame);
+  return glue[task.call](clip);
 }
 
 function paintArguments(context: unknown, segmentation: unknown, options: unknown) {

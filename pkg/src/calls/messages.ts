@@ -26,11 +26,18 @@ export type CallTask =
   | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
   | ClipTask;
 
-/** The steps of a clip. `clip` is its number. */
-export type ClipTask =
-  | { call: 'beginClip'; clip: number; settings: Settings }
-  | { call: 'pushClip'; clip: number; frame: Pixels }
-  | { call: 'finishClip' | 'endClip'; clip: number };
+/** What is done with a clip from its first frame on; src/wasm/clip.rs says what each step returns. */
+export type ClipStep =
+  | { call: 'pushClip'; frame: Pixels; known?: Uint8Array }
+  | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }
+  | { call: 'correctClip'; index: number; labels: Uint8Array }
+  | { call: 'takeCorrection'; frame: Pixels }
+  | { call: 'renumberClip'; object: number; number: number }
+  | { call: 'clipFrame'; index: number; frame: Pixels }
+  | { call: 'finishClip' | 'concludeClip' | 'saveClip' | 'endClip' };
+
+/** `clip` is its number. */
+export type ClipTask = { clip: number } & (ClipStep | { call: 'beginClip'; whole: boolean; settings: Settings });
 
 export type Task = CallTask | { call: 'warmUp' };
 
@@ -43,8 +50,16 @@ export interface ClipEnd {
   dropped: number;
 }
 
+/** A clip of which every frame is known. */
+export interface ClipSummary {
+  length: number;
+  width: number;
+  height: number;
+  dropped: number;
+}
+
 /** The result of a task; null if its clip no longer exists. */
-export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | null | undefined;
+export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | ClipSummary | Uint8Array | number | number[] | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
@@ -57,7 +72,10 @@ export type Reply<R = Result> =
 /** What is handed over to a worker instead of copied. */
 export function buffersOfTask(task: Task): ArrayBuffer[] {
   if (task.call === 'fitMotions') return buffersOf(Object.values(task.measurements));
-  if (task.call === 'pushClip') return buffersOf([task.frame.data]);
+  if ('clip' in task) {
+    const { frame, known, state, labels } = task as Partial<{ frame: Pixels; known: Uint8Array; state: Uint8Array; labels: Uint8Array }>;
+    return buffersOf([frame?.data, known, state, labels]);
+  }
   if (!('frames' in task)) return [];
   const said = task.call === 'relabel' ? [task.correction.labels, task.correction.sets] : [];
   return buffersOf([...task.frames.map((frame) => frame?.data), ...said]);

@@ -51,7 +51,10 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --every K              use only every K-th frame (default: 1)
       --motions auto|1..10   number of motions in each pair of frames (default: auto)
       --quality fast|best    speed or accuracy (default: best)
-      --look-ahead N         let each frame wait for N others, 0 to 8 (default: as many as matter)
+      --look-ahead N         let each frame wait for N others, 0 to 8 (default: the whole clip)
+      --corrections DIR      what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said),
+                             and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"}}
+      --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
       --seed N               random seed (default: 1)
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
@@ -100,6 +103,7 @@ export interface ClipSettings {
   motions: 'auto' | number;
   quality: 'fast' | 'best';
   lookAhead: number | 'all';
+  markUnknown: boolean;
   seed: number;
 }
 
@@ -121,6 +125,8 @@ export type Command =
       list?: string;
       every: number;
       options: ClipSettings;
+      /** Folder of corrections. */
+      corrections?: string;
       overlay: boolean;
       out: string;
     }
@@ -185,6 +191,7 @@ const OPTIONS = {
   jobs: { type: 'string', short: 'j' },
   shard: { type: 'string', default: '1/1' },
   'look-ahead': { type: 'string' },
+  corrections: { type: 'string' },
 } as const;
 
 const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
@@ -194,7 +201,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: ['before', ...OF_PAIRS],
   batch: ['list', ...OF_SEQUENCES],
   video: OF_SEQUENCES,
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'seed', 'out', 'overlay'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay'],
   convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'out'],
   points: ['motions', 'method', 'seed'],
 };
@@ -237,15 +244,17 @@ export function parseCommand(args: string[]): Command {
     };
   }
   if (name === 'clip') {
-    const { list, out, overlay, 'look-ahead': lookAhead } = values;
+    const { list, out, overlay, corrections, 'look-ahead': lookAhead } = values;
     checkFrames(name, files, list);
     if (out === undefined) throw usage("'clip' needs '--out DIR'");
     const options: ClipSettings = {
       ...shared,
       quality: choice('quality', values.quality, 'fast', 'best'),
       lookAhead: lookAhead === undefined ? 'all' : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
+      markUnknown: values['mark-unknown'],
     };
-    return { name, frames: files, ...(list !== undefined && { list }), every: every(values.every), options, overlay, out };
+    const given = { ...(list !== undefined && { list }), ...(corrections !== undefined && { corrections }) };
+    return { name, frames: files, ...given, every: every(values.every), options, overlay, out };
   }
   for (const name of ['overlay', 'confidence'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);

@@ -10,6 +10,8 @@ import { CLASS, isFileName, lastOf, type Range, type Sequence, type SequenceFram
 
 export const TRACKS = 'tracks.json';
 export const LABELS = 'labels';
+/** What another run can use again. Nothing is lost but time where it is missing. */
+export const HIDDEN = '.clip';
 
 /** What is read of tracks.json. */
 interface Tracks {

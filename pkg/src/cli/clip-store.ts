@@ -1,12 +1,11 @@
 // The results of a clip in a folder: the images of each frame, and last tracks.json, which records what they were made from.
 
-import { appendFileSync, existsSync, mkdirSync, readFileSync, renameSync, rmdirSync, rmSync, writeFileSync } from 'node:fs';
+import { appendFileSync, existsSync, mkdirSync, readFileSync, rmdirSync, rmSync } from 'node:fs';
 import { basename, join } from 'node:path';
 import type { ClipTracks } from '../../types/index.js';
-import { LABELS, TRACKS } from './clip-folder.js';
-import { writeFailed } from './files.js';
+import { HIDDEN, LABELS, TRACKS } from './clip-folder.js';
 import { jsonLine } from './pair.js';
-import { removeLeftovers, sha256, temporary } from './store.js';
+import { removeLeftovers, sha256, writeFile, writing } from './store.js';
 
 /** The content of tracks.json. */
 export interface Record extends ClipTracks {
@@ -24,15 +23,15 @@ export interface Record extends ClipTracks {
   job: string;
 }
 
-/** A frame's name, file and content. */
+/** A frame's name, file and content, none if it cannot be read. */
 export interface FrameFile {
   stem: string;
   file: string;
-  sha256: string;
+  sha256: string | undefined;
 }
 
 /** While there is no tracks.json: names of all frames that may have images in the folder. */
-const JOURNAL = '.clip.names';
+const JOURNAL = join(HIDDEN, 'names');
 const FOLDERS = [LABELS, 'overlay'];
 
 export class ClipStore {
@@ -46,24 +45,24 @@ export class ClipStore {
   }
 
   /** The record of a finished run on the same frames with the same settings, if nothing of it has changed. */
-  async finished(frames: () => Promise<readonly FrameFile[]>): Promise<Record | undefined> {
+  finished(frames: readonly FrameFile[]): Record | undefined {
     try {
       const text = readFileSync(join(this.#out, TRACKS), 'utf8');
       const { job: _, ...content } = JSON.parse(text) as Record;
-      const record = sealed(content, this.#jobOf(await frames()));
+      const record = sealed(content, this.#jobOf(frames));
       if (jsonLine(record) !== text) return undefined;
       const whole = Object.entries(record.images).every(([path, hash]) => sha256(readFileSync(join(this.#out, path))) === hash);
       return whole ? record : undefined;
     } catch {
-      return undefined; // Missing, foreign or damaged. A bad frame is reported when the clip is segmented.
+      return undefined; // Missing, foreign or damaged.
     }
   }
 
   /** Marks the folder, if it exists, as unfinished. Throws `write-failed`, as all methods that write do. */
   begin(): void {
     if (!existsSync(this.#out)) return;
-    this.#writing(() => {
-      for (const folder of FOLDERS) removeLeftovers(join(this.#out, folder), () => true);
+    writing(this.#out, () => {
+      for (const folder of [...FOLDERS, HIDDEN]) removeLeftovers(join(this.#out, folder), () => true);
       removeLeftovers(this.#out, (name) => name === TRACKS);
       for (const name of this.#namesOf(TRACKS, (text) => (JSON.parse(text) as Partial<Record>).frames ?? [])) this.#note(name);
       rmSync(join(this.#out, TRACKS), { force: true });
@@ -72,30 +71,30 @@ export class ClipStore {
 
   /** Writes the images of a frame; the keys are their folders. */
   write(stem: string, images: { [folder: string]: Uint8Array }): void {
-    this.#writing(() => {
+    writing(this.#out, () => {
       mkdirSync(this.#out, { recursive: true });
       this.#note(stem);
       for (const [folder, bytes] of Object.entries(images)) {
         mkdirSync(join(this.#out, folder), { recursive: true });
-        this.#write(join(this.#out, folder), `${stem}.png`, bytes);
+        writeFile(join(this.#out, folder), `${stem}.png`, bytes);
         this.#images.set(`${folder}/${stem}.png`, sha256(bytes));
       }
     });
   }
 
   /** Removes images of frames that do not belong to the clip, and writes the record. */
-  end(frames: readonly (FrameFile & { width: number; height: number })[], tracks: ClipTracks): void {
-    const { width = 0, height = 0 } = frames[0] ?? {};
+  end(frames: readonly FrameFile[], { width, height }: { width: number; height: number }, tracks: ClipTracks): void {
     const names = { frames: frames.map(({ stem }) => stem), files: frames.map(({ file }) => file) };
     const images = Object.fromEntries(this.#images);
     const content = { version: 1 as const, width, height, ...names, ...tracks, settings: this.#settings, images };
-    this.#writing(() => {
+    writing(this.#out, () => {
       const old = this.#namesOf(JOURNAL, (text) => text.split('\n'));
       const paths = old.flatMap((name) => FOLDERS.map((folder) => `${folder}/${name}.png`));
       for (const path of paths) if (!this.#images.has(path)) rmSync(join(this.#out, path), { force: true });
       this.#removeIfEmpty('overlay');
-      this.#write(this.#out, TRACKS, jsonLine(sealed(content, this.#jobOf(frames))));
+      writeFile(this.#out, TRACKS, jsonLine(sealed(content, this.#jobOf(frames))));
       rmSync(join(this.#out, JOURNAL), { force: true });
+      this.#removeIfEmpty(HIDDEN);
     });
   }
 
@@ -105,6 +104,7 @@ export class ClipStore {
   }
 
   #note(name: string): void {
+    mkdirSync(join(this.#out, HIDDEN), { recursive: true });
     appendFileSync(join(this.#out, JOURNAL), `${name}\n`);
   }
 
@@ -118,31 +118,11 @@ export class ClipStore {
     }
   }
 
-  /** Synchronous, so that no signal is handled in the middle. */
-  #write(folder: string, name: string, content: Uint8Array | string): void {
-    const part = join(folder, temporary(name));
-    try {
-      writeFileSync(part, content);
-      renameSync(part, join(folder, name));
-    } catch (thrown) {
-      rmSync(part, { force: true });
-      throw thrown;
-    }
-  }
-
   #removeIfEmpty(folder: string): void {
     try {
       rmdirSync(join(this.#out, folder));
     } catch {
       // It is not empty, or does not exist.
-    }
-  }
-
-  #writing(write: () => void): void {
-    try {
-      write();
-    } catch (thrown) {
-      throw writeFailed(this.#out, thrown instanceof Error ? thrown.message : String(thrown));
     }
   }
 }

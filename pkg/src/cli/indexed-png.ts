@@ -5,8 +5,9 @@ import { LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 
 const SIGNATURE = Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]);
-/** Of the header chunk: 8 bits, indexed, deflated, filtered row by row, not interlaced. */
-const FORM = Buffer.from([8, 3, 0, 0, 0]);
+/** Of the header chunk: deflated, filtered row by row, not interlaced. */
+const FORM = Buffer.from([0, 0, 0]);
+const [GREY, INDEXED] = [0, 3];
 
 export interface Indices {
   indices: Uint8Array;
@@ -14,8 +15,11 @@ export interface Indices {
   height: number;
 }
 
-/** Throws `unreadable-image`, or `invalid-input` where it is a picture of another kind. The sentences follow the file's name. */
-export function decodeIndices(file: Uint8Array): Indices {
+/**
+ * Throws `unreadable-image`, or `invalid-input` where it is a picture of another kind. The sentences follow the file's name. `foreign`:
+ * other programs write labels with fewer bits or as grey levels too.
+ */
+export function decodeIndices(file: Uint8Array, { foreign = false } = {}): Indices {
   const bytes = Buffer.from(file.buffer, file.byteOffset, file.byteLength);
   if (!bytes.subarray(0, SIGNATURE.length).equals(SIGNATURE)) throw unreadable('is not a PNG');
   let header: Buffer | undefined;
@@ -26,9 +30,26 @@ export function decodeIndices(file: Uint8Array): Indices {
   }
   if (header?.length !== 13) throw unreadable('has no header');
   const [width, height] = [header.readUInt32BE(0), header.readUInt32BE(4)];
-  if (!header.subarray(8).equals(FORM)) throw new VeroneseError('invalid-input', 'has no labels: it is not an 8-bit indexed PNG');
+  const [depth, type] = [header.readUInt8(8), header.readUInt8(9)];
+  const fits = foreign ? [1, 2, 4, 8].includes(depth) && [GREY, INDEXED].includes(type) : depth === 8 && type === INDEXED;
+  if (!fits || !header.subarray(10).equals(FORM)) {
+    const kind = foreign ? 'an indexed or grey PNG of up to 8 bits without interlacing' : 'an 8-bit indexed PNG';
+    throw new VeroneseError('invalid-input', `has no labels: it is not ${kind}`);
+  }
   if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_SIDE) throw unreadable(`has ${width} × ${height} pixels`);
-  return { indices: unfiltered(inflated(data, (width + 1) * height), width, height), width, height };
+  const row = Math.ceil((width * depth) / 8);
+  const rows = unfiltered(inflated(data, (row + 1) * height), row, height);
+  return { indices: depth === 8 ? rows : unpacked(rows, row, depth, width, height), width, height };
+}
+
+/** Pixels of fewer than 8 bits, the first in the highest bits; every row begins with a byte of its own. */
+function unpacked(rows: Uint8Array, row: number, depth: number, width: number, height: number): Uint8Array {
+  const perByte = 8 / depth;
+  return Uint8Array.from({ length: width * height }, (_, at) => {
+    const x = at % width;
+    const byte = rows[Math.floor(at / width) * row + Math.floor(x / perByte)] as number;
+    return (byte >> (8 - depth * ((x % perByte) + 1))) & ((1 << depth) - 1);
+  });
 }
 
 function unreadable(reason: string): VeroneseError {

@@ -4,11 +4,11 @@ import { VeroneseError, veroneseError } from '../common/errors.js';
 import { readInput } from './files.js';
 import { decodeIndices } from './indexed-png.js';
 
-/** The labels in an indexed PNG. Throws what reading and decoding throw, the file named. */
-export async function readLabels(path: string): Promise<{ labels: Uint8Array; width: number; height: number }> {
+/** The labels in an indexed PNG, or in one of another program. Throws what reading and decoding throw, the file named. */
+export async function readLabels(path: string, options?: { foreign: boolean }): Promise<{ labels: Uint8Array; width: number; height: number }> {
   const bytes = await readInput(path);
   try {
-    const { indices, ...size } = decodeIndices(bytes);
+    const { indices, ...size } = decodeIndices(bytes, options);
     return { labels: indices, ...size };
   } catch (thrown) {
     const { code, message } = veroneseError(thrown);

@@ -62,6 +62,27 @@ const HOST = sha256(hostname()).slice(0, 8);
 /** What something is called while it is written. */
 export const temporary = (name: string): string => `.${name}.${HOST}-${process.pid}.part`;
 
+/** Writes a file, whole or not at all. Synchronous, so that no signal is handled in the middle. */
+export function writeFile(folder: string, name: string, content: Uint8Array | string): void {
+  const part = join(folder, temporary(name));
+  try {
+    writeFileSync(part, content);
+    renameSync(part, join(folder, name));
+  } catch (thrown) {
+    rmSync(part, { force: true });
+    throw thrown;
+  }
+}
+
+/** Throws `write-failed` where `write` throws. */
+export function writing(folder: string, write: () => void): void {
+  try {
+    write();
+  } catch (thrown) {
+    throw writeFailed(folder, thrown instanceof Error ? thrown.message : String(thrown));
+  }
+}
+
 /**
  * Writes a pair's folder. All of it happens between two turns of the event loop, so a signal comes before or after it; and since
  * the folder gets its name when it is complete, so does the end of the process.

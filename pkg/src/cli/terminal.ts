@@ -43,18 +43,21 @@ export class ProgressBar {
   readonly #total: number | undefined;
   readonly #now: () => number;
   readonly #unit: string;
+  readonly #title: string;
   readonly #started: number;
   #drawn = -Infinity;
 
-  /** `total`: the number of pairs (or of what `unit` says), where it is known. */
+  /** `total`: the number of pairs (or of what `unit` says), where it is known. `title`: what is done with them. */
   constructor(
     total: number | undefined,
     stream: Pick<NodeJS.WriteStream, 'isTTY' | 'write'> = process.stderr,
     now = () => performance.now(),
     unit = 'pairs',
+    title = '',
   ) {
     this.#total = total;
     this.#unit = unit;
+    this.#title = title;
     this.#stream = stream;
     this.#now = now;
     this.#started = now();
@@ -64,7 +67,7 @@ export class ProgressBar {
     const now = this.#now();
     if (!this.#stream.isTTY || now - this.#drawn < INTERVAL) return;
     this.#drawn = now;
-    this.#stream.write(`\r\u001b[K${line(tally, this.#total, (now - this.#started) / 1000, this.#unit)}`);
+    this.#stream.write(`\r\u001b[K${this.#title}${line(tally, this.#total, (now - this.#started) / 1000, this.#unit)}`);
   }
 
   /** Takes the line away, for what is to be read there. */

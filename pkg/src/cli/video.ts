@@ -10,6 +10,8 @@ import type { Frame } from './frames.js';
 const LONGEST_SIDE = 32_768;
 /** How much of what ffmpeg says is kept, characters. */
 const KEPT = 4_000;
+/** How much of what was decoded last is kept to be read again, bytes. */
+const WINDOW = 256 * 1024 * 1024;
 
 /**
  * Every `every`-th frame as a portable pixmap, named `clip.mp4#12` by its number from 0. ffmpeg decodes no faster than frames are
@@ -47,6 +49,61 @@ export async function* videoFrames(file: string, every: number): AsyncGenerator<
   } finally {
     process.off('exit', end);
     end();
+  }
+}
+
+/**
+ * Frames of a video in any order. Those that follow each other come from one run of ffmpeg; those before it from the frames that are
+ * kept, else from another run.
+ */
+export class VideoReader {
+  readonly #file: string;
+  readonly #every: number;
+  #run: AsyncGenerator<Frame, void, undefined> | undefined;
+  /** Index of the frame that the run gives next. */
+  #next = 0;
+  readonly #kept = new Map<number, Uint8Array>();
+  #size = 0;
+
+  constructor(file: string, every: number) {
+    this.#file = file;
+    this.#every = every;
+  }
+
+  /** The content of a frame, by its index among those that are taken; undefined after the last one. */
+  async read(index: number): Promise<Uint8Array | undefined> {
+    const kept = this.#kept.get(index);
+    if (kept) return kept;
+    if (index < this.#next) await this.close();
+    this.#run ??= videoFrames(this.#file, this.#every);
+    for (;;) {
+      const { value } = await this.#run.next();
+      if (!value) {
+        await this.close();
+        return undefined;
+      }
+      this.#keep(value.bytes as Uint8Array);
+      if (this.#next > index) return value.bytes;
+    }
+  }
+
+  /** Ends the run. */
+  async close(): Promise<void> {
+    await this.#run?.return();
+    this.#run = undefined;
+    this.#next = 0;
+    this.#size = 0;
+    this.#kept.clear();
+  }
+
+  #keep(bytes: Uint8Array): void {
+    this.#kept.set(this.#next++, bytes);
+    this.#size += bytes.length;
+    for (const [index, { length }] of this.#kept) {
+      if (this.#size <= WINDOW || this.#kept.size === 1) return;
+      this.#kept.delete(index);
+      this.#size -= length;
+    }
   }
 }
 

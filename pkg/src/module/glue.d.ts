@@ -21,9 +21,16 @@ export interface FramesGlue extends Glue {
     onStage: OnStage,
   ): unknown;
 
-  beginClip(clip: number, options: unknown): void;
-  pushClip(clip: number, frame: unknown): unknown;
+  beginClip(clip: number, whole: boolean, options: unknown): void;
+  pushClip(clip: number, frame: unknown, known?: Uint8Array): unknown;
   finishClip(clip: number): unknown;
+  concludeClip(clip: number): unknown;
+  restoreClip(clip: number, state: Uint8Array, markUnknown: boolean): unknown;
+  saveClip(clip: number): unknown;
+  clipFrame(clip: number, index: number, frame: unknown): unknown;
+  correctClip(clip: number, index: number, labels: Uint8Array): unknown;
+  takeCorrection(clip: number, frame: unknown): unknown;
+  renumberClip(clip: number, object: number, number: number): unknown;
   endClip(clip: number): void;
 
   paintLabels(context: CanvasRenderingContext2D, ...rest: PaintArguments): void;

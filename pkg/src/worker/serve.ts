@@ -31,6 +31,7 @@ export function serve(post: (reply: Reply, transfer: ArrayBuffer[]) => void): (r
 
 /** What is handed over instead of copied. */
 function buffersOfResult(result: Result): ArrayBuffer[] {
-  const { labels, confidence, frames = [] }: Partial<Pick<Segmentation, 'labels' | 'confidence'> & ClipEnd> = result ?? {};
+  if (result instanceof Uint8Array) return buffersOf([result]);
+  const { labels, confidence, frames = [] }: Partial<Pick<Segmentation, 'labels' | 'confidence'> & ClipEnd> = Object(result);
   return buffersOf([labels, confidence, ...frames.map((frame) => frame.labels)]);
 }

@@ -1,7 +1,10 @@
 // What a user writes; compiled under strict settings, never run.
 
 import {
+  type ClipCorrection,
+  type ClipEdits,
   type ClipFrame,
+  type ClipOptions,
   type ClipTracks,
   davisPalette,
   type ErrorCode,
@@ -71,11 +74,18 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const stream = segmentClip(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', seed: 1, onProgress: ({ frame, of }) => console.log(frame, of) });
   for await (const { index, labels, objects, background } of stream) console.log(index, labels.length, objects[0]?.matrix?.[2], background);
   const segmenter = new Segmenter();
-  const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'all', signal: AbortSignal.timeout(1000) });
+  const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'all', markUnknown: true, signal: AbortSignal.timeout(1000) });
   const first: IteratorResult<ClipFrame, void> = await whole.next();
   if (!first.done) console.log(first.value.index);
-  // @ts-expect-error nothing marks what is unknown in a clip
-  segmentClip([], { markUnknown: true });
+  const state: Uint8Array | undefined = await whole.state();
+  const corrections: ClipCorrection[] = [{ frame: 3, labels: new Uint8Array(64 * 48) }];
+  const edits: ClipEdits = { merge: [[2, 5]], delete: [3], background: [4], names: { 1: 'car' } };
+  const pairs = new Map<number, Uint8Array>();
+  const kept: ClipOptions = { onPairs: (index, bytes) => void pairs.set(index, bytes), knownPairs: async (index) => pairs.get(index) };
+  const again = segmentClip({ length: 32, read }, { state, corrections, edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), ...kept });
+  console.log(again.tracks().objects[0]?.name);
+  // @ts-expect-error a clip tells the confidence of objects alone
+  segmentClip([], { confidence: true });
   return whole.tracks();
 }
 

@@ -1,0 +1,51 @@
+// Edits of whole objects: merged, made background, named.
+
+import { isListOf, isObject, isWhole, UNLABELLED, unknownOf } from '../../common/checks.js';
+import type { VeroneseError } from '../../common/errors.js';
+
+export interface Edits {
+  /** Each object that gets another number, 0 for the background, and that number. */
+  numbers: Map<number, number>;
+  names: Map<number, string>;
+}
+
+/** Checks edits; `wrong` makes the error. Numbers that no object has are no mistake: they change nothing. */
+export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError): Edits {
+  if (!isObject(value)) throw wrong('must be an object');
+  const unknown = unknownOf(value, ['merge', 'delete', 'background', 'names']);
+  if (unknown !== undefined) throw wrong(`there is no edit ${unknown}`);
+  // What an object inherits, such as the methods of a map, was not given.
+  const given: Record<string, unknown> = { ...value };
+  const { merge = [], names = {} } = given;
+  const isMerged = (list: unknown): list is number[] => isListOf(list, isObjectNumber) && list.length >= 2;
+  if (!isListOf(merge, isMerged)) throw wrong(`'merge' must be lists of two or more objects, ${RANGE}`);
+  const numbers = new Map<number, number>();
+  const give = (object: number, number: number) => {
+    if (object === number) return;
+    if ((numbers.get(object) ?? number) !== number) throw wrong(`object ${object} cannot become ${called(numbers.get(object))} and ${called(number)}`);
+    numbers.set(object, number);
+  };
+  for (const [first = 0, ...others] of merge) for (const other of others) give(other, first);
+  for (const name of ['delete', 'background']) {
+    const { [name]: objects = [] } = given;
+    if (!isListOf(objects, isObjectNumber)) throw wrong(`'${name}' must be a list of objects, ${RANGE}`);
+    for (const object of objects) give(object, 0);
+  }
+  if (!isObject(names)) throw wrong("'names' must be an object of names by number");
+  const named = Object.entries(names).filter(([, name]) => name !== undefined);
+  for (const [number, name] of named) {
+    if (!/^[1-9]\d*$/.test(number) || !isObjectNumber(Number(number))) throw wrong(`'names' has a name for '${number}', and objects are ${RANGE}`);
+    if (typeof name !== 'string' || name === '') throw wrong(`'names' must have a text for object ${number}`);
+  }
+  return { numbers, names: new Map(named.map(([number, name]) => [Number(number), name as string])) };
+}
+
+const RANGE = `numbers from 1 to ${UNLABELLED - 1}`;
+
+function isObjectNumber(value: unknown): value is number {
+  return isWhole(value, 1, UNLABELLED - 1);
+}
+
+function called(number: number | undefined): string {
+  return number === 0 ? 'background' : `object ${number}`;
+}

@@ -1,0 +1,72 @@
+// The frames of a source, taken one by one and checked.
+
+import type { Pixels } from '../../../types/index.js';
+import { reading } from '../../common/checks.js';
+import { cancelled, VeroneseError } from '../../common/errors.js';
+import { inOrder } from '../ordered.js';
+import { taken } from '../taking.js';
+import { checkedPixels } from '../tasks.js';
+
+export interface TakeOptions {
+  /** Indices of the frames, if they are not counted from 0. */
+  indices?: readonly number[];
+  transfer?: boolean;
+}
+
+export class Frames {
+  /** What the source threw, or what is wrong with a frame. */
+  failure: { thrown: unknown } | undefined;
+  /** Width and height of all frames, once known. */
+  size: Pick<Pixels, 'width' | 'height'> | undefined;
+  readonly #signal: AbortSignal | undefined;
+
+  constructor(signal: AbortSignal | undefined) {
+    this.#signal = signal;
+  }
+
+  /** Frames up to the first failure, the next one not before it is asked for. Throws only if the signal says so. */
+  async *each(
+    source: Iterable<unknown> | AsyncIterable<unknown>,
+    { indices, transfer = false }: TakeOptions = {},
+  ): AsyncGenerator<Pixels, void, undefined> {
+    const take = async (input: unknown, position: number) => {
+      try {
+        return { frame: reading(() => this.#taken(input, indices?.[position] ?? position, transfer)) };
+      } catch (thrown) {
+        return { failure: { thrown } };
+      }
+    };
+    try {
+      const order = { room: 1, signal: this.#signal, stop: () => cancelled(this.#signal) };
+      for await (const { frame, failure } of inOrder(source, take, order)) {
+        this.failure = failure;
+        if (!frame) return;
+        yield frame;
+      }
+    } catch (thrown) {
+      if (this.#signal?.aborted) throw thrown;
+      this.failure = { thrown };
+    }
+  }
+
+  /** A single frame. Throws its failure. */
+  async one(read: (index: number) => unknown, index: number): Promise<Pixels> {
+    for await (const frame of this.each(reads(read, [index]), { indices: [index] })) return frame;
+    throw this.failure?.thrown;
+  }
+
+  /** A copy, checked against the size of the others. */
+  #taken(input: unknown, index: number, transfer: boolean): Pixels {
+    const { data, width, height } = checkedPixels(`frame ${index}`, input);
+    this.size ??= { width, height };
+    if (width !== this.size.width || height !== this.size.height) {
+      const sizes = `${width}×${height} pixels, the others have ${this.size.width}×${this.size.height}`;
+      throw new VeroneseError('frame-size-mismatch', `frame ${index} has ${sizes}`);
+    }
+    return { data: taken([data], transfer)[0] as Uint8Array, width, height };
+  }
+}
+
+export function* reads(read: (index: number) => unknown, indices: Iterable<number>): Generator<unknown, void, undefined> {
+  for (const index of indices) yield read(index);
+}

@@ -1,0 +1,57 @@
+// Where a clip is kept between its frames: in this thread, or in a worker reserved for it.
+
+import { cancelled, VeroneseError } from '../../common/errors.js';
+import type { ClipStep, ClipTask, Settings } from '../messages.js';
+import type { Perform } from '../tasks.js';
+
+export interface Place {
+  perform: Perform;
+  release: () => void;
+}
+
+/** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
+let clips = 0;
+
+export class PlacedClip {
+  readonly #place: Place;
+  readonly #signal: AbortSignal | undefined;
+  readonly #clip = clips++;
+  /** Whether there is something to free. */
+  #open = false;
+
+  constructor(place: Place, signal: AbortSignal | undefined) {
+    this.#place = place;
+    this.#signal = signal;
+  }
+
+  async begin(whole: boolean, settings: Settings): Promise<void> {
+    try {
+      await this.#perform({ call: 'beginClip', clip: this.#clip, whole, settings });
+      this.#open = true;
+    } catch (thrown) {
+      // The worker may still begin a clip that was cancelled.
+      this.#open = this.#signal?.aborted === true;
+      throw thrown;
+    }
+  }
+
+  /** Takes a step of the clip, if it still exists. */
+  async step<T>(step: ClipStep): Promise<T> {
+    if (this.#signal?.aborted) throw cancelled(this.#signal);
+    const result = await this.#perform({ ...step, clip: this.#clip });
+    if (result === null) throw new VeroneseError('internal', 'the clip was lost when another call failed');
+    if (step.call === 'finishClip') this.#open = false;
+    return result as T;
+  }
+
+  /** Frees what the clip holds. Not awaited: if it fails, the clip is gone already. */
+  end(): void {
+    const { perform, release } = this.#place;
+    if (this.#open) void perform({ call: 'endClip', clip: this.#clip }, {}).catch(() => undefined).finally(release);
+    else release();
+  }
+
+  #perform(task: ClipTask) {
+    return this.#place.perform(task, { signal: this.#signal });
+  }
+}

@@ -1,0 +1,295 @@
+// `veronese clip` with corrections, and what it keeps for another run.
+
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { copyFileSync, cpSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, watch, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, test } from 'node:test';
+import { deflateSync } from 'node:zlib';
+import { decode } from 'fast-png';
+import { davisPalette, segmentClip } from 'veronese';
+import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
+import { ProgressBar } from '../build/cli/terminal.js';
+import { frame, png } from './support/frames.mjs';
+import { temporaryFolder, veronese } from './support/program.mjs';
+
+const COUNT = 6;
+const SIZE = { width: 96, height: 72 };
+const PIXELS = SIZE.width * SIZE.height;
+const clipFrame = (k) => frame(k / 2, SIZE);
+
+/** A folder of frames, one for corrections, and places for results. */
+function clip(t, count = COUNT) {
+  const folder = temporaryFolder(t);
+  for (const name of ['frames', 'said']) mkdirSync(folder.path(name));
+  for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(clipFrame(k)));
+  const said = (name, content) => writeFileSync(folder.path('said', name), content);
+  return { ...folder, frames: folder.path('frames'), corrections: folder.path('said'), said, out: folder.path('out') };
+}
+
+/** The square in frame 3 as an object 9; nothing is said of the rest. */
+const LABELS = Uint8Array.from({ length: PIXELS }, (_, p) => {
+  const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
+  return x >= 27 && x < 63 && y >= 20 && y < 56 ? 9 : 0;
+});
+const mask = (labels = LABELS, { width, height } = SIZE) => encodeIndexedPng(width, height, labels, davisPalette());
+
+async function run(args, { code = 0, ...options } = {}) {
+  const done = await veronese(['clip', '--quality', 'fast', ...args], options);
+  assert.equal(done.code, code, done.stderr);
+  if (code === 0) assert.equal(done.stderr, '');
+  return { ...done, lines: done.stdout.trimEnd().split('\n').filter(Boolean).map((line) => JSON.parse(line)) };
+}
+
+/** Every file below a folder, hidden ones too, with a hash of its content. */
+function tree(folder) {
+  const files = {};
+  for (const entry of readdirSync(folder, { recursive: true })) {
+    const path = join(folder, entry);
+    if (!statSync(path).isDirectory()) files[entry] = createHash('sha256').update(readFileSync(path)).digest('hex');
+  }
+  return files;
+}
+
+const tracksOf = (out) => JSON.parse(readFileSync(join(out, 'tracks.json'), 'utf8'));
+const labelsOf = (out, k) => new Uint8Array(decode(readFileSync(join(out, 'labels', `f${k}.png`))).data);
+const written = (path) => statSync(path, { bigint: true }).mtimeNs;
+
+describe('veronese clip --corrections', () => {
+  test('corrects frames and objects as the call does', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    said('f3.png', await mask());
+    const edits = { merge: [[12, 9]], names: { 12: 'square' } };
+    said('edits.json', JSON.stringify(edits));
+    said('notes.txt', 'no correction');
+    const { lines } = await run([frames, '--corrections', corrections, '--out', out]);
+    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', corrections: [{ frame: 3, labels: LABELS }], edits });
+    for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, index), labels);
+    assert.deepEqual(lines.map(({ objects }) => objects), [...Array(COUNT).fill([12]), 1]);
+    const { objects, settings } = tracksOf(out);
+    assert.deepEqual(objects, JSON.parse(JSON.stringify(direct.tracks().objects)));
+    assert.equal(objects[0].name, 'square');
+    assert.match(settings.corrections, /^[0-9a-f]{64}$/);
+  });
+
+  test('solves no pair again, whatever is said later, and gives the files of a straight run', async (t) => {
+    const { frames, corrections, said, out, path } = clip(t);
+    await run([frames, '--out', out]);
+    const state = join(out, '.clip', 'state');
+    const [at, base] = [written(state), tree(out)];
+    assert.deepEqual(Object.keys(base).filter((name) => name.startsWith('.')), [join('.clip', 'state')]);
+    said('f3.png', await mask());
+    await run([frames, '--corrections', corrections, '--out', out]);
+    const first = tracksOf(out).settings.corrections;
+    await run([frames, '--corrections', corrections, '--out', path('straight')]);
+    assert.deepEqual(tree(out), tree(path('straight')));
+    said('edits.json', '{"delete": [9]}');
+    const { lines } = await run([frames, '--corrections', corrections, '--out', out]);
+    assert.deepEqual(lines.at(-1), { done: true, objects: 0 });
+    assert.notEqual(tracksOf(out).settings.corrections, first);
+    for (const name of ['f3.png', 'edits.json']) rmSync(join(corrections, name));
+    await run([frames, '--corrections', corrections, '--out', out]);
+    assert.deepEqual(tree(out), base, 'a folder without corrections corrects nothing');
+    await run([frames, '--mark-unknown', '--out', out]);
+    assert.ok(labelsOf(out, 0).includes(255));
+    assert.equal(written(state), at, 'the state was never written again');
+
+    // It may be damaged or deleted.
+    for (const spoil of [() => writeFileSync(state, readFileSync(state).fill(7, 60, 64)), () => rmSync(join(out, '.clip'), { recursive: true })]) {
+      spoil();
+      await run([frames, '--overlay', '--out', out]);
+      await run([frames, '--out', out]);
+      assert.deepEqual(tree(out), base);
+    }
+  });
+
+  test('takes masks of other programs', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    const straight = async () => {
+      await run([frames, '--corrections', corrections, '--out', out]);
+      return labelsOf(out, 3);
+    };
+    said('f3.PNG', await encodeGreyPng(SIZE.width, SIZE.height, LABELS));
+    assert.deepEqual(await straight(), LABELS);
+    // One bit: object 1 on the background.
+    const bits = LABELS.map((label) => Number(label > 0));
+    const rows = Array.from({ length: SIZE.height }, (_, y) => {
+      const row = bits.subarray(y * SIZE.width, (y + 1) * SIZE.width);
+      return Buffer.from([0, ...Array.from({ length: SIZE.width / 8 }, (_, k) => row.subarray(8 * k, 8 * k + 8).reduce((byte, bit) => 2 * byte + bit, 0))]);
+    });
+    rmSync(join(corrections, 'f3.PNG'));
+    said('f3.png', onePng([1, 3], Buffer.concat(rows)));
+    assert.deepEqual(await straight(), bits);
+  });
+
+  test('names what is wrong before anything is written', async (t) => {
+    const { frames, corrections, said, out, path } = clip(t);
+    const colours = await encodeColourPng(SIZE.width, SIZE.height, new Uint8Array(3 * PIXELS));
+    const small = await mask(new Uint8Array(64), { width: 8, height: 8 });
+    const cases = [
+      ['g1.png', await mask(), 'invalid-input', /g1\.png' has the name of no frame/],
+      ['F1.png', await mask(), 'invalid-input', /F1\.png' has the name of no frame/],
+      ['f1.png', small, 'frame-size-mismatch', /f1\.png' has 8×8 pixels, the frames have 96×72/],
+      ['f1.png', 'no picture', 'unreadable-image', /f1\.png/],
+      ['f1.png', (await mask()).subarray(0, -30), 'unreadable-image', /f1\.png/],
+      ['f1.png', colours, 'invalid-input', /f1\.png' has no labels: it is not an indexed or grey PNG/],
+      ['edits.json', '{"merge": [[1, 2]]', 'invalid-json', /edits\.json/],
+      ['edits.json', '[]', 'invalid-input', /edits\.json': must be an object/],
+      ['edits.json', '{"merge": [1, 2]}', 'invalid-input', /edits\.json': 'merge' must be lists/],
+      ['edits.json', '{"remove": [1]}', 'invalid-input', /edits\.json': there is no edit 'remove'/],
+      ['edits.json', '{"names": {"255": "sky"}}', 'invalid-input', /edits\.json': 'names'/],
+    ];
+    for (const [name, content, code, message] of cases) {
+      said(name, content);
+      const { stderr, stdout } = await run([frames, '--corrections', corrections, '--out', out], { code: 1 });
+      assert.match(stderr, new RegExp(`^veronese: error: ${code}: [^\\n]+\\n$`));
+      assert.match(stderr, message);
+      assert.deepEqual([stdout, existsSync(out)], ['', false]);
+      rmSync(join(corrections, name));
+    }
+    const missing = await run([frames, '--corrections', path('nowhere'), '--out', out], { code: 1 });
+    assert.match(missing.stderr, /file-not-found/);
+    const file = await run([frames, '--corrections', join(frames, 'f0.png'), '--out', out], { code: 1 });
+    assert.match(file.stderr, /unreadable-file/);
+    // Finished results stay as they are.
+    await run([frames, '--out', out]);
+    const before = tree(out);
+    said('g1.png', await mask());
+    await run([frames, '--corrections', corrections, '--out', out], { code: 1 });
+    assert.deepEqual(tree(out), before);
+  });
+
+  test('goes with a look-ahead', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    await run([frames, '--look-ahead', '2', '--out', out]);
+    assert.equal(existsSync(join(out, '.clip')), false, 'a stream keeps nothing');
+    const plain = [0, 5].map((k) => labelsOf(out, k));
+    said('edits.json', '{"names": {"1": "square"}}');
+    await run([frames, '--look-ahead', '2', '--corrections', corrections, '--out', out]);
+    assert.deepEqual([0, 5].map((k) => labelsOf(out, k)), plain);
+    assert.equal(tracksOf(out).objects[0].name, 'square');
+  });
+
+  test('a bad frame later in the clip: the labels before it are corrected and stay', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    said('f3.png', await mask());
+    said('f5.png', await mask());
+    writeFileSync(join(frames, 'f4.png'), 'no picture');
+    const { stderr, lines } = await run([frames, '--corrections', corrections, '--out', out], { code: 1 });
+    assert.match(stderr, /unreadable-image: [^\n]*f4\.png/);
+    assert.deepEqual(lines.map(({ objects }) => objects), Array(4).fill([9]));
+    assert.deepEqual([labelsOf(out, 3), existsSync(join(out, 'tracks.json'))], [LABELS, false]);
+    // The pairs before it are used again.
+    writeFileSync(join(frames, 'f4.png'), png(clipFrame(4)));
+    await run([frames, '--corrections', corrections, '--out', out]);
+    assert.deepEqual(labelsOf(out, 3), LABELS);
+    assert.deepEqual(readdirSync(join(out, '.clip')), ['state']);
+  });
+});
+
+test('the progress bar says what is done with the frames', () => {
+  let text = '';
+  const bar = new ProgressBar(undefined, { isTTY: true, write: (piece) => (text += piece) }, () => 0, 'frames', 'labels: ');
+  bar.update({ done: 3, skipped: 0, failed: 0 });
+  assert.match(text, /labels: 3 frames$/);
+});
+
+describe('an interrupted clip', () => {
+  /** Runs until the pairs of a frame are kept, then ends with the signal. */
+  async function interrupted(args, out, signal, file) {
+    mkdirSync(join(out, '.clip'), { recursive: true });
+    const onStart = (child) => {
+      const watching = watch(join(out, '.clip'), () => {
+        if (!existsSync(join(out, '.clip', file))) return;
+        watching.close();
+        child.kill(signal);
+      });
+      child.on('close', () => watching.close());
+    };
+    return veronese(['clip', '--quality', 'fast', ...args, '--out', out], { onStart });
+  }
+
+  const skip = process.platform === 'win32';
+
+  for (const [signal, exit] of [['SIGINT', 130], ['SIGKILL', null]]) {
+    test(`goes on after ${signal} with the pairs it has solved`, { skip }, async (t) => {
+      const { frames, out, path } = clip(t, 8);
+      const { code } = await interrupted([frames], out, signal, '00003.pairs');
+      assert.equal(code, exit);
+      const kept = readdirSync(join(out, '.clip')).filter((name) => name.endsWith('.pairs'));
+      assert.ok(kept.includes('00003.pairs') && kept.length < 8);
+      assert.equal(existsSync(join(out, 'tracks.json')), false);
+      await run([frames, '--out', out]);
+      await run([frames, '--out', path('whole')]);
+      assert.deepEqual(tree(out), tree(path('whole')));
+    });
+  }
+
+  test('does not use pairs of other options, of other frames, or damaged ones', { skip }, async (t) => {
+    const { frames, out, path } = clip(t);
+    await interrupted([frames], out, 'SIGKILL', '00003.pairs');
+    const same = async (name, args) => {
+      await run([...args, '--out', path(name)]);
+      await run([...args, '--out', path(`${name}-straight`)]);
+      assert.deepEqual(tree(path(name)), tree(path(`${name}-straight`)), name);
+    };
+    for (const name of ['options', 'damage', 'content']) cpSync(out, path(name), { recursive: true });
+    await same('options', [frames, '--seed', '2']);
+    copyFileSync(join(out, '.clip', '00001.pairs'), path('damage', '.clip', '00002.pairs'));
+    writeFileSync(path('damage', '.clip', '00001.pairs'), 'damaged');
+    await same('damage', [frames]);
+    writeFileSync(join(frames, 'f1.png'), png(frame(7, SIZE)));
+    await same('content', [frames]);
+  });
+
+  test('does not solve known pairs: those of frames that are there are not written again', { skip }, async (t) => {
+    const { frames, out } = clip(t, 8);
+    await interrupted([frames], out, 'SIGKILL', '00003.pairs');
+    const first = join(out, '.clip', '00002.pairs');
+    const at = written(first);
+    await interrupted([frames], out, 'SIGKILL', '00005.pairs');
+    assert.equal(written(first), at);
+  });
+});
+
+describe('veronese clip VIDEO', () => {
+  const skip = spawnSync('ffmpeg', ['-version']).status !== 0 && 'the program ffmpeg is not installed';
+
+  test('reads the video again for labels and, backwards too, for corrections', { skip }, async (t) => {
+    const { frames, corrections, said, out, path } = clip(t);
+    const file = path('clip.mkv');
+    const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-i', join(frames, 'f%d.png'), '-c:v', 'ffv1', '-pix_fmt', 'bgr0', file]);
+    assert.equal(status, 0, String(stderr));
+    said('00003.png', await mask());
+    const { lines } = await run([file, '--corrections', corrections, '--overlay', '--out', out]);
+    assert.deepEqual(lines.slice(0, -1).map(({ objects }) => objects), Array(COUNT).fill([9]));
+    rmSync(join(corrections, '00003.png'));
+    said('f3.png', await mask());
+    await run([frames, '--corrections', corrections, '--overlay', '--out', path('frames-out')]);
+    for (let k = 0; k < COUNT; k++) {
+      for (const folder of ['labels', 'overlay']) {
+        assert.deepEqual(readFileSync(join(out, folder, `0000${k}.png`)), readFileSync(path('frames-out', folder, `f${k}.png`)));
+      }
+    }
+    const { stderr: said3 } = await run([file, '--corrections', corrections, '--out', path('no')], { code: 1 });
+    assert.match(said3, /f3\.png' has the name of no frame/);
+  });
+});
+
+/** A PNG of these bit depth and colour type, from rows with their filters. */
+function onePng([depth, type], rows) {
+  const header = Buffer.alloc(13);
+  header.writeUInt32BE(SIZE.width, 0);
+  header.writeUInt32BE(SIZE.height, 4);
+  header.set([depth, type], 8);
+  const chunks = [['IHDR', header], ['PLTE', Buffer.alloc(6)], ['IDAT', deflateSync(rows)], ['IEND', Buffer.alloc(0)]];
+  const packed = chunks.map(([name, content]) => {
+    const chunk = Buffer.alloc(content.length + 12);
+    chunk.writeUInt32BE(content.length, 0);
+    chunk.write(name, 4, 'latin1');
+    content.copy(chunk, 8);
+    return chunk;
+  });
+  return Buffer.concat([Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]), ...packed]);
+}

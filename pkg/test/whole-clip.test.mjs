@@ -1,0 +1,339 @@
+// Clips whose frames can be read again: corrections, edits, states and pairs that are known, directly and in workers.
+
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { Worker } from 'node:worker_threads';
+import { segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
+import { frame } from './support/frames.mjs';
+import { failure } from './support/shapes.mjs';
+
+const COUNT = 7;
+const SIZE = { width: 96, height: 72 };
+const PIXELS = SIZE.width * SIZE.height;
+const FAST = { quality: 'fast' };
+const ALL = Array.from({ length: COUNT }, (_, index) => index);
+
+const list = ALL.map((index) => frame(index / 2, SIZE));
+/** A source that counts what is read, and may fail. */
+function readable(fail = () => false, count = COUNT) {
+  const source = { length: count, asked: [] };
+  source.read = (index) => {
+    source.asked.push(index);
+    if (fail(index, source.asked)) throw MINE;
+    return list[index];
+  };
+  return source;
+}
+const MINE = new Error('mine');
+
+/** Where the square is in frame 3. */
+const mask = (inside, outside) =>
+  Uint8Array.from({ length: PIXELS }, (_, p) => {
+    const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
+    return x >= 27 && x < 63 && y >= 20 && y < 56 ? inside : outside;
+  });
+
+async function all(clip) {
+  const frames = [];
+  for await (const one of clip) frames.push(one);
+  return frames;
+}
+
+/** The indices that a clip returns before it fails, and its error. */
+async function until(clip) {
+  const given = [];
+  const error = await failure((async () => {
+    for await (const { index } of clip) given.push(index);
+  })());
+  return { given, error };
+}
+
+/** The frames of a clip, its tracks, its state, and the stages it went through. */
+async function outcome(segment, source, options) {
+  const stages = { pairs: [], corrections: [], labels: [] };
+  const clip = segment(source, { ...FAST, onProgress: ({ stage, frame }) => stages[stage].push(frame), ...options });
+  assert.equal(await clip.state(), undefined, 'nothing is known yet');
+  return { frames: await all(clip), tracks: clip.tracks(), state: await clip.state(), stages };
+}
+
+const idsOf = (frames) => frames.map(({ objects }) => objects.map(({ id }) => id));
+
+const whole = await outcome(segmentClip, readable());
+const corrected = await outcome(segmentClip, readable(), { corrections: [{ frame: 3, labels: mask(9, 0) }] });
+
+/** Both ways to segment a clip. */
+const WAYS = {
+  directly: () => segmentClip,
+  'in a worker': (t) => {
+    const segmenter = new Segmenter();
+    t.after(() => segmenter.close());
+    return (...args) => segmenter.segmentClip(...args);
+  },
+};
+
+for (const [way, make] of Object.entries(WAYS)) {
+  describe(`a whole clip ${way}`, () => {
+    test('reads every frame for its pairs and for its labels', async (t) => {
+      const source = readable();
+      const { frames, tracks, state, stages } = await outcome(make(t), source);
+      assert.deepEqual({ frames, tracks, state }, { frames: whole.frames, tracks: whole.tracks, state: whole.state });
+      assert.deepEqual(stages, { pairs: ALL, corrections: [], labels: ALL });
+      assert.deepEqual(source.asked, [...ALL, ...ALL]);
+      assert.deepEqual(idsOf(frames), ALL.map(() => [1]));
+    });
+
+    test('a correction holds to the pixel and spreads both ways', async (t) => {
+      const source = readable();
+      const { frames, tracks, stages } = await outcome(make(t), source, { corrections: [{ frame: 3, labels: mask(9, 0) }] });
+      assert.deepEqual(frames[3].labels, mask(9, 0));
+      assert.deepEqual(idsOf(frames), ALL.map(() => [9]));
+      assert.deepEqual(tracks.objects.map(({ id, first, last }) => [id, first, last]), [[9, 0, COUNT - 1]]);
+      assert.deepEqual(stages, { pairs: ALL, corrections: [3, 4, 5, 6, 2, 1, 0], labels: ALL });
+      assert.deepEqual(frames, corrected.frames);
+    });
+
+    test('edits merge, remove and name', async (t) => {
+      const edits = { merge: [[9, 1]], names: { 9: 'square', 30: 'nobody' } };
+      const merged = await outcome(make(t), readable(), { edits });
+      assert.deepEqual(idsOf(merged.frames), ALL.map(() => [9]));
+      const labels = whole.frames.map(({ labels }) => labels.map((label) => 9 * label));
+      assert.deepEqual(merged.frames.map(({ labels }) => labels), labels);
+      assert.deepEqual(merged.tracks.objects.map(({ id, name }) => [id, name]), [[9, 'square']]);
+      for (const name of ['delete', 'background']) {
+        const { frames, tracks } = await outcome(make(t), readable(), { edits: { [name]: [1, 77] } });
+        assert.deepEqual([idsOf(frames), tracks.objects], [ALL.map(() => []), []]);
+        assert.ok(frames.every(({ labels }) => labels.every((label) => label === 0)));
+      }
+    });
+
+    test('a state takes the place of all pairs', async (t) => {
+      const segment = make(t);
+      const source = readable();
+      const again = await outcome(segment, source, { state: whole.state });
+      assert.deepEqual({ ...again, stages: 0 }, { ...whole, stages: 0 });
+      assert.deepEqual([again.stages.pairs, source.asked], [[], ALL]);
+      const corrections = [{ frame: 3, labels: mask(9, 0) }];
+      const later = await outcome(segment, list, { state: whole.state, corrections });
+      assert.deepEqual({ ...later, stages: 0 }, { ...corrected, stages: 0 });
+      assert.deepEqual(later.stages.pairs, []);
+      // It keeps corrections until they are taken back, and edits.
+      const kept = await outcome(segment, list, { state: later.state, edits: { merge: [[4, 9]] } });
+      assert.deepEqual(idsOf(kept.frames), ALL.map(() => [4]));
+      const back = await outcome(segment, list, { state: later.state, corrections: [{ frame: 3, labels: mask(255, 255) }] });
+      assert.deepEqual(idsOf(back.frames), idsOf(whole.frames));
+    });
+
+    test('changesOnly gives the frames that corrections and edits change', async (t) => {
+      const segment = make(t);
+      const changes = async (options) => (await outcome(segment, readable(), { state: whole.state, changesOnly: true, ...options })).frames;
+      const frames = await changes({ corrections: [{ frame: 3, labels: mask(9, 0) }] });
+      assert.deepEqual(frames, ALL.map((index) => corrected.frames[index]));
+      assert.deepEqual(await changes({ edits: { delete: [2] } }), []);
+      assert.deepEqual((await changes({ edits: { delete: [1] } })).map(({ index }) => index), ALL);
+      assert.deepEqual(await changes({}), []);
+      // What was found anyway changes little.
+      const corrections = [{ frame: 3, labels: whole.frames[3].labels }];
+      const few = await changes({ corrections });
+      assert.ok(few.length < COUNT);
+      const given = new Map(few.map((one) => [one.index, one]));
+      const { frames: every } = await outcome(segment, list, { state: whole.state, corrections });
+      for (const one of every) assert.deepEqual(one, given.get(one.index) ?? whole.frames[one.index]);
+    });
+
+    test('an interrupted run goes on with the pairs that are known', async (t) => {
+      const segment = make(t);
+      const kept = new Map();
+      const onPairs = async (index, pairs) => {
+        kept.set(index, pairs);
+        if (index === 3) throw MINE;
+      };
+      assert.deepEqual(await until(segment(readable(), { ...FAST, onPairs })), { given: [], error: MINE });
+      assert.deepEqual([...kept.keys()], [0, 1, 2, 3]);
+      kept.set(1, kept.get(1).slice(0, 40));
+      kept.set(2, new Uint8Array(3));
+      const solved = [];
+      const options = { knownPairs: async (index) => kept.get(index), onPairs: (index) => void solved.push(index) };
+      const { frames, tracks, state } = await outcome(segment, readable(), options);
+      assert.deepEqual(solved, [1, 2, 4, 5, 6], 'damaged ones are solved again');
+      assert.deepEqual({ frames, tracks, state }, { frames: whole.frames, tracks: whole.tracks, state: whole.state });
+      assert.deepEqual(kept.get(0).length > 0, true, 'the bytes stay the caller\'s');
+      const unfit = await until(segment(readable(), { ...FAST, knownPairs: () => 'pairs' }));
+      assert.deepEqual([unfit.error.code, unfit.given], ['invalid-input', []]);
+    });
+
+    test('a frame that cannot be read the first time ends the clip before it, one of the second time there', async (t) => {
+      const segment = make(t);
+      for (const fail of [(index) => index === 4, (index, { length }) => length === COUNT + 5]) {
+        const source = readable(fail);
+        assert.deepEqual(await until(segment(source, FAST)), { given: [0, 1, 2, 3], error: MINE });
+      }
+      const corrections = [{ frame: 3, labels: mask(9, 0) }];
+      const early = await until(segment(readable((index) => index === 2), { ...FAST, corrections }));
+      assert.deepEqual(early, { given: [0, 1], error: MINE }, 'what is said of a later frame does not matter');
+      const midway = await until(segment(readable((_, { length }) => length === COUNT + 2), { ...FAST, corrections }));
+      assert.deepEqual(midway, { given: [], error: MINE });
+      const other = { length: COUNT, read: (index) => (index === 2 ? frame(0, { width: 80, height: 72 }) : list[index]) };
+      const { given, error } = await until(segment(other, FAST));
+      assert.deepEqual([given, error.code, error.message.startsWith('frame 2 ')], [[0, 1], 'frame-size-mismatch', true]);
+    });
+
+    test('is cancelled in each of its passes, and left early', async (t) => {
+      const segment = make(t);
+      const options = { ...FAST, corrections: [{ frame: 3, labels: mask(9, 0) }] };
+      for (const [stage, given] of [['pairs', []], ['corrections', []], ['labels', [0, 1, 2, 3]]]) {
+        const controller = new AbortController();
+        const onProgress = (progress) => progress.stage === stage && progress.frame === 4 && controller.abort();
+        const ended = await until(segment(readable(), { ...options, onProgress, signal: controller.signal }));
+        assert.deepEqual([ended.given, ended.error.code], [given, 'cancelled'], stage);
+      }
+      const source = readable();
+      for await (const { index } of segment(source, FAST)) if (index === 1) break;
+      assert.deepEqual(source.asked, [...ALL, 0, 1]);
+      assert.deepEqual((await outcome(segment, list.slice(0, 2), { lookAhead: 'all' })).frames.length, 2);
+    });
+
+    test('refuses corrections, edits and states before any pair is solved', async (t) => {
+      const segment = make(t);
+      const said = (frame, labels = mask(1, 255)) => ({ corrections: [{ frame: 0, labels: mask(1, 255) }, { frame, labels }] });
+      const damaged = whole.state.slice(0, -1);
+      const cases = [
+        [{ corrections: {} }, /'corrections': must be a list/],
+        [{ corrections: [5] }, /'corrections': must be a list/],
+        [said(COUNT), /number 1 must have a frame from 0 to 6/],
+        [said(-1), /number 1 must have a frame/],
+        [said('2'), /number 1 must have a frame/],
+        [said(0), /number 1 corrects frame 0, as one before does/],
+        [said(2, [1]), /number 1 must have labels, a Uint8Array/],
+        [said(2, new Uint8Array(12)), /that of frame 2 has 12 labels, a frame has 96×72 pixels/],
+        [{ ...said(2, new Uint8Array(12)), state: whole.state }, /that of frame 2 has 12 labels/],
+        [{ edits: [] }, /'edits': must be an object/],
+        [{ edits: { join: [] } }, /'edits': there is no edit 'join'; there are merge/],
+        [{ edits: { merge: [2, 5] } }, /'merge' must be lists of two or more objects, numbers from 1 to 254/],
+        [{ edits: { merge: [[2]] } }, /'merge' must be lists/],
+        [{ edits: { merge: [[2, 255]] } }, /'merge' must be lists/],
+        [{ edits: { merge: [[2, 5], [3, 5]] } }, /object 5 cannot become object 2 and object 3/],
+        [{ edits: { merge: [[2, 5]], delete: [5] } }, /object 5 cannot become object 2 and background/],
+        [{ edits: { delete: 3 } }, /'delete' must be a list of objects/],
+        [{ edits: { background: [0] } }, /'background' must be a list of objects/],
+        [{ edits: { names: { 0: 'ground' } } }, /'names' has a name for '0'/],
+        [{ edits: { names: { 1: 5 } } }, /'names' must have a text for object 1/],
+        [{ state: whole.state, frames: list.slice(1) }, /'state': it is of a clip of 7 frames, not 6/],
+        [{ state: damaged }, /'state': it is damaged/],
+        [{ state: new Uint8Array(50) }, /'state': these bytes are not of this version/],
+        [{ changesOnly: 1 }, /'changesOnly': must be true or false/],
+        [{ onPairs: 1 }, /'onPairs': must be a function/],
+        [{ knownPairs: {} }, /'knownPairs': must be a function/],
+        [{ state: whole.state, lookAhead: 9 }, /'lookAhead'/],
+      ];
+      for (const [{ frames = list, ...options }, message] of cases) {
+        const stages = [];
+        const { given, error } = await until(segment(frames, { ...FAST, ...options, onProgress: ({ stage }) => stages.push(stage) }));
+        assert.ok(error instanceof VeroneseError, String(error));
+        assert.deepEqual([given, stages, error.code], [[], [], 'invalid-option'], error.message);
+        assert.match(error.message, message);
+      }
+      assert.equal((await until(segment(list, { state: 'text' }))).error.code, 'invalid-input');
+      const other = ALL.map(() => frame(0, { width: 80, height: 72 }));
+      assert.equal((await until(segment(other, { state: whole.state }))).error.code, 'frame-size-mismatch');
+    });
+  });
+}
+
+describe('what makes a clip a whole one', () => {
+  const stagesOf = async (source, options) => (await outcome(segmentClip, source, options)).stages.labels.length > 0;
+
+  test('an array is a stream unless more is asked for', async () => {
+    assert.equal(await stagesOf(list), false);
+    for (const options of [{ lookAhead: 'all' }, { corrections: [] }, { edits: {} }, { onPairs: () => {} }]) {
+      const { frames, stages } = await outcome(segmentClip, list, options);
+      assert.deepEqual([frames, stages.labels], [whole.frames, ALL]);
+    }
+  });
+
+  test('frames to read are a whole clip unless they are looked ahead a few frames and no more is asked for', async () => {
+    assert.equal(await stagesOf(readable(), { lookAhead: 2 }), false);
+    const { frames } = await outcome(segmentClip, readable(), { lookAhead: 2, edits: {} });
+    const stream = await outcome(segmentClip, readable(), { lookAhead: 2 });
+    assert.deepEqual(frames.map(({ labels }) => labels), stream.frames.map(({ labels }) => labels));
+    assert.equal(stream.state, undefined);
+  });
+
+  test('what comes once cannot be one, and nothing is taken from it', async () => {
+    const options = [{ lookAhead: 'all' }, { corrections: [] }, { edits: {} }, { state: whole.state }, { changesOnly: true }, { onPairs() {} }, { knownPairs() {} }];
+    for (const option of options) {
+      let taken = 0;
+      const once = (function* () { for (const one of list) yield ((taken += 1), one); })();
+      const { error } = await until(segmentClip(once, option));
+      assert.deepEqual([error.code, taken], ['invalid-option', 0]);
+      assert.match(error.message, new RegExp(`option '${Object.keys(option)[0]}': needs frames that can be read again: an array, or \\{ length, read\\(index\\) \\}`));
+    }
+  });
+
+  test('frames of an array are transferred when they are read for the last time', async () => {
+    const own = list.map(({ data, ...size }) => ({ data: data.slice(), ...size }));
+    assert.deepEqual(await all(segmentClip(own, { ...FAST, lookAhead: 'all', transfer: true })), whole.frames);
+    assert.deepEqual(own.map(({ data }) => data.length), ALL.map(() => 0));
+  });
+});
+
+describe('clips', () => {
+  test('mark what is unknown, and nothing else changes', async () => {
+    const marked = await outcome(segmentClip, readable(), { markUnknown: true });
+    const count = marked.frames.reduce((sum, { labels }) => sum + labels.filter((label) => label === 255).length, 0);
+    assert.ok(count > 0, 'something is unknown');
+    marked.frames.forEach(({ labels }, index) => {
+      labels.forEach((label, p) => label === 255 || assert.equal(label, whole.frames[index].labels[p]));
+    });
+    for (const markUnknown of [true, false]) {
+      const again = await outcome(segmentClip, list, { state: whole.state, markUnknown });
+      assert.deepEqual(again.frames, (markUnknown ? marked : whole).frames);
+    }
+    const streamed = await outcome(segmentClip, list, { markUnknown: true, lookAhead: 2 });
+    assert.ok(streamed.frames.some(({ labels }) => labels.includes(255)));
+  });
+
+  test('end without a motion to the next frame, streams too', async () => {
+    for (const lookAhead of [0, 2, 'all']) {
+      const { tracks } = await outcome(segmentClip, list, { lookAhead });
+      assert.ok(tracks.objects.length > 0);
+      const last = tracks.objects.flatMap(({ frames }) => frames.filter(({ frame }) => frame === COUNT - 1));
+      assert.deepEqual(last.map(({ matrix }) => matrix), last.map(() => null));
+      assert.ok(last.length > 0);
+      // The first frame of a stream that waits for none comes from nowhere.
+      assert.deepEqual(tracks.background.map(({ frame }) => frame), ALL.slice(lookAhead === 0 ? 1 : 0, -1));
+    }
+  });
+
+  test('a state is bytes of any kind: damaged ones never end the module', async () => {
+    for (let at = 8; at < whole.state.length; at += 311) {
+      const state = whole.state.slice();
+      state[at] ^= 255;
+      const clip = all(segmentClip(list, { state, corrections: [{ frame: 3, labels: mask(9, 0) }] }));
+      const ended = await clip.then((frames) => frames.length, ({ code }) => code);
+      assert.ok([COUNT, 'invalid-option', 'frame-size-mismatch'].includes(ended), `byte ${at}: ${ended}`);
+    }
+  });
+
+  test('a worker that dies between two labels ends the clip; the segmenter goes on', async (t) => {
+    const workers = [];
+    const worker = () => {
+      workers.push(new Worker(new URL('../dist/worker-node.js', import.meta.url)));
+      return workers.at(-1);
+    };
+    const segmenter = new Segmenter(undefined, { worker });
+    t.after(() => segmenter.close());
+    const dying = segmenter.segmentClip(readable(), FAST);
+    await dying.next();
+    await workers[0].terminate();
+    assert.equal((await until(dying)).error.code, 'worker-failed');
+    assert.deepEqual(await all(segmenter.segmentClip(readable(), FAST)), whole.frames);
+    assert.equal(workers.length, 2);
+  });
+
+  test('of a pool run side by side', async (t) => {
+    const pool = new SegmenterPool({ jobs: 2 });
+    t.after(() => pool.close());
+    const clips = [pool.segmentClip(readable(), FAST), pool.segmentClip(list, { corrections: [{ frame: 3, labels: mask(9, 0) }], ...FAST })];
+    assert.deepEqual(await Promise.all(clips.map(all)), [whole.frames, corrected.frames]);
+  });
+});
