@@ -41,12 +41,12 @@ export async function resultOf(out, job) {
 }
 
 /** The text of a result, with a hash of job and text at its end. */
-function recordOf(job, content) {
+export function recordOf(job, content) {
   return JSON.stringify({ ...content, seal: sha256(job + JSON.stringify(content)) });
 }
 
 /** Errors that lie in the frames: another attempt would find the same, so they are the result. */
-const FINAL = new Set(['unreadable-image', 'frame-size-mismatch', 'frame-size-unsupported', 'invalid-option']);
+export const FINAL = new Set(['unreadable-image', 'frame-size-mismatch', 'frame-size-unsupported', 'invalid-option']);
 
 /** Does a job unless it is done. Returns whether there was something to do. */
 export async function perform(pool, { job, first, second, out, options }) {
@@ -68,7 +68,7 @@ export async function perform(pool, { job, first, second, out, options }) {
 }
 
 /** Under another name first: a reader sees a whole file or none, whenever the writer ends. */
-async function writeWhole(path, content) {
+export async function writeWhole(path, content) {
   await mkdir(dirname(path), { recursive: true });
   const part = `${path}.${randomUUID()}.part`;
   try {

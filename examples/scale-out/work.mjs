@@ -6,6 +6,7 @@ import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
 import { Worker } from 'bullmq';
 import { SegmenterPool } from 'veronese';
+import { performClip } from './clip.mjs';
 import { connect } from './connection.mjs';
 import { perform, QUEUE } from './job.mjs';
 
@@ -16,7 +17,7 @@ const lock = Number(values.lock);
 
 const connection = connect();
 const pool = new SegmenterPool({ jobs });
-const worker = new Worker(QUEUE, ({ data }) => perform(pool, data), {
+const worker = new Worker(QUEUE, ({ name, data }) => (name === 'clip' ? performClip(pool, data) : perform(pool, data)), {
   connection,
   concurrency: jobs,
   lockDuration: lock,
@@ -26,8 +27,8 @@ const worker = new Worker(QUEUE, ({ data }) => perform(pool, data), {
   removeOnComplete: { count: 0 },
   removeOnFail: { count: 1000 },
 });
-worker.on('completed', ({ data: { index } }, did) => console.log(JSON.stringify({ index, did })));
-worker.on('failed', (job, error) => console.error(`${job?.data.first}: ${error.message}`));
+worker.on('completed', ({ name, data: { index } }, done) => console.log(JSON.stringify(name === 'clip' ? { clip: index, ...done } : { index, did: done })));
+worker.on('failed', (job, error) => console.error(`${job?.data.first ?? job?.data.folder}: ${error.message}`));
 worker.on('error', () => undefined); // The connection speaks for itself.
 
 let ending = false;

@@ -1,12 +1,13 @@
 // examples/scale-out, where there is a Redis or Valkey server.
 
 import assert from 'node:assert/strict';
-import { readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
 import { SegmenterPool } from 'veronese';
+import { clipJobOf, clipPlaceOf, clipResultOf, performClip } from '../../../examples/scale-out/clip.mjs';
 import { jobOf, perform, placeOf, resultOf, sha256 } from '../../../examples/scale-out/job.mjs';
 import { prove, redisServer } from '../../../scripts/lib/scale-out.mjs';
-import { pair, png } from '../support/frames.mjs';
+import { frame, pair, png } from '../support/frames.mjs';
 import { temporaryFolder } from '../support/program.mjs';
 
 const program = await redisServer();
@@ -52,4 +53,39 @@ test('a result that was edited, damaged or lost its image is done again', async 
   assert.equal(await perform(pool, failing), true);
   assert.equal((await resultOf(out, failing.job)).error.code, 'unreadable-image');
   assert.equal(await perform(pool, failing), false);
+});
+
+test('a clip whose worker is lost goes on at the last frame solved, to the same files', async (t) => {
+  const folder = temporaryFolder(t);
+  const frames = folder.path('frames');
+  mkdirSync(frames);
+  for (let k = 0; k < 8; k++) folder.file(`frames/${k}.png`, Buffer.from(png(frame(k, { width: 64, height: 48 }))));
+  const options = { quality: 'fast', seed: 1 };
+  const job = await clipJobOf(frames, options);
+  const [out, straight] = [folder.path('out'), folder.path('straight')];
+  const task = { job, folder: frames, options };
+
+  const lost = new SegmenterPool({ jobs: 1 });
+  const running = performClip(lost, { ...task, out });
+  const solved = () => (existsSync(`${clipPlaceOf(out, job)}/pairs`) ? readdirSync(`${clipPlaceOf(out, job)}/pairs`).length : 0);
+  while (solved() < 3) await new Promise((resume) => setTimeout(resume, 5));
+  lost.close();
+  await assert.rejects(running);
+  assert.equal(await clipResultOf(out, job), undefined);
+
+  const pool = new SegmenterPool({ jobs: 1 });
+  t.after(() => pool.close());
+  const { did, known } = await performClip(pool, { ...task, out });
+  assert.ok(did && known >= 3, `${known} known`);
+  assert.deepEqual(await performClip(pool, { ...task, out: straight }), { did: true, known: 0 });
+  const files = (place) => readdirSync(place).sort().map((name) => [name, readFileSync(`${place}/${name}`, 'base64')]);
+  const found = files(clipPlaceOf(out, job));
+  assert.deepEqual(found, files(clipPlaceOf(straight, job)));
+  assert.deepEqual(found.map(([name]) => name), [...Array.from({ length: 8 }, (_, k) => `${k}.png.png`), 'clip.json']);
+  assert.deepEqual(await performClip(pool, { ...task, out }), { did: false, known: 0 });
+
+  rmSync(`${clipPlaceOf(out, job)}/3.png.png`);
+  assert.equal(await clipResultOf(out, job), undefined, 'an image is missing');
+  assert.equal((await performClip(pool, { ...task, out })).did, true);
+  assert.deepEqual(files(clipPlaceOf(out, job)), found);
 });

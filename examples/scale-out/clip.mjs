@@ -1,0 +1,78 @@
+// One clip as a job: what it is called, where its result is, how it is done. What the pairs of each frame told is kept until the clip is
+// done, so that a worker that takes over from another one continues at the last frame solved.
+
+import { mkdir, readFile, readdir, rm } from 'node:fs/promises';
+import { join } from 'node:path';
+import { davisPalette, version } from 'veronese';
+import { decodeImage, encodeIndexedPng } from 'veronese/codecs';
+import { FINAL, recordOf, sha256, writeWhole } from './job.mjs';
+
+/** The names of the frames in a folder, in order. */
+export async function framesOf(folder) {
+  return (await readdir(folder)).filter((name) => /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i.test(name)).sort();
+}
+
+/** The name of a clip's job: names and contents of the frames, settings, version. */
+export async function clipJobOf(folder, options) {
+  const hashes = [];
+  for (const name of await framesOf(folder)) hashes.push([name, sha256(await readFile(join(folder, name)))]);
+  return `clip-${sha256(JSON.stringify({ software: `veronese ${version}`, options, hashes }))}`;
+}
+
+/** `OUT/ab/clip-ab…`: the folder of a clip's result. */
+export function clipPlaceOf(out, job) {
+  return join(out, job.slice(5, 7), job);
+}
+
+/** The tracks that a job found, or undefined where it is not done, or where its files are no longer what was written. */
+export async function clipResultOf(out, job) {
+  const place = clipPlaceOf(out, job);
+  try {
+    const text = await readFile(join(place, 'clip.json'), 'utf8');
+    const { seal: _, ...sealed } = JSON.parse(text);
+    if (text !== recordOf(job, sealed)) return undefined;
+    const { images = {}, ...result } = sealed;
+    for (const [name, hash] of Object.entries(images)) {
+      if (sha256(await readFile(join(place, name))) !== hash) return undefined;
+    }
+    return result;
+  } catch (error) {
+    if (error.code === 'ENOENT' || error instanceof SyntaxError || error instanceof TypeError) return undefined;
+    throw error;
+  }
+}
+
+/** Does a clip unless it is done. Returns whether there was something to do, and how many frames were known from an earlier attempt. */
+export async function performClip(pool, { job, folder, out, options }) {
+  if (await clipResultOf(out, job)) return { did: false, known: 0 };
+  if ((await clipJobOf(folder, options)) !== job) throw new Error(`${folder} has changed since the job was made`);
+  const [place, names] = [clipPlaceOf(out, job), await framesOf(folder)];
+  const pairs = (index) => join(place, 'pairs', String(index));
+  await mkdir(join(place, 'pairs'), { recursive: true });
+  let [known, size] = [0, { width: 0, height: 0 }];
+  try {
+    const source = { length: names.length, read: async (index) => (size = await decodeImage(await readFile(join(folder, names[index])))) };
+    const clip = pool.segmentClip(source, {
+      ...options,
+      onPairs: (index, bytes) => writeWhole(pairs(index), bytes),
+      knownPairs: async (index) => {
+        const bytes = await readFile(pairs(index)).catch(() => undefined);
+        if (bytes) known += 1;
+        return bytes;
+      },
+    });
+    const images = {};
+    for await (const { index, labels } of clip) {
+      const image = await encodeIndexedPng(size.width, size.height, labels, davisPalette());
+      const name = `${names[index]}.png`;
+      await writeWhole(join(place, name), image);
+      images[name] = sha256(image);
+    }
+    await writeWhole(join(place, 'clip.json'), recordOf(job, { frames: names, ...clip.tracks(), images }));
+  } catch (error) {
+    if (!FINAL.has(error.code)) throw error;
+    await writeWhole(join(place, 'clip.json'), recordOf(job, { error: { code: error.code, message: error.message } }));
+  }
+  await rm(join(place, 'pairs'), { recursive: true, force: true });
+  return { did: true, known };
+}
