@@ -10,7 +10,7 @@ use crate::view::level::Level;
 /// Reach of the search for a start at the coarsest level, pixels of that level. Its square is the price. Not varied.
 const REACH: i32 = 3;
 /// How much cheaper than the zero motion (in summed costs) another motion must be. Static cameras are common, and a small wrong
-/// motion of the background does more harm later than missing a small true one here. Chosen on generated scenes.
+/// motion of the background does more harm later than missing a small true one here. Insensitive.
 const STATIC_BONUS: f64 = 20.0;
 /// Mean cost per pixel of length that decides ties for the shorter shift.
 const LENGTH_PRICE: f64 = 1e-3;

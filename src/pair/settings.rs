@@ -96,7 +96,7 @@ const SMOOTHNESS: [f32; 2] = [8.0, 12.0];
 const OBJECT_BIAS: f32 = 0.05;
 /// Gains that pay for a motion in the first selection and, on a quarter of the pixels, at finer levels. Chosen on generated scenes.
 const PRICE: [f64; 2] = [60.0, 30.0];
-/// Price of a motion in the comparison of two hypotheses. Chosen on generated scenes.
+/// Price of a motion in the comparison of two hypotheses. Insensitive.
 const HYPOTHESIS_PRICE: f64 = 300.0;
 
 /// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.

@@ -14,7 +14,7 @@ use crate::workspace::Buffer;
 const PRIOR: f32 = 1e-3;
 /// Cost per nat of improbability if colours can be trusted entirely. Confirmed on real pairs.
 const PRICE_PER_NAT: f32 = 1.0;
-/// Largest cost of a colour: that of a pixel that a motion does not explain.
+/// Largest cost of a colour: that of a pixel that a motion does not explain. Insensitive.
 const LARGEST_PRICE: f32 = 2.0;
 /// Summed margins, in costs, below which the colours of a label are unknown: ten pixels of the largest margin. Not varied.
 const SMALLEST_SUPPORT: f32 = 20.0;
