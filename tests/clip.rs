@@ -285,7 +285,7 @@ fn mistakes_have_a_code_and_the_clip_goes_on() {
     assert!(matches!(clip.correct(2, &[255; 160 * 120]), Err(Error::InvalidOption { name: "frame", .. })));
     assert!(matches!(clip.correct(0, &[255; 12]), Err(Error::InvalidOption { name: "corrections", .. })));
     assert!(matches!(clip.renumber(0, 3), Err(Error::InvalidOption { name: "objects", .. })));
-    let mut correction = clip.correct(0, &[255; 160 * 120]).unwrap();
+    let mut correction = clip.correct(0, &[0; 160 * 120]).unwrap();
     assert!(matches!(correction.take(&mut clip, &small), Err(Error::FrameSizeMismatch { .. })));
     assert_eq!(correction.wanted(), Some(0), "it waits for the right frame");
 }

@@ -130,10 +130,12 @@ impl ClipCorrection {
                 changed.push(t);
             }
         }
+        // Where nothing is said, an earlier correction is taken back and no more.
+        let says = labels.iter().any(|&label| label != NOTHING_SAID);
         ClipCorrection {
             index,
             said: Runs::of(labels),
-            direction: Direction::Here,
+            direction: if says { Direction::Here } else { Direction::Ended },
             start: None,
             front: None,
             colours: LabelColours::default(),

@@ -39,7 +39,7 @@ pub enum ClipPart {
     Colours,
     /// The second round.
     SecondRound,
-    /// Joining of parts that move together, and dropping of objects of a few frames.
+    /// What only the whole clip tells: objects that part, parts that move together, objects of a few frames.
     Grouping,
 }
 
