@@ -1,5 +1,6 @@
 //! The image pipeline: the stages that turn two frames into masks, in order.
 
+mod consensus;
 mod correction;
 mod evidence;
 mod hypothesis;
@@ -13,21 +14,26 @@ pub use report::{PairEvidence, Segmentation, SegmentedMotion};
 #[doc(hidden)]
 pub use settings::Part;
 
+use std::cell::OnceCell;
+
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
 use crate::estimation::dominant::{RIDGE, dominant_motion, dominant_motion_near};
 use crate::frame::Frame;
+use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::labelling::regions::groups::groups;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
-use crate::random::Random;
 #[cfg(feature = "ablation")]
 use crate::tuning::{Tuned, varied};
 use crate::view::brightness::Photometric;
 use crate::view::cost::{View, noise};
 use crate::view::level::{Level, levels};
-use crate::workspace;
+use crate::workspace::{self, Buffer};
+use consensus::{foreground, nearest_to_majority};
+use labels::Labelled;
 use settings::Settings;
 
 /// Iterations that refine the dominant motion once the brightness is known. Chosen on generated scenes.
@@ -100,24 +106,55 @@ fn segment_with(
     options.motions.validate()?;
     check_sizes(first, second, before)?;
     let _call = workspace::begin([first.width(), first.height()]);
-    let mut stages = Stages::new(STAGES, progress);
-    let mut random = Random::from_seed(options.seed);
-
-    stages.begin("frames");
-    let pyramid = settings.pyramid(first);
-    let before = before.map(|frame| settings.pyramid(frame));
-    let mut pair = Pair::new(first, &pyramid, &settings.pyramid(second), before.as_ref(), &settings);
-    // The pair now has the planes of the other frames to itself and need not copy what it changes.
-    drop(before);
-    stages.begin("dominant");
-    let dominant = pair.find_dominant(settings.has(Part::Brightness));
-    let (found, _) = hypothesis::best(&pair, dominant, &[], &settings, &mut random, &mut stages);
-    stages.begin("refinement");
-    let found = hypothesis::refine(&pair, found, &settings);
-    stages.begin("labels");
-    let labelled = labels::label(&pair, found, &settings);
+    let images =
+        if settings.mirror_images && settings.has(Part::MirrorImages) { &Mirror::ALL[..] } else { &Mirror::ALL[..1] };
+    let mut stages = Stages::in_rounds(STAGES, images.len(), progress);
+    let pyramids: Vec<OnceCell<FramePyramid>> = images.iter().map(|_| OnceCell::new()).collect();
+    let mut searches: Vec<Search<'_>> = Vec::with_capacity(images.len());
+    for (round, (&mirror, pyramid)) in images.iter().zip(&pyramids).enumerate() {
+        stages.begin_round(round);
+        let [first, second] = [first, second].map(|frame| mirror.frame(frame));
+        let before = before.map(|frame| settings.pyramid(&mirror.frame(frame)));
+        let pyramid = pyramid.get_or_init(|| settings.pyramid(&first));
+        let pair = Pair::new(&first, pyramid, &settings.pyramid(&second), before.as_ref(), &settings);
+        // The pair now has the planes of the other frames to itself and need not copy what it changes.
+        drop(before);
+        searches.push(Search::new(pair, mirror, &settings, &mut stages));
+    }
     stages.begin("masks");
-    Ok(report::report(&pair, labelled, &settings, first, second, options))
+    let foregrounds: Vec<Buffer<bool>> = searches.iter().map(Search::foreground).collect();
+    let Search { mirror, pair, labelled } = searches.swap_remove(nearest_to_majority(&foregrounds));
+    let [first, second] = [first, second].map(|frame| mirror.frame(frame));
+    Ok(report::report(&pair, labelled, &settings, &first, &second, options).mirrored(mirror))
+}
+
+/// The search of the frames or of one of their mirror images.
+struct Search<'a> {
+    mirror: Mirror,
+    pair: Pair<'a>,
+    labelled: Labelled,
+}
+
+impl<'a> Search<'a> {
+    fn new(mut pair: Pair<'a>, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search<'a> {
+        stages.begin("dominant");
+        let dominant = pair.find_dominant(settings.has(Part::Brightness));
+        let (found, _) = hypothesis::best(&pair, dominant, &[], settings, stages);
+        stages.begin("refinement");
+        let found = hypothesis::refine(&pair, found, settings);
+        stages.begin("labels");
+        let labelled = labels::label(&pair, found, settings);
+        Search { mirror, pair, labelled }
+    }
+
+    /// The working pixels of the frames themselves that move in another way than the background.
+    fn foreground(&self) -> Buffer<bool> {
+        let Labelled { motions, labels, .. } = &self.labelled;
+        let width = self.pair.finest().width();
+        let mut foreground = foreground(labels, &groups(motions, labels, width, self.pair.reduction));
+        self.mirror.reorder(&mut foreground, width);
+        foreground
+    }
 }
 
 fn size(frame: &Frame) -> [usize; 2] {

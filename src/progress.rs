@@ -34,11 +34,26 @@ pub type Progress<'a> = &'a mut dyn FnMut(Stage);
 pub(crate) struct Stages<'a> {
     names: &'static [&'static str],
     progress: Progress<'a>,
+    /// How often all stages but the last are gone through.
+    rounds: usize,
+    /// Rounds that are over.
+    over: usize,
 }
 
 impl<'a> Stages<'a> {
     pub(crate) fn new(names: &'static [&'static str], progress: Progress<'a>) -> Self {
-        Stages { names, progress }
+        Stages::in_rounds(names, 1, progress)
+    }
+
+    /// Stages of which all but the last are gone through in several rounds.
+    pub(crate) fn in_rounds(names: &'static [&'static str], rounds: usize, progress: Progress<'a>) -> Self {
+        Stages { names, progress, rounds, over: 0 }
+    }
+
+    /// Reports that the first stage of another round begins.
+    pub(crate) fn begin_round(&mut self, round: usize) {
+        self.over = round;
+        self.begin(self.names[0]);
     }
 
     /// Reports that the stage `name` begins.
@@ -46,6 +61,11 @@ impl<'a> Stages<'a> {
     pub(crate) fn begin(&mut self, name: &'static str) {
         let index = self.names.iter().position(|&n| n == name);
         debug_assert!(index.is_some(), "stage {name} is not in the list");
-        (self.progress)(Stage { name, index: index.unwrap_or(0), of: self.names.len() });
+        let repeated = self.names.len() - 1;
+        (self.progress)(Stage {
+            name,
+            index: self.over * repeated + index.unwrap_or(0),
+            of: self.rounds * repeated + 1,
+        });
     }
 }

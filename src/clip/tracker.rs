@@ -179,7 +179,7 @@ impl Tracker {
 
     fn solve(&self, first: &Newest, second: &Newest, prior: Option<&Prior>, settings: &Settings) -> Solution {
         let prior = prior.filter(|_| self.has(ClipPart::WarmStart));
-        solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior, self.options.pair.seed)
+        solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior)
     }
 
     /// Goes on with what the pairs of the last frame and the newest one have told.

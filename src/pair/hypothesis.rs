@@ -8,7 +8,6 @@ use crate::estimation::proposal::tiles::from_tiles;
 use crate::estimation::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
-use crate::random::Random;
 use crate::view::cost::total;
 use crate::view::level::Level;
 
@@ -48,15 +47,14 @@ pub(super) fn best(
     dominant: AffineMotion,
     likely: &[AffineMotion],
     settings: &Settings,
-    random: &mut Random,
     stages: &mut Stages<'_>,
 ) -> (Found, f64) {
-    let (mut winner, mut least) = with_dominant(pair, dominant, likely, settings, random, stages);
+    let (mut winner, mut least) = with_dominant(pair, dominant, likely, settings, stages);
     let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
     if other && static_is_missing(&pair.levels[pair.selection], &winner.selected) {
         let (found, cost) = {
             let others: Vec<AffineMotion> = likely.iter().copied().chain([dominant]).collect();
-            with_dominant(pair, AffineMotion::STATIC, &others, settings, random, stages)
+            with_dominant(pair, AffineMotion::STATIC, &others, settings, stages)
         };
         if cost < CLEARLY_CHEAPER * least {
             (winner, least) = (found, cost);
@@ -94,7 +92,6 @@ fn with_dominant(
     dominant: AffineMotion,
     others: &[AffineMotion],
     settings: &Settings,
-    random: &mut Random,
     stages: &mut Stages<'_>,
 ) -> (Found, f64) {
     let level = &pair.levels[pair.base];
@@ -103,7 +100,7 @@ fn with_dominant(
     stages.begin("algebra");
     let mut proposals = Vec::new();
     if settings.has(Part::Algebra) {
-        proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements, random);
+        proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements);
     }
     if settings.has(Part::Windows) {
         proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));

@@ -13,6 +13,7 @@ use super::evidence::evidence;
 use super::labels::Labelled;
 use super::settings::{Part, Settings};
 use crate::answer::{Candidate, UNLABELLED};
+use crate::frame::mirror::Mirror;
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
@@ -48,6 +49,20 @@ pub struct Segmentation {
     /// is calibrated: of the pixels with probability P, about the share P is right. It is low where no motion fits.
     #[serde(skip)]
     pub confidence: Option<Vec<u8>>,
+}
+
+impl Segmentation {
+    /// The result of the mirror image of the frames.
+    pub(super) fn mirrored(mut self, mirror: Mirror) -> Segmentation {
+        let size = [self.width, self.height];
+        mirror.reorder(&mut self.labels, self.width);
+        self.confidence.iter_mut().for_each(|confidence| mirror.reorder(confidence, self.width));
+        for motion in &mut self.motions {
+            motion.matrix = mirror.motion(&motion.matrix, size);
+            motion.bbox = mirror.bbox(motion.bbox, size);
+        }
+        self
+    }
 }
 
 /// One motion of a [`Segmentation`].

@@ -38,10 +38,14 @@ pub enum Part {
     Colour,
     /// Upsampling along the edges of the full-size frame.
     GuidedEnlarging,
+    /// Searches of the frames' mirror images.
+    MirrorImages,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
+    /// Whether the mirror images of the frames are searched as well.
+    pub(crate) mirror_images: bool,
     /// How often the frames are halved to reach the working size.
     pub(crate) halvings: usize,
     /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
@@ -123,6 +127,7 @@ impl Settings {
         let (fine_side, smoothness) =
             if halvings > 0 { (WORK_SIDE_BEST, SMOOTHNESS[1]) } else { (SELECTION_SIDE, SMOOTHNESS[0]) };
         let best = Settings {
+            mirror_images: true,
             halvings,
             base_side: BASE_SIDE,
             selection_side: fine_side,
@@ -151,6 +156,7 @@ impl Settings {
         let mut settings = match options.quality {
             Quality::Best => best,
             Quality::Fast => Settings {
+                mirror_images: false,
                 halvings: halvings_to(WORK_SIDE_FAST, size),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
                 selection_side: BASE_SIDE,

@@ -12,7 +12,6 @@ use crate::labelling::regions::groups::groups;
 use crate::labelling::terms::views::{cheapest, costs_where_seen};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
-use crate::random::Random;
 use crate::view::cost::{CostModel, inverse};
 use crate::workspace::Buffer;
 
@@ -83,9 +82,7 @@ pub(crate) fn solve(
     second: &FramePyramid,
     settings: &Settings,
     prior: Option<&Prior>,
-    seed: u64,
 ) -> Solution {
-    let mut random = Random::from_seed(seed);
     let mut ignored = |_| {};
     let mut stages = Stages::new(super::STAGES, &mut ignored);
     let mut pair = Pair::new(first, pyramid, second, None, settings);
@@ -99,7 +96,7 @@ pub(crate) fn solve(
     let (found, cost) = expected.unwrap_or_else(|| {
         pair = Pair::new(first, pyramid, second, None, settings);
         let dominant = pair.find_dominant(brightness);
-        hypothesis::best(&pair, dominant, likely, settings, &mut random, &mut stages)
+        hypothesis::best(&pair, dominant, likely, settings, &mut stages)
     });
     let found = hypothesis::refine(&pair, found, settings);
     let labelled = labels::label(&pair, found, settings);

@@ -15,7 +15,6 @@ use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::measurements::Measurements;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
-use crate::random::Random;
 use crate::view::cost::CostModel;
 use crate::view::level::Level;
 use crate::workspace::{Buffer, kept};
@@ -55,9 +54,8 @@ pub(crate) fn from_algebra(
     flow: &LocalFlow,
     degrees: usize,
     most: usize,
-    random: &mut Random,
 ) -> Vec<AffineMotion> {
-    let Some(data) = unexplained(level, dominant, flow, most, random) else { return Vec::new() };
+    let Some(data) = unexplained(level, dominant, flow, most) else { return Vec::new() };
     let mut motions = Vec::new();
     for degree in 1..=degrees {
         if data.measurements.len() < PER_UNKNOWN * monomials::unknowns(degree) {
@@ -70,13 +68,7 @@ pub(crate) fn from_algebra(
     motions
 }
 
-fn unexplained(
-    level: &Level,
-    dominant: &AffineMotion,
-    flow: &LocalFlow,
-    most: usize,
-    random: &mut Random,
-) -> Option<Unexplained> {
+fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
     let position_sigma = CostModel::estimation().position_sigma * CostModel::estimation().position_sigma;
     let local = samples(level, dominant, &flow.u, &flow.v);
@@ -108,7 +100,8 @@ fn unexplained(
     if places.len() < PER_UNKNOWN * monomials::unknowns(1) {
         return None;
     }
-    let chosen = random.choose(places.len(), most);
+    let count = most.min(places.len());
+    let chosen = (0..count).map(|k| k * places.len() / count);
     let half = 0.5 * width as f64;
     let position = |x: usize, y: usize| [x as f64 / half - 1.0, (y as f64 - 0.5 * height as f64) / half];
     let derivatives = |x: usize, y: usize| {
@@ -118,14 +111,14 @@ fn unexplained(
         let length = (gx * gx + gy * gy + FLAT).sqrt();
         [gx / length, gy / length, temporal / (length * FLOW_UNIT)]
     };
-    let points = || chosen.iter().map(|&k| (places[k] % width, places[k] / width));
+    let points = || chosen.clone().map(|k| (places[k] % width, places[k] / width));
     let measurements = Measurements::checked(
         points().map(|(x, y)| position(x, y)).collect(),
         points().map(|(x, y)| derivatives(x, y)).collect(),
     );
     Some(Unexplained {
         measurements: measurements.ok()?,
-        weights: chosen.iter().map(|&k| f64::from(weights[k])).collect(),
+        weights: chosen.clone().map(|k| f64::from(weights[k])).collect(),
     })
 }
 
