@@ -21,6 +21,7 @@ mod parting;
 mod record;
 mod round;
 mod runs;
+mod saved;
 mod stream;
 mod tracker;
 mod whole;

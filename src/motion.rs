@@ -1,6 +1,6 @@
 //! An affine motion A (eq. 1–5): its flow at a pixel, its residual on a measurement, changes of coordinates.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// An affine motion `A = [a11 a12 a13; a21 a22 a23; 0 0 1]` of eq. (1): the pixel `(x, y)` of the first frame is displaced by
 /// `u = a11·x + a12·y + a13`, `v = a21·x + a22·y + a23` pixels in the second.
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// assert_eq!(zoom.flow(100.0, 50.0), [0.0, 0.0]);
 /// assert_eq!(zoom.flow(200.0, 50.0), [1.0, 0.0]);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Default, Serialize)]
 #[serde(transparent)]
 pub struct AffineMotion {
     /// `[a11, a12, a13, a21, a22, a23]`; the translation (a13, a23) in pixels, the linear part dimensionless.

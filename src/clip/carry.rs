@@ -24,19 +24,14 @@ pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&F
     let mut carried = Vec::with_capacity(labels.len());
     for y in 0..height {
         for x in 0..width {
-            let [u, v] = along.at(x, y);
-            let (px, py) = (x as f64 + u + 0.5, y as f64 + v + 0.5);
-            let inside = px >= 0.0 && py >= 0.0 && px < width as f64 && py < height as f64;
-            carried.push(if inside {
-                let (qx, qy) = (px as usize, py as usize);
-                let same = return_flow.is_none_or(|flow| {
-                    let [r, s] = flow.at(qx, qy);
+            let comes_back = |&[qx, qy]: &[usize; 2]| {
+                return_flow.is_none_or(|flow| {
+                    let ([u, v], [r, s]) = (along.at(x, y), flow.at(qx, qy));
                     (u + r) * (u + r) + (v + s) * (v + s) < ROUND_TRIP * ROUND_TRIP
-                });
-                if same { labels[qy * width + qx] } else { unknown }
-            } else {
-                unknown
-            });
+                })
+            };
+            let place = along.destination(x, y).filter(comes_back);
+            carried.push(place.map_or(unknown, |[qx, qy]| labels[qy * width + qx]));
         }
     }
     carried

@@ -23,7 +23,7 @@ use crate::labelling::solver::{MAX_LABELS, Solver};
 use crate::labelling::terms::smoothness::Borders;
 use crate::labelling::terms::strokes::add_strokes;
 use crate::motion::AffineMotion;
-use crate::order::descending;
+use crate::order::{descending, sort_few};
 use crate::workspace;
 use carrying::Carried;
 use colours::LabelColours;
@@ -352,7 +352,7 @@ fn numbers(lists: [&[u8]; 2]) -> Vec<u8> {
         list.iter().for_each(|&label| counts[usize::from(label)] += 1);
         let mut new: Vec<u8> =
             (1..NOTHING_SAID).filter(|&k| counts[usize::from(k)] > 0 && !numbers.contains(&k)).collect();
-        new.sort_by_key(|&k| std::cmp::Reverse(counts[usize::from(k)]));
+        sort_few(&mut new, |&j, &k| counts[usize::from(k)].cmp(&counts[usize::from(j)]));
         numbers.extend(new);
     }
     numbers.truncate(MAX_LABELS);

@@ -1,9 +1,8 @@
 //! What a pair tells about the pixels of its first frame: the odds that each belongs to an object, and where each goes. And how this is
 //! kept.
 
-use serde::{Deserialize, Serialize};
-
 use super::runs::Runs;
+use super::saved::saved;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::counts;
@@ -53,6 +52,19 @@ impl Flow {
         self.motions[usize::from(self.labels[y * self.width + x])].flow(x as f64, y as f64)
     }
 
+    /// The pixel of the other frame to which (x, y) moves, if it is inside.
+    pub(crate) fn destination(&self, x: usize, y: usize) -> Option<[usize; 2]> {
+        let [u, v] = self.at(x, y);
+        let (px, py) = (x as f64 + u + 0.5, y as f64 + v + 0.5);
+        let inside = px >= 0.0 && py >= 0.0 && px < self.width as f64 && py < self.height() as f64;
+        inside.then_some([px as usize, py as usize])
+    }
+
+    /// Height of the frame, working pixels.
+    fn height(&self) -> usize {
+        self.labels.len() / self.width
+    }
+
     /// Where the pixels go if they keep the motions with which they came.
     pub(crate) fn continued(&self) -> Flow {
         let motions = self.motions.iter().map(|motion| inverse(motion).unwrap_or(AffineMotion::STATIC)).collect();
@@ -61,12 +73,14 @@ impl Flow {
 }
 
 /// A [`Flow`] as it is kept.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct KeptFlow {
     labels: Runs,
     motions: Vec<AffineMotion>,
     measured: bool,
 }
+
+saved!(KeptFlow { labels, motions, measured });
 
 impl KeptFlow {
     pub(crate) fn of(flow: &Flow) -> KeptFlow {
@@ -86,8 +100,10 @@ impl KeptFlow {
 }
 
 /// Odds as they are kept: multiples of a step.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct KeptOdds(Runs);
+
+saved!(KeptOdds { 0 });
 
 impl KeptOdds {
     pub(crate) fn of(odds: &Plane) -> KeptOdds {
@@ -106,7 +122,7 @@ impl KeptOdds {
 }
 
 /// What solving the pairs of one more frame has told.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct KeptPairs {
     /// From the frame before to this one.
     onward: Option<(KeptOdds, KeptFlow)>,
@@ -115,6 +131,8 @@ pub(crate) struct KeptPairs {
     /// What is expected of the next pair.
     prior: Option<Prior>,
 }
+
+saved!(KeptPairs { onward, back, prior });
 
 /// [`KeptPairs`] in use.
 #[derive(Clone, Debug, Default)]

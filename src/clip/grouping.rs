@@ -7,6 +7,7 @@
 use super::evidence::Flow;
 use super::identity::MAX_OBJECTS;
 use crate::labelling::BACKGROUND;
+use crate::order::sort_few;
 
 // The constants below were set by hand on generated clips and confirmed on ten real ones.
 
@@ -54,7 +55,7 @@ struct Meeting {
 }
 
 /// An object in one frame.
-struct Sight {
+struct Sighting {
     number: u8,
     pixels: usize,
     first: usize,
@@ -79,21 +80,21 @@ impl Census {
             self.scenes.push(index);
         }
         let scene = self.scenes.len().saturating_sub(1);
-        let sights = sights(labels, width, onward);
-        for sight in &sights {
-            let order = (index, labels.len() - sight.pixels, sight.first);
+        let sightings = sightings(labels, width, onward);
+        for sighting in &sightings {
+            let order = (index, labels.len() - sighting.pixels, sighting.first);
             let life =
-                self.lives[usize::from(sight.number)].get_or_insert(Life { scene, frames: 0, last: index, order });
+                self.lives[usize::from(sighting.number)].get_or_insert(Life { scene, frames: 0, last: index, order });
             life.frames += 1;
             life.last = index;
         }
         let Some(onward) = onward else { return };
-        for (k, one) in sights.iter().enumerate() {
-            sights[k + 1..].iter().for_each(|other| self.meet(one, other, onward));
+        for (k, one) in sightings.iter().enumerate() {
+            sightings[k + 1..].iter().for_each(|other| self.meet(one, other, onward));
         }
     }
 
-    fn meet(&mut self, one: &Sight, other: &Sight, onward: &Flow) {
+    fn meet(&mut self, one: &Sighting, other: &Sighting, onward: &Flow) {
         let numbers = [one.number, other.number];
         let known = self.meetings.iter().position(|meeting| meeting.numbers == numbers);
         let place = known.unwrap_or_else(|| {
@@ -107,7 +108,7 @@ impl Census {
         // Where the motion of each would take the other.
         let difference = length(at(one.motion, other.centre), other.displacement)
             + length(at(other.motion, one.centre), one.displacement);
-        let moved = |sight: &Sight| length(at(BACKGROUND, sight.centre), sight.displacement);
+        let moved = |sighting: &Sighting| length(at(BACKGROUND, sighting.centre), sighting.displacement);
         if moved(one) >= MOVING && moved(other) >= MOVING {
             meeting.frames += 1;
             meeting.difference += difference;
@@ -141,7 +142,7 @@ impl Census {
                 orders.push((frame, lacking, first, object));
             }
         }
-        orders.sort_unstable();
+        sort_few(&mut orders, Ord::cmp);
         let mut numbers = [0u8; 256];
         for (k, group) in group.iter().enumerate().skip(1) {
             let place = orders.iter().position(|(.., object)| object == group);
@@ -158,11 +159,11 @@ impl Meeting {
 }
 
 /// The objects of a frame, by number.
-fn sights(labels: &[u8], width: usize, onward: Option<&Flow>) -> Vec<Sight> {
-    let mut sights: Vec<Option<Sight>> = (0..=MAX_OBJECTS).map(|_| None).collect();
+fn sightings(labels: &[u8], width: usize, onward: Option<&Flow>) -> Vec<Sighting> {
+    let mut sightings: Vec<Option<Sighting>> = (0..=MAX_OBJECTS).map(|_| None).collect();
     for (p, &number) in labels.iter().enumerate().filter(|(_, label)| **label > 0) {
         let (x, y) = (p % width, p / width);
-        let sight = sights[usize::from(number)].get_or_insert(Sight {
+        let sighting = sightings[usize::from(number)].get_or_insert(Sighting {
             number,
             pixels: 0,
             first: p,
@@ -171,22 +172,22 @@ fn sights(labels: &[u8], width: usize, onward: Option<&Flow>) -> Vec<Sight> {
             displacement: [0.0; 2],
             motion: BACKGROUND,
         });
-        sight.pixels += 1;
-        let [left, right, top, bottom] = sight.bounds;
-        sight.bounds = [left.min(x), right.max(x), top, bottom.max(y)];
+        sighting.pixels += 1;
+        let [left, right, top, bottom] = sighting.bounds;
+        sighting.bounds = [left.min(x), right.max(x), top, bottom.max(y)];
         let [u, v] = onward.map_or([0.0; 2], |onward| onward.at(x, y));
         let sums = [[x as f64, y as f64], [u, v]];
-        [&mut sight.centre, &mut sight.displacement].into_iter().zip(sums).for_each(|(sum, [a, b])| {
+        [&mut sighting.centre, &mut sighting.displacement].into_iter().zip(sums).for_each(|(sum, [a, b])| {
             sum[0] += a;
             sum[1] += b;
         });
     }
-    let mut sights: Vec<Sight> = sights.into_iter().flatten().collect();
-    for sight in &mut sights {
-        let pixels = sight.pixels as f64;
-        [&mut sight.centre, &mut sight.displacement].into_iter().flatten().for_each(|sum| *sum /= pixels);
-        let pixels_of = (0..labels.len()).filter(|&p| labels[p] == sight.number);
-        sight.motion = onward.and_then(|onward| onward.most_frequent(pixels_of)).unwrap_or(BACKGROUND);
+    let mut sightings: Vec<Sighting> = sightings.into_iter().flatten().collect();
+    for sighting in &mut sightings {
+        let pixels = sighting.pixels as f64;
+        [&mut sighting.centre, &mut sighting.displacement].into_iter().flatten().for_each(|sum| *sum /= pixels);
+        let pixels_of = (0..labels.len()).filter(|&p| labels[p] == sighting.number);
+        sighting.motion = onward.and_then(|onward| onward.most_frequent(pixels_of)).unwrap_or(BACKGROUND);
     }
-    sights
+    sightings
 }

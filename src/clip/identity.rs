@@ -16,7 +16,7 @@ use super::record::Record;
 use crate::components::{Components, Connectivity, components};
 use crate::labelling::regions::description::smallest_share;
 use crate::labelling::solver::MAX_LABELS;
-use crate::order::descending;
+use crate::order::{descending, sort_few};
 use object::{Apart, Object};
 use sharing::share;
 use sight::{Sight, is_still, telling};
@@ -178,7 +178,7 @@ impl Identities {
                 || (count > 0.0 && emerged.contains(&object.number))
         };
         let mut numbers: Vec<u8> = self.objects.iter().filter(claims).map(|object| object.number).collect();
-        numbers.sort_unstable();
+        sort_few(&mut numbers, u8::cmp);
         numbers.truncate(MAX_LABELS);
         numbers
     }
@@ -214,10 +214,10 @@ impl Identities {
     fn part(&mut self, record: &Record, labels: &mut [u8]) {
         let Some(along) = record.onward.as_ref().or(record.back.as_ref()) else { return };
         let found = components(labels, record.size()[0], Connectivity::Eight);
+        let order = descending(found.list.iter().map(|component| component.size as f64));
         for k in 0..self.objects.len() {
             let number = self.objects[k].number;
-            let mut pieces: Vec<usize> = (0..found.list.len()).filter(|&c| found.list[c].label == number).collect();
-            pieces.sort_by_key(|&c| std::cmp::Reverse(found.list[c].size));
+            let pieces: Vec<usize> = order.iter().copied().filter(|&c| found.list[c].label == number).collect();
             let whole: usize = pieces.iter().map(|&c| found.list[c].size).sum();
             let large = |c: &&usize| found.list[**c].size as f64 >= SMALLEST_PIECE * whole as f64;
             let second = pieces.iter().skip(1).find(large).copied();

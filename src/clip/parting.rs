@@ -11,14 +11,12 @@ const SMALLEST: f64 = 0.05;
 /// Divides what has the number `from` in a frame, whose flow to the next one is `onward`, between it and `new`, as their pixels have
 /// these numbers in the next frame, `later`. Tells whether `new` was found.
 pub(super) fn divide(labels: &mut [u8], later: &[u8], onward: &Flow, from: u8, new: u8) -> bool {
-    let (width, height) = (onward.width, labels.len() / onward.width);
+    let width = onward.width;
     let mut carried: Vec<u8> = labels.iter().map(|&label| u8::from(label == from)).collect();
     for (p, here) in carried.iter_mut().enumerate().filter(|(_, here)| **here > 0) {
-        let (x, y) = (p % width, p / width);
-        let [u, v] = onward.at(x, y);
-        let (px, py) = (x as f64 + u + 0.5, y as f64 + v + 0.5);
-        let inside = px >= 0.0 && py >= 0.0 && px < width as f64 && py < height as f64;
-        if inside && later[py as usize * width + px as usize] == new {
+        if let Some([x, y]) = onward.destination(p % width, p / width)
+            && later[y * width + x] == new
+        {
             *here = 2;
         }
     }

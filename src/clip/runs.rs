@@ -1,13 +1,14 @@
 //! Run-length code of small numbers: labels and coarse odds of a frame take a few kilobytes.
 
-use serde::{Deserialize, Serialize};
-
+use super::saved::saved;
 use crate::workspace::Buffer;
 
 /// Values of the pixels of a frame as runs: a value, then its number of repetitions less one in base 128, low digits first, the highest
 /// bit set on all but the last.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Runs(Vec<u8>);
+
+saved!(Runs { 0 });
 
 impl Runs {
     pub(crate) fn of(values: &[u8]) -> Runs {

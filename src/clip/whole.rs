@@ -1,7 +1,5 @@
 //! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
 
-use serde::{Deserialize, Serialize};
-
 use super::correction::ClipCorrection;
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs};
@@ -9,6 +7,7 @@ use super::grouping::Census;
 use super::identity::Parting;
 use super::parting::divide;
 use super::runs::Runs;
+use super::saved::{from_bytes, saved, to_bytes};
 use super::tracker::{ClipPart, Tracked, Tracker};
 use super::{ClipFrame, ClipOptions};
 use crate::error::{Error, Result};
@@ -50,8 +49,8 @@ pub struct ClipSegmenter {
 pub struct FramePairs(KeptPairs);
 
 /// Marks the bytes of [`FramePairs`] and of a [`SegmentedClip`], with the version of their format.
-const PAIRS_FORMAT: &[u8; 8] = b"VERPAIR1";
-const CLIP_FORMAT: &[u8; 8] = b"VERCLIP1";
+const PAIRS_FORMAT: &[u8; 8] = b"VERPAIR2";
+const CLIP_FORMAT: &[u8; 8] = b"VERCLIP2";
 
 impl FramePairs {
     /// The bytes of these pairs, for [`from_bytes`](Self::from_bytes) of the same version.
@@ -164,7 +163,7 @@ impl ClipSegmenter {
 }
 
 /// A clip whose objects are known in every frame. It keeps some kilobytes per frame and not the frames themselves.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub struct SegmentedClip {
     /// Width and height of the frames.
     size: [usize; 2],
@@ -179,8 +178,10 @@ pub struct SegmentedClip {
     pub(super) frames: Vec<FrameState>,
 }
 
+saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, frames });
+
 /// A frame of a segmented clip, working size.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(super) struct FrameState {
     /// As the clip was segmented.
     found: Labelling,
@@ -191,15 +192,19 @@ pub(super) struct FrameState {
     back: Option<KeptFlow>,
 }
 
+saved!(FrameState { found, corrected, onward, back });
+
 /// Labels with their odds.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(super) struct Labelling {
     labels: Runs,
     odds: KeptOdds,
 }
 
+saved!(Labelling { labels, odds });
+
 /// What a correction has made of a frame.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(super) struct Corrected {
     pub(super) labelling: Labelling,
     /// The frame that was corrected.
@@ -207,6 +212,8 @@ pub(super) struct Corrected {
     /// In the frame that was corrected, what was said there of each full-size pixel: a label, or 255 for nothing.
     pub(super) said: Option<Runs>,
 }
+
+saved!(Corrected { labelling, origin, said });
 
 impl FrameState {
     fn new(Tracked { record, labels, odds, goes_on }: Tracked) -> FrameState {
@@ -422,18 +429,4 @@ pub(super) const NOTHING_SAID: u8 = u8::MAX;
 
 fn invalid(name: &'static str, reason: &str) -> Error {
     Error::InvalidOption { name, reason: reason.into() }
-}
-
-/// A format's mark and a value.
-fn to_bytes(format: &[u8], value: &impl Serialize) -> Vec<u8> {
-    // Writing to memory cannot fail.
-    postcard::to_extend(value, format.to_vec()).unwrap_or_default()
-}
-
-fn from_bytes<T: for<'a> Deserialize<'a>>(format: &[u8], bytes: &[u8]) -> Result<T> {
-    let rest = bytes.strip_prefix(format).ok_or_else(|| invalid("state", "these bytes are not of this version"))?;
-    match postcard::take_from_bytes(rest) {
-        Ok((value, [])) => Ok(value),
-        _ => Err(invalid("state", "it is damaged")),
-    }
 }

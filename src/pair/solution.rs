@@ -1,7 +1,5 @@
 //! A pair solved at the working size, for those who go on from there: no numbering, no full-size labels, no evidence for the number.
 
-use serde::{Deserialize, Serialize};
-
 use super::settings::{Part, Settings};
 use super::{Pair, hypothesis, labels};
 use crate::frame::pyramid::FramePyramid;
@@ -43,12 +41,12 @@ impl Solution {
 }
 
 /// What is expected of a pair.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(crate) struct Prior {
     /// Motions, pixels of the working size; the first is that of the background.
     pub(crate) motions: Vec<AffineMotion>,
     /// Cost up to which these motions are enough. Else a search adds others.
-    enough: f64,
+    pub(crate) enough: f64,
 }
 
 /// Expected motions are enough where they cost no more than this share more than expected. Not varied.
