@@ -22,6 +22,7 @@ use crate::estimation::dominant::{RIDGE, dominant_motion, dominant_motion_near};
 use crate::frame::Frame;
 use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::labelling::regions::description::length;
 use crate::labelling::regions::groups::groups;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
@@ -31,8 +32,8 @@ use crate::tuning::{Tuned, varied};
 use crate::view::brightness::Photometric;
 use crate::view::cost::{View, noise};
 use crate::view::level::{Level, levels};
-use crate::workspace::{self, Buffer};
-use consensus::{foreground, nearest_to_majority};
+use crate::workspace;
+use consensus::{Finding, foreground, nearest_to_majority};
 use labels::Labelled;
 use settings::Settings;
 
@@ -122,8 +123,9 @@ fn segment_with(
         searches.push(Search::new(pair, mirror, &settings, &mut stages));
     }
     stages.begin("masks");
-    let foregrounds: Vec<Buffer<bool>> = searches.iter().map(Search::foreground).collect();
-    let Search { mirror, pair, labelled } = searches.swap_remove(nearest_to_majority(&foregrounds));
+    let noise = searches.iter().map(|search| search.pair.finest().noise).fold(f32::INFINITY, f32::min);
+    let findings: Vec<Finding> = searches.iter_mut().map(|search| search.finding(noise)).collect();
+    let Search { mirror, pair, labelled } = searches.swap_remove(nearest_to_majority(&findings));
     let [first, second] = [first, second].map(|frame| mirror.frame(frame));
     Ok(report::report(&pair, labelled, &settings, &first, &second, options).mirrored(mirror))
 }
@@ -147,13 +149,17 @@ impl<'a> Search<'a> {
         Search { mirror, pair, labelled }
     }
 
-    /// The working pixels of the frames themselves that move in another way than the background.
-    fn foreground(&self) -> Buffer<bool> {
+    /// What was found, in the frames themselves. Descriptions can be compared only if they assume the same noise.
+    fn finding(&mut self, noise: f32) -> Finding {
         let Labelled { motions, labels, .. } = &self.labelled;
-        let width = self.pair.finest().width();
+        let level = &mut self.pair.levels[0];
+        let width = level.width();
+        let measured = std::mem::replace(&mut level.noise, noise);
+        let length = length(&labels::estimation_costs(level, motions), labels, width);
+        level.noise = measured;
         let mut foreground = foreground(labels, &groups(motions, labels, width, self.pair.reduction));
         self.mirror.reorder(&mut foreground, width);
-        foreground
+        Finding { foreground, length }
     }
 }
 

@@ -10,52 +10,74 @@ use crate::workspace::Buffer;
 /// A pixel is foreground if at least one of this many labellings says so. Chosen on real pairs, whose objects are missed more often than
 /// invented.
 const ONE_OF: usize = 2;
+/// Descriptions up to this many times as long as the shortest are about as good. On real pairs the length does not tell which of those has
+/// the better masks; failed searches, such as those that took an object for the background, are 20 % longer.
+const LONGEST: f64 = 1.05;
 
 /// The foreground of a labelling: all pixels whose motions do not share the group of the background.
 pub(super) fn foreground(labels: &[u8], groups: &[usize]) -> Buffer<bool> {
     labels.iter().map(|&label| groups[usize::from(label)] != groups[BACKGROUND]).collect()
 }
 
-/// Index of the foreground that has the largest intersection over union with the pixels that are foreground in at least half of them; the
-/// first of equals.
-pub(super) fn nearest_to_majority(foregrounds: &[Buffer<bool>]) -> usize {
-    let pixels = foregrounds[0].len();
-    let (mut common, mut either) = (vec![0usize; foregrounds.len()], vec![0usize; foregrounds.len()]);
-    for p in 0..pixels {
-        let votes = foregrounds.iter().filter(|foreground| foreground[p]).count();
-        let majority = votes * ONE_OF >= foregrounds.len();
-        for (k, foreground) in foregrounds.iter().enumerate() {
-            common[k] += usize::from(foreground[p] && majority);
-            either[k] += usize::from(foreground[p] || majority);
+/// What one search has found.
+pub(super) struct Finding {
+    /// The pixels of the frame that move in another way than the background.
+    pub(super) foreground: Buffer<bool>,
+    /// Description length of both frames, nats.
+    pub(super) length: f64,
+}
+
+/// Index of the finding whose foreground has the largest intersection over union with the pixels that are foreground in at least half of
+/// the findings; the first of equals. A finding with a much longer description than the shortest neither votes nor wins.
+pub(super) fn nearest_to_majority(findings: &[Finding]) -> usize {
+    let shortest = findings.iter().map(|finding| finding.length).fold(f64::INFINITY, f64::min);
+    let eligible: Vec<usize> = (0..findings.len()).filter(|&k| findings[k].length <= LONGEST * shortest).collect();
+    let (mut common, mut either) = (vec![0usize; findings.len()], vec![0usize; findings.len()]);
+    for p in 0..findings[0].foreground.len() {
+        let votes = eligible.iter().filter(|&&k| findings[k].foreground[p]).count();
+        let majority = votes * ONE_OF >= eligible.len();
+        for &k in &eligible {
+            let foreground = findings[k].foreground[p];
+            common[k] += usize::from(foreground && majority);
+            either[k] += usize::from(foreground || majority);
         }
     }
     let overlap = |k: usize| if either[k] == 0 { 1.0 } else { common[k] as f64 / either[k] as f64 };
-    (1..foregrounds.len()).fold(0, |best, k| if overlap(k) > overlap(best) { k } else { best })
+    eligible.iter().copied().reduce(|best, k| if overlap(k) > overlap(best) { k } else { best }).unwrap_or(0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn foregrounds(rows: &[&str]) -> Vec<Buffer<bool>> {
-        rows.iter().map(|row| row.bytes().map(|b| b == b'x').collect()).collect()
+    fn findings(rows: &[&str]) -> Vec<Finding> {
+        let foreground = |row: &str| row.bytes().map(|b| b == b'x').collect();
+        rows.iter().map(|row| Finding { foreground: foreground(row), length: 1000.0 }).collect()
+    }
+
+    #[test]
+    fn a_failed_search_does_not_vote() {
+        let mut findings = findings(&["xx..", "..xx", "..xx", "xx.."]);
+        findings[0].length = 1200.0;
+        findings[3].length = 1200.0;
+        assert_eq!(nearest_to_majority(&findings), 1);
     }
 
     #[test]
     fn an_object_that_half_of_them_see_is_kept() {
-        assert_eq!(nearest_to_majority(&foregrounds(&["....", "xx..", ".xx.", "...."])), 1);
-        assert_eq!(nearest_to_majority(&foregrounds(&["....", "xx..", "xxx.", ".xx."])), 2);
+        assert_eq!(nearest_to_majority(&findings(&["....", "xx..", ".xx.", "...."])), 1);
+        assert_eq!(nearest_to_majority(&findings(&["....", "xx..", "xxx.", ".xx."])), 2);
     }
 
     #[test]
     fn what_only_one_of_them_sees_is_not() {
-        assert_eq!(nearest_to_majority(&foregrounds(&["xx.x", "xx..", "xx..", "xx.."])), 1);
-        assert_eq!(nearest_to_majority(&foregrounds(&["..xx", "....", "....", "...."])), 1);
+        assert_eq!(nearest_to_majority(&findings(&["xx.x", "xx..", "xx..", "xx.."])), 1);
+        assert_eq!(nearest_to_majority(&findings(&["..xx", "....", "....", "...."])), 1);
     }
 
     #[test]
     fn one_labelling_is_its_own_majority() {
-        assert_eq!(nearest_to_majority(&foregrounds(&["x.."])), 0);
-        assert_eq!(nearest_to_majority(&foregrounds(&["..."])), 0);
+        assert_eq!(nearest_to_majority(&findings(&["x.."])), 0);
+        assert_eq!(nearest_to_majority(&findings(&["..."])), 0);
     }
 }
