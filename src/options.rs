@@ -152,7 +152,7 @@ pub struct SegmentOptions {
     /// Compute [`Segmentation::confidence`](crate::Segmentation::confidence), the probability that the label of a pixel is right;
     /// default `false`.
     pub confidence: bool,
-    /// Seed of the random numbers; default 1.
+    /// Default 1. Segmenting draws no random numbers, so that every seed gives the same result; reports repeat it.
     pub seed: u64,
 }
 

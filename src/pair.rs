@@ -114,20 +114,21 @@ fn segment_with(
     let mut searches: Vec<Search<'_>> = Vec::with_capacity(images.len());
     for (round, (&mirror, pyramid)) in images.iter().zip(&pyramids).enumerate() {
         stages.begin_round(round);
-        let [first, second] = [first, second].map(|frame| mirror.frame(frame));
+        // One mirror image at a time.
+        let second = settings.pyramid(&mirror.frame(second));
         let before = before.map(|frame| settings.pyramid(&mirror.frame(frame)));
+        let first = mirror.frame(first);
         let pyramid = pyramid.get_or_init(|| settings.pyramid(&first));
-        let pair = Pair::new(&first, pyramid, &settings.pyramid(&second), before.as_ref(), &settings);
+        let pair = Pair::new(&first, pyramid, &second, before.as_ref(), &settings);
         // The pair now has the planes of the other frames to itself and need not copy what it changes.
-        drop(before);
+        drop((first, second, before));
         searches.push(Search::new(pair, mirror, &settings, &mut stages));
     }
     stages.begin("masks");
     let noise = searches.iter().map(|search| search.pair.finest().noise).fold(f32::INFINITY, f32::min);
     let findings: Vec<Finding> = searches.iter_mut().map(|search| search.finding(noise)).collect();
     let Search { mirror, pair, labelled } = searches.swap_remove(nearest_to_majority(&findings));
-    let [first, second] = [first, second].map(|frame| mirror.frame(frame));
-    Ok(report::report(&pair, labelled, &settings, &first, &second, options).mirrored(mirror))
+    Ok(report::report(&pair, labelled, mirror, &settings, [first, second], options))
 }
 
 /// The search of the frames or of one of their mirror images.

@@ -52,7 +52,7 @@ export interface SegmentOptions extends CallOptions {
   markUnknown?: boolean | undefined;
   /** Adds `confidence` to the result: how sure the label of every pixel is; default `false`. */
   confidence?: boolean | undefined;
-  /** Random seed, a whole number from 0; default 1. */
+  /** A whole number from 0; default 1. Segmenting draws no random numbers, so that every seed gives the same result. */
   seed?: number | undefined;
   /** The frame before the first: a third view that helps at occlusions. */
   before?: Pixels | undefined;

@@ -61,11 +61,6 @@ impl Mirror {
         (a11, a22) = (a11 + 0.0, a22 + 0.0);
         AffineMotion::new([a11, a12, a13, a21, a22, a23])
     }
-
-    /// A box (x, y, width, height) in the mirror image of a frame of the given width and height.
-    pub(crate) fn bbox(self, [x, y, w, h]: [usize; 4], [width, height]: [usize; 2]) -> [usize; 4] {
-        [if self.columns { width - x - w } else { x }, if self.rows { height - y - h } else { y }, w, h]
-    }
 }
 
 #[cfg(test)]
@@ -86,10 +81,6 @@ mod tests {
                 let ([u, v], [mu, mv]) = (motion.flow(x, y), mirrored.flow(mx, my));
                 let expected = [if mirror.columns { -u } else { u }, if mirror.rows { -v } else { v }];
                 assert!((mu - expected[0]).abs() < 1e-12 && (mv - expected[1]).abs() < 1e-12, "{mirror:?}");
-                assert_eq!(
-                    mirror.bbox([pixel % width, pixel / width, 1, 1], [width, height])[..2],
-                    [place % width, place / width]
-                );
             }
             assert!(mirror.motion(&mirrored, [width, height]).relative_error(&motion) < 1e-12);
         }

@@ -16,6 +16,7 @@ pub use plane::Plane;
 use std::borrow::Cow;
 
 use crate::error::{Error, Result};
+use crate::workspace::Buffer;
 
 /// Smallest side of a frame, pixels.
 pub const MIN_SIDE: usize = 16;
@@ -27,7 +28,7 @@ pub const MAX_SIDE: usize = 4096;
 pub struct Frame {
     luminance: Plane,
     /// Red, green, blue and alpha of every pixel, row by row.
-    rgba: Vec<u8>,
+    rgba: Buffer<u8>,
 }
 
 /// Frames are equal if their pixels are; alpha is ignored.
@@ -54,7 +55,7 @@ impl Frame {
         if rgba.len() != needed {
             return Err(Error::PixelCountMismatch { width, height, needed, found: rgba.len() });
         }
-        let rgba = rgba.into_owned();
+        let rgba = Buffer::from(rgba.into_owned());
         let luminance = rgba
             .chunks_exact(4)
             .map(|p| 0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2]))

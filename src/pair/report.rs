@@ -51,20 +51,6 @@ pub struct Segmentation {
     pub confidence: Option<Vec<u8>>,
 }
 
-impl Segmentation {
-    /// The result of the mirror image of the frames.
-    pub(super) fn mirrored(mut self, mirror: Mirror) -> Segmentation {
-        let size = [self.width, self.height];
-        mirror.reorder(&mut self.labels, self.width);
-        self.confidence.iter_mut().for_each(|confidence| mirror.reorder(confidence, self.width));
-        for motion in &mut self.motions {
-            motion.matrix = mirror.motion(&motion.matrix, size);
-            motion.bbox = mirror.bbox(motion.bbox, size);
-        }
-        self
-    }
-}
-
 /// One motion of a [`Segmentation`].
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -97,12 +83,13 @@ pub struct PairEvidence {
     pub candidates: Vec<Candidate>,
 }
 
+/// The result of a pair of mirror images, for the frames themselves.
 pub(super) fn report(
     pair: &Pair<'_>,
     labelled: Labelled,
+    mirror: Mirror,
     settings: &Settings,
-    first: &Frame,
-    second: &Frame,
+    [first, second]: [&Frame; 2],
     options: &SegmentOptions,
 ) -> Segmentation {
     let level = pair.finest();
@@ -114,7 +101,7 @@ pub(super) fn report(
     let grouping = groups(&labelled.motions, &labelled.labels, size[0], pair.reduction);
 
     let full = if settings.has(Part::GuidedEnlarging) {
-        upsample(&labelled.labels, size, labelled.motions.len(), first.luminance())
+        upsample(&labelled.labels, size, labelled.motions.len(), mirror.frame(first).luminance())
     } else {
         nearest(&labelled.labels, size, first, pair.reduction)
     };
@@ -130,7 +117,11 @@ pub(super) fn report(
     for (sure, _) in confidence.iter_mut().flatten().zip(&labels).filter(|(_, label)| **label == UNLABELLED) {
         *sure = 0;
     }
-    let matrices: Vec<AffineMotion> = order.iter().map(|&k| labelled.motions[k].scaled(pair.reduction)).collect();
+    mirror.reorder(&mut labels, first.width());
+    confidence.iter_mut().for_each(|confidence| mirror.reorder(confidence, first.width()));
+    let matrix =
+        |&k: &usize| mirror.motion(&labelled.motions[k].scaled(pair.reduction), [first.width(), first.height()]);
+    let matrices: Vec<AffineMotion> = order.iter().map(matrix).collect();
     let groups: Vec<usize> = order.iter().map(|&k| grouping[k]).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {

@@ -28,7 +28,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --quality fast|best    speed or accuracy (default: best)
       --grouped              write groups instead of motions to labels.png and mask-K.png; one rigid background is one group
       --mark-unknown         use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous
-      --seed N               random seed (default: 1)
+      --seed N               every seed gives the same masks; reports repeat it (default: 1)
       --out DIR              write labels.png, result.json and mask-K.png to DIR
       --confidence           also write confidence.png: 255 times the probability that each pixel's label is right
       --overlay              also write overlay.png: the first frame with each motion in its colour
@@ -55,7 +55,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --corrections DIR      what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said),
                              and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"}}
       --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
-      --seed N               random seed (default: 1)
+      --seed N               every seed gives the same masks; reports repeat it (default: 1)
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
 
