@@ -34,7 +34,7 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
     await expect(page.locator('#clip-name')).toContainText('clip.webm');
     await done(page);
     // With the timeline in view, and whatever is below it.
-    if (screen === 'phone') await page.locator('.clip-both').scrollIntoViewIfNeeded();
+    if (screen === 'phone') await page.locator('#clip-second').scrollIntoViewIfNeeded();
     const shift = await watchShifts(page);
     for (let k = 1; k <= 3; k++) {
       await page.getByRole('button', { name: 'Step both forward' }).click();

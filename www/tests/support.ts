@@ -4,7 +4,7 @@ import { readFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type Page, test as base, expect } from '@playwright/test';
-import { type Segmentation, type SegmentOptions, segmentPair } from 'veronese';
+import { type ClipOptions, type Segmentation, type SegmentOptions, segmentClip, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
@@ -94,6 +94,14 @@ export async function segmentedInNode(first: Upload, second: Upload, options: Se
   return segmentPair(await decodeImage(first.buffer), await decodeImage(second.buffer), options);
 }
 
+/** The labels of each frame of a clip, found in Node. */
+export async function clipInNode(files: readonly Upload[], options: ClipOptions = { quality: 'fast' }): Promise<Uint8Array[]> {
+  const labels: Uint8Array[] = [];
+  const frames = { length: files.length, read: async (index: number) => decodeImage(files[index]!.buffer) };
+  for await (const frame of segmentClip(frames, options)) labels.push(frame.labels);
+  return labels;
+}
+
 interface CanvasPixels {
   width: number;
   height: number;
@@ -142,4 +150,24 @@ export function differences(a: ArrayLike<number>, b: ArrayLike<number>): number 
 /** The path of a screenshot. */
 export function screen(name: string): string {
   return fileURLToPath(new URL(`../../out/screens/${name}.png`, import.meta.url));
+}
+
+/**
+ * The frames of a clip, as PNG files f00.png, f01.png …: a disc and a square with textures of their own move across a textured background,
+ * the disc to the right and the square to the left.
+ */
+export async function clipFrames(count: number, width = 200, height = 140): Promise<Upload[]> {
+  return Promise.all(
+    Array.from({ length: count }, async (_, k) => {
+      const pixels = new Uint8Array(width * height * 3);
+      for (let y = 0, i = 0; y < height; y++) {
+        for (let x = 0; x < width; x++, i += 3) {
+          const disc = Math.hypot(x - 0.2 * width - 4 * k, y - 0.36 * height - k) < 0.16 * height;
+          const box = Math.abs(x - 0.75 * width + 3 * k) < 0.12 * height && Math.abs(y - 0.7 * height) < 0.12 * height;
+          pixels.set(disc ? texture(x - 4 * k + 500, y - k + 300, 0.7) : box ? texture(x + 3 * k + 900, y + 100, 0.9) : texture(x, y, 0.45), i);
+        }
+      }
+      return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
+    }),
+  );
 }

@@ -1,7 +1,7 @@
 //! Exact frames of a video. The packets of the file give the presentation time of each frame, and a decoder returns the frame for a
 //! time. Its timestamp is compared with the requested one: a wrong frame is an error and is never shown.
 
-import { BlobSource, EncodedPacketSink, Input, type InputVideoTrack, MATROSKA, MP4, QTFF, VideoSampleSink, WEBM } from 'mediabunny';
+import { BlobSource, EncodedPacketSink, Input, type InputVideoTrack, MATROSKA, MP4, QTFF, type VideoSample, VideoSampleSink, WEBM } from 'mediabunny';
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
@@ -66,6 +66,9 @@ class ExactClip implements Clip {
   readonly width: number;
   readonly height: number;
   readonly #sink: VideoSampleSink;
+  /** Frames that are decoded one after another, from the index on, while they are requested so. */
+  #sequence: Sequence | null = null;
+  #last = -1;
 
   constructor(
     readonly name: string,
@@ -82,7 +85,7 @@ class ExactClip implements Clip {
 
   async frame(index: number, longestSide: number): Promise<DecodedFrame> {
     const began = performance.now();
-    const sample = await this.#sink.getSample(this.#asked(index));
+    const sample = await this.#sample(index);
     try {
       if (sample === null || Math.abs(sample.timestamp - this.times[index]!) > SAME_TIME) {
         throw new PageError('inexact-frame', strings.errors.inexactFrame(this.name, index));
@@ -108,12 +111,48 @@ class ExactClip implements Clip {
   }
 
   close(): void {
+    this.#sequence?.end();
     this.input.dispose();
+  }
+
+  /** Finding a single frame means decoding from a key frame on. In sequence each frame is decoded once. */
+  async #sample(index: number): Promise<VideoSample | null> {
+    const following = index === this.#last + 1;
+    this.#last = index;
+    if (this.#sequence?.next !== index) {
+      if (!following) return this.#sink.getSample(this.#asked(index));
+      this.#sequence?.end();
+      this.#sequence = new Sequence(this.#sink.samples(this.#asked(index)), index);
+    }
+    return this.#sequence.take();
   }
 
   /** A time inside the frame: its start may have been rounded down into the frame before. */
   #asked(index: number): number {
     const [now, next] = [this.times[index]!, this.times[index + 1]];
     return now + Math.min(SAME_TIME, next === undefined ? SAME_TIME : (next - now) / 2);
+  }
+}
+
+/** Samples that are taken one after another. */
+class Sequence {
+  /** The sample that is taken last, which the end waits for. */
+  #taking: Promise<unknown> = Promise.resolve();
+
+  /** `next`: the index of the next frame. */
+  constructor(
+    readonly samples: AsyncGenerator<VideoSample, void, unknown>,
+    public next: number,
+  ) {}
+
+  take(): Promise<VideoSample | null> {
+    this.next += 1;
+    const taking = this.samples.next().then(({ value }) => value ?? null);
+    this.#taking = taking.catch(() => null);
+    return taking;
+  }
+
+  end(): void {
+    void this.#taking.then(() => this.samples.return());
   }
 }

@@ -47,6 +47,14 @@ function motion(parts: MotionParts): string {
   return said.length > 0 ? said.join('; ') : 'stands still';
 }
 
+const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
+
+/** ", about 20 s left"; nothing if it is not known. */
+function remaining(seconds: number | null): string {
+  if (seconds === null) return '';
+  return seconds < 90 ? `, about ${whole.format(Math.max(1, seconds))}${NBSP}s left` : `, about ${whole.format(seconds / 60)}${NBSP}min left`;
+}
+
 const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
 const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
 const scoreAbove = (above: number): string => (above === 0 ? 'lowest score' : `score ${whole.format(above)} above the lowest`);
@@ -55,6 +63,7 @@ const motions = (count: number): string => (count === 1 ? 'One motion' : `${coun
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' },
   split: 'First | second',
+  frameNumber: (index: number): string => `Frame ${index}`,
   camera: 'Camera',
   cameraFrame: 'camera',
   openCamera: 'Camera',
@@ -74,8 +83,35 @@ export const strings = {
   anotherFile: 'another file',
   frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
 
+  tracking: {
+    segment: 'Segment the clip',
+    again: 'Segment the clip again',
+    resume: 'Continue',
+    pairs: (done: number, of: number, left: number | null): string => (done < of ? `${whole.format(done)} of ${frames(of)}${remaining(left)}` : 'Following the objects…'),
+    corrections: 'Carrying your correction to other frames…',
+    labels: (done: number, of: number): string => `Masks of ${whole.format(done)} of ${frames(of)}`,
+    started: 'Segmenting the clip.',
+    done: (objects: number, of: number): string => `${objects === 0 ? 'No object moves' : objects === 1 ? 'One object' : `${objects} objects`} in ${frames(of)}.`,
+    cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} are done and kept.`,
+    failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} are done and kept.`,
+  },
+  frameHas: (objects: number): string => (objects === 0 ? 'No object in this frame.' : objects === 1 ? 'One object in this frame.' : `${objects} objects in this frame.`),
+  notTracked: 'No masks of this frame yet.',
+  play: 'Play',
+  pause: 'Pause',
+  frameSlider: (index: number, count: number, seconds: number | null): string =>
+    `Frame ${index} of ${count}${seconds === null ? '' : `, ${seconds.toFixed(2)} s`}`,
+  life: (first: number, last: number): string => (first === last ? `frame ${first} only` : `frames ${first} to ${last}`),
+  away: 'not in this frame',
+  selectObject: (name: string): string => `Select ${name}`,
+  doubtful: (index: number): string => `Check #${index}`,
+  doubtfulOf: (name: string, index: number): string => `Go to frame ${index}, where ${name} is least certain`,
+
   motion,
-  maskName: (kind: Kind, id: number): string => `${kind === 'groups' ? 'Group' : 'Motion'} ${id}`,
+  maskName: (kind: Kind, id: number): string => {
+    if (kind === 'objects') return id === 0 ? 'Background' : `Object ${id}`;
+    return `${kind === 'groups' ? 'Group' : 'Motion'} ${id}`;
+  },
   noMasksYet: 'Masks appear here once they are found.',
   noMasks: { failed: 'No masks: the segmentation failed.', cancelled: 'No masks: the segmentation was cancelled.' },
   liveMasks: (count: number): string => `${motions(count)} at the moment. Stop the camera to list them.`,
@@ -183,6 +219,8 @@ export const strings = {
     pan: 'Pan the enlarged picture',
     stepBack: 'Step both frames back',
     stepOn: 'Step both frames forward',
+    play: 'Play the clip, or stop',
+    doubtful: 'Next frame where an object is least certain',
     look: 'View: select masks, pan',
     brush: 'Brush: add to the selected mask',
     eraser: 'Eraser: remove from the selected mask',

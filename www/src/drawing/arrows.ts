@@ -16,12 +16,13 @@ const LONGEST = 1.2;
 /** One arrow per grid cell, for the label at its centre, and the factor by which all are magnified. */
 export function arrowsOf({ labels, width, height, motions }: Segmentation): { arrows: Arrow[]; magnified: number } {
   const cell = Math.max(width, height) / ACROSS;
+  const matrices = new Map(motions.map(({ label, matrix }) => [label, matrix]));
   const starts: { label: number; x: number; y: number; u: number; v: number }[] = [];
   for (let y = cell / 2; y < height; y += cell) {
     for (let x = cell / 2; x < width; x += cell) {
       const [px, py] = [Math.floor(x), Math.floor(y)];
       const label = labels[py * width + px] ?? 255;
-      const matrix = motions[label]?.matrix;
+      const matrix = matrices.get(label);
       if (matrix === undefined) continue;
       const [a11, a12, a13, a21, a22, a23] = matrix;
       starts.push({ label, x: px, y: py, u: a11 * px + a12 * py + a13, v: a21 * px + a22 * py + a23 });

@@ -30,6 +30,7 @@ function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Arr
   const words = new Uint32Array(256);
   for (const label of [...segmentation.motions.map((motion) => motion.label), UNLABELLED]) {
     const mask = masks[label]!;
+    if (painting.kind === 'objects' && mask === 0) continue; // the background of a clip is no object
     if (isShown(mask, painting)) words[label] = wordFromColour(colourOfMask(mask, painting));
   }
   return words;

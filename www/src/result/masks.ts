@@ -1,9 +1,9 @@
-//! Masks: what is shown, listed and exported as one. A mask is one motion, or a group of them: the motions of one surface, or those
-//! that the user merged.
+//! Masks: what is shown, listed and exported as one. A mask is one motion of a pair, a group of them (the motions of one surface, or those
+//! that the user merged), or an object of a whole clip.
 
 import type { Segmentation } from 'veronese';
 
-export type Kind = 'groups' | 'motions';
+export type Kind = 'groups' | 'motions' | 'objects';
 
 type Motion = Segmentation['motions'][number];
 

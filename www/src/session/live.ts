@@ -79,7 +79,8 @@ export class LiveView {
   async #run(first: IteratorResult<View, void>, views: AsyncIterable<View>, current: () => boolean): Promise<void> {
     if (!current() || first.done) return;
     const { look } = this.#store.get();
-    this.#show(first.value, { timeline: null, found: null, edits: NO_EDITS, look: { ...look, ...FRESH, view: 'second' } });
+    const kind = look.kind === 'objects' ? 'groups' : look.kind;
+    this.#show(first.value, { timeline: null, tracked: null, found: null, edits: NO_EDITS, look: { ...look, ...FRESH, kind, view: 'second' } });
     try {
       for await (const view of views) this.#show(view);
     } catch (error) {

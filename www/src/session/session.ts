@@ -6,19 +6,27 @@ import { openFolder } from '../clips/folder.js';
 import { openClip } from '../clips/open.js';
 import { PageError, codeOf, sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
+import { NO_EDITS } from '../correction/edits.js';
 import { WHOLE } from '../drawing/viewport.js';
 import { nameOfFile, selectOpenable } from '../frames/files.js';
 import { frameFromBlob, frameFromUrl } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
+import type { Kind } from '../result/masks.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import type { Settings } from '../state/settings.js';
-import { FRESH, type Run, type Store } from '../state/state.js';
+import { FRESH, type Look, type Run, type State, type Store } from '../state/state.js';
+import { type Tracked, isTracked, livesOf } from '../state/tracked.js';
 import { Correcting, isCurrent, isPending } from './correcting.js';
 import { LiveView } from './live.js';
+import { frameOf, resultOf } from './objects.js';
 import { Segmenting } from './segmenting.js';
+import { Tracking } from './tracking.js';
 
 /** Distance between the two frames when a clip is opened. */
 const FRAMES_APART = 1;
+
+/** Frame rate at which folders are played, as their frames have no times. */
+const FRAMES_PER_SECOND = 25;
 
 /** The state of a run before its first stage. */
 const STARTING: Run = { phase: 'working', work: 'segmenting', stage: '', index: 0, of: 0 };
@@ -27,13 +35,22 @@ export class Session {
   readonly #store: Store;
   readonly #segmenting = new Segmenting();
   readonly correcting: Correcting;
+  readonly tracking: Tracking;
   readonly #live: LiveView;
   /** Incremented by each opening, so that a slow one never replaces a later one. */
   #opened = 0;
+  /** Distance between the two frames of the clip. */
+  #apart = FRAMES_APART;
+  /** The frame to which a pointer was dragged and that is not read yet. */
+  #wanted: number | null = null;
 
   constructor(store: Store) {
     this.#store = store;
     this.correcting = new Correcting(store, this.#segmenting, (error) => this.#fail(error));
+    this.tracking = new Tracking(store, {
+      changed: (before) => this.#showObjects(before),
+      failed: (error) => this.say(sentenceOf(error), codeOf(error)),
+    });
     this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
@@ -68,21 +85,87 @@ export class Session {
     );
   }
 
-  /** Chooses a frame of the open clip; the index is clamped. */
+  /** Chooses one frame of the open clip; the index is clamped. */
   choose(slot: Slot, index: number): Promise<void> {
     const { timeline } = this.#store.get();
     if (timeline === null) return Promise.resolve();
-    return this.#goTo({ [slot]: Math.min(Math.max(Math.round(index), 0), timeline.clip.count - 1) });
+    const places = { ...timeline, [slot]: clamped(Math.round(index), timeline.clip.count) };
+    if (places.first !== null && places.second !== null) this.#apart = places.second - places.first;
+    return this.#goTo(places);
   }
 
   /** Steps all frames that are of the clip. */
   step(by: number): Promise<void> {
     const { timeline } = this.#store.get();
+    const at = timeline?.first ?? timeline?.second ?? null;
+    return at === null ? Promise.resolve() : this.goTo(at + by);
+  }
+
+  /** Goes to a frame of the clip. The second frame keeps its distance, except that masks of a clip can be seen up to its ends. */
+  goTo(index: number): Promise<void> {
+    const { timeline, look } = this.#store.get();
     if (timeline === null) return Promise.resolve();
-    const { clip, first, second } = timeline;
-    const places = [first, second].filter((place) => place !== null);
-    const shift = Math.min(Math.max(by, -Math.min(...places)), clip.count - 1 - Math.max(...places));
-    return this.#goTo({ first: first === null ? null : first + shift, second: second === null ? null : second + shift });
+    const { first, second, clip } = timeline;
+    if (first === null || second === null) {
+      const slot = first === null ? 'second' : 'first';
+      return this.#goTo({ [slot]: clamped(index, clip.count) });
+    }
+    const apart = this.#apart;
+    const [least, most] = look.kind === 'objects' ? [0, clip.count - 1] : [Math.max(0, -apart), clip.count - 1 - Math.max(0, apart)];
+    const at = Math.min(Math.max(index, least), most);
+    return this.#goTo({ first: at, second: clamped(at + apart, clip.count) });
+  }
+
+  /** Goes to the frame where the selected object is least certain; then, or if none is selected, to that of the next object. */
+  goToDoubtful(): void {
+    const { tracked, look, timeline } = this.#store.get();
+    if (tracked === null || look.kind !== 'objects') return;
+    const lives = livesOf(tracked);
+    const selected = lives.findIndex(({ id }) => id === look.selected);
+    const seen = selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
+    const life = lives[(selected < 0 ? 0 : selected + Number(seen)) % lives.length];
+    if (life === undefined) return;
+    this.select(life.id);
+    void this.goTo(life.doubtful.index);
+  }
+
+  /** Goes to the frames that a pointer is dragged over, but reads none that it has left meanwhile. */
+  async scrub(index: number): Promise<void> {
+    const waits = this.#wanted !== null;
+    this.#wanted = index;
+    if (waits) return;
+    while (this.#wanted !== null) {
+      const wanted: number = this.#wanted;
+      await this.goTo(wanted);
+      if (this.#wanted === wanted) this.#wanted = null;
+    }
+    this.#rest();
+  }
+
+  /** Plays the clip from the current frame, or stops. */
+  async togglePlaying(): Promise<void> {
+    const { playing, timeline } = this.#store.get();
+    this.#store.set({ playing: !playing });
+    if (playing || timeline === null) return;
+    const { clip, first } = timeline;
+    let at = first === null || first >= clip.count - 1 ? -1 : first;
+    while (this.#store.get().playing && at < clip.count - 1) {
+      const began = performance.now();
+      const next = at + 1;
+      await this.goTo(next);
+      const now = this.#store.get().timeline;
+      if (now?.clip !== clip || now.first !== next) break; // the end of the pair, or gone elsewhere
+      await new Promise((resolve) => setTimeout(resolve, durationOf(clip, next) - (performance.now() - began)));
+      at = next;
+    }
+    this.#store.set({ playing: false });
+    this.#rest();
+  }
+
+  /** Segments the pair at which the clip was left: those that it passed were not. */
+  #rest(): void {
+    const { run, playing } = this.#store.get();
+    if (run.phase === 'idle' && !playing && this.#wanted === null) void this.segment();
   }
 
   /** Switches the camera on or off. */
@@ -94,6 +177,7 @@ export class Session {
         this.correcting.keep();
         this.#stop();
         const { timeline } = this.#store.get();
+        this.tracking.of(null);
         show();
         timeline?.clip.close();
       },
@@ -103,6 +187,7 @@ export class Session {
   /** Swaps the two frames. */
   swap(): void {
     const { first, second } = this.#store.get().pair;
+    this.#apart *= -1;
     this.#invalidate();
     this.#setPair({ first: second, second: first });
   }
@@ -111,7 +196,9 @@ export class Session {
   change(settings: Partial<Settings>): void {
     const { settings: before, motionsElsewhere } = this.#store.get();
     this.#store.set({ settings: { ...before, ...settings }, motionsElsewhere: settings.motions === undefined ? motionsElsewhere : null });
-    if (this.#store.get().live === null) void this.segment();
+    // The masks of a clip stay until it is segmented again.
+    const { live, look } = this.#store.get();
+    if (live === null && look.kind !== 'objects') void this.segment();
   }
 
   /** Sets the number of motions for this pair alone. */
@@ -164,9 +251,30 @@ export class Session {
   cancel(): void {
     const { run, opening } = this.#store.get();
     if (opening) return this.#stopOpening();
-    if (run.phase !== 'working') return;
+    if (run.phase !== 'working') return this.tracking.cancel();
     this.#stop();
     this.#store.set({ run: { phase: 'cancelled' } });
+  }
+
+  /** Shows masks of this kind. Mask numbers change meaning, so choices that refer to them are reset. */
+  show(kind: Kind): void {
+    const { look, pair, tracked } = this.#store.get();
+    if (look.kind === kind || (kind === 'objects' && !isTracked(tracked))) return;
+    const { hidden, solo, stabilised, selected } = FRESH;
+    if (kind !== 'objects' && look.kind !== 'objects') return this.#store.look({ kind, hidden, solo, stabilised, selected });
+    this.correcting.keep();
+    this.#stop();
+    this.#showMasks(pair, { ...look, ...FRESH, kind });
+  }
+
+  /** Shows the masks of the clip as soon as there are any, and whenever those on screen change. */
+  #showObjects(before: Tracked): void {
+    const { look, pair, tracked } = this.#store.get();
+    if (tracked === null) return;
+    if (!isTracked(before)) return this.show('objects');
+    const frames = [pair.first, pair.second].filter((frame) => frame !== null);
+    const changed = frames.some((frame) => frameOf(tracked, frame) !== frameOf(before, frame));
+    if (look.kind === 'objects' && changed) this.#store.set({ result: resultOf(tracked, pair) });
   }
 
   #stop(): void {
@@ -216,7 +324,7 @@ export class Session {
     return this.#openFrames(
       async () => {
         const frames: LoadedFrame[] = [];
-        for (const { index } of missing) frames.push(await this.#frameOf(clip, index));
+        for (const { index } of missing) frames.push(frameIn([pair.first, pair.second, ...frames], clip, index) ?? (await this.#frameOf(clip, index)));
         return frames;
       },
       (frames, now) => ({ ...now, ...Object.fromEntries(missing.map(({ slot }, k) => [slot, frames[k]])) }),
@@ -232,8 +340,10 @@ export class Session {
         this.#setPair(place(frames, this.#store.get().pair));
       },
       (frames) => {
-        for (const { bitmap, origin } of frames) {
-          bitmap.close();
+        const { first, second } = this.#store.get().pair;
+        for (const frame of frames) {
+          const { bitmap, origin } = frame;
+          if (frame !== first && frame !== second) bitmap.close();
           if (origin !== undefined && 'clip' in origin && origin.clip !== this.#store.get().timeline?.clip) origin.clip.close();
         }
       },
@@ -280,27 +390,55 @@ export class Session {
     const view = complete && look.view === 'split' ? 'split' : only;
     const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
     const timeline = timelineOf(pair);
-    const restored = this.correcting.stateFor(pair);
-    const current = isCurrent(restored);
-    this.#store.set({
-      pair,
-      timeline,
-      opening: false,
-      ...restored,
-      run: current ? { phase: 'done', cause: 'restored' } : complete ? STARTING : { phase: 'idle' },
-      look: { ...look, ...FRESH, view },
-      viewport: sameSize ? viewport : WHOLE,
-    });
+    const sameClip = left?.clip === timeline?.clip;
+    const tracked = this.tracking.of(timeline?.clip ?? null);
+    const kind = look.kind === 'objects' && !(sameClip && isTracked(tracked)) ? 'groups' : look.kind;
+    // The objects of a clip are the same in all its frames.
+    const carried: Look = kind === 'objects' ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };
+    if (timeline !== null && timeline.first !== null && timeline.second !== null && kind !== 'objects') this.#apart = timeline.second - timeline.first;
+    this.#showMasks(pair, { ...carried, view }, { timeline, tracked, opening: false, viewport: sameSize ? viewport : WHOLE });
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
-    if (left !== null && left.clip !== timeline?.clip) left.clip.close();
+    if (left !== null && !sameClip) left.clip.close();
+  }
+
+  /** Shows a pair with the masks that there are: those of the clip, or its own, which are found if necessary. */
+  #showMasks(pair: FramePair, look: Look, others: Partial<State> = {}): void {
+    const { tracked, playing } = { ...this.#store.get(), ...others };
+    if (look.kind === 'objects' && tracked !== null) {
+      const { names, colours } = tracked;
+      const result = resultOf(tracked, pair);
+      this.#store.set({ ...others, pair, found: null, edits: NO_EDITS, result, run: { phase: 'done', cause: 'tracked' }, look: { ...look, names, colours } });
+      return;
+    }
+    const restored = this.correcting.stateFor(pair);
+    const current = isCurrent(restored);
+    const passing = playing || this.#wanted !== null;
+    const starting: Run = pair.first !== null && pair.second !== null && !passing ? STARTING : { phase: 'idle' };
+    this.#store.set({ ...others, pair, ...restored, run: current ? { phase: 'done', cause: 'restored' } : starting, look });
     if (current) this.correcting.settle('restored');
-    else void this.segment();
+    else if (!passing) void this.segment();
   }
 
   #fail(error: unknown): void {
     this.#store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
   }
+}
+
+function clamped(index: number, count: number): number {
+  return Math.min(Math.max(index, 0), count - 1);
+}
+
+/** The frame of the clip with this index, if it is among these. */
+function frameIn(frames: readonly (LoadedFrame | null)[], clip: Clip, index: number): LoadedFrame | null {
+  return frames.find((frame) => frame?.origin !== undefined && 'clip' in frame.origin && frame.origin.clip === clip && frame.origin.index === index) ?? null;
+}
+
+/** How long a frame is shown when the clip is played, milliseconds. */
+function durationOf({ times }: Clip, index: number): number {
+  if (times === null) return 1000 / FRAMES_PER_SECOND;
+  const [now, next] = [times[index]!, times[index + 1]];
+  return next === undefined ? 0 : 1000 * (next - now);
 }
 
 function pairOf([first, second]: readonly LoadedFrame[]): FramePair {

@@ -8,9 +8,10 @@ import { WHOLE, type Viewport } from '../drawing/viewport.js';
 import type { Kept } from './kept.js';
 import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
+import type { Tracked } from './tracked.js';
 
 /** What led to the masks on screen. */
-export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'restored';
+export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'restored' | 'tracked';
 
 /** What is running. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
 export type Run =
@@ -22,6 +23,8 @@ export type Run =
 export interface Result {
   readonly segmentation: Segmentation;
   readonly pair: { readonly first: LoadedFrame; readonly second: LoadedFrame };
+  /** The masks of the second frame, if they were found by themselves; otherwise those of the first are moved. */
+  readonly second?: Segmentation | null;
   /** Time from request to result, transfers to and from the worker included, milliseconds. */
   readonly waited: number;
   /** The last stroke that the labels take into account. */
@@ -71,6 +74,10 @@ export interface Notice {
 export interface State {
   readonly pair: FramePair;
   readonly timeline: Timeline | null;
+  /** The objects of the open clip. */
+  readonly tracked: Tracked | null;
+  /** Whether the clip is being played. */
+  readonly playing: boolean;
   readonly live: Live | null;
   /** Whether something is being opened. The current pair stays until it is ready. */
   readonly opening: boolean;
@@ -102,6 +109,8 @@ export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, 
 export const INITIAL: State = {
   pair: { first: null, second: null },
   timeline: null,
+  tracked: null,
+  playing: false,
   live: null,
   opening: false,
   settings: DEFAULT_SETTINGS,

@@ -21,8 +21,8 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
     const { result, settings } = now;
     if (isAwaited(now)) return;
     const found = result?.segmentation;
-    root.hidden = found === undefined;
-    if (found === undefined) return;
+    root.hidden = found === undefined || now.look.kind === 'objects';
+    if (found === undefined || root.hidden) return;
     if (found.settings.motions === 'auto') scores = found.evidence.candidates;
     const known = scores.length > 0 ? scores : found.evidence.candidates;
     const seen = known.filter(({ motions }) => motions >= 1 && motions <= 10);

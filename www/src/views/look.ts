@@ -2,16 +2,19 @@
 
 import { strings } from '../common/strings.js';
 import type { Kind } from '../result/masks.js';
+import type { Session } from '../session/session.js';
 import type { Look, Store } from '../state/state.js';
+import { isTracked } from '../state/tracked.js';
 import { find } from './markup.js';
 
 const VIEWS = ['first', 'split', 'second'] as const;
 const SWITCHES = ['outlines', 'arrows', 'residual'] as const;
 
-export function mountLook(form: HTMLFormElement, store: Store): void {
+export function mountLook(form: HTMLFormElement, store: Store, session: Session): void {
   const radio = (name: string, value: string): HTMLInputElement => find(form, `[name=${name}][value=${value}]`, HTMLInputElement);
   const views = VIEWS.map((view) => radio('frame', view));
-  const kinds = { motions: radio('colouring', 'motions'), groups: radio('colouring', 'groups') };
+  const kinds = { motions: radio('colouring', 'motions'), groups: radio('colouring', 'groups'), objects: radio('colouring', 'objects') };
+  const clipOnly = find(form, '#kind-objects', HTMLElement);
   const opacity = find(form, '[name=opacity]', HTMLInputElement);
   const opacityValue = find(form, '#opacity-value', HTMLOutputElement);
   const switches = SWITCHES.map((name) => find(form, `[name=${name}]`, HTMLInputElement));
@@ -21,10 +24,11 @@ export function mountLook(form: HTMLFormElement, store: Store): void {
   for (const view of views) {
     view.addEventListener('change', () => store.look({ view: view.value as Look['view'], blinking: false }));
   }
-  for (const kind of Object.values(kinds)) kind.addEventListener('change', () => showKind(store, kind.value as Kind));
+  for (const kind of Object.values(kinds)) kind.addEventListener('change', () => session.show(kind.value as Kind));
   for (const input of switches) input.addEventListener('change', () => store.look({ [input.name]: input.checked }));
 
-  store.subscribe(({ look, pair }, before) => {
+  store.subscribe(({ look, pair, tracked }, before) => {
+    if (tracked !== before.tracked) clipOnly.hidden = !isTracked(tracked);
     if (look === before.look && pair === before.pair) return;
     const both = pair.first !== null && pair.second !== null;
     for (const view of views) {
@@ -36,10 +40,4 @@ export function mountLook(form: HTMLFormElement, store: Store): void {
     opacity.value = String(Math.round(look.opacity * 100));
     opacityValue.textContent = strings.percent(look.opacity);
   });
-}
-
-/** Shows masks of this kind. Mask numbers change meaning, so choices that refer to them are reset. */
-export function showKind(store: Store, kind: Kind): void {
-  if (store.get().look.kind === kind) return;
-  store.look({ kind, hidden: new Set(), solo: null, stabilised: null, selected: null });
 }

@@ -29,17 +29,18 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
     const renamed = look.names !== before.look.names;
     const awaited = isAwaited(now);
     const other = result !== before.result || look.kind !== before.look.kind || live !== before.live || isAwaited(before);
+    list.hidden = look.kind === 'objects';
     list.inert = awaited;
     list.ariaBusy = awaited ? 'true' : null;
     if (other || run.phase !== before.run.phase) {
-      empty.hidden = live === null && (result !== null || (awaited && rows.length > 0));
+      empty.hidden = look.kind === 'objects' || (live === null && (result !== null || (awaited && rows.length > 0)));
       empty.textContent = live === null ? whyNone(run) : strings.liveMasks(result?.segmentation.count ?? 0);
     }
     if (awaited) return;
     if (other) {
       const typed = typedName(list, before.look.kind);
       list.replaceChildren();
-      rows = result === null || live !== null ? [] : fillList(list, template, now, result.segmentation, store, session);
+      rows = result === null || live !== null || look.kind === 'objects' ? [] : fillList(list, template, now, result.segmentation, store, session);
       if (result?.pair.first === before.result?.pair.first) typed?.(list, now);
     }
     if (other || look !== before.look) for (const refresh of rows) refresh(look);

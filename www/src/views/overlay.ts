@@ -36,6 +36,13 @@ function inPlace(look: Look): boolean {
   return look.view !== 'second' || look.stabilised !== null;
 }
 
+/** The masks to draw, and whether they are where they were found. */
+function masksFor({ segmentation, second }: Result, look: Look): { readonly segmentation: Segmentation; readonly moved: boolean } | null {
+  if (inPlace(look)) return { segmentation, moved: false };
+  if (second === undefined) return { segmentation, moved: true };
+  return second === null ? null : { segmentation: second, moved: false };
+}
+
 function repaints(now: Look, before: Look): boolean {
   if (inPlace(now) !== inPlace(before)) return true;
   return (['kind', 'hidden', 'solo', 'colours'] as const).some((key) => now[key] !== before[key]);
@@ -47,18 +54,19 @@ function thicknessFor({ width, height }: { readonly width: number; readonly heig
 
 function paint(canvas: HTMLCanvasElement, work: Piecewise, result: Result | null, look: Look, painter: Painter): void {
   const context = contextOf(canvas);
-  if (result === null) {
+  const masks = result === null ? null : masksFor(result, look);
+  if (masks === null) {
     work.stop();
     context.clearRect(0, 0, canvas.width, canvas.height);
     return;
   }
-  const { segmentation } = result;
+  const { segmentation, moved } = masks;
   const { width, height } = segmentation;
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width;
     canvas.height = height;
   }
-  if (inPlace(look)) {
+  if (!moved) {
     work.rows(width, height, (from, to) => {
       context.putImageData(imageOf(painter(segmentation, from, to), width), 0, from);
     });

@@ -53,11 +53,13 @@ function sentenceFor(state: State): string {
     case 'working':
       return status.working(run.stage, run.index, run.of);
     case 'done':
+      if (run.cause === 'tracked') return result === null ? strings.notTracked : strings.frameHas(result.segmentation.motions.filter(({ label }) => label > 0).length);
       return result === null ? '' : sentenceAbout(run.cause, state, result);
     case 'live':
       return status.live(live?.rate ?? 0, result?.segmentation.count ?? 0);
     case 'idle':
-      if ((pair.first === null) === (pair.second === null)) return status.idle;
+      if (pair.first !== null && pair.second !== null) return ''; // passed while the clip is played
+      if (pair.first === null && pair.second === null) return status.idle;
       return status.waiting(pair.first === null ? 'first' : 'second');
     case 'cancelled':
       if (isPending(state)) return status.cancelledStrokes;
@@ -73,6 +75,7 @@ function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentati
   const { status } = strings;
   const strokes = strokesOf(edits);
   if (cause === 'solved') return status.solved(strokes.length, waited);
+  if (cause === 'tracked') return '';
   if (cause !== 'found') return status[cause];
   const { count, motions, settings } = segmentation;
   const groups = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size : count;

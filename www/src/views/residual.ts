@@ -10,9 +10,11 @@ export function mountResidual(stage: HTMLElement, store: Store): void {
   const work = new Piecewise(1 << 16, true);
   store.subscribe(({ look, result }, before) => {
     if (look.residual === before.look.residual && result === before.result) return;
-    canvas.hidden = !look.residual || result === null;
+    // Objects of a clip need not have one motion.
+    const seen = look.residual && look.kind !== 'objects';
+    canvas.hidden = !seen || result === null;
     work.stop();
-    if (!look.residual || result === null) return;
+    if (!seen || result === null) return;
     const { segmentation, pair } = result;
     const { width, height } = segmentation;
     canvas.width = width;

@@ -5,7 +5,6 @@ import { ZOOM_STEP } from '../drawing/viewport.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { toggleBlinking } from './blink.js';
-import { showKind } from './look.js';
 import { stepOne } from './timeline.js';
 import { changeRadius, chooseTool } from './tools.js';
 import type { Zoom } from './zoom.js';
@@ -35,7 +34,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
   return [
     { keys: ['n'], shown: 'N', does: keys.blink, run: () => toggleBlinking(store) },
     { keys: ['s'], shown: 'S', does: keys.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
-    { keys: ['g'], shown: 'G', does: keys.kind, run: () => showKind(store, store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['g'], shown: 'G', does: keys.kind, run: () => session.show(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
     { keys: ['o'], shown: 'O', does: keys.outlines, run: toggle('outlines') },
     { keys: ['a'], shown: 'A', does: keys.arrows, run: toggle('arrows') },
     { keys: ['r'], shown: 'R', does: keys.residual, run: toggle('residual') },
@@ -49,6 +48,8 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['arrowdown'], shown: '↓', does: '', run: pan(0, -1), arrows: true },
     { keys: [','], shown: ',', does: keys.stepBack, run: () => stepOne(store, session, 'both', -1) },
     { keys: ['.'], shown: '.', does: keys.stepOn, run: () => stepOne(store, session, 'both', 1) },
+    { keys: ['k'], shown: 'K', does: keys.play, run: () => void session.togglePlaying() },
+    { keys: ['d'], shown: 'D', does: keys.doubtful, run: () => session.goToDoubtful() },
     { keys: ['v'], shown: 'V', does: keys.look, run: () => chooseTool(store, 'look') },
     { keys: ['p'], shown: 'P', does: keys.brush, run: () => chooseTool(store, 'brush') },
     { keys: ['e'], shown: 'E', does: keys.eraser, run: () => chooseTool(store, 'eraser') },

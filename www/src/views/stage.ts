@@ -49,7 +49,8 @@ function captionOf(state: State): string {
   const slot = shownSlot(state);
   if (slot === null) return '';
   if (state.live !== null) return strings.camera;
-  const { look } = state;
+  const { look, timeline } = state;
+  if (look.kind === 'objects' && look.view !== 'split' && timeline !== null) return strings.frameNumber(timeline[slot] ?? 0);
   const held = look.stabilised === null || (look.view === 'first' && !look.blinking) ? '' : strings.stabilised(nameOf(look, look.stabilised));
   return `${look.view === 'split' ? strings.split : strings.slot[slot]}${held}`;
 }

@@ -1,4 +1,4 @@
-//! The timeline of a clip: thumbnails, the two chosen frames, buttons to step.
+//! The timeline of a clip: thumbnails, the current frame, the two frames of the pair, buttons to step and play.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
@@ -10,11 +10,15 @@ import { contextOf, find } from './markup.js';
 const THUMB = 72;
 /** Position of a hidden mark, share of the strip. */
 const OUTSIDE = '-1';
+/** Page keys move by this share of the clip. */
+const PAGE = 0.1;
 
 export function mountTimeline(root: HTMLElement, store: Store, session: Session): void {
   const strip = find(root, '#strip', HTMLCanvasElement);
+  const track = find(root, '#track', HTMLElement);
   const label = find(root, '#clip-name', HTMLElement);
   const note = find(root, '#clip-note', HTMLElement);
+  const play = find(root, '#play', HTMLButtonElement);
   const sliders = (['first', 'second'] as const).map((slot) => {
     const input = find(root, `[name=clip-${slot}]`, HTMLInputElement);
     const readout = find(root, `#clip-${slot}-at`, HTMLElement);
@@ -26,14 +30,14 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     const [slot, by] = (button.dataset.step ?? '').split(' ');
     button.addEventListener('click', () => stepOne(store, session, slot as Slot | 'both', Number(by)));
   }
-  strip.addEventListener('click', (event) => {
-    const { timeline } = store.get();
-    if (timeline === null) return;
-    const index = Math.floor((event.offsetX / strip.clientWidth) * timeline.clip.count);
-    void session.choose(event.shiftKey ? 'second' : 'first', index);
-  });
+  play.addEventListener('click', () => void session.togglePlaying());
+  mountScrubbing(track, store, session);
 
-  store.subscribe(({ timeline }, before) => {
+  store.subscribe(({ timeline, playing }, before) => {
+    if (playing !== before.playing) {
+      play.textContent = playing ? '❚❚' : '▶';
+      play.setAttribute('aria-label', playing ? strings.pause : strings.play);
+    }
     if (timeline === before.timeline) return;
     root.hidden = timeline === null;
     if (timeline === null) return;
@@ -41,8 +45,12 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     if (clip !== before.timeline?.clip) {
       label.textContent = strings.clip(clip.name, clip.count, clip.width, clip.height);
       note.hidden = clip.exact;
+      track.setAttribute('aria-valuemax', String(clip.count - 1));
       void drawStrip(strip, timeline, () => store.get().timeline?.clip === clip);
     }
+    const at = currentFrame(timeline);
+    track.setAttribute('aria-valuenow', String(at));
+    track.setAttribute('aria-valuetext', strings.frameSlider(at, clip.count, clip.times?.[at] ?? null));
     for (const { slot, input, readout } of sliders) {
       const index = timeline[slot];
       root.style.setProperty(`--${slot}`, index === null ? OUTSIDE : String((index + 0.5) / clip.count));
@@ -51,6 +59,50 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
       readout.textContent = placeOf(timeline, index);
     }
   });
+}
+
+/** A press or a drag anywhere on the track moves the frame, and so do the keys of a slider. With Shift a press chooses the second frame. */
+function mountScrubbing(track: HTMLElement, store: Store, session: Session): void {
+  const indexAt = ({ clientX }: PointerEvent): number => {
+    const { left, width } = track.getBoundingClientRect();
+    const count = store.get().timeline?.clip.count ?? 1;
+    return Math.min(Math.max(Math.floor(((clientX - left) / width) * count), 0), count - 1);
+  };
+  track.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0) return;
+    if (event.shiftKey) return void session.choose('second', indexAt(event));
+    track.setPointerCapture(event.pointerId);
+    void session.scrub(indexAt(event));
+  });
+  track.addEventListener('pointermove', (event) => {
+    const index = indexAt(event);
+    if (track.hasPointerCapture(event.pointerId) && index !== currentFrame(store.get().timeline)) void session.scrub(index);
+  });
+  track.addEventListener('keydown', (event) => {
+    const { timeline } = store.get();
+    if (timeline === null || event.ctrlKey || event.metaKey || event.altKey) return;
+    const [at, last] = [currentFrame(timeline), timeline.clip.count - 1];
+    const page = Math.max(1, Math.round(last * PAGE));
+    const places: Readonly<Record<string, number>> = {
+      ArrowLeft: at - 1,
+      ArrowDown: at - 1,
+      ArrowRight: at + 1,
+      ArrowUp: at + 1,
+      PageDown: at - page,
+      PageUp: at + page,
+      Home: 0,
+      End: last,
+    };
+    const to = places[event.key];
+    if (to === undefined) return;
+    event.preventDefault();
+    void session.goTo(to);
+  });
+}
+
+/** The index of the frame on screen: the first, unless only the second is of the clip. */
+function currentFrame(timeline: Timeline | null): number {
+  return timeline?.first ?? timeline?.second ?? 0;
 }
 
 /** Steps one frame or both. A frame that is not of the clip starts from the position of the other. */

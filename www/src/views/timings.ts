@@ -9,7 +9,7 @@ export function mountTimings(root: HTMLElement, store: Store): void {
   store.subscribe((now, before) => {
     const { result } = now;
     if (isAwaited(now) || (result === before.result && !isAwaited(before))) return;
-    root.hidden = result === null;
+    root.hidden = result === null || now.look.kind === 'objects';
     body.replaceChildren(...(result === null ? [] : linesOf(result).map(([what, ms]) => line(what, ms))));
   });
 }

@@ -1,0 +1,48 @@
+//! The masks of a clip's frames in the form of a pair's result, so that the same views draw them.
+
+import type { Segmentation } from 'veronese';
+import { unpacked } from '../correction/runs.js';
+import { UNLABELLED } from '../result/masks.js';
+import type { FramePair, LoadedFrame } from '../state/pair.js';
+import type { Result } from '../state/state.js';
+import type { Tracked, TrackedFrame } from '../state/tracked.js';
+
+/** The masks of both frames of a pair; `null` if there are none of the first. */
+export function resultOf(tracked: Tracked | null, { first, second }: FramePair): Result | null {
+  if (tracked === null || first === null || second === null) return null;
+  const [found, other] = [frameOf(tracked, first), frameOf(tracked, second)];
+  if (found === null) return null;
+  return { segmentation: segmentationOf(found), pair: { first, second }, second: other && segmentationOf(other), waited: 0, under: null };
+}
+
+/** What the clip knows of a frame that is open. */
+export function frameOf({ clip, frames }: Tracked, { origin }: LoadedFrame): TrackedFrame | null {
+  if (origin === undefined || !('clip' in origin) || origin.clip !== clip) return null;
+  return frames[origin.index] ?? null;
+}
+
+const STILL: Segmentation['motions'][number]['matrix'] = [0, 0, 0, 0, 0, 0];
+
+/** A motion for the background and for each object. Their labels are numbers of objects, with gaps. */
+function segmentationOf({ runs, objects, background }: TrackedFrame): Segmentation {
+  const { width, height } = runs;
+  const labels = unpacked(runs);
+  const total = labels.length;
+  const unlabelled = labels.reduce((sum, label) => (label === UNLABELLED ? sum + 1 : sum), 0);
+  const rest = objects.reduce((left, { pixels }) => left - pixels, total - unlabelled);
+  const motions = [{ id: 0, pixels: rest, bbox: [0, 0, width, height] as [number, number, number, number], matrix: background }, ...objects].map(
+    ({ id, pixels, bbox, matrix }) => ({ label: id, group: id, pixels, share: pixels / total, bbox, matrix: matrix ?? STILL, residual: 0 }),
+  );
+  return {
+    version: 1,
+    width,
+    height,
+    count: motions.length,
+    motions,
+    evidence: { candidates: [] },
+    unlabelled,
+    milliseconds: { total: 0 },
+    settings: { motions: 'auto', quality: 'best', markUnknown: false, before: false, seed: 1, software: '' },
+    labels,
+  };
+}

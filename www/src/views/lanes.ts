@@ -1,0 +1,76 @@
+//! A lane for each object on the timeline: the frames that show it, more faintly the less certain they are.
+
+import { nameOf } from '../common/naming.js';
+import { strings } from '../common/strings.js';
+import { colourOfMask } from '../drawing/paint.js';
+import { cssColour } from '../drawing/palette.js';
+import type { Session } from '../session/session.js';
+import type { Look, State, Store } from '../state/state.js';
+import { type Life, type Tracked, livesOf } from '../state/tracked.js';
+import { contextOf, element, find } from './markup.js';
+
+/** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
+const LEAST_CONFIDENCE = 0.5;
+const LEAST_OPACITY = 0.2;
+/** Height of a lane in its row. */
+const THICKNESS = 0.6;
+
+export function mountLanes(root: HTMLElement, store: Store, session: Session): void {
+  const names = find(root, '#lane-names', HTMLElement);
+  const canvas = find(root, '#lanes', HTMLCanvasElement);
+  let lives: Life[] = [];
+
+  const render = ({ tracked, look }: State): void => {
+    if (tracked === null || look.kind !== 'objects') return;
+    draw(canvas, tracked, lives, look);
+    for (const button of names.querySelectorAll<HTMLButtonElement>('button')) {
+      const id = Number(button.dataset.object);
+      const name = nameOf(look, id);
+      button.textContent = name;
+      button.setAttribute('aria-label', strings.selectObject(name));
+      button.setAttribute('aria-pressed', String(look.selected === id));
+      button.style.setProperty('--colour', cssColour(colourOfMask(id, look)));
+    }
+  };
+  store.subscribe((now, before) => {
+    const { tracked, look } = now;
+    if (tracked?.frames === before.tracked?.frames && look === before.look) return;
+    root.classList.toggle('with-lanes', look.kind === 'objects' && tracked !== null);
+    if (tracked === null) return;
+    if (tracked.frames !== before.tracked?.frames) {
+      lives = livesOf(tracked);
+      root.style.setProperty('--lanes', String(lives.length));
+      names.replaceChildren(...lives.map(({ id }) => nameButton(id, session)));
+    }
+    render(now);
+  });
+  new ResizeObserver(() => render(store.get())).observe(canvas);
+}
+
+function nameButton(id: number, session: Session): HTMLElement {
+  const button = element('button', '', 'lane-name');
+  button.type = 'button';
+  button.dataset.object = String(id);
+  button.addEventListener('click', () => session.select(id));
+  const item = element('li');
+  item.append(button);
+  return item;
+}
+
+function draw(canvas: HTMLCanvasElement, { frames }: Tracked, lives: readonly Life[], look: Look): void {
+  const dense = Math.min(2, devicePixelRatio);
+  canvas.width = Math.max(1, Math.round(canvas.clientWidth * dense));
+  canvas.height = Math.max(1, Math.round(canvas.clientHeight * dense));
+  const context = contextOf(canvas);
+  const [column, row] = [canvas.width / frames.length, canvas.height / Math.max(1, lives.length)];
+  const places = new Map(lives.map(({ id }, k) => [id, k]));
+  frames.forEach((frame, index) => {
+    const [left, right] = [Math.floor(index * column), Math.floor((index + 1) * column)];
+    for (const { id, confidence } of frame?.objects ?? []) {
+      const sure = Math.max(0, (confidence - LEAST_CONFIDENCE) / (1 - LEAST_CONFIDENCE));
+      context.globalAlpha = LEAST_OPACITY + (1 - LEAST_OPACITY) * sure;
+      context.fillStyle = cssColour(colourOfMask(id, look));
+      context.fillRect(left, ((places.get(id) ?? 0) + (1 - THICKNESS) / 2) * row, Math.max(1, right - left), THICKNESS * row);
+    }
+  });
+}

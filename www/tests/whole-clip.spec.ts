@@ -1,0 +1,148 @@
+//! Whole clips: objects that keep their numbers, segmented in the background; moving through the frames.
+
+import { type Page } from '@playwright/test';
+
+import { video } from './video.js';
+import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, square, test, upload } from './support.js';
+
+/** Opens frames as a clip. */
+async function openClip(page: Page, files: Awaited<ReturnType<typeof clipFrames>>): Promise<void> {
+  await open(page, 'groups');
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
+  await done(page);
+}
+
+async function segmentClip(page: Page): Promise<void> {
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await phase(page, 'done');
+}
+
+async function phase(page: Page, name: string): Promise<void> {
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', name, { timeout: 45_000 });
+}
+
+/** Waits until a frame is on screen with its masks. */
+async function shows(page: Page, index: number): Promise<void> {
+  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
+  await done(page);
+}
+
+/** The objects' numbers on the picture; 0 where there is none. */
+async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
+  return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
+}
+
+test('the objects of a clip keep number, name and colour in all frames', async ({ page }) => {
+  const files = await clipFrames(8);
+  const found = await clipInNode(files);
+  await openClip(page, files);
+  await expect(page.locator('#kind-objects')).toBeHidden();
+  await segmentClip(page);
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 8 frames.');
+  await shows(page, 0);
+  expect(differences(await numbersOnCanvas(page), found[0]!)).toBe(0);
+  await expect(page.locator('#lane-names button')).toHaveText(['Object 1', 'Object 2']);
+
+  const names = page.locator('#objects .motion-name');
+  await expect(names).toHaveCount(3);
+  await names.nth(1).fill('Ball');
+  await names.nth(1).press('Enter');
+  await expect(page.locator('#lane-names button')).toHaveText(['Ball', 'Object 2']);
+
+  // The keys of a slider go to any frame, the last one too.
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  await track.press('End');
+  await shows(page, 7);
+  await expect(track).toHaveAttribute('aria-valuetext', 'Frame 7 of 8');
+  expect(differences(await numbersOnCanvas(page), found[7]!)).toBe(0);
+  await expect(names.nth(1)).toHaveValue('Ball');
+
+  // A press moves the frame, a drag goes on moving it.
+  const box = (await track.boundingBox())!;
+  const at = (index: number): number => box.x + ((index + 0.5) * box.width) / 8;
+  await page.mouse.move(at(2), box.y + 20);
+  await page.mouse.down();
+  await shows(page, 2);
+  await page.mouse.move(at(4), box.y + 20, { steps: 4 });
+  await page.mouse.up();
+  await shows(page, 4);
+  expect(differences(await numbersOnCanvas(page), found[4]!)).toBe(0);
+  // The second frame keeps its distance, and has masks of its own.
+  await expect(page.locator('#clip-second-at')).toHaveText('#5');
+  await page.locator('#look [name=frame][value=second]').check();
+  await expect(page.locator('#caption')).toHaveText('Frame 5');
+  expect(differences(await numbersOnCanvas(page), found[5]!)).toBe(0);
+  await page.locator('#look [name=frame][value=first]').check();
+
+  // Nothing is segmented again when the clip is played.
+  await page.keyboard.press('k');
+  await shows(page, 7);
+  await expect(page.getByRole('button', { name: 'Play' })).toBeVisible();
+  expect(differences(await numbersOnCanvas(page), found[7]!)).toBe(0);
+
+  // Hidden objects are hidden in every frame.
+  await page.getByLabel('Show Ball').uncheck();
+  await page.keyboard.press(',');
+  await shows(page, 6);
+  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+
+  // The pair is still there.
+  await page.locator('#look [value=groups]').check();
+  await expect(page.locator('#motions > li')).toHaveCount(3);
+  await done(page);
+  await page.locator('#look [value=objects]').check();
+  await shows(page, 6);
+  await expect(names.nth(1)).toHaveValue('Ball');
+});
+
+test('a video is segmented as a whole, and gives exactly the requested frames meanwhile', async ({ page }) => {
+  await open(page, 'groups');
+  await upload(page, [await video(page, 10, 'webm', 'vp8')]);
+  await expect(page.locator('#clip-name')).toContainText('10 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  for (const [key, index] of [['ArrowRight', 1], ['ArrowRight', 2], ['Home', 0]] as const) {
+    await track.press(key);
+    await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`#${index},`);
+  }
+  await phase(page, 'done');
+  await expect(page.locator('#clip-status')).toHaveText(/in 10 frames\.$/);
+  await track.press('End');
+  await shows(page, 9);
+  await expect(page.locator('#notice')).toBeHidden();
+});
+
+test('a cancelled clip keeps what is done and continues from there', async ({ page }) => {
+  const files = await clipFrames(10);
+  const found = await clipInNode(files);
+  await openClip(page, files);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
+  await page.locator('#clip-cancel').click();
+  await phase(page, 'cancelled');
+  const kept = Number(/^Cancelled\. (\d+) of 10 frames are done and kept\.$/.exec((await page.locator('#clip-status').textContent()) ?? '')?.[1]);
+  expect(kept).toBeGreaterThan(1);
+  expect(kept).toBeLessThan(10);
+  await page.getByRole('button', { name: 'Continue' }).click();
+  const continued = /^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1];
+  expect(Number(continued)).toBeGreaterThanOrEqual(kept);
+  await phase(page, 'done');
+  await shows(page, 0);
+  expect(differences(await numbersOnCanvas(page), found[0]!)).toBe(0);
+});
+
+test('a frame of another size ends the clip, and the frames before it have masks', async ({ page }) => {
+  const files = await clipFrames(6);
+  await openClip(page, [...files.slice(0, 5), await square('f05.png', 120, 90, 0, 0)]);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await phase(page, 'failed');
+  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
+  await shows(page, 0);
+  await page.getByRole('slider', { name: 'Current frame' }).press('End');
+  await expect(page.locator('#status')).toHaveText('No masks of this frame yet.');
+  await page.getByRole('slider', { name: 'Current frame' }).press('ArrowLeft');
+  await shows(page, 4);
+  expect(new Set(await numbersOnCanvas(page)).size).toBeGreaterThan(1);
+});
