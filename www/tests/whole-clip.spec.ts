@@ -146,3 +146,95 @@ test('a frame of another size ends the clip, and the frames before it have masks
   await shows(page, 4);
   expect(new Set(await numbersOnCanvas(page)).size).toBeGreaterThan(1);
 });
+
+/** Paints a stroke; positions are shares of the picture. */
+async function paint(page: Page, from: readonly [number, number], to: readonly [number, number]): Promise<void> {
+  await page.locator('.layers').scrollIntoViewIfNeeded();
+  const box = (await page.locator('.layers').boundingBox())!;
+  await page.mouse.move(box.x + from[0] * box.width, box.y + from[1] * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + to[0] * box.width, box.y + to[1] * box.height, { steps: 6 });
+  await page.mouse.up();
+}
+
+async function goTo(page: Page, index: number): Promise<void> {
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  const box = (await track.boundingBox())!;
+  const count = Number(await track.getAttribute('aria-valuemax')) + 1;
+  await track.click({ position: { x: ((index + 0.5) * box.width) / count, y: 10 } });
+  await shows(page, index);
+}
+
+test('a stroke in one frame is carried through the clip, and can be undone', async ({ page }) => {
+  const files = await clipFrames(8);
+  const found = await clipInNode(files);
+  await openClip(page, files);
+  await segmentClip(page);
+  await goTo(page, 3);
+  await page.getByRole('button', { name: 'New object' }).click();
+  await expect(page.locator('#objects .motion.selected .motion-name')).toHaveValue('Object 3');
+  await expect(page.locator('#tools [value=brush]')).toBeChecked();
+  // Over the disc, whose centre is at (0.2 · 200 + 12, 0.36 · 140 + 3).
+  await paint(page, [0.2, 0.3], [0.32, 0.46]);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \w+ frames have changed\.$/);
+  const corrected = await numbersOnCanvas(page);
+  // What was painted is certain.
+  expect(corrected[Math.round(0.38 * 140) * 200 + Math.round(0.26 * 200)]).toBe(3);
+  await goTo(page, 4);
+  expect(new Set(await numbersOnCanvas(page))).toContain(3);
+
+  await page.keyboard.press('Control+z');
+  await expect(page.locator('#clip-status')).toHaveText(/^Undone in/);
+  expect(differences(await numbersOnCanvas(page), found[4]!)).toBe(0);
+  await goTo(page, 3);
+  expect(differences(await numbersOnCanvas(page), found[3]!)).toBe(0);
+  await expect(page.locator('#objects .motion')).toHaveCount(4); // the new object is selected still
+  await page.getByRole('button', { name: 'Redo' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Redone in/);
+  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
+});
+
+test('objects are merged and deleted in the whole clip, and the corrections are restored with it', async ({ page }) => {
+  const files = await clipFrames(6);
+  const merged = await clipInNode(files, { quality: 'fast', edits: { merge: [[1, 2]] } });
+  await openClip(page, files);
+  await segmentClip(page);
+  const leaves = (): Promise<boolean> => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
+  expect(await leaves()).toBe(true);
+
+  const rows = page.locator('#objects > li');
+  await rows.nth(2).locator('summary').click();
+  await page.getByLabel('Merge Object 2').selectOption('1');
+  await expect(rows).toHaveCount(2);
+  await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 6 frames have changed.');
+  for (const index of [0, 5]) {
+    await goTo(page, index);
+    expect(differences(await numbersOnCanvas(page), merged[index]!)).toBe(0);
+  }
+  // Leaving would lose this.
+  expect(await leaves()).toBe(false);
+
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await expect(rows).toHaveCount(3);
+  expect(await leaves()).toBe(true);
+  await rows.nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 1' }).click();
+  await expect(rows).toHaveCount(2);
+  await rows.nth(1).locator('.motion-name').fill('Box');
+  await rows.nth(1).locator('.motion-name').press('Enter');
+  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+
+  // Another pair, and the clip again.
+  await page.getByRole('button', { name: 'Parallax' }).click();
+  await expect(page.locator('#timeline')).toBeHidden();
+  await done(page);
+  await expect(page.locator('#objects')).toBeHidden();
+  expect(await leaves()).toBe(false);
+  await upload(page, files);
+  await shows(page, 0);
+  await expect(rows).toHaveCount(2);
+  await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Box');
+  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await expect(rows).toHaveCount(3);
+});

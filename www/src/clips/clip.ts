@@ -4,6 +4,8 @@ import type { DecodedFrame } from '../frames/frame.js';
 
 export interface Clip {
   readonly name: string;
+  /** Identifies the clip by its content. */
+  readonly fingerprint: string;
   /** Number of frames. */
   readonly count: number;
   /** Presentation time of each frame, seconds; `null` for a folder. */

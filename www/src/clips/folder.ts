@@ -7,7 +7,9 @@ import type { Clip, Picture } from './clip.js';
 export async function openFolder(files: readonly File[]): Promise<Clip> {
   const size = await frameFromBlob(files[0]!, nameOfFile(files[0]!), Infinity);
   size.bitmap.close();
-  return new Folder(files, size.width, size.height);
+  // The first frame and the sizes of all files tell folders apart without reading them.
+  const fingerprint = [size.fingerprint, ...files.map((file) => file.size)].join(' ');
+  return new Folder(files, fingerprint, size.width, size.height);
 }
 
 class Folder implements Clip {
@@ -18,6 +20,7 @@ class Folder implements Clip {
 
   constructor(
     readonly files: readonly File[],
+    readonly fingerprint: string,
     readonly width: number,
     readonly height: number,
   ) {

@@ -91,7 +91,10 @@ export const strings = {
     corrections: 'Carrying your correction to other frames…',
     labels: (done: number, of: number): string => `Masks of ${whole.format(done)} of ${frames(of)}`,
     started: 'Segmenting the clip.',
-    done: (objects: number, of: number): string => `${objects === 0 ? 'No object moves' : objects === 1 ? 'One object' : `${objects} objects`} in ${frames(of)}.`,
+    corrected: (changed: number): string => `Corrected: the masks of ${frames(changed)} have changed.`,
+    undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
+    redone: (changed: number): string => `Redone in ${frames(changed)}.`,
+    found: (objects: number, of: number): string => `${objects === 0 ? 'No object moves' : objects === 1 ? 'One object' : `${objects} objects`} in ${frames(of)}.`,
     cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} are done and kept.`,
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} are done and kept.`,
   },
@@ -103,6 +106,10 @@ export const strings = {
     `Frame ${index} of ${count}${seconds === null ? '' : `, ${seconds.toFixed(2)} s`}`,
   life: (first: number, last: number): string => (first === last ? `frame ${first} only` : `frames ${first} to ${last}`),
   away: 'not in this frame',
+  mergeWith: 'Merge with…',
+  newObjectHelp: 'Not painted yet: paint it in any frame.',
+  splitOf: (name: string): string => `Split ${name}: its smaller pieces in this frame become another object`,
+  removeOf: (name: string): string => `Delete ${name}: it becomes background in the whole clip`,
   selectObject: (name: string): string => `Select ${name}`,
   doubtful: (index: number): string => `Check #${index}`,
   doubtfulOf: (name: string, index: number): string => `Go to frame ${index}, where ${name} is least certain`,
@@ -137,6 +144,12 @@ export const strings = {
     look: '',
     brush: 'Paint pixels that belong to the selected mask; the labels around them adapt.',
     eraser: 'Paint pixels that do not belong to the selected mask.',
+  },
+
+  clipToolHelp: {
+    look: '',
+    brush: 'Paint pixels that belong to the selected object, in any frame; the other frames follow.',
+    eraser: 'Paint pixels that do not belong to the selected object; the other frames follow.',
   },
 
   timings: {
@@ -184,6 +197,9 @@ export const strings = {
     noMasks: 'There are no masks to paint yet.',
     chooseMask: 'Select a mask in the list first.',
     nothingElse: 'There is no other mask that these pixels could belong to.',
+    notReady: 'Segment the clip first, to its end.',
+    onePiece: 'The object is in one piece in this frame. Choose “New object” and paint the part that is another.',
+    tooMany: 'There are 254 objects, and there cannot be more.',
     notPainted: 'The brush cannot make pixels unlabelled. Select another mask, or use the eraser.',
   },
 

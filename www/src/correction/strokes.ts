@@ -49,7 +49,7 @@ export function evidenceOf(strokes: readonly Constraint[], width: number, height
 }
 
 /** Calls `visit` for each pixel whose centre lies under the stroke, for some more than once. */
-function eachPixel({ points, radius }: Path, width: number, height: number, visit: (pixel: number) => void): void {
+export function eachPixel({ points, radius }: Path, width: number, height: number, visit: (pixel: number) => void): void {
   for (let i = 0; i < points.length; i += 2) {
     const [x0, y0] = [points[Math.max(0, i - 2)]!, points[Math.max(1, i - 1)]!];
     const [x1, y1] = [points[i]!, points[i + 1]!];

@@ -7,9 +7,10 @@ import { openClip } from '../clips/open.js';
 import { PageError, codeOf, sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
+import type { Path, Stroke } from '../correction/strokes.js';
 import { WHOLE } from '../drawing/viewport.js';
 import { nameOfFile, selectOpenable } from '../frames/files.js';
-import { frameFromBlob, frameFromUrl } from '../frames/frame.js';
+import { frameFromBlob, frameFromUrl, smaller } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
 import type { Kind } from '../result/masks.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
@@ -50,6 +51,7 @@ export class Session {
     this.tracking = new Tracking(store, {
       changed: (before) => this.#showObjects(before),
       failed: (error) => this.say(sentenceOf(error), codeOf(error)),
+      say: (sentence) => this.say(sentence),
     });
     this.#live = new LiveView(store, (error) => this.#fail(error));
   }
@@ -242,6 +244,23 @@ export class Session {
     }
   }
 
+  /** Begins a stroke with the selected mask. Returns what takes its path, or `null`, and tells why, if it would have no effect. */
+  beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
+    if (this.#store.get().look.kind === 'objects') return this.tracking.beginStroke(tool);
+    const mask = this.correcting.maskFor(tool);
+    return mask === null ? null : (path) => this.correcting.stroke({ ...path, tool, mask });
+  }
+
+  undo(): void {
+    if (this.#store.get().look.kind === 'objects') this.tracking.undo();
+    else this.correcting.undo();
+  }
+
+  redo(): void {
+    if (this.#store.get().look.kind === 'objects') this.tracking.redo();
+    else this.correcting.redo();
+  }
+
   /** Selects a mask. */
   select(mask: number | null): void {
     this.#store.look({ selected: mask });
@@ -323,8 +342,10 @@ export class Session {
     this.#store.set({ timeline: wanted });
     return this.#openFrames(
       async () => {
+        const { longestSide } = this.#store.get().settings;
+        const isSized = ({ full, width }: LoadedFrame): boolean => smaller(full, longestSide).width === width;
         const frames: LoadedFrame[] = [];
-        for (const { index } of missing) frames.push(frameIn([pair.first, pair.second, ...frames], clip, index) ?? (await this.#frameOf(clip, index)));
+        for (const { index } of missing) frames.push([pair.first, pair.second, ...frames].find((frame) => frame !== null && isOf(frame, clip, index) && isSized(frame)) ?? (await this.#frameOf(clip, index)));
         return frames;
       },
       (frames, now) => ({ ...now, ...Object.fromEntries(missing.map(({ slot }, k) => [slot, frames[k]])) }),
@@ -392,10 +413,10 @@ export class Session {
     const timeline = timelineOf(pair);
     const sameClip = left?.clip === timeline?.clip;
     const tracked = this.tracking.of(timeline?.clip ?? null);
-    const kind = look.kind === 'objects' && !(sameClip && isTracked(tracked)) ? 'groups' : look.kind;
+    const kind = isTracked(tracked) && (!sameClip || look.kind === 'objects') ? 'objects' : look.kind === 'objects' ? 'groups' : look.kind;
     // The objects of a clip are the same in all its frames.
-    const carried: Look = kind === 'objects' ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };
-    if (timeline !== null && timeline.first !== null && timeline.second !== null && kind !== 'objects') this.#apart = timeline.second - timeline.first;
+    const carried: Look = kind === 'objects' && sameClip ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };
+    if (timeline !== null && timeline.first !== null && timeline.second !== null && !(kind === 'objects' && sameClip)) this.#apart = timeline.second - timeline.first;
     this.#showMasks(pair, { ...carried, view }, { timeline, tracked, opening: false, viewport: sameSize ? viewport : WHOLE });
     // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
     for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
@@ -429,9 +450,9 @@ function clamped(index: number, count: number): number {
   return Math.min(Math.max(index, 0), count - 1);
 }
 
-/** The frame of the clip with this index, if it is among these. */
-function frameIn(frames: readonly (LoadedFrame | null)[], clip: Clip, index: number): LoadedFrame | null {
-  return frames.find((frame) => frame?.origin !== undefined && 'clip' in frame.origin && frame.origin.clip === clip && frame.origin.index === index) ?? null;
+/** Whether a frame is that of the clip with this index. */
+function isOf({ origin }: LoadedFrame, clip: Clip, index: number): boolean {
+  return origin !== undefined && 'clip' in origin && origin.clip === clip && origin.index === index;
 }
 
 /** How long a frame is shown when the clip is played, milliseconds. */

@@ -1,16 +1,24 @@
-//! The clip as a whole: its frames are segmented in a worker of their own. What is done stays when a run is cancelled or fails.
+//! The clip as a whole, in a worker of its own: segmenting its frames, and carrying corrections through them. What is done stays when a
+//! run is cancelled or fails.
 
-import { type ClipFrame, type Pixels, Segmenter } from 'veronese';
+import { type ClipFrame, type ClipOptions, Segmenter } from 'veronese';
 import type { Clip } from '../clips/clip.js';
-import { packed } from '../correction/runs.js';
+import { strings } from '../common/strings.js';
+import { smallerPieces } from '../correction/pieces.js';
+import { type Runs, packed, unpacked } from '../correction/runs.js';
+import { type Path, type Stroke, eachPixel } from '../correction/strokes.js';
 import type { Colour } from '../drawing/palette.js';
-import { keyOf } from '../result/masks.js';
+import { UNLABELLED, keyOf } from '../result/masks.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
-import { type Tracked, type TrackedFrame, untracked } from '../state/tracked.js';
+import { type ClipRun, type Tracked, type TrackedFrame, type Version, untracked, versionOf } from '../state/tracked.js';
+import { ClipFrames } from './clip-frames.js';
+import { TimeLeft } from './time-left.js';
 
 /** Masks are shown at most this often while they come, milliseconds. */
 const OFTEN = 100;
+/** The largest number of an object. */
+const MOST_OBJECTS = 254;
 
 /** What the pairs of each frame have told, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
 interface Known {
@@ -22,27 +30,49 @@ interface Hooks {
   /** The masks of some frames have changed; `before`: what there was. */
   readonly changed: (before: Tracked) => void;
   readonly failed: (error: unknown) => void;
+  readonly say: (sentence: string) => void;
+}
+
+/** Changes what is known of the clip. */
+type Change = (change: Partial<Tracked>) => void;
+
+/** What a person says: pixels of one frame, or what becomes of whole objects. */
+type Said = { readonly frame: number; readonly labels: Uint8Array } | { readonly edits: NonNullable<ClipOptions['edits']> };
+
+/** Corrections that are being carried through the clip, one after another, because each starts from the masks of the one before. */
+interface Carrying {
+  /** The masks after those that are done. */
+  settled: Version;
+  readonly waiting: Said[];
 }
 
 export class Tracking {
   readonly #store: Store;
   readonly #hooks: Hooks;
   readonly #segmenter = new Segmenter();
-  readonly #known = new WeakMap<Clip, Known>();
+  /** By the clip's fingerprint. */
+  readonly #known = new Map<string, Known>();
   /** The run under way. */
   #current: AbortController | null = null;
+  #carrying: Carrying | null = null;
 
   constructor(store: Store, hooks: Hooks) {
     this.#store = store;
     this.#hooks = hooks;
   }
 
-  /** What is known of this clip. A run on another one ends. */
+  /** What is known of this clip, also from when it was open before. A run on another one ends. */
   of(clip: Clip | null): Tracked | null {
     const { tracked } = this.#store.get();
     if (clip !== null && tracked?.clip === clip) return tracked;
-    this.#end();
-    return clip === null ? null : untracked(clip);
+    this.cancel();
+    const { tracked: left, keptClips } = this.#store.get();
+    const kept = new Map(keptClips);
+    if (left !== null && left.solved > 0) kept.set(left.clip.fingerprint, left);
+    const known = clip === null ? undefined : kept.get(clip.fingerprint);
+    if (clip !== null) kept.delete(clip.fingerprint);
+    this.#store.set({ keptClips: kept });
+    return clip === null ? null : known === undefined ? untracked(clip) : { ...known, clip };
   }
 
   /** Segments the open clip, or continues with it. */
@@ -54,7 +84,7 @@ export class Tracking {
     const { pairs } = this.#knownOf(clip, settings);
     const time = new TimeLeft(pairs.size, clip.count);
     await this.#run(async (signal, set) => {
-      const frames = new Frames(clip, longestSide);
+      const frames = new ClipFrames(clip, longestSide);
       const solving = (): void => set({ run: { phase: 'working', stage: 'pairs', left: time.at(pairs.size) }, solved: pairs.size });
       solving();
       const found = this.#segmenter.segmentClip(frames, {
@@ -63,20 +93,93 @@ export class Tracking {
         transfer: true,
         knownPairs: (index) => bytesOf(pairs.get(index)),
         onPairs: (index, bytes) => {
-          pairs.set(index, new Blob([new Uint8Array(bytes)]));
+          pairs.set(index, blobOf(bytes));
           solving();
         },
       });
       await this.#take(found, frames, set);
+      const state = await found.state();
+      set({ state: state === undefined ? null : blobOf(state), run: { phase: 'done', cause: 'found', changed: clip.count } });
     });
   }
 
   /** Stops the run; what is done stays. */
   cancel(): void {
     const { tracked } = this.#store.get();
-    if (this.#current === null || tracked === null) return;
-    this.#end();
-    this.#store.set({ tracked: { ...tracked, run: { phase: 'cancelled' } } });
+    if (this.#current === null || tracked === null || tracked.run.phase !== 'working') return;
+    const carrying = this.#carrying;
+    this.#carrying = null;
+    this.#current.abort();
+    this.#current = null;
+    if (carrying !== null) this.#show(carrying.settled, { phase: 'done', cause: 'undone', changed: 0 });
+    else this.#store.set({ tracked: { ...tracked, run: { phase: 'cancelled' } } });
+  }
+
+  /**
+   * Begins a stroke over the frame on screen, with the selected object. Returns what takes its path, or `null`, and tells why, if nothing
+   * can be painted.
+   */
+  beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
+    const { tracked, timeline, look, pair } = this.#store.get();
+    const frame = timeline?.first ?? null;
+    const own = look.selected;
+    if (!this.#takesCorrections() || tracked === null || frame === null || pair.first === null) return null;
+    if (own === null) return this.#refuse(strings.notices.chooseMask);
+    if (own === UNLABELLED) return this.#refuse(strings.notices.notPainted);
+    if (own === 0 && tool === 'eraser') return this.#refuse(strings.notices.nothingElse);
+    const { width } = pair.first;
+    return ({ points, radius }) => {
+      const masks = this.#store.get().tracked?.frames[frame]?.runs;
+      if (masks === undefined) return;
+      const scale = masks.width / width;
+      const path = { points: points.map((value) => (value + 0.5) * scale - 0.5), radius: radius * scale };
+      const [labels, said] = [unpacked(masks), new Uint8Array(masks.width * masks.height).fill(UNLABELLED)];
+      eachPixel(path, masks.width, masks.height, (p) => {
+        if (tool === 'brush') said[p] = own;
+        else if (labels[p] === own) said[p] = 0;
+      });
+      void this.#correct({ frame, labels: said });
+    };
+  }
+
+  /** Two objects become one, under the smaller of their numbers. */
+  merge(one: number, other: number): void {
+    if (one !== other) this.#edit({ merge: [[Math.min(one, other), Math.max(one, other)]] });
+  }
+
+  /** The object becomes background in the whole clip. */
+  remove(id: number): void {
+    this.#edit({ delete: [id] });
+  }
+
+  /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
+  split(id: number): void {
+    const { tracked, timeline } = this.#store.get();
+    const frame = timeline?.first ?? null;
+    const masks = frame === null ? undefined : tracked?.frames[frame]?.runs;
+    if (!this.#takesCorrections() || masks === undefined || frame === null) return;
+    const pieces = smallerPieces(unpacked(masks), masks.width, id);
+    const number = this.#newNumber();
+    if (pieces.length === 0) return void this.#refuse(strings.notices.onePiece);
+    if (number === null) return;
+    const labels = new Uint8Array(masks.width * masks.height).fill(UNLABELLED);
+    for (const p of pieces) labels[p] = number;
+    void this.#correct({ frame, labels });
+  }
+
+  /** Selects the number of a new object, to be painted. Returns whether there can be one. */
+  addObject(): boolean {
+    const number = this.#takesCorrections() ? this.#newNumber() : null;
+    if (number !== null) this.#store.look({ selected: number });
+    return number !== null;
+  }
+
+  undo(): void {
+    this.#go('past', 'future', 'undone');
+  }
+
+  redo(): void {
+    this.#go('future', 'past', 'redone');
   }
 
   /** Sets the name or colour of an object. An empty name restores the default. */
@@ -84,30 +187,127 @@ export class Tracking {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     const key = keyOf('objects', id);
-    const { [key]: _, ...others } = tracked.names;
+    const { [key]: given, ...others } = tracked.names;
+    if ('name' in what && what.name === (given ?? '')) return;
     const names = 'colour' in what ? tracked.names : what.name === '' ? others : { ...others, [key]: what.name };
     const colours = 'colour' in what ? { ...tracked.colours, [key]: what.colour } : tracked.colours;
     this.#store.set({ tracked: { ...tracked, names, colours } });
     this.#store.look({ names, colours });
   }
 
-  #end(): void {
-    this.#current?.abort();
-    this.#current = null;
+  /** Records that the masks were exported as they are. */
+  saved(exported: Tracked): void {
+    const { tracked } = this.#store.get();
+    const { frames, names, colours } = exported;
+    if (tracked?.clip === exported.clip) this.#store.set({ tracked: { ...tracked, saved: { frames, names, colours } } });
+  }
+
+  #refuse(sentence: string): null {
+    this.#hooks.say(sentence);
+    return null;
+  }
+
+  #takesCorrections(): boolean {
+    const { tracked } = this.#store.get();
+    const ready = tracked !== null && tracked.state !== null;
+    if (!ready) this.#hooks.say(strings.notices.notReady);
+    return ready;
+  }
+
+  #newNumber(): number | null {
+    const { tracked } = this.#store.get();
+    const number = (tracked?.largest ?? 0) + 1;
+    return number > MOST_OBJECTS ? this.#refuse(strings.notices.tooMany) : number;
+  }
+
+  #edit(edits: NonNullable<ClipOptions['edits']>): void {
+    if (this.#takesCorrections()) void this.#correct({ edits });
+  }
+
+  /** Shows what is said at once in its own frame, and carries it through the clip after what was said before. */
+  async #correct(said: Said): Promise<void> {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    const under = this.#carrying;
+    const carrying: Carrying = under ?? { settled: versionOf(tracked), waiting: [] };
+    carrying.waiting.push(said);
+    this.#show(withSaid(tracked, said), tracked.run);
+    if (under !== null) return; // taken by the loop below
+    this.#carrying = carrying;
+    await this.#run(async (signal, set) => {
+      while (carrying.waiting.length > 0) await this.#carry(carrying, signal, set);
+    });
+    if (this.#carrying !== carrying) return;
+    this.#carrying = null;
+    // Of what failed nothing stays.
+    if (this.#store.get().tracked?.run.phase === 'failed') this.#show(carrying.settled, { phase: 'done', cause: 'undone', changed: 0 });
+  }
+
+  /** Carries the next correction through the clip. */
+  async #carry(carrying: Carrying, signal: AbortSignal, set: Change): Promise<void> {
+    const { settled: before, waiting } = carrying;
+    const said = waiting.shift();
+    const { tracked, settings } = this.#store.get();
+    if (said === undefined || tracked === null || before.state === null) return;
+    set({ run: { phase: 'working', stage: 'corrections', left: null } });
+    const painted = 'labels' in said ? new Map(before.painted).set(said.frame, paintedOver(before.painted.get(said.frame), said.labels, sizeIn(before, said.frame))) : before.painted;
+    const frames = new ClipFrames(tracked.clip, tracked.longestSide);
+    const found = this.#segmenter.segmentClip(frames, {
+      state: (await bytesOf(before.state))!,
+      markUnknown: settings.markUnknown,
+      changesOnly: true,
+      signal,
+      transfer: true,
+      ...('edits' in said ? { edits: said.edits } : { corrections: [{ frame: said.frame, labels: unpacked(painted.get(said.frame)!) }] }),
+    });
+    const masks = [...before.frames];
+    let changed = 0;
+    for await (const frame of found) {
+      masks[frame.index] = masksOf(frame, frames.size);
+      changed += 1;
+    }
+    const state = await found.state();
+    const now = this.#store.get().tracked;
+    if (signal.aborted || state === undefined || now === null) return;
+    carrying.settled = { frames: masks, state: blobOf(state), painted, largest: Math.max(before.largest, largestOf(masks)) };
+    set({ past: [...now.past, before], future: [] });
+    // What was said meanwhile stays on screen.
+    this.#show(waiting.reduce(withSaid, carrying.settled), waiting.length > 0 ? now.run : { phase: 'done', cause: 'corrected', changed });
+  }
+
+  /** Another version of the masks. */
+  #show(version: Version, run: ClipRun): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    this.#store.set({ tracked: { ...tracked, ...versionOf(version), run } });
+    this.#hooks.changed(tracked);
+  }
+
+  #go(from: 'past' | 'future', to: 'past' | 'future', cause: 'undone' | 'redone'): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    // A correction under way is what is undone.
+    if (this.#carrying !== null && from === 'past') return this.cancel();
+    if (tracked.run.phase === 'working') return;
+    const version = tracked[from].at(-1);
+    if (version === undefined) return;
+    const { frames } = tracked;
+    const changed = version.frames.filter((frame, index) => frame !== frames[index]).length;
+    this.#store.set({ tracked: { ...tracked, [from]: tracked[from].slice(0, -1), [to]: [...tracked[to], versionOf(tracked)] } });
+    this.#show(version, { phase: 'done', cause, changed });
   }
 
   /** Runs `work` instead of what is under way. `set` changes what is known of the clip, unless the run has ended. */
-  async #run(work: (signal: AbortSignal, set: (change: Partial<Tracked>) => void) => Promise<void>): Promise<void> {
-    this.#end();
+  async #run(work: (signal: AbortSignal, set: Change) => Promise<void>): Promise<void> {
+    this.#current?.abort();
     const own = (this.#current = new AbortController());
     const { signal } = own;
-    const set = (change: Partial<Tracked>): void => {
+    const set: Change = (change) => {
       const { tracked } = this.#store.get();
       if (tracked !== null && !signal.aborted) this.#store.set({ tracked: { ...tracked, ...change } });
     };
     try {
       await work(signal, set);
-      set({ run: { phase: 'done' } });
     } catch (error) {
       if (signal.aborted) return;
       set({ run: { phase: 'failed' } });
@@ -117,19 +317,25 @@ export class Tracking {
     }
   }
 
-  /** Takes the labelled frames as they come. They replace all masks that there were. */
-  async #take(found: AsyncIterable<ClipFrame>, { length, size }: Frames, set: (change: Partial<Tracked>) => void): Promise<void> {
-    const frames: (TrackedFrame | null)[] = Array.from({ length }, () => null);
+  /** Takes the labelled frames as they come. They replace all masks that there were; those that a person corrected can be brought back. */
+  async #take(found: AsyncIterable<ClipFrame>, { clip, longestSide, size }: ClipFrames, set: Change): Promise<void> {
+    const frames = [...untracked(clip).frames];
     let shown = 0;
     const show = (): void => {
       const { tracked: before } = this.#store.get();
+      if (before === null) return;
+      const first = shown === 0;
       shown = performance.now();
-      set({ frames: [...frames], run: { phase: 'working', stage: 'labels', left: null } });
-      if (before !== null) this.#hooks.changed(before);
+      const masks = [...frames];
+      const past = first && before.past.length > 0 ? { past: [...before.past, versionOf(before)] } : {};
+      if (first) set({ ...past, state: null, painted: new Map(), future: [], longestSide });
+      set({ run: { phase: 'working', stage: 'labels', left: null }, frames: masks, largest: largestOf(masks) });
+      if (first || before.saved.frames === before.frames) set({ saved: { frames: masks, names: before.names, colours: before.colours } });
+      this.#hooks.changed(before);
     };
     try {
-      for await (const { index, labels, objects, background } of found) {
-        frames[index] = { runs: packed(labels, size.width, size.height), objects, background };
+      for await (const frame of found) {
+        frames[frame.index] = masksOf(frame, size);
         if (performance.now() - shown >= OFTEN) show();
       }
     } finally {
@@ -138,61 +344,59 @@ export class Tracking {
   }
 
   /** What is known for these settings: other settings begin anew. */
-  #knownOf(clip: Clip, settings: Settings): Known {
+  #knownOf({ fingerprint }: Clip, settings: Settings): Known {
     const key = JSON.stringify([settings.motions, settings.quality, settings.seed, settings.longestSide]);
-    const before = this.#known.get(clip);
+    const before = this.#known.get(fingerprint);
     const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };
-    this.#known.set(clip, known);
+    this.#known.set(fingerprint, known);
     return known;
-  }
-}
-
-/** The frames of a clip as the package reads them: whenever it needs one. */
-class Frames {
-  /** Of all frames, once one has been read. */
-  size = { width: 0, height: 0 };
-
-  constructor(
-    readonly clip: Clip,
-    readonly longestSide: number,
-  ) {}
-
-  get length(): number {
-    return this.clip.count;
-  }
-
-  async read(index: number): Promise<Pixels> {
-    const { data, width, height, bitmap } = await this.clip.frame(index, this.longestSide);
-    bitmap.close();
-    this.size.width = width;
-    this.size.height = height;
-    return { data, width, height };
-  }
-}
-
-/** The time left, from the time that frames have taken so far. */
-class TimeLeft {
-  #began: { readonly at: number; readonly done: number } | null = null;
-
-  /** `done`: frames that take no time, because they were done before. */
-  constructor(
-    readonly done: number,
-    readonly of: number,
-  ) {}
-
-  /** Seconds left when so many frames are done; `null` if it cannot be told yet. */
-  at(done: number): number | null {
-    if (done === this.done) return null;
-    // The first frame may have waited for the module.
-    if (this.#began === null) {
-      this.#began = { at: performance.now(), done };
-      return null;
-    }
-    const each = (performance.now() - this.#began.at) / (done - this.#began.done);
-    return (each * (this.of - done)) / 1000;
   }
 }
 
 async function bytesOf(blob: Blob | undefined): Promise<Uint8Array | undefined> {
   return blob === undefined ? undefined : new Uint8Array(await blob.arrayBuffer());
+}
+
+function blobOf(bytes: Uint8Array): Blob {
+  return new Blob([new Uint8Array(bytes)]);
+}
+
+function masksOf({ labels, objects, background }: ClipFrame, { width, height }: { readonly width: number; readonly height: number }): TrackedFrame {
+  return { runs: packed(labels, width, height), objects, background };
+}
+
+/** The largest number of an object in these frames. */
+function largestOf(frames: Version['frames']): number {
+  return frames.reduce((most, frame) => (frame?.objects ?? []).reduce((larger, { id }) => Math.max(larger, id), most), 0);
+}
+
+/** The size of a frame that has masks. */
+function sizeIn({ frames }: Version, index: number): Pick<Runs, 'width' | 'height'> {
+  return frames[index]!.runs;
+}
+
+/** What was painted before in a frame, with this over it. */
+function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
+  const all = before === undefined ? labels : unpacked(before).map((label, p) => (labels[p] === UNLABELLED ? label : labels[p]!));
+  return packed(all, size.width, size.height);
+}
+
+/** The masks with what is painted in its own frame. The motions and certainties of that frame follow later. */
+function withSaid<V extends Version>(version: V, said: Said): V {
+  const masks = 'labels' in said ? version.frames[said.frame] : null;
+  if (!('labels' in said) || !masks) return version;
+  const { width, height } = masks.runs;
+  const labels = unpacked(masks.runs);
+  const painted = new Set<number>();
+  for (let p = 0; p < labels.length; p++) {
+    const label = said.labels[p]!;
+    if (label === UNLABELLED) continue;
+    labels[p] = label;
+    painted.add(label);
+  }
+  const own = new Set(masks.objects.map(({ id }) => id));
+  const added = [...painted].filter((id) => id !== 0 && !own.has(id));
+  const objects = [...masks.objects, ...added.map((id) => ({ id, pixels: 0, bbox: [0, 0, width, height] as ClipFrame['objects'][number]['bbox'], confidence: 1, matrix: null }))];
+  const frames = version.frames.with(said.frame, { ...masks, runs: packed(labels, width, height), objects });
+  return { ...version, frames, largest: Math.max(version.largest, ...added) };
 }

@@ -3,6 +3,7 @@
 import { type Edits, isUnsaved } from '../correction/edits.js';
 import type { Packed } from '../correction/solutions.js';
 import type { Settings } from './settings.js';
+import { type Tracked, isUnsavedClip } from './tracked.js';
 
 /** Tens of kilobytes for each pair, hundreds for the largest; there is no limit. */
 export interface Kept {
@@ -16,7 +17,15 @@ export interface Kept {
   readonly height: number;
 }
 
+interface Kinds {
+  readonly edits: Edits;
+  readonly kept: ReadonlyMap<string, Kept>;
+  readonly tracked: Tracked | null;
+  readonly keptClips: ReadonlyMap<string, Tracked>;
+}
+
 /** Whether closing the page would lose edits. */
-export function hasUnsaved({ edits, kept }: { readonly edits: Edits; readonly kept: ReadonlyMap<string, Kept> }): boolean {
-  return isUnsaved(edits) || [...kept.values()].some((pair) => isUnsaved(pair.edits));
+export function hasUnsaved({ edits, kept, tracked, keptClips }: Kinds): boolean {
+  if (isUnsaved(edits) || [...kept.values()].some((pair) => isUnsaved(pair.edits))) return true;
+  return [tracked, ...keptClips.values()].some((clip) => clip !== null && isUnsavedClip(clip));
 }

@@ -76,6 +76,8 @@ export interface State {
   readonly timeline: Timeline | null;
   /** The objects of the open clip. */
   readonly tracked: Tracked | null;
+  /** Other clips that were segmented, by fingerprint. */
+  readonly keptClips: ReadonlyMap<string, Tracked>;
   /** Whether the clip is being played. */
   readonly playing: boolean;
   readonly live: Live | null;
@@ -110,6 +112,7 @@ export const INITIAL: State = {
   pair: { first: null, second: null },
   timeline: null,
   tracked: null,
+  keptClips: new Map(),
   playing: false,
   live: null,
   opening: false,

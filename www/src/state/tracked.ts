@@ -1,4 +1,4 @@
-//! The objects of a whole clip: how far their segmentation is, and the masks of each frame.
+//! The objects of a whole clip: how far their segmentation is, the masks of each frame, and what a person said of them.
 
 import type { ClipFrame, ClipProgress } from 'veronese';
 import type { Clip } from '../clips/clip.js';
@@ -13,7 +13,9 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
 
 /** What is done with the clip as a whole. */
 export type ClipRun =
-  | { readonly phase: 'idle' | 'cancelled' | 'failed' | 'done' }
+  | { readonly phase: 'idle' | 'cancelled' | 'failed' }
+  /** `changed`: number of frames whose masks are others than before. */
+  | { readonly phase: 'done'; readonly cause: 'found' | 'corrected' | 'undone' | 'redone'; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
@@ -21,20 +23,65 @@ export type ClipRun =
       readonly left: number | null;
     };
 
-export interface Tracked {
+/** The masks of all frames and what they follow from: one step of undo and redo. Frames that do not change are shared between steps. */
+export interface Version {
+  /** By index; `null` for frames without masks. */
+  readonly frames: readonly (TrackedFrame | null)[];
+  /** What the package knows of the clip, in a blob, which browsers can move to disk; `null` until all frames are segmented. */
+  readonly state: Blob | null;
+  /** What was painted in frames, by index: numbers as in `frames`, and 255 where nothing is said. */
+  readonly painted: ReadonlyMap<number, Runs>;
+  /** The largest number that an object ever had. Numbers are not used again. */
+  readonly largest: number;
+}
+
+export interface Tracked extends Version {
   readonly clip: Clip;
   readonly run: ClipRun;
   /** Number of frames whose pairs are solved, nearly all the work. They are kept when a run is cancelled. */
   readonly solved: number;
-  /** By index; `null` for frames without masks. */
-  readonly frames: readonly (TrackedFrame | null)[];
+  /** Longer side of the frames as they were segmented, pixels. */
+  readonly longestSide: number;
+  /** Earlier versions, and later ones that were undone; the nearest is last. */
+  readonly past: readonly Version[];
+  readonly future: readonly Version[];
   /** Names and colours that the user gave to objects, by `keyOf`. */
   readonly names: Readonly<Record<string, string>>;
   readonly colours: Readonly<Record<string, Colour>>;
+  /** What was last exported, or found by itself. */
+  readonly saved: Saved;
 }
 
+type Saved = Pick<Tracked, 'frames' | 'names' | 'colours'>;
+
+const NOTHING = {};
+
 export function untracked(clip: Clip): Tracked {
-  return { clip, run: { phase: 'idle' }, solved: 0, frames: Array.from({ length: clip.count }, () => null), names: {}, colours: {} };
+  const frames = Array.from({ length: clip.count }, () => null);
+  return {
+    clip,
+    run: { phase: 'idle' },
+    solved: 0,
+    longestSide: Infinity,
+    frames,
+    state: null,
+    painted: new Map(),
+    largest: 0,
+    past: [],
+    future: [],
+    names: NOTHING,
+    colours: NOTHING,
+    saved: { frames, names: NOTHING, colours: NOTHING },
+  };
+}
+
+export function versionOf({ frames, state, painted, largest }: Version): Version {
+  return { frames, state, painted, largest };
+}
+
+/** Whether leaving would lose what a person did. */
+export function isUnsavedClip({ frames, names, colours, saved, past }: Tracked): boolean {
+  return names !== saved.names || colours !== saved.colours || (frames !== saved.frames && past.length > 0);
 }
 
 /** One object through a clip. */

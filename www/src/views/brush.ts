@@ -2,7 +2,7 @@
 
 import { maskWith, strokesOf } from '../correction/edits.js';
 import { labellingOf, labelsIn } from '../correction/parts.js';
-import { type Stroke, allowedLabels } from '../correction/strokes.js';
+import { type Path, allowedLabels } from '../correction/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { type Colour, cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
@@ -27,8 +27,8 @@ export class Brush {
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
   readonly #strokes = drawn('g', {});
-  /** The stroke being drawn. Its tool and mask are those selected when it began. */
-  #now: { readonly points: number[]; readonly tool: Stroke['tool']; readonly mask: Stroke['mask'] } | null = null;
+  /** The stroke being drawn, and what takes it: it belongs to the tool and the mask that were selected when it began. */
+  #now: { readonly points: number[]; readonly take: (path: Path) => void } | null = null;
   /** The last position of the brush. */
   #at: Point | null = null;
 
@@ -91,8 +91,8 @@ export class Brush {
   begin(point: Point): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
-    const mask = this.#session.correcting.maskFor(tool.name);
-    if (mask !== null) this.#now = { points: [...point], tool: tool.name, mask };
+    const take = this.#session.beginStroke(tool.name);
+    if (take !== null) this.#now = { points: [...point], take };
     this.hover(point);
     this.#trace();
   }
@@ -111,7 +111,7 @@ export class Brush {
     const now = this.#now;
     this.#now = null;
     this.#trace();
-    if (now !== null) this.#session.correcting.stroke({ ...now, radius: this.#store.get().tool.radius });
+    now?.take({ points: now.points, radius: this.#store.get().tool.radius });
   }
 
   abandon(): void {

@@ -57,7 +57,7 @@ function sentenceFor(tracked: Tracked): string {
     case 'working':
       return run.stage === 'corrections' ? tracking.corrections : tracking.started;
     case 'done':
-      return tracking.done(livesOf(tracked).length, clip.count);
+      return run.cause === 'found' ? tracking.found(livesOf(tracked).length, clip.count) : tracking[run.cause](run.changed);
     case 'cancelled':
     case 'failed':
       return tracking[run.phase](solved, clip.count);

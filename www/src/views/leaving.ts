@@ -7,7 +7,7 @@ import type { Store } from '../state/state.js';
 export function mountLeaving(page: Window, store: Store): void {
   const ask = (event: BeforeUnloadEvent): void => event.preventDefault();
   store.subscribe((now, before) => {
-    if (now.edits === before.edits && now.kept === before.kept) return;
+    if ((['edits', 'kept', 'tracked', 'keptClips'] as const).every((part) => now[part] === before[part])) return;
     if (hasUnsaved(now)) page.addEventListener('beforeunload', ask);
     else page.removeEventListener('beforeunload', ask);
   });

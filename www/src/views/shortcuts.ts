@@ -56,9 +56,9 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: [], shown: 'Space', does: keys.stroke, run: () => undefined },
     { keys: ['['], shown: '[', does: keys.thinner, run: () => changeRadius(store, 0.75) },
     { keys: [']'], shown: ']', does: keys.thicker, run: () => changeRadius(store, 4 / 3) },
-    { keys: ['z'], shown: 'Ctrl Z', does: keys.undo, run: () => session.correcting.undo(), command: true, shift: false },
-    { keys: ['z'], shown: 'Ctrl Shift Z', does: keys.redo, run: () => session.correcting.redo(), command: true, shift: true },
-    { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.correcting.redo(), command: true },
+    { keys: ['z'], shown: 'Ctrl Z', does: keys.undo, run: () => session.undo(), command: true, shift: false },
+    { keys: ['z'], shown: 'Ctrl Shift Z', does: keys.redo, run: () => session.redo(), command: true, shift: true },
+    { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.redo(), command: true },
     { keys: ['escape'], shown: 'Esc', does: keys.cancel, run: () => session.cancel() },
   ];
 }

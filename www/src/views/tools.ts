@@ -18,11 +18,11 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   form.addEventListener('submit', (event) => event.preventDefault());
   for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
-  undo.addEventListener('click', () => session.correcting.undo());
-  redo.addEventListener('click', () => session.correcting.redo());
+  undo.addEventListener('click', () => session.undo());
+  redo.addEventListener('click', () => session.redo());
 
   const render = (): void => {
-    const { tool, result, edits, live } = store.get();
+    const { tool, result, edits, live, look, tracked } = store.get();
     const usable = result !== null && live === null;
     for (const radio of radios) {
       radio.checked = radio.value === tool.name;
@@ -30,13 +30,14 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
     }
     size.value = String(tool.radius);
     sizeRow.hidden = tool.name === 'look';
-    help.textContent = strings.toolHelp[tool.name];
-    undo.disabled = edits.done === 0;
-    redo.disabled = edits.done === edits.actions.length;
+    const clip = look.kind === 'objects' ? tracked : null;
+    help.textContent = (clip === null ? strings.toolHelp : strings.clipToolHelp)[tool.name];
+    undo.disabled = clip === null ? edits.done === 0 : clip.past.length === 0 && !(clip.run.phase === 'working' && clip.run.stage === 'corrections');
+    redo.disabled = clip === null ? edits.done === edits.actions.length : clip.future.length === 0;
   };
   store.subscribe((now, before) => {
-    const same = now.tool === before.tool && now.result === before.result && now.edits === before.edits && now.live === before.live;
-    if (!same) render();
+    const same = (['tool', 'result', 'edits', 'live', 'tracked'] as const).every((part) => now[part] === before[part]);
+    if (!same || now.look.kind !== before.look.kind) render();
   });
   render();
 }
