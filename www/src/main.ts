@@ -8,6 +8,7 @@ import { Store } from './state/state.js';
 import { mountArrows } from './views/arrows.js';
 import { mountBlink } from './views/blink.js';
 import { Brush } from './views/brush.js';
+import { mountClipExport } from './views/clip-export.js';
 import { mountClipRun } from './views/clip-run.js';
 import { mountCompare } from './views/compare.js';
 import { mountDrop } from './views/drop.js';
@@ -62,7 +63,8 @@ mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountLeaving(window, store);
-mountExport(find(document, '#export', HTMLElement), store, session);
+mountExport(find(document, '#pair-export', HTMLElement), store, session);
+mountClipExport(find(document, '#export', HTMLElement), store, session);
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 
 keepForOffline(store);

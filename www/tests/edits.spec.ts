@@ -7,7 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Upload, differences, done, expect, labelsOnCanvas, open, sample, square, test, upload } from './support.js';
+import { type Upload, differences, done, expect, labelsOnCanvas, open, openExport, sample, square, test, upload } from './support.js';
 
 type Place = readonly [number, number];
 
@@ -361,8 +361,10 @@ test('leaving the page asks first only with unsaved corrections', async ({ page 
   expect(await warns(page)).toBe(true); // edits of the pair before
   await step(page, -1, 'f1.png');
 
+  await openExport(page);
   await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
   expect(await warns(page)).toBe(true); // the report has no masks
+  await openExport(page);
   await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
   expect(await warns(page)).toBe(false);
 });

@@ -12,15 +12,17 @@ import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { video } from './video.js';
-import { differences, done, expect, open, sample, segmentedInNode, test, upload, square } from './support.js';
+import { differences, done, expect, open, openExport, sample, segmentedInNode, test, upload, square } from './support.js';
 
 /** Clicks a button that saves a file. */
 async function saved(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
+  await openExport(page);
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name, exact: true }).click()]);
   return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
 }
 
 async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
+  await openExport(page);
   await page.getByLabel('File format').selectOption({ label: format });
   return saved(page, 'Save');
 }
@@ -86,6 +88,7 @@ test('the copied command and script give the same masks', async ({ page, context
   try {
     for (const slot of ['first', 'second'] as const) await writeFile(join(folder, `${slot}.png`), (await sample(slot)).buffer);
 
+    await openExport(page);
     await page.getByRole('button', { name: 'Copy command' }).click();
     await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
     const command = await page.evaluate(() => navigator.clipboard.readText());
@@ -98,6 +101,7 @@ test('the copied command and script give the same masks', async ({ page, context
     const written = await decodeImage(await readFile(join(folder, 'masks', 'labels.png')));
     expect(differences(written.data, (await decodeImage(bytes)).data)).toBe(0);
 
+    await openExport(page);
     await page.getByRole('button', { name: 'Copy JavaScript' }).click();
     await expect(page.locator('#notice')).toContainText('Copied the JavaScript to the clipboard.');
     const script = (await page.evaluate(() => navigator.clipboard.readText()))
@@ -115,6 +119,7 @@ test('the copied command and script give the same masks', async ({ page, context
 test('the picture is copied', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
+  await openExport(page);
   await page.getByRole('button', { name: 'Copy picture' }).click();
   await expect(page.locator('#notice')).toContainText('Copied the picture to the clipboard.');
   const size = await page.evaluate(async () => {
@@ -130,6 +135,7 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   await open(page);
   await page.getByLabel('Number of motions').selectOption('2');
   await done(page);
+  await openExport(page);
   await page.getByRole('button', { name: 'Copy link' }).click();
   await expect(page.locator('#notice')).toContainText('Copied the link with the settings to the clipboard.');
   const link = await page.evaluate(() => navigator.clipboard.readText());
@@ -148,6 +154,7 @@ test('a copied link opens the current sample', async ({ page, context }) => {
   await open(page);
   const copied = async (): Promise<string> => {
     await page.evaluate(() => navigator.clipboard.writeText(''));
+    await openExport(page);
     await page.getByRole('button', { name: 'Copy link' }).click();
     await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).not.toBe('');
     return page.evaluate(() => navigator.clipboard.readText());
@@ -189,6 +196,7 @@ test('the command names the frames of the result, also a replaced one', async ({
   await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);
+  await openExport(page);
   await page.getByRole('button', { name: 'Copy command' }).click();
   await expect(page.locator('#notice')).toContainText('Copied the command to the clipboard.');
   expect((await page.evaluate(() => navigator.clipboard.readText())).split('\n')).toEqual([
@@ -204,6 +212,7 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
     await open(page);
     const notice = page.locator('#notice');
     for (const name of ['Copy picture', 'Copy command', 'Copy JavaScript', 'Copy link']) {
+      await openExport(page);
       await page.getByRole('button', { name }).click();
       await expect(notice).toContainText('to the clipboard.');
       await expect(notice).toBeInViewport({ ratio: 1 });
@@ -211,6 +220,7 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
       await expect(notice).toBeHidden();
     }
     // A notice that is not an error disappears by itself.
+    await openExport(page);
     await page.getByRole('button', { name: 'Copy link' }).click();
     await expect(notice).toBeInViewport({ ratio: 1 });
     await expect(notice).toBeHidden({ timeout: 10_000 });

@@ -5,7 +5,7 @@ import { readFile } from 'node:fs/promises';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, pixelsOf, sample, segmentedInNode, square, test, upload } from './support.js';
+import { MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, openExport, pixelsOf, sample, segmentedInNode, square, test, upload } from './support.js';
 
 test('the page opens with the sample pair segmented', async ({ page }) => {
   await page.goto('./');
@@ -56,6 +56,7 @@ test('settings reach the package, and the latest request wins', async ({ page })
   await page.getByLabel('Number of motions').selectOption('2');
   await page.getByLabel('Best').check();
   await done(page);
+  await openExport(page);
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
   const report: unknown = JSON.parse(await readFile(await download.path(), 'utf8'));
   expect(report).toMatchObject({ version: 1, width: 768, height: 432, settings: { motions: 2, quality: 'best', seed: 7, markUnknown: false } });
@@ -66,6 +67,7 @@ test('settings reach the package, and the latest request wins', async ({ page })
 
 test('the labels PNG holds the labels', async ({ page }) => {
   await open(page);
+  await openExport(page);
   const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
   expect(download.suggestedFilename()).toBe('labels.png');
   const file = await readFile(await download.path());

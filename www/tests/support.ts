@@ -102,6 +102,11 @@ export async function clipInNode(files: readonly Upload[], options: ClipOptions 
   return labels;
 }
 
+/** Opens the panel of exports, if it is closed. */
+export async function openExport(page: Page): Promise<void> {
+  if (!(await page.locator('#export').isVisible())) await page.locator('#open-export').click();
+}
+
 interface CanvasPixels {
   width: number;
   height: number;

@@ -4,7 +4,7 @@
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
-import { type Clip, type Picture, identityOf } from './clip.js';
+import { type Clip, type Picture, fileNameOf, identityOf } from './clip.js';
 
 /** A `<video>` element does not tell its frame rate: this one is assumed. */
 const STEPS_PER_SECOND = 30;
@@ -58,6 +58,10 @@ class ApproximateClip implements Clip {
         draw(index, (context, x, y, width, height) => context.drawImage(this.video, x, y, width, height));
       });
     }
+  }
+
+  nameOf(index: number): string {
+    return fileNameOf(index);
   }
 
   close(): void {

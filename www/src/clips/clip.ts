@@ -18,12 +18,19 @@ export interface Clip {
   frame(index: number, longestSide: number): Promise<DecodedFrame>;
   /** Calls `draw` with a thumbnail of each of these frames, in this order. */
   thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void>;
+  /** The name of a frame's file; of a frame of a video, what its file would be called. */
+  nameOf(index: number): string;
   /** Releases decoders and memory. */
   close(): void;
 }
 
 /** Draws the thumbnail into the rectangle. */
 export type Picture = (context: CanvasRenderingContext2D, x: number, y: number, width: number, height: number) => void;
+
+/** What the file of a frame of a video would be called: `00012.png`. */
+export function fileNameOf(index: number): string {
+  return `${String(index).padStart(5, '0')}.png`;
+}
 
 /** The name of a frame of a video, "clip.mp4 #12", and its fingerprint. */
 export function identityOf(name: string, fingerprint: string, index: number): Pick<DecodedFrame, 'name' | 'fingerprint'> {

@@ -5,7 +5,7 @@ import { BlobSource, EncodedPacketSink, Input, type InputVideoTrack, MATROSKA, M
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { type DecodedFrame, frameFromBitmap } from '../frames/frame.js';
-import { type Clip, type Picture, identityOf } from './clip.js';
+import { type Clip, type Picture, fileNameOf, identityOf } from './clip.js';
 import { codecName } from './codecs.js';
 
 /** Times that differ by less are equal, seconds: containers round them to their own time base. */
@@ -108,6 +108,10 @@ class ExactClip implements Clip {
       if (index !== undefined) draw(index, (context, x, y, width, height) => sample.draw(context, x, y, width, height));
       sample.close();
     }
+  }
+
+  nameOf(index: number): string {
+    return fileNameOf(index);
   }
 
   close(): void {

@@ -42,5 +42,9 @@ class Folder implements Clip {
     }
   }
 
+  nameOf(index: number): string {
+    return nameOfFile(this.files[index]!);
+  }
+
   close(): void {}
 }

@@ -19,7 +19,7 @@ import { FRESH, type Look, type Run, type State, type Store } from '../state/sta
 import { type Tracked, isTracked, livesOf } from '../state/tracked.js';
 import { Correcting, isCurrent, isPending } from './correcting.js';
 import { LiveView } from './live.js';
-import { frameOf, resultOf } from './objects.js';
+import { frameOf, resultOf } from '../state/objects.js';
 import { Segmenting } from './segmenting.js';
 import { Tracking } from './tracking.js';
 

@@ -5,6 +5,7 @@ import { type Format, exportOf } from '../export/format.js';
 import { FORMATS, LABELS, MASKS, OVERLAY, RESULT } from '../export/formats.js';
 import { linkFor } from '../export/link.js';
 import { commandFor, scriptFor } from '../export/reproduce.js';
+import { save } from '../export/save.js';
 import { isPending } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
 import type { Result, State, Store } from '../state/state.js';
@@ -39,7 +40,7 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
       const state = await session.correcting.settled();
       if (state.result === null) return;
       const content = await format.make(exportOf(state.result, state.look));
-      save(content instanceof Blob ? content : new Blob([content], { type: format.type }), format.file);
+      save(content, format.type, format.file);
       // The report alone holds no masks.
       if (format !== RESULT && !isPending(state)) session.correcting.saved(state);
     } catch {
@@ -65,7 +66,8 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
   link.addEventListener('click', () => copyText(linkFor(store.get(), location.href), strings.copiedText('link with the settings'), session));
   copies.append(link);
 
-  store.subscribe(({ result, live }, before) => {
+  store.subscribe(({ result, live, look }, before) => {
+    root.hidden = look.kind === 'objects';
     if (result === before.result && live === before.live) return;
     for (const control of need) control.disabled = result === null || live !== null;
   });
@@ -80,12 +82,4 @@ function copyPicture(picture: Promise<Blob>, session: Session): void {
       () => session.say(strings.copiedText('picture')),
       () => session.say(strings.errors.noClipboard, 'no-clipboard'),
     );
-}
-
-function save(file: Blob, name: string): void {
-  const link = document.createElement('a');
-  link.href = URL.createObjectURL(file);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }

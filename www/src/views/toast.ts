@@ -24,7 +24,9 @@ export function mountToast(root: HTMLElement, store: Store): void {
 
   store.subscribe(({ notice }, before) => {
     if (notice === before.notice) return;
-    root.hidden = notice === null;
+    // Shown again to be in front of what was opened meanwhile.
+    root.hidePopover();
+    if (notice !== null) root.showPopover();
     root.classList.toggle('error', notice?.code != null);
     sentence.replaceChildren(...(notice === null ? [] : written(asSentence(notice.sentence))));
     code.textContent = notice?.code ?? '';

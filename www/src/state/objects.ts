@@ -3,9 +3,9 @@
 import type { Segmentation } from 'veronese';
 import { unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
-import type { FramePair, LoadedFrame } from '../state/pair.js';
-import type { Result } from '../state/state.js';
-import type { Tracked, TrackedFrame } from '../state/tracked.js';
+import type { FramePair, LoadedFrame } from './pair.js';
+import type { Result } from './state.js';
+import type { Tracked, TrackedFrame } from './tracked.js';
 
 /** The masks of both frames of a pair; `null` if there are none of the first. */
 export function resultOf(tracked: Tracked | null, { first, second }: FramePair): Result | null {
@@ -24,7 +24,7 @@ export function frameOf({ clip, frames }: Tracked, { origin }: LoadedFrame): Tra
 const STILL: Segmentation['motions'][number]['matrix'] = [0, 0, 0, 0, 0, 0];
 
 /** A motion for the background and for each object. Their labels are numbers of objects, with gaps. */
-function segmentationOf({ runs, objects, background }: TrackedFrame): Segmentation {
+export function segmentationOf({ runs, objects, background }: TrackedFrame): Segmentation {
   const { width, height } = runs;
   const labels = unpacked(runs);
   const total = labels.length;

@@ -1,0 +1,87 @@
+//! Exports of whole clips: files are downloaded and compared with what the package writes of the same masks in Node.
+
+import { readFile } from 'node:fs/promises';
+
+import { type Page } from '@playwright/test';
+import { unzipSync } from 'fflate';
+import { decodeImage } from 'veronese/codecs';
+import { davisPalette } from 'veronese';
+
+import { clipFrames, clipInNode, differences, done, expect, open, openExport, test, upload } from './support.js';
+
+async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
+  await openExport(page);
+  await page.getByLabel('Format of the clip').selectOption({ label: format });
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
+  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+}
+
+const text = (bytes: Uint8Array | undefined): string => new TextDecoder().decode(bytes);
+
+/** The labels of a PNG in the DAVIS palette. */
+async function labelsIn(bytes: Uint8Array): Promise<Uint8Array> {
+  const byColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
+  const { data } = await decodeImage(bytes);
+  return Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get([...data.subarray(4 * p, 4 * p + 3)].join()) ?? -1);
+}
+
+test('a clip is exported in the formats of annotation tools, with the objects that are ticked', async ({ page }) => {
+  const files = await clipFrames(6);
+  const found = await clipInNode(files);
+  await open(page, 'groups');
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText('6 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  const name = page.locator('#objects .motion-name').nth(1);
+  await name.fill('Ball');
+  await name.press('Enter');
+
+  // An indexed PNG for each frame, under the frame's name.
+  const davis = unzipSync((await savedAs(page, 'DAVIS')).bytes);
+  const folder = 'davis/Annotations/480p/f00';
+  expect(Object.keys(davis)).toEqual([...files.map((file) => `${folder}/${file.name}`), 'davis/ImageSets/2017/val.txt']);
+  for (const [index, file] of files.entries()) expect(differences(await labelsIn(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
+
+  const vis = JSON.parse((await savedAs(page, 'YouTube-VIS')).bytes.toString()) as {
+    videos: { file_names: string[] }[];
+    categories: { name: string }[];
+    annotations: { areas: (number | null)[] }[];
+  };
+  expect(vis.videos[0]!.file_names).toEqual(files.map((file) => file.name));
+  expect(vis.categories.map(({ name }) => name).sort()).toEqual(['Ball', 'object']);
+  const pixels = (object: number): number[] => found.map((labels) => labels.filter((label) => label === object).length);
+  expect(vis.annotations.map(({ areas }) => areas)).toEqual([pixels(1), pixels(2)]);
+
+  // What is not ticked is left out.
+  await page.keyboard.press('Escape');
+  await page.getByLabel('Show Object 2').uncheck();
+  const cvat = (await savedAs(page, 'CVAT, tracks')).bytes.toString();
+  expect([...cvat.matchAll(/<track [^>]*label="([^"]*)"/g)].map(([, label]) => label)).toEqual(['Ball']);
+  expect([...cvat.matchAll(/<polygon frame="(\d+)"[^>]*outside="0"/g)].map(([, frame]) => Number(frame))).toEqual([0, 1, 2, 3, 4, 5]);
+
+  const mots = unzipSync((await savedAs(page, 'MOTS')).bytes);
+  expect(text(mots['mots/gt/labels.txt'])).toBe('Ball\n');
+  expect(text(mots['mots/gt/gt.txt']).trim().split('\n')).toHaveLength(6);
+
+  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+  expect(Object.keys(yolo)).toEqual([...files.map((file) => `yolo/labels/${file.name.replace('.png', '.txt')}`), 'yolo/names.txt']);
+  expect(text(yolo['yolo/labels/f03.txt'])).toMatch(/^0( \d[\d.e-]*){6,}\n$/);
+
+  const tasks = JSON.parse((await savedAs(page, 'Label Studio')).bytes.toString()) as { data: { image: string }; predictions: { result: unknown[] }[] }[];
+  expect(tasks.map(({ data }) => data.image.replace(/^.*\//, ''))).toEqual(files.map((file) => file.name));
+  expect(tasks.map(({ predictions }) => predictions[0]!.result.length)).toEqual([1, 1, 1, 1, 1, 1]);
+  await expect(page.locator('#clip-export-told')).toHaveText('Saved: one object in 6 frames.');
+
+  const coco = JSON.parse((await savedAs(page, 'COCO, RLE')).bytes.toString()) as { images: unknown[]; annotations: { attributes: { track_id: number } }[] };
+  expect(coco.images).toHaveLength(6);
+  expect(coco.annotations.map(({ attributes }) => attributes.track_id)).toEqual([1, 1, 1, 1, 1, 1]);
+
+  // Nothing ticked, nothing saved.
+  await page.keyboard.press('Escape');
+  await page.getByLabel('Show Ball').uncheck();
+  await openExport(page);
+  await page.getByRole('button', { name: 'Save clip' }).click();
+  await expect(page.locator('#notice')).toContainText('Tick an object in the list first.');
+});
