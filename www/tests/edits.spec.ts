@@ -433,7 +433,7 @@ test('the status describes the last action', async ({ page }) => {
   expect(motions).toBeGreaterThan(groups);
   await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d,]+ ms\\.$`));
   await page.locator('#look [name=colouring][value=groups]').check();
-  await expect(status).toHaveText(new RegExp(`^${motions} motions in ${groups} groups found in [\\d,]+ ms\\.$`));
+  await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d,]+ ms, of ${groups - 1 === 1 ? 'one object' : `${groups - 1} objects`} and the background\\.$`));
 
   await brush(page, 1);
   await draw(page, [0.7, 0.2], [0.8, 0.2]);

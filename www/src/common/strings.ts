@@ -90,7 +90,7 @@ export const strings = {
     pairs: (done: number, of: number, left: number | null): string => (done < of ? `${whole.format(done)} of ${frames(of)}${remaining(left)}` : 'Following the objects…'),
     corrections: 'Carrying your correction to other frames…',
     labels: (done: number, of: number): string => `Masks of ${whole.format(done)} of ${frames(of)}`,
-    started: 'Segmenting the clip.',
+    started: 'Segmenting…',
     corrected: (changed: number): string => `Corrected: the masks of ${frames(changed)} have changed.`,
     undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
@@ -118,14 +118,14 @@ export const strings = {
 
   motion,
   maskName: (kind: Kind, id: number): string => {
-    if (kind === 'objects') return id === 0 ? 'Background' : `Object ${id}`;
-    return `${kind === 'groups' ? 'Group' : 'Motion'} ${id}`;
+    if (kind === 'motions') return `Motion ${id}`;
+    return id === 0 ? 'Background' : `Object ${id}`;
   },
   noMasksYet: 'Masks appear here once they are found.',
   noMasks: { failed: 'No masks: the segmentation failed.', cancelled: 'No masks: the segmentation was cancelled.' },
   liveMasks: (count: number): string => `${motions(count)} at the moment. Stop the camera to list them.`,
   residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
-  severalMotions: (count: number): string => `${count} motions in one group`,
+  severalMotions: (count: number): string => `${count} motions`,
   groupWith: (labels: readonly number[]): string => `grouped with ${labels.map((label) => `Motion ${label}`).join(', ')}`,
   unknownName: 'Unlabelled',
   unknownWords: 'no motion explains these pixels',
@@ -167,9 +167,9 @@ export const strings = {
     working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
     /** `requested`: the number of motions in the settings; null for automatic. */
     found: (count: number, groups: number, requested: number | null, waited: number): string => {
-      const among = groups === count ? '' : groups === 1 ? ' in one group' : ` in ${groups} groups`;
+      const among = groups === count ? '' : groups === 1 ? ', all of the background' : `, of ${groups - 1 === 1 ? 'one object' : `${groups - 1} objects`} and the background`;
       const set = requested === null ? '' : count < requested ? `, fewer than the ${requested} requested: no more could be distinguished` : ', as requested';
-      return `${motions(count)}${among} found in ${whole.format(waited)} ms${set}.`;
+      return `${motions(count)} found in ${whole.format(waited)} ms${among}${set}.`;
     },
     /** How many of all strokes have an effect on this result. */
     applied: (applied: number, all: number): string => {
@@ -229,7 +229,7 @@ export const strings = {
     peek: 'Show the other frame while held',
     blink: 'Alternate between the frames',
     split: 'Split view',
-    kind: 'Switch between groups and motions',
+    kind: 'Switch between objects and motions',
     outlines: 'Outlines',
     arrows: 'Flow arrows',
     residual: 'Residual: what the motions do not explain',

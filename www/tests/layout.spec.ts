@@ -1,0 +1,44 @@
+//! What is in reach: with a clip on a laptop without scrolling, and on a phone while scrolling.
+
+import { type Page } from '@playwright/test';
+
+import { clipFrames, done, expect, open, test, upload } from './support.js';
+
+async function openSegmentedClip(page: Page): Promise<void> {
+  await open(page, 'groups');
+  await upload(page, await clipFrames(5));
+  await expect(page.locator('#clip-name')).toContainText('5 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await page.evaluate(() => scrollTo(0, 0));
+}
+
+test('brushing, stepping and exporting a clip need no scrolling at 1280 × 720', async ({ page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await openSegmentedClip(page);
+  for (const selector of ['.layers', '#tools', '#track', '#lane-names', '.transport', '#clip-segment', '#open-export', '#add-object']) {
+    await expect(page.locator(selector)).toBeInViewport({ ratio: 1 });
+  }
+  await page.locator('#tools [value=brush]').check();
+  await expect(page.locator('#track')).toBeInViewport({ ratio: 1 });
+});
+
+test.describe('on a phone', () => {
+  test.use({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+
+  test('the picture stays in view, and targets are large enough for fingers', async ({ page }) => {
+    await openSegmentedClip(page);
+    const narrow = await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
+    expect(narrow).toBe(true);
+    const small = await page.evaluate(() => {
+      const targets = document.querySelectorAll<HTMLElement>('.masthead .button, .segmented label, .step, .lane-name, #tools .button, #clip-run .button, #objects .button, #track');
+      const seen = [...targets].filter((target) => target.checkVisibility());
+      return seen.filter((target) => target.getBoundingClientRect().height < 44).map((target) => `${target.className} ${target.textContent}`);
+    });
+    expect(small).toEqual([]);
+    await page.locator('#objects').evaluate((list) => list.scrollIntoView({ block: 'center' }));
+    await expect(page.locator('#frame')).toBeInViewport({ ratio: 1 });
+    await expect(page.locator('#open-export')).toBeInViewport({ ratio: 1 });
+  });
+});
