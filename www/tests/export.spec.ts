@@ -223,6 +223,7 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
     await openExport(page);
     await page.getByRole('button', { name: 'Copy link' }).click();
     await expect(notice).toBeInViewport({ ratio: 1 });
+    await page.mouse.move(1, 1); // it stays while the pointer is over it
     await expect(notice).toBeHidden({ timeout: 10_000 });
   });
 }
