@@ -60,7 +60,7 @@ pub fn segment_pair(
     segment_with(first, second, before, options, Settings::new(options, size(first)), progress)
 }
 
-/// [`segment_pair`] without one part of the pipeline, for ablation studies.
+/// [`segment_pair`] without one part of the pipeline and in a single search, without the mirror images, for ablation studies.
 ///
 /// # Errors
 /// As [`segment_pair`].
@@ -73,7 +73,7 @@ pub fn segment_pair_without(
     before: Option<&Frame>,
     options: &SegmentOptions,
 ) -> Result<Segmentation> {
-    let mut settings = Settings { without: Some(part), ..Settings::new(options, size(first)) };
+    let mut settings = Settings { without: Some(part), mirror_images: false, ..Settings::new(options, size(first)) };
     if part == Part::Coherence {
         settings.coherence.smoothness = 0.0;
     }

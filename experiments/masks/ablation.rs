@@ -1,4 +1,5 @@
-//! The ablation: the same cases with one part of the pipeline left out.
+//! The ablation: the same cases with one part of the pipeline left out. The parts are left out of a single search, without the mirror
+//! images of quality `best`.
 
 use veronese::Part;
 
@@ -7,8 +8,8 @@ use crate::measure::{Measured, Variant};
 use crate::summary::Summary;
 
 /// The variants of the pipeline, in the order of the table.
-const VARIANTS: [(Variant, &str); 15] = [
-    (Variant::Whole, "**everything**"),
+const VARIANTS: [(Variant, &str); 16] = [
+    (Variant::Without(Part::MirrorImages), "**one search**"),
     (Variant::Without(Part::Brightness), "gain and bias"),
     (Variant::Without(Part::StaticHypothesis), "static background hypothesis"),
     (Variant::Without(Part::Algebra), "algebraic candidates"),
@@ -22,7 +23,8 @@ const VARIANTS: [(Variant, &str); 15] = [
     (Variant::Without(Part::ModelSelection), "label cost"),
     (Variant::Without(Part::Colour), "colour"),
     (Variant::Without(Part::GuidedEnlarging), "guided upsampling"),
-    (Variant::ThreeFrames, "*with the frame before*"),
+    (Variant::Whole, "*with the mirror images*"),
+    (Variant::ThreeFrames, "*with the mirror images and the frame before*"),
 ];
 
 /// One form of the pipeline: its scores with `best` and with `fast`.

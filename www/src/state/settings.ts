@@ -88,7 +88,7 @@ const SEED: NumberControl = {
   kind: 'number',
   name: 'seed',
   label: 'Seed',
-  help: 'The same seed always gives the same masks.',
+  help: 'Every seed gives the same masks. Reports repeat it.',
   initial: 1,
   min: 0,
   max: 0xffff_ffff,
