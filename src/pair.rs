@@ -14,7 +14,7 @@ pub use report::{PairEvidence, Segmentation, SegmentedMotion};
 #[doc(hidden)]
 pub use settings::Part;
 
-use std::cell::OnceCell;
+use std::rc::Rc;
 
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
@@ -107,21 +107,19 @@ fn segment_with(
     options.motions.validate()?;
     check_sizes(first, second, before)?;
     let _call = workspace::begin([first.width(), first.height()]);
-    let images =
-        if settings.mirror_images && settings.has(Part::MirrorImages) { &Mirror::ALL[..] } else { &Mirror::ALL[..1] };
+    let images = if settings.mirror_images { &Mirror::ALL[..] } else { &Mirror::ALL[..1] };
     let mut stages = Stages::in_rounds(STAGES, images.len(), progress);
-    let pyramids: Vec<OnceCell<FramePyramid>> = images.iter().map(|_| OnceCell::new()).collect();
-    let mut searches: Vec<Search<'_>> = Vec::with_capacity(images.len());
-    for (round, (&mirror, pyramid)) in images.iter().zip(&pyramids).enumerate() {
+    let mut searches: Vec<Search> = Vec::with_capacity(images.len());
+    for (round, &mirror) in images.iter().enumerate() {
         stages.begin_round(round);
         // One mirror image at a time.
         let second = settings.pyramid(&mirror.frame(second));
         let before = before.map(|frame| settings.pyramid(&mirror.frame(frame)));
         let first = mirror.frame(first);
-        let pyramid = pyramid.get_or_init(|| settings.pyramid(&first));
-        let pair = Pair::new(&first, pyramid, &second, before.as_ref(), &settings);
-        // The pair now has the planes of the other frames to itself and need not copy what it changes.
-        drop((first, second, before));
+        let pyramid = settings.pyramid(&first);
+        let pair = Pair::new(&first, &pyramid, &second, before.as_ref(), &settings);
+        // The pair now has the planes to itself and need not copy what it changes.
+        drop((first, pyramid, second, before));
         searches.push(Search::new(pair, mirror, &settings, &mut stages));
     }
     stages.begin("masks");
@@ -132,14 +130,14 @@ fn segment_with(
 }
 
 /// The search of the frames or of one of their mirror images.
-struct Search<'a> {
+struct Search {
     mirror: Mirror,
-    pair: Pair<'a>,
+    pair: Pair,
     labelled: Labelled,
 }
 
-impl<'a> Search<'a> {
-    fn new(mut pair: Pair<'a>, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search<'a> {
+impl Search {
+    fn new(mut pair: Pair, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search {
         stages.begin("dominant");
         let dominant = pair.find_dominant(settings.has(Part::Brightness));
         let (found, _) = hypothesis::best(&pair, dominant, &[], settings, stages);
@@ -180,7 +178,7 @@ fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<
 
 /// The levels of a pair, from the working size down. The frame before, if there is one, is a third view of the same scene; a pair
 /// of the same frames the other way round is one with the frames swapped.
-pub(crate) struct Pair<'a> {
+pub(crate) struct Pair {
     /// Level 0 is the working size.
     levels: Vec<Level>,
     /// Index of the level on which the dominant motion is found and others are proposed.
@@ -190,25 +188,25 @@ pub(crate) struct Pair<'a> {
     /// Index of the level on which the draft labels are solved.
     draft: usize,
     /// What the labels follow, at the sizes of the levels down to the base or the draft level.
-    appearance: &'a Appearance,
+    appearance: Rc<Appearance>,
     /// Full-size pixels per working pixel.
     reduction: f64,
 }
 
-impl<'a> Pair<'a> {
+impl Pair {
     /// `pyramid` is that of `first`.
     pub(crate) fn new(
         first: &Frame,
-        pyramid: &'a FramePyramid,
+        pyramid: &FramePyramid,
         second: &FramePyramid,
         before: Option<&FramePyramid>,
         settings: &Settings,
-    ) -> Pair<'a> {
+    ) -> Pair {
         let levels = levels(&pyramid.levels, &second.levels, before.map(|before| &before.levels[..]));
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
-        let appearance = pyramid.appearance(first);
+        let appearance = Rc::clone(pyramid.appearance(first));
         Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
     }
 

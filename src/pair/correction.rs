@@ -139,7 +139,7 @@ struct WorkingCorrection {
 }
 
 impl WorkingCorrection {
-    fn new(pair: &Pair<'_>, correction: &Correction<'_>, full_width: usize) -> WorkingCorrection {
+    fn new(pair: &Pair, correction: &Correction<'_>, full_width: usize) -> WorkingCorrection {
         let level = pair.finest();
         let (width, height) = (level.width(), level.height());
         let step = pair.reduction as usize;
@@ -167,7 +167,7 @@ impl WorkingCorrection {
     }
 
     /// The labels of working size.
-    fn solve(&self, pair: &Pair<'_>, settings: &Settings) -> Buffer<u8> {
+    fn solve(&self, pair: &Pair, settings: &Settings) -> Buffer<u8> {
         // Unlabelled pixels count as the dominant motion's here, as when the masks were corrected for occlusion.
         let known = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
         let mut state = LabelState::resumed(pair, self.motions.clone(), known, settings);

@@ -13,7 +13,7 @@ use crate::options::MAX_MOTIONS;
 
 /// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
 /// solved for each number at the base level, without costs of occlusion and colour.
-pub(super) fn evidence(pair: &Pair<'_>, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
+pub(super) fn evidence(pair: &Pair, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
     let level = &pair.levels[pair.base];
     let width = level.width();
     let n = labelled.motions.len();

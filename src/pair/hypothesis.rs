@@ -43,7 +43,7 @@ pub(super) struct Found {
 
 /// The motions selected with the dominant motion as found or, where those are clearly cheaper, with a static background; and their cost.
 pub(super) fn best(
-    pair: &Pair<'_>,
+    pair: &Pair,
     dominant: AffineMotion,
     likely: &[AffineMotion],
     settings: &Settings,
@@ -65,7 +65,7 @@ pub(super) fn best(
 
 /// The motions selected among those expected, without a search for others, and their cost. The first is the dominant one.
 pub(super) fn expected(
-    pair: &Pair<'_>,
+    pair: &Pair,
     dominant: AffineMotion,
     objects: &[AffineMotion],
     settings: &Settings,
@@ -88,7 +88,7 @@ fn static_is_missing(level: &Level, selected: &[ScoredMotion]) -> bool {
 
 /// The motions selected under one hypothesis, and their cost.
 fn with_dominant(
-    pair: &Pair<'_>,
+    pair: &Pair,
     dominant: AffineMotion,
     others: &[AffineMotion],
     settings: &Settings,
@@ -116,7 +116,7 @@ fn with_dominant(
 }
 
 /// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels.
-pub(super) fn refine(pair: &Pair<'_>, found: Found, settings: &Settings) -> Found {
+pub(super) fn refine(pair: &Pair, found: Found, settings: &Settings) -> Found {
     let Found { mut selected, mut runner_up } = found;
     settings.refit(&pair.levels[pair.selection], &mut selected, ROUNDS[1]);
     if settings.least == 1 {

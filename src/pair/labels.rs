@@ -64,7 +64,7 @@ pub(super) struct LabelState<'a> {
     runner_up: Option<AffineMotion>,
 }
 
-pub(super) fn label(pair: &Pair<'_>, found: Found, settings: &Settings) -> Labelled {
+pub(super) fn label(pair: &Pair, found: Found, settings: &Settings) -> Labelled {
     let mut state = LabelState::new(pair, found, settings);
     state.solve();
     state.prune();
@@ -88,7 +88,7 @@ pub(super) fn label(pair: &Pair<'_>, found: Found, settings: &Settings) -> Label
 }
 
 /// Smoothness weights on a level.
-pub(super) fn borders(pair: &Pair<'_>, index: usize, settings: &Settings) -> Borders {
+pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders {
     let level = &pair.levels[index];
     let smoothness = settings.coherence.smoothness * if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
     if settings.has(Part::Edges) {
@@ -113,7 +113,7 @@ fn nats_of_pixel(level: &Level) -> f32 {
 }
 
 impl<'a> LabelState<'a> {
-    fn new(pair: &'a Pair<'_>, found: Found, settings: &'a Settings) -> LabelState<'a> {
+    fn new(pair: &'a Pair, found: Found, settings: &'a Settings) -> LabelState<'a> {
         let motions = found.selected.into_iter().map(|scored| scored.motion).collect();
         let level = &pair.levels[pair.draft];
         let labels = Buffer::filled(level.width() * level.height(), 0);
@@ -125,7 +125,7 @@ impl<'a> LabelState<'a> {
 
     /// The state of a labelling whose motions and labels, of the draft level, are known. It has no costs until occlusion is corrected.
     pub(super) fn resumed(
-        pair: &'a Pair<'_>,
+        pair: &'a Pair,
         motions: Vec<AffineMotion>,
         labels: Buffer<u8>,
         settings: &'a Settings,
@@ -169,7 +169,7 @@ impl<'a> LabelState<'a> {
     }
 
     /// Adds the costs of the colours.
-    pub(super) fn add_colour_costs(&mut self, pair: &Pair<'_>) {
+    pub(super) fn add_colour_costs(&mut self, pair: &Pair) {
         if self.uses_colour() {
             add_colours(&mut self.costs, &pair.appearance.palette, &self.labels);
         }
@@ -181,7 +181,7 @@ impl<'a> LabelState<'a> {
     }
 
     /// Turns draft labels into labels of the working size.
-    fn sharpen(&mut self, pair: &Pair<'_>) {
+    fn sharpen(&mut self, pair: &Pair) {
         let step = 1 << pair.draft;
         let colours = self
             .uses_colour()

@@ -85,7 +85,7 @@ pub struct PairEvidence {
 
 /// The result of a pair of mirror images, for the frames themselves.
 pub(super) fn report(
-    pair: &Pair<'_>,
+    pair: &Pair,
     labelled: Labelled,
     mirror: Mirror,
     settings: &Settings,

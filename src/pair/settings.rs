@@ -38,7 +38,7 @@ pub enum Part {
     Colour,
     /// Upsampling along the edges of the full-size frame.
     GuidedEnlarging,
-    /// Searches of the frames' mirror images.
+    /// Searches of the frames' mirror images, which no ablation includes.
     MirrorImages,
 }
 

@@ -21,7 +21,7 @@ const NO_TEXTURE: f32 = 0.2;
 
 /// Working pixels that leave the frame, are occluded, are not explained by their own motion, have no texture around them, or
 /// whose label is more likely wrong than right.
-pub(super) fn unknown(pair: &Pair<'_>, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
+pub(super) fn unknown(pair: &Pair, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
     let level = pair.finest();
     let limit = UNKNOWN_COST * CostModel::labels().truncation;
     let texture = gaussian(&level.energy, TEXTURE_WINDOW);
