@@ -10,7 +10,7 @@ use veronese::scene::{ClipSceneOptions, Event, generate_clip};
 
 use crate::scores::VOID;
 
-/// Seed of the first generated clip, far from those that anything was tuned on.
+/// Seed of the first generated clip.
 const SEED: u64 = 50_000;
 
 /// The generated clips: events, and the least number of objects.

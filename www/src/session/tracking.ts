@@ -5,10 +5,11 @@ import { type ClipFrame, type ClipOptions, Segmenter } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import { strings } from '../common/strings.js';
 import { smallerPieces } from '../correction/pieces.js';
-import { type Runs, packed, unpacked } from '../correction/runs.js';
+import { packed, unpacked } from '../correction/runs.js';
 import { type Path, type Stroke, eachPixel } from '../correction/strokes.js';
 import type { Colour } from '../drawing/palette.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
+import { type Said, paintedOver, withSaid } from '../state/said.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
 import { type ClipRun, type Tracked, type TrackedFrame, type Version, untracked, versionOf } from '../state/tracked.js';
@@ -35,9 +36,6 @@ interface Hooks {
 
 /** Changes what is known of the clip. */
 type Change = (change: Partial<Tracked>) => void;
-
-/** What a person says: pixels of one frame, or what becomes of whole objects. */
-type Said = { readonly frame: number; readonly labels: Uint8Array } | { readonly edits: NonNullable<ClipOptions['edits']> };
 
 /** Corrections that are being carried through the clip, one after another, because each starts from the masks of the one before. */
 interface Carrying {
@@ -250,7 +248,7 @@ export class Tracking {
     const { tracked, settings } = this.#store.get();
     if (said === undefined || tracked === null || before.state === null) return;
     set({ run: { phase: 'working', stage: 'corrections', left: null } });
-    const painted = 'labels' in said ? new Map(before.painted).set(said.frame, paintedOver(before.painted.get(said.frame), said.labels, sizeIn(before, said.frame))) : before.painted;
+    const painted = 'labels' in said ? new Map(before.painted).set(said.frame, paintedOver(before.painted.get(said.frame), said.labels, before.frames[said.frame]!.runs)) : before.painted;
     const frames = new ClipFrames(tracked.clip, tracked.longestSide);
     const found = this.#segmenter.segmentClip(frames, {
       state: (await bytesOf(before.state))!,
@@ -368,35 +366,4 @@ function masksOf({ labels, objects, background }: ClipFrame, { width, height }: 
 /** The largest number of an object in these frames. */
 function largestOf(frames: Version['frames']): number {
   return frames.reduce((most, frame) => (frame?.objects ?? []).reduce((larger, { id }) => Math.max(larger, id), most), 0);
-}
-
-/** The size of a frame that has masks. */
-function sizeIn({ frames }: Version, index: number): Pick<Runs, 'width' | 'height'> {
-  return frames[index]!.runs;
-}
-
-/** What was painted before in a frame, with this over it. */
-function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
-  const all = before === undefined ? labels : unpacked(before).map((label, p) => (labels[p] === UNLABELLED ? label : labels[p]!));
-  return packed(all, size.width, size.height);
-}
-
-/** The masks with what is painted in its own frame. The motions and certainties of that frame follow later. */
-function withSaid<V extends Version>(version: V, said: Said): V {
-  const masks = 'labels' in said ? version.frames[said.frame] : null;
-  if (!('labels' in said) || !masks) return version;
-  const { width, height } = masks.runs;
-  const labels = unpacked(masks.runs);
-  const painted = new Set<number>();
-  for (let p = 0; p < labels.length; p++) {
-    const label = said.labels[p]!;
-    if (label === UNLABELLED) continue;
-    labels[p] = label;
-    painted.add(label);
-  }
-  const own = new Set(masks.objects.map(({ id }) => id));
-  const added = [...painted].filter((id) => id !== 0 && !own.has(id));
-  const objects = [...masks.objects, ...added.map((id) => ({ id, pixels: 0, bbox: [0, 0, width, height] as ClipFrame['objects'][number]['bbox'], confidence: 1, matrix: null }))];
-  const frames = version.frames.with(said.frame, { ...masks, runs: packed(labels, width, height), objects });
-  return { ...version, frames, largest: Math.max(version.largest, ...added) };
 }

@@ -1,0 +1,35 @@
+//! What a person says about a clip, and the masks as they are before it has been carried to the other frames.
+
+import type { ClipFrame, ClipOptions } from 'veronese';
+import { type Runs, packed, unpacked } from '../correction/runs.js';
+import { UNLABELLED } from '../result/masks.js';
+import type { Version } from './tracked.js';
+
+/** What a person says: pixels of one frame, or what becomes of whole objects. */
+export type Said = { readonly frame: number; readonly labels: Uint8Array } | { readonly edits: NonNullable<ClipOptions['edits']> };
+
+/** What was painted before in a frame, with this over it. */
+export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
+  const all = before === undefined ? labels : unpacked(before).map((label, p) => (labels[p] === UNLABELLED ? label : labels[p]!));
+  return packed(all, size.width, size.height);
+}
+
+/** The masks with what is painted in its own frame. The motions and certainties of that frame follow later. */
+export function withSaid<V extends Version>(version: V, said: Said): V {
+  const masks = 'labels' in said ? version.frames[said.frame] : null;
+  if (!('labels' in said) || !masks) return version;
+  const { width, height } = masks.runs;
+  const labels = unpacked(masks.runs);
+  const painted = new Set<number>();
+  for (let p = 0; p < labels.length; p++) {
+    const label = said.labels[p]!;
+    if (label === UNLABELLED) continue;
+    labels[p] = label;
+    painted.add(label);
+  }
+  const own = new Set(masks.objects.map(({ id }) => id));
+  const added = [...painted].filter((id) => id !== 0 && !own.has(id));
+  const objects = [...masks.objects, ...added.map((id) => ({ id, pixels: 0, bbox: [0, 0, width, height] as ClipFrame['objects'][number]['bbox'], confidence: 1, matrix: null }))];
+  const frames = version.frames.with(said.frame, { ...masks, runs: packed(labels, width, height), objects });
+  return { ...version, frames, largest: Math.max(version.largest, ...added) };
+}
