@@ -58,6 +58,8 @@ enum Source {
 pub(crate) struct Case {
     pub(crate) name: String,
     source: Source,
+    /// Whether the clip segmenter is measured on it without each of its parts: real clips and every fourth of the generated ones.
+    pub(crate) in_ablation: bool,
 }
 
 /// A clip's frames and their true labels.
@@ -78,8 +80,9 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
             ClipSceneOptions { frames, objects, events: events.to_vec(), seed, ..ClipSceneOptions::default() };
         let words = events.iter().map(|&event| word(event)).collect::<Vec<_>>().join("-");
         let name = format!("{seed}-{}", if words.is_empty() { "plain" } else { &words });
-        if !quick || k % 4 == 2 {
-            cases.push(Case { name, source: Source::Generated(options) });
+        let fourth = k % 4 == 2;
+        if !quick || fourth {
+            cases.push(Case { name, source: Source::Generated(options), in_ablation: fourth });
         }
     }
     let real = shared.join("data").join("clips");
@@ -89,7 +92,7 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
         folders.sort();
         cases.extend(folders.into_iter().map(|folder| {
             let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            Case { name, source: Source::Folder(folder) }
+            Case { name, source: Source::Folder(folder), in_ablation: true }
         }));
     }
     Ok(cases)

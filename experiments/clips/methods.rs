@@ -42,7 +42,8 @@ impl Method {
         Method::Knn,
     ];
 
-    pub(crate) const ABLATIONS: [Method; 6] = [
+    pub(crate) const ABLATIONS: [Method; 7] = [
+        Method::Without(ClipPart::MirrorImages),
         Method::Without(ClipPart::WarmStart),
         Method::Without(ClipPart::BothDirections),
         Method::Without(ClipPart::Carrying),
@@ -50,6 +51,10 @@ impl Method {
         Method::Without(ClipPart::SecondRound),
         Method::Without(ClipPart::Grouping),
     ];
+
+    pub(crate) fn is_ablation(self) -> bool {
+        matches!(self, Method::Without(_))
+    }
 
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -62,6 +67,7 @@ impl Method {
             Method::Flow => "flow",
             Method::Mog2 => "mog2",
             Method::Knn => "knn",
+            Method::Without(ClipPart::MirrorImages) => "no-mirror-images",
             Method::Without(ClipPart::WarmStart) => "no-warm-start",
             Method::Without(ClipPart::BothDirections) => "no-both-directions",
             Method::Without(ClipPart::Carrying) => "no-carrying",
@@ -82,6 +88,7 @@ impl Method {
             Method::Flow => "OpenCV, DIS flow",
             Method::Mog2 => "OpenCV, MOG2",
             Method::Knn => "OpenCV, KNN",
+            Method::Without(ClipPart::MirrorImages) => "without mirror images",
             Method::Without(ClipPart::WarmStart) => "without a warm start",
             Method::Without(ClipPart::BothDirections) => "without the evidence of backward pairs",
             Method::Without(ClipPart::Carrying) => "without the evidence of other frames",

@@ -144,12 +144,13 @@ impl Page<'_> {
             return;
         }
         text.push_str(
-            "## What each part is worth\n\nThe clip segmenter without one of its parts.\n\n| | generated clips: auto | assigned | switches | \
+            "## What each part is worth\n\nThe clip segmenter without one of its parts, on the real clips and every fourth of the generated ones.\n\n| | generated clips: auto | assigned | switches | \
              n right | real clips: auto | one click | tracks | F tracks | switches |\n|---|---|---|---|---|---|---|---|---|---|\n",
         );
         for method in [Method::Clip].into_iter().chain(methods) {
             let of = |generated: bool, name: &str, digits: usize| {
-                let clips = self.measured.iter().filter(|one| one.case.is_generated() == generated);
+                let clips = self.measured.iter().filter(|one| one.case.in_ablation);
+                let clips = clips.filter(|one| one.case.is_generated() == generated);
                 let figure = FIGURES.iter().find(|(other, _)| *other == name);
                 let value = figure.map(|(_, figure)| mean(clips.filter_map(|one| one.of(method)), *figure));
                 number(value.unwrap_or(f64::NAN), digits)

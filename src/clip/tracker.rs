@@ -8,6 +8,7 @@ use super::record::Record;
 use super::round::{Foreground, Round};
 use super::{ClipOptions, MAX_LOOK_AHEAD};
 use crate::error::{Error, Result};
+use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::pair::settings::Settings;
@@ -29,6 +30,8 @@ const FIRST_CUT: f32 = 1.5;
 /// covered by semantic versioning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipPart {
+    /// Mirror images of the frames, in which pairs are searched by turns.
+    MirrorImages,
     /// Motions of the pair before as candidates.
     WarmStart,
     /// Evidence of the pair with the frame before; its motions are still used.
@@ -150,8 +153,9 @@ impl Tracker {
 
     /// In a whole clip a frame has a pair with each of its neighbours.
     fn both_ways(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-        let onward = self.solve(last, newest, self.prior.as_ref(), settings);
-        let back = self.solve(newest, last, Some(&onward.reversed()), settings);
+        let [mirror, other] = self.mirrors(settings);
+        let onward = self.solve(mirror, [last, newest], self.prior.as_ref(), settings);
+        let back = self.solve(other, [newest, last], Some(&onward.reversed()), settings);
         if onward.is_cut() && back.is_cut() {
             return Pairs::default();
         }
@@ -162,11 +166,12 @@ impl Tracker {
 
     /// In a stream a frame has its pair with the frame before, near what was found there. Only the first frame may wait for the next.
     fn backward(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-        let back = self.solve(newest, last, self.prior.as_ref(), settings);
+        let [mirror, other] = self.mirrors(settings);
+        let back = self.solve(mirror, [newest, last], self.prior.as_ref(), settings);
         if back.is_cut() {
             return Pairs::default();
         }
-        let onward = self.waits.then(|| self.solve(last, newest, None, settings));
+        let onward = self.waits.then(|| self.solve(other, [last, newest], None, settings));
         let prior = Some(back.prior());
         let [onward, back] = [onward, Some(back)].map(|view| view.map(|solution| (odds(&solution), flow(solution))));
         Pairs { onward, back, prior }
@@ -177,9 +182,32 @@ impl Tracker {
         self.without != Some(part)
     }
 
-    fn solve(&self, first: &Newest, second: &Newest, prior: Option<&Prior>, settings: &Settings) -> Solution {
+    /// The mirror images in which the newest pair is solved, and the same frames the other way round. Where the evidence is weak, what a
+    /// search finds depends on the order of the pixels. The image changes from pair to pair, so that this averages out along the clip.
+    fn mirrors(&self, settings: &Settings) -> [Mirror; 2] {
+        if !(settings.mirror_images && self.has(ClipPart::MirrorImages)) {
+            return [Mirror::ALL[0]; 2];
+        }
+        let k = self.count % Mirror::ALL.len();
+        [Mirror::ALL[k], Mirror::ALL[Mirror::ALL.len() - 1 - k]]
+    }
+
+    fn solve(
+        &self,
+        mirror: Mirror,
+        [first, second]: [&Newest; 2],
+        prior: Option<&Prior>,
+        settings: &Settings,
+    ) -> Solution {
         let prior = prior.filter(|_| self.has(ClipPart::WarmStart));
-        solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior)
+        if mirror == Mirror::ALL[0] {
+            return solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior);
+        }
+        let size = settings.working_size([first.frame.width(), first.frame.height()]);
+        let prior = prior.map(|prior| prior.mirrored(mirror, size));
+        let [first, second] = [first, second].map(|newest| mirror.frame(&newest.frame));
+        let [pyramid, other] = [&first, &second].map(|frame| settings.pyramid(frame));
+        solve(&first, &pyramid, &other, settings, prior.as_ref()).mirrored(mirror, size)
     }
 
     /// Goes on with what the pairs of the last frame and the newest one have told.

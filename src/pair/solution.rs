@@ -2,6 +2,7 @@
 
 use super::settings::{Part, Settings};
 use super::{Pair, hypothesis, labels};
+use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
@@ -53,6 +54,12 @@ pub(crate) struct Prior {
 const TOLERANCE: f64 = 0.05;
 
 impl Prior {
+    /// What is expected of a mirror image of the frames. `size` is the working size.
+    pub(crate) fn mirrored(&self, mirror: Mirror, size: [usize; 2]) -> Prior {
+        let motions = self.motions.iter().map(|motion| mirror.motion(motion, size)).collect();
+        Prior { motions, enough: self.enough }
+    }
+
     /// Whether a prior from outside the program can be used.
     pub(crate) fn is_valid(&self) -> bool {
         !self.motions.is_empty() && self.motions.iter().all(AffineMotion::is_finite)
@@ -60,6 +67,14 @@ impl Prior {
 }
 
 impl Solution {
+    /// The solution of a mirror image of the frames, as that of the frames themselves. `size` is the working size.
+    pub(crate) fn mirrored(mut self, mirror: Mirror, size: [usize; 2]) -> Solution {
+        self.motions.iter_mut().for_each(|motion| *motion = mirror.motion(motion, size));
+        mirror.reorder(&mut self.labels, size[0]);
+        self.probabilities.iter_mut().for_each(|plane| mirror.reorder(plane.values_mut(), size[0]));
+        self
+    }
+
     /// What to expect of a pair in which everything keeps its motion; no search where that explains it about as well.
     pub(crate) fn prior(&self) -> Prior {
         Prior { motions: self.motions.clone(), enough: (1.0 + TOLERANCE) * self.cost }
