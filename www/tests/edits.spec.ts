@@ -51,7 +51,7 @@ async function brush(page: Page, row: number): Promise<void> {
 const strokes = (page: Page) => page.locator('#strokes g path');
 
 /** The numbers of the masks along a line of the picture. */
-function along(labels: Int16Array, width: number, height: number, from: Place, to: Place): Set<number> {
+function along(labels: Uint8Array, width: number, height: number, from: Place, to: Place): Set<number> {
   const at = (k: number, axis: 0 | 1): number => from[axis] + ((to[axis] - from[axis]) * k) / 20;
   return new Set(Array.from({ length: 21 }, (_, k) => labels[Math.floor(at(k, 1) * height) * width + Math.floor(at(k, 0) * width)]!));
 }

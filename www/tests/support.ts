@@ -130,14 +130,14 @@ export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixe
   return { width, height, data: new Uint8Array(Buffer.from(base64, 'base64')) };
 }
 
-/** The number of each pixel's mask, read back from its colour; -1 where nothing is painted. */
-export async function labelsOnCanvas(page: Page): Promise<Int16Array> {
+/** The number of each pixel's mask, read back from its colour; 0 where nothing is painted. */
+export async function labelsOnCanvas(page: Page): Promise<Uint8Array> {
   const { data } = await pixelsOf(page, '#fill');
-  const labelByColour = new Map(PALETTE.map((colour, label) => [colour.join(), label]));
+  const labelByColour = new Map(PALETTE.map((colour, label): [string, number] => [colour.join(), label]).slice(1));
   labelByColour.set(UNKNOWN_COLOUR.join(), 255);
-  return Int16Array.from({ length: data.length / 4 }, (_, i) => {
+  return Uint8Array.from({ length: data.length / 4 }, (_, i) => {
     const [r, g, b, alpha] = data.subarray(4 * i, 4 * i + 4);
-    if (alpha === 0) return -1;
+    if (alpha === 0) return 0;
     const label = labelByColour.get([r, g, b].join());
     if (label === undefined || alpha !== 255) throw new Error(`pixel ${i} has the colour ${r},${g},${b},${alpha} of no label`);
     return label;

@@ -28,11 +28,6 @@ async function shows(page: Page, index: number): Promise<void> {
   await done(page);
 }
 
-/** The objects' numbers on the picture; 0 where there is none. */
-async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
-  return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
-}
-
 test('the objects of a clip keep number, name and colour in all frames', async ({ page }) => {
   const files = await clipFrames(8);
   const found = await clipInNode(files);
@@ -41,7 +36,7 @@ test('the objects of a clip keep number, name and colour in all frames', async (
   await segmentClip(page);
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 8 frames.');
   await shows(page, 0);
-  expect(differences(await numbersOnCanvas(page), found[0]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
   await expect(page.locator('#lane-names button')).toHaveText(['Object 1', 'Object 2']);
 
   const names = page.locator('#objects .motion-name');
@@ -55,7 +50,7 @@ test('the objects of a clip keep number, name and colour in all frames', async (
   await track.press('End');
   await shows(page, 7);
   await expect(track).toHaveAttribute('aria-valuetext', 'Frame 7 of 8');
-  expect(differences(await numbersOnCanvas(page), found[7]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[7]!)).toBe(0);
   await expect(names.nth(1)).toHaveValue('Ball');
 
   // A press moves the frame, a drag goes on moving it.
@@ -67,25 +62,25 @@ test('the objects of a clip keep number, name and colour in all frames', async (
   await page.mouse.move(at(4), box.y + 20, { steps: 4 });
   await page.mouse.up();
   await shows(page, 4);
-  expect(differences(await numbersOnCanvas(page), found[4]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[4]!)).toBe(0);
   // The second frame keeps its distance, and has masks of its own.
   await expect(page.locator('#clip-second-at')).toHaveText('#5');
   await page.locator('#look [name=frame][value=second]').check();
   await expect(page.locator('#caption')).toHaveText('Frame 5');
-  expect(differences(await numbersOnCanvas(page), found[5]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[5]!)).toBe(0);
   await page.locator('#look [name=frame][value=first]').check();
 
   // Nothing is segmented again when the clip is played.
   await page.keyboard.press('k');
   await shows(page, 7);
   await expect(page.getByRole('button', { name: 'Play' })).toBeVisible();
-  expect(differences(await numbersOnCanvas(page), found[7]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[7]!)).toBe(0);
 
   // Hidden objects are hidden in every frame.
   await page.getByLabel('Show Ball').uncheck();
   await page.keyboard.press(',');
   await shows(page, 6);
-  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+  expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
 
   // The pair is still there.
   await page.locator('#look [value=groups]').check();
@@ -130,7 +125,7 @@ test('a cancelled clip keeps what is done and continues from there', async ({ pa
   expect(Number(continued)).toBeGreaterThanOrEqual(kept);
   await phase(page, 'done');
   await shows(page, 0);
-  expect(differences(await numbersOnCanvas(page), found[0]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
 });
 
 test('a frame of another size ends the clip, and the frames before it have masks', async ({ page }) => {
@@ -144,7 +139,7 @@ test('a frame of another size ends the clip, and the frames before it have masks
   await expect(page.locator('#status')).toHaveText('No masks of this frame yet.');
   await page.getByRole('slider', { name: 'Current frame' }).press('ArrowLeft');
   await shows(page, 4);
-  expect(new Set(await numbersOnCanvas(page)).size).toBeGreaterThan(1);
+  expect(new Set(await labelsOnCanvas(page)).size).toBeGreaterThan(1);
 });
 
 /** Paints a stroke; positions are shares of the picture. */
@@ -177,21 +172,21 @@ test('a stroke in one frame is carried through the clip, and can be undone', asy
   // Over the disc, whose centre is at (0.2 · 200 + 12, 0.36 · 140 + 3).
   await paint(page, [0.2, 0.3], [0.32, 0.46]);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \w+ frames have changed\.$/);
-  const corrected = await numbersOnCanvas(page);
+  const corrected = await labelsOnCanvas(page);
   // What was painted is certain.
   expect(corrected[Math.round(0.38 * 140) * 200 + Math.round(0.26 * 200)]).toBe(3);
   await goTo(page, 4);
-  expect(new Set(await numbersOnCanvas(page))).toContain(3);
+  expect(new Set(await labelsOnCanvas(page))).toContain(3);
 
   await page.keyboard.press('Control+z');
   await expect(page.locator('#clip-status')).toHaveText(/^Undone in/);
-  expect(differences(await numbersOnCanvas(page), found[4]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[4]!)).toBe(0);
   await goTo(page, 3);
-  expect(differences(await numbersOnCanvas(page), found[3]!)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), found[3]!)).toBe(0);
   await expect(page.locator('#objects .motion')).toHaveCount(4); // the new object is selected still
   await page.getByRole('button', { name: 'Redo' }).click();
   await expect(page.locator('#clip-status')).toHaveText(/^Redone in/);
-  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
+  expect(differences(await labelsOnCanvas(page), corrected)).toBe(0);
 });
 
 test('objects are merged and deleted in the whole clip, and the corrections are restored with it', async ({ page }) => {
@@ -209,7 +204,7 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
   await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 6 frames have changed.');
   for (const index of [0, 5]) {
     await goTo(page, index);
-    expect(differences(await numbersOnCanvas(page), merged[index]!)).toBe(0);
+    expect(differences(await labelsOnCanvas(page), merged[index]!)).toBe(0);
   }
   // Leaving would lose this.
   expect(await leaves()).toBe(false);
@@ -222,7 +217,7 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
   await expect(rows).toHaveCount(2);
   await rows.nth(1).locator('.motion-name').fill('Box');
   await rows.nth(1).locator('.motion-name').press('Enter');
-  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+  expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
 
   // Another pair, and the clip again.
   await page.getByRole('button', { name: 'Parallax' }).click();
@@ -234,7 +229,7 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
   await shows(page, 0);
   await expect(rows).toHaveCount(2);
   await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Box');
-  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+  expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(rows).toHaveCount(3);
 });

@@ -1,5 +1,5 @@
-//! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. It needs no canvas, so it can be tested in Node
-//! and done in pieces.
+//! Labels to colours: the fill and the outlines of the masks, one RGBA word per pixel. Mask 0 is the background: it is not painted, so
+//! that the picture keeps its colours. No canvas is needed, so painting can be tested in Node and done in pieces.
 
 import type { Segmentation } from 'veronese';
 import { UNLABELLED, type Kind, keyOf, maskTable } from '../result/masks.js';
@@ -24,14 +24,13 @@ export function colourOfMask(mask: number, { kind, colours }: Pick<Painting, 'ki
   return colours[keyOf(kind, mask)] ?? (mask === UNLABELLED ? UNKNOWN_COLOUR : colourOf(mask));
 }
 
-/** The RGBA word of each label; 0 (transparent) if it is hidden. */
+/** The RGBA word of each label; 0 (transparent) for the background and for what is hidden. */
 function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Array {
   const masks = maskTable(segmentation, painting.kind);
   const words = new Uint32Array(256);
   for (const label of [...segmentation.motions.map((motion) => motion.label), UNLABELLED]) {
     const mask = masks[label]!;
-    if (painting.kind === 'objects' && mask === 0) continue; // the background of a clip is no object
-    if (isShown(mask, painting)) words[label] = wordFromColour(colourOfMask(mask, painting));
+    if (mask !== 0 && isShown(mask, painting)) words[label] = wordFromColour(colourOfMask(mask, painting));
   }
   return words;
 }
@@ -45,8 +44,10 @@ export function fillOf(segmentation: Segmentation, painting: Painting, from = 0,
   return pixels;
 }
 
-/** Outlines are lighter than the fill: the share of white mixed into the colour of the mask. */
+/** The line of an outline is lighter than the fill: the share of white mixed into the colour of the mask. */
 const LIGHTER = 0.45;
+/** Its edge, nearly black. */
+const EDGE = 0xe018_1210; // little-endian RGBA
 
 function lighter(word: number): number {
   const channel = (shift: number): number => {
@@ -57,8 +58,8 @@ function lighter(word: number): number {
 }
 
 /**
- * Rows `from` to `to` of the outlines: the pixels of a mask that have another mask within `thickness` pixels along the row or column. The
- * largest mask has none: its outline would double all others.
+ * Rows `from` to `to` of the outlines, inside the masks: along every border a dark edge and next to it a light line, each `thickness` pixels
+ * wide along rows and columns. One of the two stands out from any picture, and the edges part masks that touch without relying on hue.
  */
 export function outlinesOf(
   segmentation: Segmentation,
@@ -67,31 +68,35 @@ export function outlinesOf(
   from = 0,
   to = segmentation.height,
 ): Uint32Array<ArrayBuffer> {
-  const words = wordsByLabel(segmentation, painting);
   const masks = maskTable(segmentation, painting.kind);
-  const rims = words.map((word, label) => (masks[label] === 0 && painting.solo === null ? 0 : lighter(word)));
+  const lines = wordsByLabel(segmentation, painting).map(lighter);
   const { labels, width, height } = segmentation;
   const first = from * width;
   const pixels = new Uint32Array((to - from) * width);
+  const reach = 2 * thickness;
   /** Paints up to `limit` pixels from `start` on, until the mask ends. */
   const paint = (start: number, step: number, limit: number): void => {
+    const line = lines[labels[start]!]!;
+    if (line === 0) return;
     const own = masks[labels[start]!];
     for (let k = 0, i = start; k < limit && masks[labels[i]!] === own; k++, i += step) {
-      if (i >= first && i - first < pixels.length) pixels[i - first] = rims[labels[i]!]!;
+      if (i < first || i - first >= pixels.length) continue;
+      if (k < thickness) pixels[i - first] = EDGE;
+      else if (pixels[i - first] === 0) pixels[i - first] = line;
     }
   };
   // Borders just above and below reach into these rows.
-  const [top, bottom] = [Math.max(0, from - thickness), Math.min(height, to + thickness)];
+  const [top, bottom] = [Math.max(0, from - reach), Math.min(height, to + reach)];
   for (let y = top, i = top * width; y < bottom; y++) {
     for (let x = 0; x < width; x++, i++) {
       const own = masks[labels[i]!];
       if (x > 0 && masks[labels[i - 1]!] !== own) {
-        paint(i, 1, Math.min(thickness, width - x));
-        paint(i - 1, -1, Math.min(thickness, x));
+        paint(i, 1, Math.min(reach, width - x));
+        paint(i - 1, -1, Math.min(reach, x));
       }
       if (y > 0 && masks[labels[i - width]!] !== own) {
-        paint(i, width, Math.min(thickness, height - y));
-        paint(i - width, -width, Math.min(thickness, y));
+        paint(i, width, Math.min(reach, height - y));
+        paint(i - width, -width, Math.min(reach, y));
       }
     }
   }

@@ -1,5 +1,5 @@
-//! The colours of the masks, after Okabe and Ito: distinguishable with any common kind of colour blindness. The largest motion, usually
-//! the background, is grey, so that the others stand out.
+//! The colours of the masks, after Okabe and Ito: distinguishable with any common kind of colour blindness. Grey is for the background,
+//! which is not painted: it is the colour of its arrows and strokes.
 
 /** Red, green, blue, 0…255. */
 export type Colour = readonly [number, number, number];

@@ -126,6 +126,8 @@ function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): R
   stabilise?.addEventListener('click', () => toggleStabilised(store, id));
   row.addEventListener('focusin', () => session.select(id));
   row.addEventListener('pointerdown', () => session.select(id));
+  // The background cannot be hidden: it is not painted.
+  for (const control of [shown, colour, solo]) control.hidden = id === 0;
 
   return (look) => {
     const called = nameOf(look, id);
