@@ -5,7 +5,7 @@ import { type Page } from '@playwright/test';
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
 
 import { BIT, BITS, WIDTH, video } from './video.js';
-import { type Upload, done, expect, open, pixelsOf, square, test, upload } from './support.js';
+import { type Upload, done, expect, open, pixelsOf, square, test, upload, openAdvanced } from './support.js';
 
 /** The number in the frame on screen. */
 async function numberShown(page: Page): Promise<number> {
@@ -162,6 +162,7 @@ test('the camera is segmented live, and its last pair stays', async ({ page, con
 
 test('frames larger than the working size are scaled down', async ({ page }) => {
   await open(page);
+  await openAdvanced(page);
   await page.getByLabel('Working size').selectOption('640');
   await done(page);
   await upload(page, [await square('a.png', 800, 500, 0, 0), await square('b.png', 800, 500, 5, 0)]);
@@ -188,9 +189,9 @@ test('corrections are restored when a video is opened again', async ({ page }) =
   await page.getByRole('button', { name: 'Two cars' }).click();
   await expect(page.locator('#timeline')).toBeHidden();
   await done(page);
-  await expect(name).toHaveValue('Motion 0');
+  await expect(name).toHaveValue('Background');
   await opened('again.webm');
-  await expect(name).toHaveValue('Motion 0'); // the first pair
+  await expect(name).toHaveValue('Background'); // the first pair
   await page.getByRole('button', { name: 'Step both forward' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#1,');
   await done(page);

@@ -12,7 +12,7 @@ async function stroke(page: Page, from: readonly [number, number], to: readonly 
   await page.mouse.down();
   await page.mouse.move(...at(to), { steps: 8 });
   await page.mouse.up();
-  await expect(page.locator('#status')).toHaveText(/^Labels updated/);
+  await expect(page.locator('#status')).toHaveText(/^Masks updated/);
   await done(page);
 }
 
@@ -96,7 +96,7 @@ test('a stroke is drawn with the keyboard', async ({ page }) => {
   await page.keyboard.press('Space');
   for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
   await page.keyboard.press('Space');
-  await expect(page.locator('#status')).toHaveText(/^Labels updated/);
+  await expect(page.locator('#status')).toHaveText(/^Masks updated/);
   const painted = await labelsOnCanvas(page);
   // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
   for (let x = 384 + 160; x <= 384 + 208; x++) expect(painted[216 * 768 + x]).toBe(1);

@@ -26,6 +26,15 @@ test('x is right and y is down', () => {
   expect(words(about([1, 0, 0, 1], -4.13, 12))).toBe('moves 4.1 px left, 12 px down');
 });
 
+test('a displacement is a length in one of eight directions, or what else the motion does', () => {
+  const short = (matrix: Matrix): string => strings.displacement(visibleParts(partsOf(matrix, CENTRE), 100)).replaceAll('\u00a0', ' ');
+  expect(short(about([1, 0, 0, 1], 1.2, 14.3))).toBe('14 px down');
+  expect(short(about([1, 0, 0, 1], -4.13, -0.21))).toBe('4.1 px left');
+  expect(short(about([1, 0, 0, 1], 3, 4))).toBe('5 px to the lower right');
+  expect(short(about([1, 0, 0, 1], 3, -4))).toBe('5 px to the upper right');
+  expect(short(about([0.97, 0, 0, 0.97], 0, 0))).toBe('shrinks 3 %');
+});
+
 test('x towards y is clockwise', () => {
   const angle = (1.2 * Math.PI) / 180;
   const [c, s] = [Math.cos(angle), Math.sin(angle)];

@@ -7,7 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Upload, differences, done, expect, labelsOnCanvas, open, openExport, sample, square, test, upload } from './support.js';
+import { type Upload, differences, done, expect, labelsOnCanvas, open, openExport, sample, square, test, upload, chooseMotions, openAdvanced, motionsChosen } from './support.js';
 
 type Place = readonly [number, number];
 
@@ -173,16 +173,16 @@ test('strokes, names, colours and undo are restored with their frames', async ({
   const rows = page.locator('#motions > li');
   await rows.nth(1).locator('.motion-name').fill('Square');
   await rows.nth(1).locator('.motion-name').press('Enter');
-  await rows.nth(0).locator('.swatch').fill('#112233');
+  await rows.nth(1).locator('.swatch').fill('#112233');
   await brush(page, 1);
   await draw(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
   await draw(page, [0.8, 0.8], [0.9, 0.8]);
   await done(page);
   await page.locator('#undo').click();
-  await rows.nth(0).locator('.swatch').fill(`#${PALETTE[0]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
+  await rows.nth(1).locator('.swatch').fill(`#${PALETTE[1]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
   const mine = await labelsOnCanvas(page);
-  await rows.nth(0).locator('.swatch').fill('#112233');
+  await rows.nth(1).locator('.swatch').fill('#112233');
 
   await step(page, 1, 'f2.png');
   await expect(page.locator('#undo')).toBeDisabled();
@@ -190,8 +190,8 @@ test('strokes, names, colours and undo are restored with their frames', async ({
   await step(page, -1, 'f1.png');
   await expect(page.locator('#status')).toHaveText('Restored your corrections of these frames.');
   await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Square');
-  await expect(rows.nth(0).locator('.swatch')).toHaveValue('#112233');
-  await rows.nth(0).locator('.swatch').fill(`#${PALETTE[0]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
+  await expect(rows.nth(1).locator('.swatch')).toHaveValue('#112233');
+  await rows.nth(1).locator('.swatch').fill(`#${PALETTE[1]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
   expect(differences(await labelsOnCanvas(page), mine)).toBe(0);
   await expect(strokes(page)).toHaveCount(1);
   await page.locator('#redo').click();
@@ -302,6 +302,7 @@ test('corrections are scaled to another working size', async ({ page }) => {
   await brush(page, 1);
   await draw(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
+  await openAdvanced(page);
   await page.getByLabel('Working size').selectOption('640');
   await done(page);
   await step(page, 1, 'f2.png');
@@ -321,6 +322,7 @@ test('strokes and names follow their masks to a result with other settings', asy
   await done(page);
   const painted = await labelsOnCanvas(page);
 
+  await openAdvanced(page);
   await page.getByLabel('Leave unexplained pixels unlabelled').check();
   await done(page);
   await expect(strokes(page)).toHaveCount(1);
@@ -329,11 +331,11 @@ test('strokes and names follow their masks to a result with other settings', asy
   expect(await page.locator('.motion-name').evaluateAll((inputs) => inputs.filter((input) => (input as HTMLInputElement).value === 'Car').length)).toBe(1);
 
   // With one motion the stroke has no effect. With the first settings everything is as before.
-  await page.getByLabel('Number of motions').selectOption('1');
+  await chooseMotions(page, 1);
   await done(page);
   await expect(rows).toHaveCount(1 + (await page.locator('#motions > [data-mask="255"]').count()));
   await expect(page.locator('#status')).toHaveText(/Your stroke has no effect: its mask is not in this result\.$/);
-  await page.getByLabel('Number of motions').selectOption('auto');
+  await chooseMotions(page, 'Automatic');
   await page.getByLabel('Leave unexplained pixels unlabelled').uncheck();
   await done(page);
   await expect(rows).toHaveCount(count);
@@ -413,7 +415,7 @@ test('a stroke has the colour of its mask, also of a merged one', async ({ page 
 
 test('a stroke without effect is rejected with a message', async ({ page }) => {
   await open(page);
-  await page.getByLabel('Number of motions').selectOption('1');
+  await chooseMotions(page, 1);
   await done(page);
   await page.locator('#tools [value=eraser]').check();
   await page.locator('#motions > li').first().locator('.motion-words').click();
@@ -431,13 +433,13 @@ test('the status describes the last action', async ({ page }) => {
   await page.locator('#look [name=colouring][value=motions]').check();
   const motions = await rows.count();
   expect(motions).toBeGreaterThan(groups);
-  await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d,]+ ms\\.$`));
+  await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d.]+\\sm?s\\.$`));
   await page.locator('#look [name=colouring][value=groups]').check();
-  await expect(status).toHaveText(new RegExp(`^${motions} motions found in [\\d,]+ ms, of ${groups - 1 === 1 ? 'one object' : `${groups - 1} objects`} and the background\\.$`));
+  await expect(status).toHaveText(new RegExp(`^${groups - 1 === 1 ? 'One object' : `${groups - 1} objects`} found in [\\d.]+\\sm?s\\.$`));
 
   await brush(page, 1);
   await draw(page, [0.7, 0.2], [0.8, 0.2]);
-  await expect(status).toHaveText(/^Labels updated with your stroke in [\d,]+ ms\.$/);
+  await expect(status).toHaveText(/^Masks updated with your stroke in [\d.]+\sm?s\.$/);
   await page.locator('#undo').click();
   await expect(status).toHaveText('Undone.');
   await page.locator('#redo').click();
@@ -455,36 +457,28 @@ test('the status mentions fewer motions than requested', async ({ page }) => {
   await upload(page, (await frames(2)));
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
   await done(page);
-  await page.getByLabel('Number of motions').selectOption('10');
+  await page.evaluate(() => (location.hash = '#quality=fast&masks=motions&motions=10'));
   await done(page);
   const count = await page.locator('#motions > li').count();
   expect(count).toBeLessThan(10);
-  await expect(page.locator('#status')).toHaveText(/, fewer than the 10 requested: no more could be distinguished\.$/);
-  await page.getByLabel('Number of motions').selectOption('2');
+  await expect(page.locator('#status')).toHaveText(/\. Of the 10 motions requested, only (one|\d) could be told apart\.$/);
+  await chooseMotions(page, 2);
   await done(page);
-  await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d,]+ ms, as requested\.$/);
+  await expect(page.locator('#status')).toHaveText(/^2 motions found in [\d.]+\sm?s, as requested\.$/);
 });
 
 test('a number of motions chosen for a pair applies to that pair', async ({ page }) => {
   await openClip(page, await frames(3));
-  const setting = page.getByLabel('Number of motions');
-  await page.locator('.numbers button', { hasText: /^1$/ }).click();
+  await chooseMotions(page, 1);
   await done(page);
-  await expect(setting).toHaveValue('1');
+  await motionsChosen(page, 1);
   await expect(page.locator('#motions > li')).toHaveCount(1);
   await step(page, 1, 'f2.png');
-  await expect(setting).toHaveValue('auto');
+  await motionsChosen(page, 'Automatic');
   expect(await page.locator('#motions > li').count()).toBeGreaterThan(1);
   await step(page, -1, 'f1.png');
-  await expect(setting).toHaveValue('1');
+  await motionsChosen(page, 1);
   await expect(page.locator('#motions > li')).toHaveCount(1);
-
-  // The setting applies to all pairs, and each status says so.
-  await setting.selectOption('2');
-  await done(page);
-  await step(page, 1, 'f2.png');
-  await expect(setting).toHaveValue('2');
-  await expect(page.locator('#status')).toHaveText(/, as requested\.$/);
 });
 
 test('the list of masks reports a failure', async ({ page }) => {

@@ -12,7 +12,7 @@ import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { video } from './video.js';
-import { differences, done, expect, open, openExport, sample, segmentedInNode, test, upload, square } from './support.js';
+import { differences, done, expect, open, openExport, sample, segmentedInNode, test, upload, square, chooseMotions, motionsChosen, openAdvanced } from './support.js';
 
 /** Clicks a button that saves a file. */
 async function saved(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
@@ -64,6 +64,7 @@ test('the selected mask and the overlay are exported as PNG', async ({ page }) =
 
 test('masks of frames that were scaled down are exported at full size', async ({ page }) => {
   await open(page);
+  await openAdvanced(page);
   await page.getByLabel('Working size').selectOption('640');
   await upload(page, [await square('a.png', 960, 540, 0, 0), await square('b.png', 960, 540, 6, 3)]);
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 960 × 540');
@@ -81,7 +82,7 @@ test('masks of frames that were scaled down are exported at full size', async ({
 test('the copied command and script give the same masks', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page, 'groups');
-  await page.getByLabel('Number of motions').selectOption('3');
+  await chooseMotions(page, 3);
   await done(page);
   const expected = await segmentedInNode(await sample('first'), await sample('second'), { quality: 'fast', motions: 3 });
   const folder = await mkdtemp(join(tmpdir(), 'veronese-'));
@@ -133,7 +134,7 @@ test('the picture is copied', async ({ page, context }) => {
 test('a copied link opens with the same settings', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
-  await page.getByLabel('Number of motions').selectOption('2');
+  await chooseMotions(page, 2);
   await done(page);
   await openExport(page);
   await page.getByRole('button', { name: 'Copy link' }).click();
@@ -143,7 +144,7 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   const other = await context.newPage();
   await other.goto(link);
   await done(other);
-  await expect(other.getByLabel('Number of motions')).toHaveValue('2');
+  await motionsChosen(other, 2);
   await expect(other.getByLabel('Fast')).toBeChecked();
   await expect(other.locator('#motions > li')).toHaveCount(2);
   await expect(other.locator('#look [value=motions]')).toBeChecked();
@@ -176,7 +177,7 @@ test('a copied link opens the current sample', async ({ page, context }) => {
   await expect(other.locator('.slot-name')).toHaveText(['first.png, 200 × 150', 'second.png, 200 × 150']);
   await done(other);
   await expect(other.locator('#look [value=groups]')).toBeChecked();
-  await expect(other.getByLabel('Number of motions')).toHaveValue('2');
+  await motionsChosen(other, 2);
 
   // With a replaced frame the pair is no longer a sample.
   await page.getByLabel('Replace the second frame').setInputFiles(await sample('first', 'other.png'));

@@ -42,15 +42,6 @@ test('a frame that is too small is rejected', async ({ page }) => {
   await expectToWork(page);
 });
 
-test('an invalid seed is rejected', async ({ page }) => {
-  await open(page);
-  const seed = page.getByLabel('Seed');
-  await seed.fill('-3');
-  await seed.blur();
-  await expect(page.getByRole('alert')).toContainText('Seed must be a whole number');
-  await expect(seed).toHaveValue('1');
-});
-
 test('a request is cancelled at once and can be repeated', async ({ page, context }) => {
   // The worker's file is held back, so that the request is certain to be running.
   let release = (): void => undefined;

@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, done, expect, labelsOnCanvas, open, sample, segmentedInNode, differences, square, test } from './support.js';
+import { type Upload, done, expect, labelsOnCanvas, open, sample, segmentedInNode, differences, square, test, motionsChosen } from './support.js';
 
 /** Drops or pastes files. */
 async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise<void> {
@@ -174,17 +174,17 @@ test('the page can be used with the keyboard', async ({ page }) => {
   await page.keyboard.press('End');
   await expect(page.locator('#opacity-value')).toHaveText('100 %');
 
-  await tabTo(page, '#motions [type=checkbox]');
+  await tabTo(page, '#motions > li:nth-child(2) [type=checkbox]');
   await page.keyboard.press('Space');
   expect(differences(await labelsOnCanvas(page), all)).toBeGreaterThan(0);
   await page.keyboard.press('Space');
   expect(differences(await labelsOnCanvas(page), all)).toBe(0);
 
-  await tabTo(page, '#settings select');
-  await page.keyboard.press('2'); // the option that starts with it
+  await tabTo(page, '#evidence .number');
   await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
   await done(page);
-  await expect(page.getByLabel('Number of motions')).toHaveValue('2');
+  await motionsChosen(page, 2);
 });
 
 test('the page works in any folder', async ({ page, context, baseURL }) => {

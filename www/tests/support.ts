@@ -58,6 +58,22 @@ export async function done(page: Page): Promise<void> {
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
 }
 
+/** Chooses a number of motions for this pair, or `Automatic`. */
+export async function chooseMotions(page: Page, motions: number | 'Automatic'): Promise<void> {
+  const name = motions === 'Automatic' ? motions : new RegExp(`^Use ${motions} motions? `);
+  await page.locator('#evidence').getByRole('button', { name }).click();
+}
+
+/** Waits until this number is chosen. */
+export async function motionsChosen(page: Page, motions: number | 'Automatic'): Promise<void> {
+  await expect(page.locator('#evidence button[aria-pressed=true]')).toHaveText(String(motions));
+}
+
+/** Opens the settings that are folded away. */
+export async function openAdvanced(page: Page): Promise<void> {
+  await page.locator('#settings details').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
+}
+
 /** Opens files through the picker. */
 export async function upload(page: Page, files: Upload[]): Promise<void> {
   await page.locator('#open-pair').setInputFiles(files);

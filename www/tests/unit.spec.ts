@@ -119,12 +119,12 @@ test('arrows point in the direction of the motion', () => {
 });
 
 test('a link holds the settings, and invalid values are ignored', () => {
-  const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true, seed: 9 };
+  const settings = { ...DEFAULT_SETTINGS, motions: 3, quality: 'fast' as const, markUnknown: true };
   const link = linkFor({ ...INITIAL, settings, look: { ...INITIAL.look, kind: 'motions' } }, 'https://example.org/veronese/?x=1#old');
-  expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&seed=9&masks=motions');
-  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true, seed: 9 }, kind: 'motions', sample: null, swapped: false });
+  expect(link).toBe('https://example.org/veronese/?x=1#motions=3&quality=fast&markUnknown=true&masks=motions');
+  expect(settingsFromHash(new URL(link).hash)).toEqual({ settings: { motions: 3, quality: 'fast', markUnknown: true }, kind: 'motions', sample: null, swapped: false });
   expect(linkFor(INITIAL, 'https://example.org/')).toBe('https://example.org/');
-  expect(settingsFromHash('#motions=11&quality=silly&seed=-1&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false });
+  expect(settingsFromHash('#motions=11&quality=silly&markUnknown=1&masks=x&other=1')).toEqual({ settings: {}, kind: null, sample: null, swapped: false });
 });
 
 test('codecs have their common names', () => {
@@ -138,9 +138,9 @@ test('command and script contain the settings that are not defaults', () => {
   type Frame = Result['pair']['first'];
   const frame = (name: string, origin?: Partial<Frame['origin']>) => ({ name, origin }) as Frame;
   const result = { pair: { first: frame("it's a.png"), second: frame('b.png') } } as Result;
-  const settings = { ...DEFAULT_SETTINGS, motions: 2, seed: 5 };
-  expect(commandFor(result, settings, INITIAL.look)).toBe(`veronese pair 'it'\\''s a.png' b.png --motions 2 --grouped --seed 5 --out masks --overlay`);
-  expect(scriptFor(result, settings, { ...INITIAL.look, kind: 'motions' })).toContain('segmentPair(first, second, { motions: 2, seed: 5 })');
+  const settings = { ...DEFAULT_SETTINGS, motions: 2 };
+  expect(commandFor(result, settings, INITIAL.look)).toBe(`veronese pair 'it'\\''s a.png' b.png --motions 2 --grouped --out masks --overlay`);
+  expect(scriptFor(result, settings, { ...INITIAL.look, kind: 'motions' })).toContain('segmentPair(first, second, { motions: 2 })');
   const clip = { name: 'my clip.mp4', exact: true, times: Float64Array.from({ length: 9 }, (_, k) => k / 30) } as unknown as Clip;
   const inClip = { pair: { first: frame('my clip.mp4 #3', { clip, index: 3 }), second: frame('my clip.mp4 #5', { clip, index: 5 }) } } as Result;
   expect(commandFor(inClip, DEFAULT_SETTINGS, INITIAL.look).split('\n')).toEqual([

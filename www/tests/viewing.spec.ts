@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { differences, done, expect, labelsOnCanvas, open, pixelsOf, segmentedInNode, sample, test } from './support.js';
+import { chooseMotions, differences, done, expect, labelsOnCanvas, open, pixelsOf, segmentedInNode, sample, test, motionsChosen } from './support.js';
 
 async function zoomShown(page: Page): Promise<number> {
   return Number((await page.locator('#zoom-value').textContent())!.replace(/[^\d.]/g, ''));
@@ -169,14 +169,14 @@ test('the motion is copied in three notations', async ({ page, context }) => {
 test('the number of motions can be forced in the evidence plot', async ({ page }) => {
   await open(page);
   const { evidence } = await segmentedInNode(await sample('first'), await sample('second'));
-  const numbers = page.locator('#evidence .number');
-  await expect(numbers).toHaveCount(evidence.candidates.length);
-  await numbers.filter({ hasText: '2' }).click();
+  const scores = page.locator('#evidence .score');
+  await expect(scores).toHaveCount(evidence.candidates.length);
+  await chooseMotions(page, 2);
   await done(page);
-  await expect(page.getByLabel('Number of motions')).toHaveValue('2');
+  await motionsChosen(page, 2);
   await expect(page.locator('#motions > li')).toHaveCount(2);
-  await expect(numbers).toHaveCount(evidence.candidates.length); // the automatic scores stay
+  await expect(scores).toHaveCount(evidence.candidates.length); // the automatic scores stay
   await page.getByRole('button', { name: 'Automatic' }).click();
   await done(page);
-  await expect(page.getByLabel('Number of motions')).toHaveValue('auto');
+  await motionsChosen(page, 'Automatic');
 });

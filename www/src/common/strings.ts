@@ -19,9 +19,9 @@ function amount(value: number): string {
 
 const STAGES: Readonly<Record<string, string>> = {
   frames: 'Reading the frames',
-  dominant: 'Estimating the dominant motion',
-  measurements: 'Measuring derivatives',
-  algebra: 'Fitting the multibody polynomial',
+  dominant: 'Estimating the motion of the background',
+  measurements: 'Measuring image derivatives',
+  algebra: 'Fitting all motions at once',
   selection: 'Selecting the motions',
   refinement: 'Refining the motions',
   labels: 'Labelling the pixels',
@@ -47,6 +47,18 @@ function motion(parts: MotionParts): string {
   return said.length > 0 ? said.join('; ') : 'stands still';
 }
 
+/** From right, clockwise. */
+const DIRECTIONS = ['right', 'to the lower right', 'down', 'to the lower left', 'left', 'to the upper left', 'up', 'to the upper right'];
+
+/** "14 px down"; for what stays in place, what else it does. */
+function displacement(parts: MotionParts): string {
+  const { right, down } = parts;
+  if (right === 0 && down === 0) return motion(parts);
+  const length = Math.hypot(right, down);
+  const eighth = Math.round((Math.atan2(down, right) * 4) / Math.PI);
+  return `${length < 10 ? amount(length) : whole.format(length)}${NBSP}px ${DIRECTIONS[(eighth + 8) % 8]}`;
+}
+
 const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
 
 /** ", about 20 s left"; nothing if it is not known. */
@@ -57,8 +69,10 @@ function remaining(seconds: number | null): string {
 
 const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
 const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
+const duration = (ms: number): string => (ms < 1000 ? `${whole.format(ms)}${NBSP}ms` : `${tenths.format(ms / 1000)}${NBSP}s`);
 const scoreAbove = (above: number): string => (above === 0 ? 'lowest score' : `score ${whole.format(above)} above the lowest`);
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
+const objects = (count: number): string => (count === 0 ? 'No object' : count === 1 ? 'One object' : `${count} objects`);
 
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' },
@@ -94,14 +108,14 @@ export const strings = {
     corrected: (changed: number): string => `Corrected: the masks of ${frames(changed)} have changed.`,
     undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
-    found: (objects: number, of: number): string => `${objects === 0 ? 'No object moves' : objects === 1 ? 'One object' : `${objects} objects`} in ${frames(of)}.`,
+    found: (count: number, of: number): string => `${objects(count)} in ${frames(of)}.`,
     cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} are done and kept.`,
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} are done and kept.`,
   },
   exporting: (done: number, of: number): string => `${whole.format(done)} of ${frames(of)}`,
-  exported: (objects: number, of: number): string => `Saved: ${objects === 1 ? 'one object' : `${objects} objects`} in ${frames(of)}.`,
-  frameHas: (objects: number): string => (objects === 0 ? 'No object in this frame.' : objects === 1 ? 'One object in this frame.' : `${objects} objects in this frame.`),
-  notTracked: 'No masks of this frame yet.',
+  exported: (count: number, of: number): string => `Saved: ${objects(count).toLowerCase()} in ${frames(of)}.`,
+  frameHas: (count: number): string => `${objects(count)} in this frame.`,
+  notTracked: 'This frame has no masks yet.',
   play: 'Play',
   pause: 'Pause',
   frameSlider: (index: number, count: number, seconds: number | null): string =>
@@ -109,7 +123,7 @@ export const strings = {
   life: (first: number, last: number): string => (first === last ? `frame ${first} only` : `frames ${first} to ${last}`),
   away: 'not in this frame',
   mergeWith: 'Merge with…',
-  newObjectHelp: 'Not painted yet: paint it in any frame.',
+  newObjectHelp: 'Paint it in any frame.',
   splitOf: (name: string): string => `Split ${name}: its smaller pieces in this frame become another object`,
   removeOf: (name: string): string => `Delete ${name}: it becomes background in the whole clip`,
   selectObject: (name: string): string => `Select ${name}`,
@@ -117,16 +131,14 @@ export const strings = {
   doubtfulOf: (name: string, index: number): string => `Go to frame ${index}, where ${name} is least certain`,
 
   motion,
-  maskName: (kind: Kind, id: number): string => {
-    if (kind === 'motions') return `Motion ${id}`;
-    return id === 0 ? 'Background' : `Object ${id}`;
-  },
+  displacement,
+  maskName: (kind: Kind, id: number): string => (id === 0 ? 'Background' : `${kind === 'motions' ? 'Motion' : 'Object'} ${id}`),
   noMasksYet: 'Masks appear here once they are found.',
   noMasks: { failed: 'No masks: the segmentation failed.', cancelled: 'No masks: the segmentation was cancelled.' },
   liveMasks: (count: number): string => `${motions(count)} at the moment. Stop the camera to list them.`,
   residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
   severalMotions: (count: number): string => `${count} motions`,
-  groupWith: (labels: readonly number[]): string => `grouped with ${labels.map((label) => `Motion ${label}`).join(', ')}`,
+  groupWith: (labels: readonly number[]): string => `moves with ${labels.map((label) => strings.maskName('motions', label)).join(', ')}`,
   unknownName: 'Unlabelled',
   unknownWords: 'no motion explains these pixels',
   entry: (value: number): string => (Math.abs(value) < 1 ? value.toFixed(6) : value.toFixed(3)),
@@ -139,19 +151,21 @@ export const strings = {
   copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
-  forceNumber: (count: number, above: number): string => `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair: ${scoreAbove(above)}`,
+  /** `above`: the score above the lowest; `null` if there is none. */
+  forceNumber: (count: number, above: number | null): string =>
+    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${above === null ? '' : `: ${scoreAbove(above)}`}`,
   scoreAbove,
 
   toolHelp: {
     look: '',
-    brush: 'Paint pixels that belong to the selected mask; the labels around them adapt.',
-    eraser: 'Paint pixels that do not belong to the selected mask.',
+    brush: 'Paint what belongs to the selected mask. The pixels around it follow.',
+    eraser: 'Paint what does not belong to the selected mask. The pixels around it follow.',
   },
 
   clipToolHelp: {
     look: '',
-    brush: 'Paint pixels that belong to the selected object, in any frame; the other frames follow.',
-    eraser: 'Paint pixels that do not belong to the selected object; the other frames follow.',
+    brush: 'Paint what belongs to the selected object, in any frame. The other frames follow.',
+    eraser: 'Paint what does not belong to the selected object. The other frames follow.',
   },
 
   timings: {
@@ -165,11 +179,12 @@ export const strings = {
     opening: 'Opening…',
     waiting: (slot: 'first' | 'second'): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
     working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
-    /** `requested`: the number of motions in the settings; null for automatic. */
-    found: (count: number, groups: number, requested: number | null, waited: number): string => {
-      const among = groups === count ? '' : groups === 1 ? ', all of the background' : `, of ${groups - 1 === 1 ? 'one object' : `${groups - 1} objects`} and the background`;
-      const set = requested === null ? '' : count < requested ? `, fewer than the ${requested} requested: no more could be distinguished` : ', as requested';
-      return `${motions(count)} found in ${whole.format(waited)} ms${among}${set}.`;
+    /** `moving`: the objects; null if motions are shown. `requested`: the number of motions in the settings; null for automatic. */
+    found: (count: number, moving: number | null, requested: number | null, waited: number): string => {
+      const answer = `${moving === null ? motions(count) : objects(moving)} found in ${duration(waited)}`;
+      if (requested === null) return `${answer}.`;
+      if (count < requested) return `${answer}. Of the ${requested} motions requested, only ${count === 1 ? 'one' : count} could be told apart.`;
+      return moving === null ? `${answer}, as requested.` : `${answer}, with ${motions(count).toLowerCase()} as requested.`;
     },
     /** How many of all strokes have an effect on this result. */
     applied: (applied: number, all: number): string => {
@@ -179,7 +194,7 @@ export const strings = {
       const others = all - applied === 1 ? 'mask of the other is' : 'masks of the others are';
       return `${applied} of your ${all} strokes ${applied > 1 ? 'are' : 'is'} applied: the ${others} not in this result.`;
     },
-    solved: (strokes: number, waited: number): string => `Labels updated with your ${strokes === 1 ? 'stroke' : 'strokes'} in ${whole.format(waited)} ms.`,
+    solved: (strokes: number, waited: number): string => `Masks updated with your ${strokes === 1 ? 'stroke' : 'strokes'} in ${duration(waited)}.`,
     undone: 'Undone.',
     redone: 'Redone.',
     merged: 'Merged.',
@@ -222,7 +237,6 @@ export const strings = {
     notLoaded: 'A part of the page could not be loaded. Check the connection and try again.',
     notExported: (what: string, why: string): string => `${what} could not be exported${why === '' ? '' : `: ${why}`}.`,
     notWritten: (what: string): string => `${what} could not be exported.`,
-    wholeNumber: (name: string, min: number, max: number): string => `${name} must be a whole number from ${min} to ${max}.`,
   },
 
   keys: {

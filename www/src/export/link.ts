@@ -21,9 +21,6 @@ export function settingsFromHash(hash: string): Linked {
     if (text === null) continue;
     if (control.kind === 'switch') {
       if (text === 'true' || text === 'false') settings[control.name] = text === 'true';
-    } else if (control.kind === 'number') {
-      const value = Number(text);
-      if (/^\d+$/.test(text) && value >= control.min && value <= control.max) settings[control.name] = value;
     } else {
       const choice = control.choices.find(({ value }) => String(value) === text);
       if (choice !== undefined) settings[control.name] = choice.value;

@@ -30,13 +30,12 @@ function selecting({ exact, times }: Clip, index: number): string {
 
 export function commandFor({ pair }: Result, settings: Settings, look: Look): string {
   const [first, second] = [found(pair.first), found(pair.second)];
-  const { motions, quality, markUnknown, seed } = changed(settings);
+  const { motions, quality, markUnknown } = changed(settings);
   const options = [
     motions === undefined ? '' : `--motions ${motions}`,
     quality === undefined ? '' : `--quality ${quality}`,
     look.kind === 'groups' ? '--grouped' : '',
     markUnknown ? '--mark-unknown' : '',
-    seed === undefined ? '' : `--seed ${seed}`,
   ];
   const words = ['veronese pair', quoted(first.name), quoted(second.name), ...options.filter((option) => option !== ''), '--out masks --overlay'];
   return [...new Set([...first.before, ...second.before]), words.join(' ')].join('\n');

@@ -266,7 +266,7 @@ export class Correcting {
 
 /** Whether the segmentation was made with the current settings. */
 export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>): boolean {
-  return found !== null && (['motions', 'quality', 'markUnknown', 'seed'] as const).every((name) => found.settings[name] === settings[name]);
+  return found !== null && (['motions', 'quality', 'markUnknown'] as const).every((name) => found.settings[name] === settings[name]);
 }
 
 /** Whether some strokes are not applied yet. */

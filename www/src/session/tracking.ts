@@ -343,7 +343,7 @@ export class Tracking {
 
   /** What is known for these settings: other settings begin anew. */
   #knownOf({ fingerprint }: Clip, settings: Settings): Known {
-    const key = JSON.stringify([settings.motions, settings.quality, settings.seed, settings.longestSide]);
+    const key = JSON.stringify([settings.motions, settings.quality, settings.longestSide]);
     const before = this.#known.get(fingerprint);
     const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };
     this.#known.set(fingerprint, known);

@@ -3,29 +3,24 @@
 import type { SegmentOptions } from 'veronese';
 
 /** The options of the package that the page offers, and the working size. */
-export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'markUnknown' | 'seed'>>> & {
+export type Settings = Readonly<Required<Pick<SegmentOptions, 'motions' | 'quality' | 'markUnknown'>>> & {
   /** Frames with a longer side are scaled down to it when they are opened, pixels. Masks are exported at the size of the file. */
   readonly longestSide: number;
 };
 
 interface Common<K extends keyof Settings> {
   readonly name: K;
+  /** Rarely needed: folded away. */
+  readonly advanced?: boolean;
   readonly label: string;
   readonly help: string;
   readonly initial: Settings[K];
 }
 
-/** One of a few values. */
+/** One of a few values. The evidence plot shows the scores of the numbers of motions and offers the choice. */
 export interface ChoiceControl<K extends keyof Settings = keyof Settings> extends Common<K> {
-  readonly kind: 'select' | 'radio';
+  readonly kind: 'select' | 'radio' | 'scores';
   readonly choices: readonly { readonly value: Settings[K]; readonly label: string }[];
-}
-
-/** A whole number. */
-export interface NumberControl extends Common<'seed'> {
-  readonly kind: 'number';
-  readonly min: number;
-  readonly max: number;
 }
 
 /** On or off. */
@@ -33,16 +28,16 @@ export interface SwitchControl extends Common<'markUnknown'> {
   readonly kind: 'switch';
 }
 
-export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | ChoiceControl<'longestSide'> | NumberControl | SwitchControl;
+export type Control = ChoiceControl<'motions'> | ChoiceControl<'quality'> | ChoiceControl<'longestSide'> | SwitchControl;
 
 /** The paper's limit on the number of motions. */
 const MOST_MOTIONS = 10;
 
 const MOTIONS: ChoiceControl<'motions'> = {
-  kind: 'select',
+  kind: 'scores',
   name: 'motions',
   label: 'Number of motions',
-  help: 'Estimated for each pair, or the same for all pairs.',
+  help: '',
   initial: 'auto',
   choices: [
     { value: 'auto', label: 'Automatic' },
@@ -65,6 +60,7 @@ const QUALITY: ChoiceControl<'quality'> = {
 const LONGEST_SIDE: ChoiceControl<'longestSide'> = {
   kind: 'select',
   name: 'longestSide',
+  advanced: true,
   label: 'Working size',
   help: 'Larger frames are scaled down to this size when opened. Masks are exported at full size.',
   initial: 2048,
@@ -79,28 +75,18 @@ const LONGEST_SIDE: ChoiceControl<'longestSide'> = {
 const MARK_UNKNOWN: SwitchControl = {
   kind: 'switch',
   name: 'markUnknown',
+  advanced: true,
   label: 'Leave unexplained pixels unlabelled',
-  help: 'Such as pixels that are hidden in the second frame.',
+  help: 'For example, those that are hidden in the second frame.',
   initial: false,
 };
 
-const SEED: NumberControl = {
-  kind: 'number',
-  name: 'seed',
-  label: 'Seed',
-  help: 'Every seed gives the same masks. Reports repeat it.',
-  initial: 1,
-  min: 0,
-  max: 0xffff_ffff,
-};
-
 /** In the order of the form. */
-export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, MARK_UNKNOWN, LONGEST_SIDE, SEED];
+export const CONTROLS: readonly Control[] = [MOTIONS, QUALITY, LONGEST_SIDE, MARK_UNKNOWN];
 
 export const DEFAULT_SETTINGS: Settings = {
   motions: MOTIONS.initial,
   quality: QUALITY.initial,
   markUnknown: MARK_UNKNOWN.initial,
-  seed: SEED.initial,
   longestSide: LONGEST_SIDE.initial,
 };

@@ -1,9 +1,12 @@
-//! The evidence for the number of motions: the score of each number, lower is better, and a button to use it.
+//! The number of motions: the score of each number, lower is better, and a button to use it for this pair.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import { type State, type Store, isAwaited } from '../state/state.js';
 import { drawn, element, find } from './markup.js';
+
+/** Numbers that are offered even if they have no score. */
+const OFFERED = 6;
 
 /** Units of the plot. */
 const HEIGHT = 44;
@@ -25,23 +28,29 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
     if (found === undefined || root.hidden) return;
     if (found.settings.motions === 'auto') scores = found.evidence.candidates;
     const known = scores.length > 0 ? scores : found.evidence.candidates;
-    const seen = known.filter(({ motions }) => motions >= 1 && motions <= 10);
+    const scored = known.filter(({ motions }) => motions >= 1 && motions <= 10);
+    const least = Math.min(...scored.map(({ score }) => score));
+    const offered = Math.max(OFFERED, found.count, typeof settings.motions === 'number' ? settings.motions : 0, ...scored.map(({ motions }) => motions));
     automatic.setAttribute('aria-pressed', String(settings.motions === 'auto'));
-    const least = Math.min(...seen.map(({ score }) => score));
+    const focused = buttons.contains(document.activeElement) ? document.activeElement?.textContent : null;
     buttons.replaceChildren(
-      ...seen.map(({ motions, score }) => {
+      ...Array.from({ length: offered }, (_, k) => {
+        const motions = k + 1;
+        const score = scored.find((candidate) => candidate.motions === motions)?.score;
+        const above = score === undefined ? null : score - least;
         const button = element('button', String(motions), 'number');
         button.type = 'button';
         button.setAttribute('aria-pressed', String(settings.motions === motions));
         button.classList.toggle('found', motions === found.count);
-        button.setAttribute('aria-label', strings.forceNumber(motions, score - least));
-        button.title = strings.scoreAbove(score - least);
+        button.setAttribute('aria-label', strings.forceNumber(motions, above));
+        if (above !== null) button.title = strings.scoreAbove(above);
         button.addEventListener('click', () => session.forceMotions(motions));
         return button;
       }),
     );
-    root.style.setProperty('--numbers', String(Math.max(1, seen.length)));
-    draw(plot, seen, found.count);
+    for (const button of buttons.querySelectorAll('button')) if (button.textContent === focused) button.focus();
+    root.style.setProperty('--numbers', String(offered));
+    draw(plot, scored, offered, found.count);
   };
   store.subscribe((now, before) => {
     if (now.pair !== before.pair) scores = [];
@@ -50,14 +59,14 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
   });
 }
 
-function draw(plot: SVGSVGElement, candidates: readonly { motions: number; score: number }[], count: number): void {
+function draw(plot: SVGSVGElement, candidates: readonly { motions: number; score: number }[], columns: number, count: number): void {
   const scores = candidates.map(({ score }) => score);
   const [least, most] = [Math.min(...scores), Math.max(...scores)];
-  const width = 40 * Math.max(1, candidates.length);
+  const width = 40 * columns;
   plot.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
   // The square root shows the small differences, which decide, along with the large ones.
   const place = (score: number): number => HEIGHT - MARGIN - (HEIGHT - 2 * MARGIN) * Math.sqrt((score - least) / Math.max(most - least, 1e-9));
-  const points = candidates.map(({ score }, i) => [40 * i + 20, place(score)] as const);
+  const points = candidates.map(({ motions, score }) => [40 * motions - 20, place(score)] as const);
   plot.replaceChildren(
     drawn('polyline', { points: points.map((point) => point.join()).join(' '), class: 'score-line' }),
     // A line of zero length with round caps is a dot that stays round when the plot is stretched.

@@ -2,8 +2,6 @@
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
-import { colourOfMask, isShown } from '../drawing/paint.js';
-import { colourFromHex, cssColour, hexColour } from '../drawing/palette.js';
 import { centreOf, partsOf, visibleParts } from '../result/describe.js';
 import { UNLABELLED, type Mask, masksOf } from '../result/masks.js';
 import { NOTATIONS } from '../result/matrices.js';
@@ -11,7 +9,8 @@ import { isMerged } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
 import { type Look, type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { copyText } from './clipboard.js';
-import { element, find } from './markup.js';
+import { element, find, prefersStillness } from './markup.js';
+import { maskRow, offerMerging } from './mask-row.js';
 
 type Segmentation = Result['segmentation'];
 
@@ -21,12 +20,10 @@ type Refresh = (look: Look) => void;
 export function mountMotions(root: ParentNode, store: Store, session: Session): void {
   const list = find(root, '#motions', HTMLOListElement);
   const empty = find(root, '#motions-empty', HTMLElement);
-  const template = find(root, '#motion-row', HTMLTemplateElement);
   let rows: Refresh[] = [];
 
   store.subscribe((now, before) => {
     const { result, look, live, run } = now;
-    const renamed = look.names !== before.look.names;
     const awaited = isAwaited(now);
     const other = result !== before.result || look.kind !== before.look.kind || live !== before.live || isAwaited(before);
     list.hidden = look.kind === 'objects';
@@ -40,11 +37,10 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
     if (other) {
       const typed = typedName(list, before.look.kind);
       list.replaceChildren();
-      rows = result === null || live !== null || look.kind === 'objects' ? [] : fillList(list, template, now, result.segmentation, store, session);
+      rows = result === null || live !== null || look.kind === 'objects' ? [] : fillList(list, now, result.segmentation, store, session);
       if (result?.pair.first === before.result?.pair.first) typed?.(list, now);
     }
     if (other || look !== before.look) for (const refresh of rows) refresh(look);
-    if (renamed && !other) for (const option of list.querySelectorAll('option[data-mask]')) nameOption(option, look);
   });
 }
 
@@ -67,97 +63,58 @@ function typedName(list: HTMLElement, kind: Look['kind']): ((list: HTMLElement, 
   };
 }
 
-function fillList(list: HTMLElement, template: HTMLTemplateElement, { look }: State, segmentation: Segmentation, store: Store, session: Session): Refresh[] {
+function fillList(list: HTMLElement, { look }: State, segmentation: Segmentation, store: Store, session: Session): Refresh[] {
   const masks = masksOf(segmentation, look.kind);
   return masks.map((mask) => {
-    const row = find(document.importNode(template.content, true), 'li', HTMLElement);
+    const { element: row, refresh } = maskRow('pair', mask.id, store, session);
     row.style.setProperty('--share', String(mask.share));
-    row.dataset.mask = String(mask.id);
     find(row, '.motion-share', HTMLElement).textContent = strings.percent(mask.share);
+    list.append(row);
     const [main] = mask.motions;
     if (main === undefined) {
-      find(row, '.motion-words', HTMLElement).textContent = strings.unknownWords;
-      for (const selector of ['.motion-facts', '[data-action=stabilise]', '.more']) find(row, selector, HTMLElement).remove();
-    } else {
-      const [, , width, height] = main.bbox;
-      const parts = visibleParts(partsOf(main.matrix, centreOf(segmentation, main.label)), Math.hypot(width, height) / 2);
-      find(row, '.motion-words', HTMLElement).textContent = strings.motion(parts);
-      find(row, '.motion-facts', HTMLElement).textContent = factsOf(mask, look, segmentation);
-      fillMore(row, mask, masks, store, session);
+      find(row, '.words', HTMLElement).textContent = strings.unknownWords;
+      for (const selector of ['.direction', '[data-action=stabilise]', '.more']) find(row, selector, Element).remove();
+      return refresh;
     }
-    list.append(row);
-    return wire(row, mask, store, session);
+    describe(row, mask, look, segmentation);
+    const refreshMore = fillMore(row, mask, masks, store, session);
+    return (now) => {
+      refresh(now);
+      refreshMore(now);
+    };
   });
 }
 
-function factsOf({ id, motions }: Mask, { kind }: Look, { motions: all }: Segmentation): string {
+/** The motion of a mask: an arrow and a few words, with everything else in the details. */
+function describe(row: HTMLElement, mask: Mask, look: Look, segmentation: Segmentation): void {
+  const [main] = mask.motions as [Mask['motions'][number]];
+  const [, , width, height] = main.bbox;
+  const parts = visibleParts(partsOf(main.matrix, centreOf(segmentation, main.label)), Math.hypot(width, height) / 2);
+  const direction = find(row, '.direction', SVGSVGElement);
+  direction.toggleAttribute('hidden', parts.right === 0 && parts.down === 0);
+  direction.style.rotate = `${Math.atan2(parts.down, parts.right)}rad`;
+  find(row, '.words', HTMLElement).textContent = strings.displacement(parts);
+  find(row, '.motion-facts', HTMLElement).textContent = [strings.motion(parts), ...factsOf(mask, look, segmentation)].join(' · ');
+}
+
+function factsOf({ id, motions }: Mask, { kind }: Look, { motions: all }: Segmentation): string[] {
   const facts = [strings.residual(motions[0]!.residual)];
   if (kind === 'groups' && motions.length > 1) facts.push(strings.severalMotions(motions.length));
   const fellows = all.filter(({ group, label }) => group === motions[0]!.group && label !== id);
   if (kind === 'motions' && fellows.length > 0) facts.push(strings.groupWith(fellows.map(({ label }) => label)));
-  return facts.join(' · ');
-}
-
-/** Connects the controls of a row to the state. */
-function wire(row: HTMLElement, { id }: Mask, store: Store, session: Session): Refresh {
-  const shown = find(row, '[data-action=show]', HTMLInputElement);
-  const colour = find(row, '[data-action=colour]', HTMLInputElement);
-  const name = find(row, '.motion-name', HTMLInputElement);
-  const solo = find(row, '[data-action=solo]', HTMLButtonElement);
-  const stabilise = row.querySelector<HTMLButtonElement>('[data-action=stabilise]');
-
-  shown.addEventListener('change', () => {
-    const { look } = store.get();
-    const hidden = new Set(look.hidden);
-    if (shown.checked) hidden.delete(id);
-    else hidden.add(id);
-    store.look({ hidden, solo: null });
-  });
-  colour.addEventListener('input', () => {
-    session.correcting.setAppearance(id, { colour: colourFromHex(colour.value) });
-  });
-  name.addEventListener('change', () => {
-    session.correcting.setAppearance(id, { name: name.value.trim() });
-  });
-  name.addEventListener('keydown', (event) => {
-    if (event.key === 'Enter') name.blur();
-  });
-  solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
-  stabilise?.addEventListener('click', () => toggleStabilised(store, id));
-  row.addEventListener('focusin', () => session.select(id));
-  row.addEventListener('pointerdown', () => session.select(id));
-  // The background cannot be hidden: it is not painted.
-  for (const control of [shown, colour, solo]) control.hidden = id === 0;
-
-  return (look) => {
-    const called = nameOf(look, id);
-    const own = colourOfMask(id, look);
-    row.style.setProperty('--colour', cssColour(own));
-    colour.value = hexColour(own);
-    if (document.activeElement !== name) name.value = called;
-    shown.checked = isShown(id, look);
-    row.classList.toggle('away', !shown.checked);
-    row.classList.toggle('selected', look.selected === id);
-    solo.setAttribute('aria-pressed', String(look.solo === id));
-    stabilise?.setAttribute('aria-pressed', String(look.stabilised === id));
-    shown.setAttribute('aria-label', strings.show(called));
-    colour.setAttribute('aria-label', strings.colourOf(called));
-    name.setAttribute('aria-label', strings.nameOf(called));
-    solo.setAttribute('aria-label', strings.soloOf(called));
-    stabilise?.setAttribute('aria-label', strings.stabiliseOf(called));
-  };
+  return facts;
 }
 
 /** Alternates between the first frame and the second warped back by the mask's motion: what stays in place belongs to the mask. */
 export function toggleStabilised(store: Store, id: number): void {
   const { look } = store.get();
   if (look.stabilised === id) store.look({ stabilised: null, blinking: false, view: 'first' });
-  else store.look({ stabilised: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !matchMedia('(prefers-reduced-motion: reduce)').matches });
+  else store.look({ stabilised: id, view: look.view === 'split' ? 'split' : 'second', blinking: look.view !== 'split' && !prefersStillness() });
 }
 
-/** Fills in the matrix, the buttons that copy it, and the masks to merge with. */
-function fillMore(row: HTMLElement, mask: Mask, masks: readonly Mask[], store: Store, session: Session): void {
-  const matrix = mask.motions[0]!.matrix;
+/** Connects what only masks of a pair have: the motion to copy, stabilising, merging within the pair. */
+function fillMore(row: HTMLElement, { id, motions }: Mask, masks: readonly Mask[], store: Store, session: Session): Refresh {
+  const { matrix } = motions[0]!;
   const body = find(row, 'tbody', HTMLElement);
   for (const entries of [matrix.slice(0, 3), matrix.slice(3, 6)]) {
     const line = element('tr');
@@ -168,26 +125,18 @@ function fillMore(row: HTMLElement, mask: Mask, masks: readonly Mask[], store: S
   for (const { title, write } of NOTATIONS) {
     const button = element('button', title, 'button small quiet');
     button.type = 'button';
-    button.addEventListener('click', () => copyText(write(matrix), strings.copied(title, nameOf(store.get().look, mask.id)), session));
+    button.addEventListener('click', () => copyText(write(matrix), strings.copied(title, nameOf(store.get().look, id)), session));
     copies.append(button);
   }
-  const merge = find(row, '[data-action=merge]', HTMLSelectElement);
-  const { look } = store.get();
-  for (const { id } of masks) {
-    if (id === mask.id || id === UNLABELLED) continue;
-    const option = new Option('', String(id));
-    option.dataset.mask = String(id);
-    nameOption(option, look);
-    merge.append(option);
-  }
-  merge.hidden = merge.options.length < 2;
-  merge.setAttribute('aria-label', strings.mergeOf(nameOf(look, mask.id)));
-  merge.addEventListener('change', () => session.correcting.merge(mask.id, Number(merge.value)));
+  const stabilise = find(row, '[data-action=stabilise]', HTMLButtonElement);
+  stabilise.addEventListener('click', () => toggleStabilised(store, id));
   const ungroup = find(row, '[data-action=ungroup]', HTMLButtonElement);
-  ungroup.hidden = !isMerged(look.kind, mask.motions);
-  ungroup.addEventListener('click', () => session.correcting.ungroup(mask.id));
-}
-
-function nameOption(option: Element, look: Look): void {
-  if (option instanceof HTMLOptionElement) option.textContent = nameOf(look, Number(option.dataset.mask));
+  ungroup.hidden = !isMerged(store.get().look.kind, motions);
+  ungroup.addEventListener('click', () => session.correcting.ungroup(id));
+  const others = masks.map((mask) => mask.id).filter((other) => other !== id && other !== UNLABELLED);
+  return (look) => {
+    offerMerging(row, others, look);
+    stabilise.setAttribute('aria-pressed', String(look.stabilised === id));
+    stabilise.setAttribute('aria-label', strings.stabiliseOf(nameOf(look, id)));
+  };
 }

@@ -2,13 +2,12 @@
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
-import { colourOfMask, isShown } from '../drawing/paint.js';
-import { colourFromHex, cssColour, hexColour } from '../drawing/palette.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { type Life, livesOf } from '../state/tracked.js';
 import { find } from './markup.js';
+import { maskRow, offerMerging } from './mask-row.js';
 import { chooseTool } from './tools.js';
 
 /** Updates one row; `ids` are the numbers of all. */
@@ -16,7 +15,6 @@ type Refresh = (now: State, life: Life | null, ids: readonly number[]) => void;
 
 export function mountObjects(root: ParentNode, store: Store, session: Session): void {
   const list = find(root, '#objects', HTMLOListElement);
-  const template = find(root, '#object-row', HTMLTemplateElement);
   const add = find(root, '#add-object', HTMLButtonElement);
   let rows: Refresh[] = [];
   let listed = '';
@@ -41,9 +39,9 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
       const held = document.activeElement?.closest<HTMLElement>('#objects > li')?.dataset.mask;
       list.replaceChildren();
       rows = ids.map((id) => {
-        const row = find(document.importNode(template.content, true), 'li', HTMLElement);
+        const { element: row, refresh } = rowOf(id, store, session);
         list.append(row);
-        return wire(row, id, store, session);
+        return refresh;
       });
       list.querySelector<HTMLElement>(`[data-mask="${held}"] .motion-name`)?.focus({ preventScroll: true });
     }
@@ -51,77 +49,40 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
   });
 }
 
-/** Connects the controls of a row to the state. */
-function wire(row: HTMLElement, id: number, store: Store, session: Session): Refresh {
-  row.dataset.mask = String(id);
-  const shown = find(row, '[data-action=show]', HTMLInputElement);
-  const colour = find(row, '[data-action=colour]', HTMLInputElement);
-  const name = find(row, '.motion-name', HTMLInputElement);
+/** Connects what only objects of a clip have: their life, and what becomes of them in all frames. */
+function rowOf(id: number, store: Store, session: Session): { readonly element: HTMLElement; readonly refresh: Refresh } {
+  const { element: row, refresh } = maskRow('clip', id, store, session);
   const share = find(row, '.motion-share', HTMLElement);
   const facts = find(row, '.motion-facts', HTMLElement);
-  const solo = find(row, '[data-action=solo]', HTMLButtonElement);
   const doubtful = find(row, '[data-action=doubtful]', HTMLButtonElement);
   const merge = find(row, '[data-action=merge]', HTMLSelectElement);
   const split = find(row, '[data-action=split]', HTMLButtonElement);
   const remove = find(row, '[data-action=remove]', HTMLButtonElement);
-
-  shown.addEventListener('change', () => {
-    const hidden = new Set(store.get().look.hidden);
-    if (shown.checked) hidden.delete(id);
-    else hidden.add(id);
-    store.look({ hidden, solo: null });
-  });
-  colour.addEventListener('input', () => session.tracking.setAppearance(id, { colour: colourFromHex(colour.value) }));
-  name.addEventListener('change', () => session.tracking.setAppearance(id, { name: name.value.trim() }));
-  name.addEventListener('keydown', (event) => {
-    if (event.key === 'Enter') name.blur();
-  });
-  solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
   doubtful.addEventListener('click', () => void session.goTo(Number(doubtful.dataset.frame)));
-  merge.addEventListener('change', () => session.tracking.merge(id, Number(merge.value)));
   split.addEventListener('click', () => session.tracking.split(id));
   remove.addEventListener('click', () => session.tracking.remove(id));
-  row.addEventListener('focusin', () => session.select(id));
-  row.addEventListener('pointerdown', () => session.select(id));
-  // The background cannot be hidden: it is not painted.
-  for (const control of [shown, colour, find(row, '.motion-actions', HTMLElement)]) control.hidden = id === 0;
+  find(row, '.motion-actions', HTMLElement).hidden = id === 0;
 
-  return ({ look, result, tracked }, life, ids) => {
+  const refreshAll: Refresh = ({ look, result, tracked }, life, ids) => {
+    refresh(look);
     const called = nameOf(look, id);
-    const own = colourOfMask(id, look);
     const here = result?.segmentation.motions.find(({ label }) => label === id);
-    row.style.setProperty('--colour', cssColour(own));
-    row.classList.toggle('selected', look.selected === id);
-    if (document.activeElement !== name) name.value = called;
-    name.setAttribute('aria-label', strings.nameOf(called));
     share.textContent = here === undefined ? '' : strings.percent(here.share);
     if (id === 0) return;
     facts.textContent = factsOf(life, here === undefined && result !== null);
     const ready = life !== null && tracked !== null && tracked.state !== null;
     for (const control of [merge, split, remove]) control.disabled = !ready;
-    const others = ids.filter((other) => other !== 0 && other !== id).map((other) => new Option(nameOf(look, other), String(other)));
-    // Options that stay are left alone: their list may be open.
-    if (others.map(({ text, value }) => `${value} ${text}`).join() !== [...merge.options].slice(1).map(({ text, value }) => `${value} ${text}`).join() || merge.options.length === 0) {
-      merge.replaceChildren(new Option(strings.mergeWith, ''), ...others);
-    }
-    merge.hidden = merge.options.length < 2;
-    colour.value = hexColour(own);
-    shown.checked = isShown(id, look);
-    row.classList.toggle('away', !shown.checked);
-    solo.setAttribute('aria-pressed', String(look.solo === id));
+    offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look);
     doubtful.hidden = life === null;
     if (life !== null) {
       doubtful.dataset.frame = String(life.doubtful.index);
       doubtful.textContent = strings.doubtful(life.doubtful.index);
       doubtful.setAttribute('aria-label', strings.doubtfulOf(called, life.doubtful.index));
     }
-    merge.setAttribute('aria-label', strings.mergeOf(called));
     split.setAttribute('aria-label', strings.splitOf(called));
     remove.setAttribute('aria-label', strings.removeOf(called));
-    shown.setAttribute('aria-label', strings.show(called));
-    colour.setAttribute('aria-label', strings.colourOf(called));
-    solo.setAttribute('aria-label', strings.soloOf(called));
   };
+  return { element: row, refresh: refreshAll };
 }
 
 function factsOf(life: Life | null, away: boolean): string {

@@ -1,6 +1,5 @@
 //! The settings form, made from `state/settings.ts`.
 
-import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import { CONTROLS, type Control, type Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
@@ -13,13 +12,14 @@ interface Field {
 }
 
 export function mountOptions(form: HTMLFormElement, store: Store, session: Session): void {
-  const shows = CONTROLS.map((control) => {
+  const [common, advanced] = form.querySelectorAll('.fields');
+  const shows = CONTROLS.filter(({ kind }) => kind !== 'scores').map((control) => {
     const box = element(control.kind === 'radio' ? 'fieldset' : 'div', '', `field field-${control.kind}`);
     const help = element('p', control.help, 'help faint');
     help.id = `help-${control.name}`;
-    const { elements, show } = field(control, help.id, store, session);
+    const { elements, show } = field(control, help.id, session);
     box.append(...elements, help);
-    form.append(box);
+    (control.advanced ? advanced : common)?.append(box);
     return show;
   });
   form.addEventListener('submit', (event) => event.preventDefault());
@@ -30,7 +30,7 @@ export function mountOptions(form: HTMLFormElement, store: Store, session: Sessi
   render();
 }
 
-function field(control: Control, helpId: string, store: Store, session: Session): Field {
+function field(control: Control, helpId: string, session: Session): Field {
   const id = `setting-${control.name}`;
   const identified = <E extends HTMLInputElement | HTMLSelectElement>(input: E, suffix = ''): E => {
     input.id = `${id}${suffix}`;
@@ -44,6 +44,7 @@ function field(control: Control, helpId: string, store: Store, session: Session)
     return label;
   };
   switch (control.kind) {
+    case 'scores':
     case 'select': {
       const select = identified(element('select'));
       select.append(...control.choices.map(({ value, label }) => new Option(label, String(value))));
@@ -75,24 +76,6 @@ function field(control: Control, helpId: string, store: Store, session: Session)
       const label = element('label', '', 'check');
       label.append(input, control.label);
       return { elements: [label], show: (settings) => (input.checked = settings[control.name] === true) };
-    }
-    case 'number': {
-      const input = identified(element('input'));
-      input.type = 'number';
-      input.min = String(control.min);
-      input.max = String(control.max);
-      input.step = '1';
-      input.required = true;
-      input.addEventListener('change', () => {
-        if (input.checkValidity()) return session.change({ [control.name]: input.valueAsNumber });
-        session.say(strings.errors.wholeNumber(control.label, control.min, control.max), 'invalid-option');
-        input.value = String(store.get().settings[control.name]);
-      });
-      // Does not overwrite what is being typed.
-      const show = (settings: Settings): void => {
-        if (document.activeElement !== input) input.value = String(settings[control.name]);
-      };
-      return { elements: [labelFor(input), input], show };
     }
   }
 }

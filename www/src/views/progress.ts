@@ -78,7 +78,7 @@ function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentati
   if (cause === 'tracked') return '';
   if (cause !== 'found') return status[cause];
   const { count, motions, settings } = segmentation;
-  const groups = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size : count;
-  const answer = status.found(count, groups, settings.motions === 'auto' ? null : settings.motions, waited);
+  const moving = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size - 1 : null;
+  const answer = status.found(count, moving, settings.motions === 'auto' ? null : settings.motions, waited);
   return found === null || strokes.length === 0 ? answer : `${answer} ${status.applied(constraintsFrom(strokes, found).length, strokes.length)}`;
 }
