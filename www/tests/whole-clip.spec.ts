@@ -1,9 +1,11 @@
 //! Whole clips: objects that keep their numbers, segmented in the background; moving through the frames.
 
+import { readFile } from 'node:fs/promises';
+
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, square, test, upload } from './support.js';
+import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, square, test, upload } from './support.js';
 
 /** Opens frames as a clip. */
 async function openClip(page: Page, files: Awaited<ReturnType<typeof clipFrames>>): Promise<void> {
@@ -109,7 +111,7 @@ test('a video is segmented as a whole, and gives exactly the requested frames me
   await expect(page.locator('#notice')).toBeHidden();
 });
 
-test('a cancelled clip keeps what is done and continues from there', async ({ page }) => {
+test('a cancelled clip shows the masks of what is done, takes corrections, and continues from there', async ({ page }) => {
   const files = await clipFrames(10);
   const found = await clipInNode(files);
   await openClip(page, files);
@@ -117,15 +119,97 @@ test('a cancelled clip keeps what is done and continues from there', async ({ pa
   await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
   await page.locator('#clip-cancel').click();
   await phase(page, 'cancelled');
-  const kept = Number(/^Cancelled\. (\d+) of 10 frames are done and kept\.$/.exec((await page.locator('#clip-status').textContent()) ?? '')?.[1]);
+  const kept = Number(/^Cancelled\. (\d+) of 10 frames have masks\.$/.exec((await page.locator('#clip-status').textContent()) ?? '')?.[1]);
   expect(kept).toBeGreaterThan(1);
   expect(kept).toBeLessThan(10);
+  await expect(page.getByRole('button', { name: 'Continue' })).toBeFocused();
+  // The same masks as of a clip that ends there.
+  const shorter = await clipInNode(files.slice(0, kept));
+  await shows(page, 0);
+  expect(differences(await labelsOnCanvas(page), shorter[0]!)).toBe(0);
+  await goTo(page, kept - 1);
+  expect(differences(await labelsOnCanvas(page), shorter[kept - 1]!)).toBe(0);
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 1' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  expect(new Set(await labelsOnCanvas(page))).not.toContain(1);
+  await page.getByRole('button', { name: 'Undo' }).click();
   await page.getByRole('button', { name: 'Continue' }).click();
   const continued = /^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1];
   expect(Number(continued)).toBeGreaterThanOrEqual(kept);
   await phase(page, 'done');
+  await goTo(page, 0);
+  expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
+});
+
+test('a clip that is cancelled before its first frame can be segmented', async ({ page }) => {
+  const files = await clipFrames(4);
+  const found = await clipInNode(files);
+  await openClip(page, files);
+  await page.evaluate(() => {
+    for (const id of ['clip-segment', 'clip-cancel']) document.getElementById(id)!.click();
+  });
+  await phase(page, 'cancelled');
+  await expect(page.locator('#clip-status')).toHaveText('Cancelled. 0 of 4 frames have masks.');
+  await page.getByRole('button', { name: 'Continue' }).click();
+  await phase(page, 'done');
   await shows(page, 0);
   expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
+});
+
+test('only the frames from the in point to the out point are segmented and exported', async ({ page }) => {
+  const files = await clipFrames(9);
+  const found = await clipInNode(files.slice(2, 7));
+  await openClip(page, files);
+  const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
+  await expect(to).toHaveAttribute('aria-valuetext', 'Frame 8');
+  // The in point by key, the out point by its handle.
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  for (const index of [1, 2]) {
+    await track.press('ArrowRight');
+    await expect(track).toHaveAttribute('aria-valuenow', String(index));
+  }
+  await page.keyboard.press('i');
+  await expect(from).toHaveAttribute('aria-valuenow', '2');
+  const box = (await track.boundingBox())!;
+  const handle = (await to.boundingBox())!;
+  await page.mouse.move(handle.x + handle.width / 2, handle.y + handle.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + (6.5 * box.width) / 9, handle.y + handle.height / 2, { steps: 4 });
+  await page.mouse.up();
+  await expect(to).toHaveAttribute('aria-valuenow', '6');
+  await expect(track).toHaveAttribute('aria-valuenow', '2'); // dragging a handle does not move the frame
+  await to.press('ArrowRight');
+  await to.press('ArrowLeft');
+  await page.getByRole('button', { name: 'Segment frames 2–6' }).click();
+  await phase(page, 'done');
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
+  for (const index of [2, 6]) {
+    await goTo(page, index);
+    expect(differences(await labelsOnCanvas(page), found[index - 2]!)).toBe(0);
+  }
+  await track.press('Home');
+  await expect(page.locator('#status')).toHaveText('This frame has no masks yet.');
+
+  // A correction in the range.
+  await goTo(page, 4);
+  await page.getByRole('button', { name: 'New object' }).click();
+  await paint(page, [0.2, 0.3], [0.32, 0.46]);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  expect(new Set(await labelsOnCanvas(page))).toContain(3);
+  await page.getByRole('button', { name: 'Undo' }).click();
+
+  const saved = async (format: string): Promise<Buffer> => {
+    await openExport(page);
+    await page.getByLabel('Format of the clip').selectOption({ label: format });
+    const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
+    return readFile(await download.path());
+  };
+  const vis = JSON.parse((await saved('YouTube-VIS')).toString()) as { videos: { file_names: string[] }[] };
+  expect(vis.videos[0]!.file_names).toEqual(files.slice(2, 7).map((file) => file.name));
+  // Tracks count the frames of the whole video.
+  const frames = [...(await saved('CVAT, tracks')).toString().matchAll(/<polygon frame="(\d+)"[^>]*outside="0"/g)].map(([, frame]) => Number(frame));
+  expect(new Set(frames)).toEqual(new Set([2, 3, 4, 5, 6]));
 });
 
 test('a frame of another size ends the clip, and the frames before it have masks', async ({ page }) => {
@@ -136,7 +220,7 @@ test('a frame of another size ends the clip, and the frames before it have masks
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
   await shows(page, 0);
   await page.getByRole('slider', { name: 'Current frame' }).press('End');
-  await expect(page.locator('#status')).toHaveText('No masks of this frame yet.');
+  await expect(page.locator('#status')).toHaveText('This frame has no masks yet.');
   await page.getByRole('slider', { name: 'Current frame' }).press('ArrowLeft');
   await shows(page, 4);
   expect(new Set(await labelsOnCanvas(page)).size).toBeGreaterThan(1);

@@ -5,7 +5,7 @@ import type { Clip } from '../clips/clip.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { segmentationOf } from '../state/objects.js';
 import type { Look } from '../state/state.js';
-import { type Life, type Tracked, type TrackedFrame, livesOf } from '../state/tracked.js';
+import { type Life, type Tracked, livesOf, rangeOf } from '../state/tracked.js';
 import { atSize } from './full-size.js';
 
 /** The class of objects without a name of their own, as of `veronese convert`. */
@@ -17,14 +17,21 @@ export interface ClipFile extends LabelFrame {
   readonly stem: string;
 }
 
-export interface ClipExport {
+/** Frames that follow each other, and what is said of them all. */
+interface Sequence {
+  readonly meta: ClipMeta & { readonly clip: string; readonly names: Readonly<Record<number, string>>; readonly labels: readonly number[] };
+  /** The frames in their order, each made when it is asked for. */
+  frames(): AsyncGenerator<ClipFile, void, undefined>;
+}
+
+/** The frames that have masks. */
+export interface ClipExport extends Sequence {
   readonly clip: Clip;
   /** The objects that are exported. */
   readonly objects: readonly Life[];
   readonly count: number;
-  readonly meta: ClipMeta & { readonly clip: string; readonly names: Readonly<Record<number, string>>; readonly labels: readonly number[] };
-  /** The frames in their order, each made when it is asked for. */
-  frames(): AsyncGenerator<ClipFile, void, undefined>;
+  /** The same from the first frame of the clip on, without objects in frames before: for formats that count the frames of the video. */
+  readonly fromStart: Sequence;
 }
 
 /** A format of clips. It makes files by name: one is saved as it is, several as an archive. */
@@ -37,38 +44,43 @@ export interface ClipFormat {
 
 /** `told` is called when a frame has been made. */
 export function exportOfClip(tracked: Tracked, look: Look, told: (done: number, of: number) => void): ClipExport {
-  const { clip } = tracked;
-  const end = tracked.frames.indexOf(null);
-  const frames = (end < 0 ? tracked.frames : tracked.frames.slice(0, end)) as readonly TrackedFrame[];
-  const objects = livesOf({ frames }).filter(({ id }) => !look.hidden.has(id));
+  const { clip, frames } = tracked;
+  const { first, last } = rangeOf(frames) ?? { first: 0, last: -1 };
+  const count = last - first + 1;
+  const objects = livesOf(tracked).filter(({ id }) => !look.hidden.has(id));
   const names = Object.fromEntries(objects.map(({ id }) => [id, tracked.names[keyOf('objects', id)] ?? CLASS]));
   const wanted = new Set(objects.map(({ id }) => id));
-  return {
-    clip,
-    objects,
-    count: frames.length,
+  const sequence = (from: number): Sequence => ({
     meta: {
       clip: stemOf(clip.name).replace(/[\\/:*?"<>|#]/g, '_'),
       names,
       labels: [...wanted],
       tracked: true,
-      ...(clip.times === null ? {} : { timestamps: [...clip.times.subarray(0, frames.length)].map((time) => time - clip.times![0]!) }),
+      ...(clip.times === null ? {} : { timestamps: [...clip.times.subarray(from, last + 1)].map((time) => time - clip.times![from]!) }),
     },
     async *frames() {
-      for (const [index, frame] of frames.entries()) {
-        const { labels, motions, width, height } = atSize(segmentationOf(frame), clip);
+      for (let index = from; index <= last; index++) {
         const image = clip.nameOf(index);
+        const named = { image, stem: stemOf(image) };
+        const frame = frames[index] ?? null;
+        if (frame === null) {
+          const { width, height } = clip;
+          yield { ...named, labels: new Uint8Array(width * height), width, height, motions: [] };
+          continue;
+        }
+        const { labels, motions, width, height } = atSize(segmentationOf(frame), clip);
         const kept = labels.map((label) => (wanted.has(label) || label === UNLABELLED ? label : 0));
         // An object that is not seen in the next frame has no motion.
         const moving = new Set(frame.objects.filter(({ id, matrix }) => matrix !== null && wanted.has(id)).map(({ id }) => id));
         if (frame.background !== null) moving.add(0);
-        yield { labels: kept, width, height, image, stem: stemOf(image), motions: motions.filter(({ label }) => moving.has(label)) };
-        told(index + 1, frames.length);
+        yield { ...named, labels: kept, width, height, motions: motions.filter(({ label }) => moving.has(label)) };
+        told(index - first + 1, count);
         // The page stays responsive between frames.
         await new Promise((resolve) => setTimeout(resolve));
       }
     },
-  };
+  });
+  return { clip, objects, count, ...sequence(first), fromStart: sequence(0) };
 }
 
 function stemOf(name: string): string {

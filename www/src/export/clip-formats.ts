@@ -37,7 +37,7 @@ export const CLIP_FORMATS: readonly ClipFormat[] = [
     id: 'cvat-video',
     title: 'CVAT, tracks',
     hint: 'CVAT for video 1.1: a track with polygons for each object.',
-    make: async (exported) => ({ 'cvat-video.xml': await encoders.encodeCvatVideo(exported.frames(), { ...exported.meta, clip: exported.clip.name }, { shape: 'polygon' }) }),
+    make: async ({ clip, fromStart }) => ({ 'cvat-video.xml': await encoders.encodeCvatVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name }, { shape: 'polygon' }) }),
   },
   {
     id: 'cvat-mots',
@@ -104,6 +104,6 @@ export const CLIP_FORMATS: readonly ClipFormat[] = [
     id: 'label-studio-video',
     title: 'Label Studio, video',
     hint: 'One task with boxes that follow the objects.',
-    make: async (exported) => ({ 'label-studio-video.json': json([await encoders.encodeLabelStudioVideo(exported.frames(), { ...exported.meta, clip: exported.clip.name })]) }),
+    make: async ({ clip, fromStart }) => ({ 'label-studio-video.json': json([await encoders.encodeLabelStudioVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name })]) }),
   },
 ];

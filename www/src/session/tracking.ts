@@ -12,8 +12,8 @@ import { UNLABELLED, keyOf } from '../result/masks.js';
 import { type Said, paintedOver, withSaid } from '../state/said.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
-import { type ClipRun, type Tracked, type TrackedFrame, type Version, untracked, versionOf } from '../state/tracked.js';
-import { ClipFrames } from './clip-frames.js';
+import { type ClipRun, type Range, type Tracked, type TrackedFrame, type Version, rangeOf, untracked, versionOf } from '../state/tracked.js';
+import { ClipFrames, STOPPED } from './clip-frames.js';
 import { TimeLeft } from './time-left.js';
 
 /** Masks are shown at most this often while they come, milliseconds. */
@@ -50,8 +50,9 @@ export class Tracking {
   readonly #segmenter = new Segmenter();
   /** By the clip's fingerprint. */
   readonly #known = new Map<string, Known>();
-  /** The run under way. */
+  /** The run under way, and the frames whose pairs it solves, if it does. */
   #current: AbortController | null = null;
+  #solving: ClipFrames | null = null;
   #carrying: Carrying | null = null;
 
   constructor(store: Store, hooks: Hooks) {
@@ -63,7 +64,7 @@ export class Tracking {
   of(clip: Clip | null): Tracked | null {
     const { tracked } = this.#store.get();
     if (clip !== null && tracked?.clip === clip) return tracked;
-    this.cancel();
+    this.#abort();
     const { tracked: left, keptClips } = this.#store.get();
     const kept = new Map(keptClips);
     if (left !== null && left.solved > 0) kept.set(left.clip.fingerprint, left);
@@ -73,17 +74,33 @@ export class Tracking {
     return clip === null ? null : known === undefined ? untracked(clip) : { ...known, clip };
   }
 
-  /** Segments the open clip, or continues with it. */
-  async segment(): Promise<void> {
-    const { tracked, settings } = this.#store.get();
+  /** Moves the in point or the out point of the open clip. The other one makes way. */
+  setRange(edge: keyof Range, index: number): void {
+    const { tracked } = this.#store.get();
     if (tracked === null) return;
-    const { clip } = tracked;
+    const end = tracked.clip.count - 1;
+    const at = Math.min(Math.max(index, 0), end);
+    const { first, last } = tracked.range;
+    const range = edge === 'first' ? { first: at, last: at > last ? end : last } : { first: at < first ? 0 : first, last: at };
+    this.#store.set({ tracked: { ...tracked, range } });
+  }
+
+  /** Segments the open clip from its in point to its out point, or continues with it. */
+  async segment(): Promise<void> {
+    const { tracked, settings: own, motionsElsewhere } = this.#store.get();
+    if (tracked === null) return;
+    const { clip, range } = tracked;
+    // The number of motions of a single pair is not that of the clip.
+    const settings = { ...own, motions: motionsElsewhere ?? own.motions };
     const { longestSide, ...options } = settings;
-    const { pairs } = this.#knownOf(clip, settings);
-    const time = new TimeLeft(pairs.size, clip.count);
+    const { pairs } = this.#knownOf(clip, range, settings);
     await this.#run(async (signal, set) => {
-      const frames = new ClipFrames(clip, longestSide);
-      const solving = (): void => set({ run: { phase: 'working', stage: 'pairs', left: time.at(pairs.size) }, solved: pairs.size });
+      const frames = (this.#solving = new ClipFrames(clip, longestSide, range));
+      const solved = (): number => [...pairs.keys()].filter((index) => index < frames.length).length;
+      const time = new TimeLeft(solved(), frames.length);
+      const solving = (): void => {
+        if (!frames.stopped) set({ run: { phase: 'working', stage: 'pairs', left: time.at(solved()) }, solved: solved() });
+      };
       solving();
       const found = this.#segmenter.segmentClip(frames, {
         ...options,
@@ -95,14 +112,30 @@ export class Tracking {
           solving();
         },
       });
-      await this.#take(found, frames, set);
+      let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
+      try {
+        await this.#take(found, frames, set);
+      } catch (error) {
+        if (error !== STOPPED) throw error;
+        run = { phase: 'cancelled' };
+      }
+      // Stopped before its first frame, the clip has told nothing.
+      if (frames.size.width === 0) return set({ run });
       const state = await found.state();
-      set({ state: state === undefined ? null : blobOf(state), run: { phase: 'done', cause: 'found', changed: clip.count } });
+      set({ state: state === undefined ? null : blobOf(state), run });
     });
   }
 
-  /** Stops the run; what is done stays. */
+  /** Stops the run. Frames whose pairs are solved get their masks first; if that is what is under way, it stops at once. */
   cancel(): void {
+    const { tracked } = this.#store.get();
+    if (tracked?.run.phase !== 'working' || tracked.run.stage !== 'pairs' || this.#solving === null) return this.#abort();
+    this.#solving.stop();
+    this.#store.set({ tracked: { ...tracked, run: { phase: 'working', stage: 'labels', left: null } } });
+  }
+
+  /** Stops the run at once; what is done stays. */
+  #abort(): void {
     const { tracked } = this.#store.get();
     if (this.#current === null || tracked === null || tracked.run.phase !== 'working') return;
     const carrying = this.#carrying;
@@ -249,19 +282,20 @@ export class Tracking {
     if (said === undefined || tracked === null || before.state === null) return;
     set({ run: { phase: 'working', stage: 'corrections', left: null } });
     const painted = 'labels' in said ? new Map(before.painted).set(said.frame, paintedOver(before.painted.get(said.frame), said.labels, before.frames[said.frame]!.runs)) : before.painted;
-    const frames = new ClipFrames(tracked.clip, tracked.longestSide);
+    const range = rangeOf(before.frames)!;
+    const frames = new ClipFrames(tracked.clip, tracked.longestSide, range);
     const found = this.#segmenter.segmentClip(frames, {
       state: (await bytesOf(before.state))!,
       markUnknown: settings.markUnknown,
       changesOnly: true,
       signal,
       transfer: true,
-      ...('edits' in said ? { edits: said.edits } : { corrections: [{ frame: said.frame, labels: unpacked(painted.get(said.frame)!) }] }),
+      ...('edits' in said ? { edits: said.edits } : { corrections: [{ frame: said.frame - range.first, labels: unpacked(painted.get(said.frame)!) }] }),
     });
     const masks = [...before.frames];
     let changed = 0;
     for await (const frame of found) {
-      masks[frame.index] = masksOf(frame, frames.size);
+      masks[range.first + frame.index] = masksOf(frame, frames.size);
       changed += 1;
     }
     const state = await found.state();
@@ -285,7 +319,7 @@ export class Tracking {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     // A correction under way is what is undone.
-    if (this.#carrying !== null && from === 'past') return this.cancel();
+    if (this.#carrying !== null && from === 'past') return this.#abort();
     if (tracked.run.phase === 'working') return;
     const version = tracked[from].at(-1);
     if (version === undefined) return;
@@ -316,7 +350,7 @@ export class Tracking {
   }
 
   /** Takes the labelled frames as they come. They replace all masks that there were; those that a person corrected can be brought back. */
-  async #take(found: AsyncIterable<ClipFrame>, { clip, longestSide, size }: ClipFrames, set: Change): Promise<void> {
+  async #take(found: AsyncIterable<ClipFrame>, { clip, longestSide, range, size }: ClipFrames, set: Change): Promise<void> {
     const frames = [...untracked(clip).frames];
     let shown = 0;
     const show = (): void => {
@@ -333,7 +367,7 @@ export class Tracking {
     };
     try {
       for await (const frame of found) {
-        frames[frame.index] = masksOf(frame, size);
+        frames[range.first + frame.index] = masksOf(frame, size);
         if (performance.now() - shown >= OFTEN) show();
       }
     } finally {
@@ -341,9 +375,9 @@ export class Tracking {
     }
   }
 
-  /** What is known for these settings: other settings begin anew. */
-  #knownOf({ fingerprint }: Clip, settings: Settings): Known {
-    const key = JSON.stringify([settings.motions, settings.quality, settings.longestSide]);
+  /** What is known for these settings: other settings and another first frame begin anew. */
+  #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): Known {
+    const key = JSON.stringify([first, settings.motions, settings.quality, settings.longestSide]);
     const before = this.#known.get(fingerprint);
     const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };
     this.#known.set(fingerprint, known);

@@ -5,6 +5,12 @@ import type { Clip } from '../clips/clip.js';
 import type { Runs } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
 
+/** Frames from one index to another, both included. */
+export interface Range {
+  readonly first: number;
+  readonly last: number;
+}
+
 /** One frame of a clip, segmented. */
 export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> {
   /** Its labels: 0 is the background, 255 unlabelled, another number an object. */
@@ -27,7 +33,10 @@ export type ClipRun =
 export interface Version {
   /** By index; `null` for frames without masks. */
   readonly frames: readonly (TrackedFrame | null)[];
-  /** What the package knows of the clip, in a blob, which browsers can move to disk; `null` until all frames are segmented. */
+  /**
+   * What the package knows of the frames that have masks, in a blob, which browsers can move to disk; `null` while there are masks to come
+   * of frames whose pairs are solved.
+   */
   readonly state: Blob | null;
   /** What was painted in frames, by index: numbers as in `frames`, and 255 where nothing is said. */
   readonly painted: ReadonlyMap<number, Runs>;
@@ -38,6 +47,8 @@ export interface Version {
 export interface Tracked extends Version {
   readonly clip: Clip;
   readonly run: ClipRun;
+  /** The frames to segment, from the in point to the out point. */
+  readonly range: Range;
   /** Number of frames whose pairs are solved, nearly all the work. They are kept when a run is cancelled. */
   readonly solved: number;
   /** Longer side of the frames as they were segmented, pixels. */
@@ -61,6 +72,7 @@ export function untracked(clip: Clip): Tracked {
   return {
     clip,
     run: { phase: 'idle' },
+    range: { first: 0, last: clip.count - 1 },
     solved: 0,
     longestSide: Infinity,
     frames,
@@ -105,6 +117,17 @@ export function livesOf({ frames }: Pick<Tracked, 'frames'>): Life[] {
     }
   });
   return [...lives.values()].sort((one, other) => one.id - other.id);
+}
+
+/** The frames that have masks, which follow each other; `null` if there are none. */
+export function rangeOf(frames: Version['frames']): Range | null {
+  const first = frames.findIndex((frame) => frame !== null);
+  return first < 0 ? null : { first, last: frames.findLastIndex((frame) => frame !== null) };
+}
+
+/** Number of frames in a range. */
+export function lengthOf({ first, last }: Range): number {
+  return last - first + 1;
 }
 
 /** Whether there are masks of any frame. */

@@ -3,7 +3,7 @@
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
-import { type Tracked, livesOf } from '../state/tracked.js';
+import { type Tracked, lengthOf, livesOf, rangeOf } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClipRun(root: HTMLElement, store: Store, session: Session): void {
@@ -17,20 +17,19 @@ export function mountClipRun(root: HTMLElement, store: Store, session: Session):
     void session.tracking.segment();
     cancel.focus();
   });
-  cancel.addEventListener('click', () => {
-    session.tracking.cancel();
-    segment.focus();
-  });
+  cancel.addEventListener('click', () => session.tracking.cancel());
 
   store.subscribe(({ tracked }, before) => {
     if (tracked === before.tracked || tracked === null) return;
     const working = tracked.run.phase === 'working';
     root.dataset.phase = tracked.run.phase;
     segment.hidden = working;
-    segment.disabled = tracked.clip.count < 2;
+    segment.disabled = lengthOf(tracked.range) < 2;
     segment.textContent = nameOfAction(tracked);
     segment.classList.toggle('primary', tracked.run.phase !== 'done');
+    const held = document.activeElement === cancel;
     cancel.hidden = !working;
+    if (held && !working) segment.focus();
     bar.hidden = !working;
     // Screen readers are told what begins and ends, not of each frame.
     const sentence = sentenceFor(tracked);
@@ -42,14 +41,17 @@ export function mountClipRun(root: HTMLElement, store: Store, session: Session):
   });
 }
 
-function nameOfAction({ run }: Tracked): string {
+function nameOfAction({ run, range, clip, frames }: Tracked): string {
   const { tracking } = strings;
-  if (run.phase === 'cancelled' || run.phase === 'failed') return tracking.resume;
+  const done = rangeOf(frames);
+  const begun = run.phase === 'done' && done?.first === range.first && done.last < range.last;
+  if (begun || run.phase === 'cancelled' || run.phase === 'failed') return tracking.resume;
+  if (lengthOf(range) < clip.count) return tracking.segmentRange(range.first, range.last);
   return run.phase === 'done' ? tracking.again : tracking.segment;
 }
 
 function sentenceFor(tracked: Tracked): string {
-  const { run, solved, clip } = tracked;
+  const { run, range, frames } = tracked;
   const { tracking } = strings;
   switch (run.phase) {
     case 'idle':
@@ -57,23 +59,24 @@ function sentenceFor(tracked: Tracked): string {
     case 'working':
       return run.stage === 'corrections' ? tracking.corrections : tracking.started;
     case 'done':
-      return run.cause === 'found' ? tracking.found(livesOf(tracked).length, clip.count) : tracking[run.cause](run.changed);
+      return run.cause === 'found' ? tracking.found(livesOf(tracked).length, withMasks(frames)) : tracking[run.cause](run.changed);
     case 'cancelled':
     case 'failed':
-      return tracking[run.phase](solved, clip.count);
+      return tracking[run.phase](withMasks(frames), lengthOf(range));
   }
 }
 
-function detailOf({ run, solved, frames, clip }: Tracked): string {
+function detailOf({ run, solved, frames, range }: Tracked): string {
   if (run.phase !== 'working' || run.stage === 'corrections') return '';
-  return run.stage === 'pairs' ? strings.tracking.pairs(solved, clip.count, run.left) : strings.tracking.labels(withMasks(frames), clip.count);
+  return run.stage === 'pairs' ? strings.tracking.pairs(solved, lengthOf(range), run.left) : strings.tracking.labels(withMasks(frames), solved);
 }
 
 /** What is done, 0 to 1; `null` if it cannot be told. */
-function shareOf({ run, solved, frames, clip }: Tracked): number | null {
+function shareOf({ run, solved, frames, range }: Tracked): number | null {
   if (run.phase !== 'working' || run.stage === 'corrections') return null;
-  if (run.stage === 'labels') return withMasks(frames) / clip.count;
-  return solved < clip.count ? solved / clip.count : null;
+  if (run.stage === 'labels') return withMasks(frames) / Math.max(1, solved);
+  const of = lengthOf(range);
+  return solved < of ? solved / of : null;
 }
 
 function withMasks(frames: Tracked['frames']): number {

@@ -5,6 +5,7 @@ import { ZOOM_STEP } from '../drawing/viewport.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { toggleBlinking } from './blink.js';
+import { setEdge } from './range.js';
 import { stepOne } from './timeline.js';
 import { changeRadius, chooseTool } from './tools.js';
 import type { Zoom } from './zoom.js';
@@ -35,7 +36,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['n'], shown: 'N', does: keys.blink, run: () => toggleBlinking(store) },
     { keys: ['s'], shown: 'S', does: keys.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
     { keys: ['g'], shown: 'G', does: keys.kind, run: () => session.show(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
-    { keys: ['o'], shown: 'O', does: keys.outlines, run: toggle('outlines') },
+    { keys: ['l'], shown: 'L', does: keys.outlines, run: toggle('outlines') },
     { keys: ['a'], shown: 'A', does: keys.arrows, run: toggle('arrows') },
     { keys: ['r'], shown: 'R', does: keys.residual, run: toggle('residual') },
     { keys: ['+', '='], shown: '+', does: keys.zoomIn, run: () => zoom.by(ZOOM_STEP) },
@@ -49,6 +50,8 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: [','], shown: ',', does: keys.stepBack, run: () => stepOne(store, session, 'both', -1) },
     { keys: ['.'], shown: '.', does: keys.stepOn, run: () => stepOne(store, session, 'both', 1) },
     { keys: ['k'], shown: 'K', does: keys.play, run: () => void session.togglePlaying() },
+    { keys: ['i'], shown: 'I', does: keys.inPoint, run: () => setEdge(store, session, 'first') },
+    { keys: ['o'], shown: 'O', does: keys.outPoint, run: () => setEdge(store, session, 'last') },
     { keys: ['d'], shown: 'D', does: keys.doubtful, run: () => session.goToDoubtful() },
     { keys: ['v'], shown: 'V', does: keys.look, run: () => chooseTool(store, 'look') },
     { keys: ['p'], shown: 'P', does: keys.brush, run: () => chooseTool(store, 'brush') },

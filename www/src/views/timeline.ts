@@ -101,7 +101,7 @@ function mountScrubbing(track: HTMLElement, store: Store, session: Session): voi
 }
 
 /** The index of the frame on screen: the first, unless only the second is of the clip. */
-function currentFrame(timeline: Timeline | null): number {
+export function currentFrame(timeline: Timeline | null): number {
   return timeline?.first ?? timeline?.second ?? 0;
 }
 
