@@ -19,7 +19,7 @@ function amount(value: number): string {
 
 const STAGES: Readonly<Record<string, string>> = {
   frames: 'Reading the frames',
-  dominant: 'Estimating the motion of the background',
+  dominant: 'Finding the background motion',
   measurements: 'Measuring image derivatives',
   algebra: 'Fitting all motions at once',
   selection: 'Selecting the motions',
@@ -72,7 +72,7 @@ const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}
 const duration = (ms: number): string => (ms < 1000 ? `${whole.format(ms)}${NBSP}ms` : `${tenths.format(ms / 1000)}${NBSP}s`);
 const scoreAbove = (above: number): string => (above === 0 ? 'lowest score' : `score ${whole.format(above)} above the lowest`);
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
-const objects = (count: number): string => (count === 0 ? 'No object' : count === 1 ? 'One object' : `${count} objects`);
+const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
 
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' },
@@ -136,7 +136,7 @@ export const strings = {
   maskName: (kind: Kind, id: number): string => (id === 0 ? 'Background' : `${kind === 'motions' ? 'Motion' : 'Object'} ${id}`),
   noMasksYet: 'Masks appear here once they are found.',
   noMasks: { failed: 'No masks: the segmentation failed.', cancelled: 'No masks: the segmentation was cancelled.' },
-  liveMasks: (count: number): string => `${motions(count)} at the moment. Stop the camera to list them.`,
+  liveMasks: (count: number): string => `${objects(count)} at the moment. Stop the camera to list the masks of its last two frames.`,
   residual: (grey: number): string => `residual ${tenths.format(grey)} grey levels`,
   severalMotions: (count: number): string => `${count} motions`,
   groupWith: (labels: readonly number[]): string => `moves with ${labels.map((label) => strings.maskName('motions', label)).join(', ')}`,
@@ -201,7 +201,7 @@ export const strings = {
     merged: 'Merged.',
     ungrouped: 'Ungrouped.',
     restored: 'Restored your corrections of these frames.',
-    live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} pairs per second, ${motions(count).toLowerCase()}.`,
+    live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} frames per second, ${objects(count).toLowerCase()}.`,
     cancelled: 'Cancelled.',
     cancelledBefore: 'Cancelled. The masks are from the last result.',
     cancelledStrokes: 'Cancelled. Your strokes are kept, but not all are applied yet.',

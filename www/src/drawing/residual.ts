@@ -13,10 +13,11 @@ const grey = (data: Pixels['data'], i: number): number => 0.299 * data[i]! + 0.5
 export function residualOf(segmentation: Segmentation, first: Pixels, second: Pixels, from: number, to: number): Uint32Array<ArrayBuffer> {
   const { labels, width, height, motions } = segmentation;
   const pixels = new Uint32Array((to - from) * width);
+  const byLabel = new Map(motions.map((motion) => [motion.label, motion]));
   for (let y = from, i = 0; y < to; y++) {
     for (let x = 0; x < width; x++, i++) {
       const p = y * width + x;
-      const motion = motions[labels[p]!];
+      const motion = byLabel.get(labels[p]!);
       if (motion === undefined) {
         pixels[i] = UNKNOWN;
         continue;

@@ -1,35 +1,41 @@
-//! The camera: each frame is segmented with the one before, at quality `fast`.
+//! The camera: its frames are a clip that never ends, segmented at quality `fast` as they come. Objects keep their numbers and colours.
 
+import { type Pixels, type Segmentation, Segmenter } from 'veronese';
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
 import { frameFromBitmap } from '../frames/frame.js';
+import type { Kind } from '../result/masks.js';
+import { segmentationFrom } from '../state/objects.js';
 import type { LoadedFrame } from '../state/pair.js';
 import { FRESH, type Result, type State, type Store } from '../state/state.js';
-import { Segmenting } from './segmenting.js';
 
 /** Longer side of the frames, pixels: small enough for a high rate. */
 const LONGEST_SIDE = 480;
 /** Weight of the newest time in the moving average. */
 const NEWEST = 0.15;
+/** After this number the objects are counted anew: there are 254. */
+const LAST_NUMBER = 200;
 
 /** Camera frames are fingerprinted by a counter, because none recurs. */
 let seen = 0;
 
-/** One segmented pair of the camera. */
+/** One frame of the camera with its masks. */
 interface View {
   readonly result: Result;
-  /** Segmentations per second, a moving average. */
+  /** Frames per second, a moving average. */
   readonly rate: number;
 }
 
 export class LiveView {
   readonly #store: Store;
   readonly #fail: (error: unknown) => void;
-  readonly #segmenting = new Segmenting();
+  readonly #segmenter = new Segmenter();
   /** Incremented by each start and stop, which ends earlier loops. */
   #turn = 0;
   #stream: MediaStream | null = null;
+  /** The kind of masks that was shown before. */
+  #kind: Kind = 'groups';
 
   constructor(store: Store, fail: (error: unknown) => void) {
     this.#store = store;
@@ -64,23 +70,22 @@ export class LiveView {
     }
   }
 
-  /** Switches the camera off; the last result stays. */
+  /** Switches the camera off; the last two frames stay, without masks. */
   stop(): void {
     this.#turn += 1;
-    this.#segmenting.close();
+    this.#segmenter.close();
     if (this.#stream !== null) end(this.#stream);
     this.#stream = null;
-    const { live, result } = this.#store.get();
-    if (live === null) return;
-    const run = result === null ? ({ phase: 'idle' } as const) : ({ phase: 'done', cause: 'found' } as const);
-    this.#store.set({ live: null, run, found: result?.segmentation ?? null });
+    const { live, look } = this.#store.get();
+    if (live !== null) this.#store.set({ live: null, run: { phase: 'idle' }, result: null, look: { ...look, kind: this.#kind } });
   }
 
   async #run(first: IteratorResult<View, void>, views: AsyncIterable<View>, current: () => boolean): Promise<void> {
     if (!current() || first.done) return;
     const { look } = this.#store.get();
-    const kind = look.kind === 'objects' ? 'groups' : look.kind;
-    this.#show(first.value, { timeline: null, tracked: null, found: null, edits: NO_EDITS, look: { ...look, ...FRESH, kind, view: 'second' } });
+    this.#kind = look.kind === 'objects' ? 'groups' : look.kind;
+    // As of motions, the numbers of objects are their labels.
+    this.#show(first.value, { timeline: null, tracked: null, found: null, edits: NO_EDITS, look: { ...look, ...FRESH, kind: 'motions', view: 'second' } });
     try {
       for await (const view of views) this.#show(view);
     } catch (error) {
@@ -90,26 +95,48 @@ export class LiveView {
     }
   }
 
-  /** Segments each frame of the camera with the one before. */
+  /** Segments the frames of the camera as a clip; other settings and another size of the frames begin another one. */
   async *#views(video: HTMLVideoElement, current: () => boolean): AsyncGenerator<View, void> {
-    let before: LoadedFrame | null = null;
     let milliseconds = 0;
+    let last = performance.now();
     while (current()) {
-      const began = performance.now();
-      const frame: LoadedFrame = await frameFromBitmap(await createImageBitmap(video), { name: strings.cameraFrame, fingerprint: `camera ${++seen}` }, LONGEST_SIDE, began);
-      if (!current()) return;
-      if (before !== null && before.width === frame.width && before.height === frame.height) {
-        const { settings } = this.#store.get();
-        const segmentation = await this.#segmenting.run({ first: before, second: frame }, { ...settings, quality: 'fast' });
-        if (!current()) return;
-        if (segmentation !== null) {
-          const waited = performance.now() - began;
-          milliseconds = milliseconds === 0 ? waited : (1 - NEWEST) * milliseconds + NEWEST * waited;
-          yield { result: { segmentation, pair: { first: before, second: frame }, waited, under: null }, rate: 1000 / milliseconds };
+      const { settings } = this.#store.get();
+      const taken: LoadedFrame[] = [];
+      let most = 0;
+      let size = '';
+      const frames = async function* (wanted: () => boolean): AsyncGenerator<Pixels, void> {
+        while (wanted()) {
+          const frame: LoadedFrame = await frameFromBitmap(await createImageBitmap(video), { name: strings.cameraFrame, fingerprint: `camera ${++seen}` }, LONGEST_SIDE, performance.now());
+          const own = strings.size(frame.width, frame.height);
+          if (!wanted() || (size !== '' && own !== size)) return frame.bitmap.close();
+          size = own;
+          taken.push(frame);
+          const { data, width, height } = frame;
+          yield { data, width, height };
+          await new Promise(requestAnimationFrame);
         }
+      };
+      const wanted = (): boolean => current() && most <= LAST_NUMBER && this.#store.get().settings === settings;
+      const { motions, markUnknown } = settings;
+      let before: { readonly frame: LoadedFrame; readonly segmentation: Segmentation } | null = null;
+      try {
+        for await (const found of this.#segmenter.segmentClip(frames(wanted), { motions, markUnknown, quality: 'fast', lookAhead: 0 })) {
+          if (!current()) return;
+          const frame = taken.shift()!;
+          const segmentation = segmentationFrom(found, frame);
+          most = segmentation.motions.reduce((larger, { label }) => Math.max(larger, label), most);
+          const waited = performance.now() - last;
+          last += waited;
+          milliseconds = milliseconds === 0 ? waited : (1 - NEWEST) * milliseconds + NEWEST * waited;
+          if (before !== null) {
+            const pair = { first: before.frame, second: frame };
+            yield { result: { segmentation: before.segmentation, pair, second: segmentation, waited, under: null }, rate: 1000 / milliseconds };
+          }
+          before = { frame, segmentation };
+        }
+      } finally {
+        for (const { bitmap } of taken) bitmap.close();
       }
-      before = frame;
-      await new Promise(requestAnimationFrame);
     }
   }
 

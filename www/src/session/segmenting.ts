@@ -39,12 +39,6 @@ export class Segmenting {
     this.#current = null;
   }
 
-  /** Ends the worker. */
-  close(): void {
-    this.cancel();
-    this.#segmenter.close();
-  }
-
   async #request(ask: (signal: AbortSignal) => Promise<Segmentation>): Promise<Segmentation | null> {
     this.cancel();
     const request = new AbortController();

@@ -170,9 +170,12 @@ export class Session {
     if (run.phase === 'idle' && !playing && this.#wanted === null) void this.segment();
   }
 
-  /** Switches the camera on or off. */
+  /** Switches the camera on, or off: its last two frames become a pair. */
   toggleLive(): Promise<void> {
-    if (this.#store.get().live !== null) return Promise.resolve(this.#live.stop());
+    if (this.#store.get().live !== null) {
+      this.#live.stop();
+      return this.segment();
+    }
     return this.#open(
       () => this.#live.start(),
       (show) => {
@@ -277,8 +280,8 @@ export class Session {
 
   /** Shows masks of this kind. Mask numbers change meaning, so choices that refer to them are reset. */
   show(kind: Kind): void {
-    const { look, pair, tracked } = this.#store.get();
-    if (look.kind === kind || (kind === 'objects' && !isTracked(tracked))) return;
+    const { look, pair, tracked, live } = this.#store.get();
+    if (live !== null || look.kind === kind || (kind === 'objects' && !isTracked(tracked))) return;
     const { hidden, solo, stabilised, selected } = FRESH;
     if (kind !== 'objects' && look.kind !== 'objects') return this.#store.look({ kind, hidden, solo, stabilised, selected });
     this.correcting.keep();

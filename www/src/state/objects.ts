@@ -1,6 +1,6 @@
 //! The masks of a clip's frames in the form of a pair's result, so that the same views draw them.
 
-import type { Segmentation } from 'veronese';
+import type { ClipFrame, Segmentation } from 'veronese';
 import { unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { FramePair, LoadedFrame } from './pair.js';
@@ -21,12 +21,18 @@ export function frameOf({ clip, frames }: Tracked, { origin }: LoadedFrame): Tra
   return frames[origin.index] ?? null;
 }
 
+/** The matrix of what has no motion that is known. */
 const STILL: Segmentation['motions'][number]['matrix'] = [0, 0, 0, 0, 0, 0];
 
+export function segmentationOf({ runs, ...frame }: TrackedFrame): Segmentation {
+  return segmentationFrom({ ...frame, labels: unpacked(runs) }, runs);
+}
+
 /** A motion for the background and for each object. Their labels are numbers of objects, with gaps. */
-export function segmentationOf({ runs, objects, background }: TrackedFrame): Segmentation {
-  const { width, height } = runs;
-  const labels = unpacked(runs);
+export function segmentationFrom(
+  { labels, objects, background }: Pick<ClipFrame, 'labels' | 'objects' | 'background'>,
+  { width, height }: { readonly width: number; readonly height: number },
+): Segmentation {
   const total = labels.length;
   const unlabelled = labels.reduce((sum, label) => (label === UNLABELLED ? sum + 1 : sum), 0);
   const rest = objects.reduce((left, { pixels }) => left - pixels, total - unlabelled);

@@ -61,7 +61,7 @@ export interface Tool {
 
 /** The state of the camera while it is on. */
 export interface Live {
-  /** Segmentations per second, lately. */
+  /** Frames per second, lately. */
   readonly rate: number;
 }
 

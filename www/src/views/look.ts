@@ -15,6 +15,7 @@ export function mountLook(form: HTMLFormElement, store: Store, session: Session)
   const views = VIEWS.map((view) => radio('frame', view));
   const kinds = { motions: radio('colouring', 'motions'), groups: radio('colouring', 'groups'), objects: radio('colouring', 'objects') };
   const clipOnly = find(form, '#kind-objects', HTMLElement);
+  const kindsBox = find(form, '#kinds', HTMLFieldSetElement);
   const opacity = find(form, '[name=opacity]', HTMLInputElement);
   const opacityValue = find(form, '#opacity-value', HTMLOutputElement);
   const switches = SWITCHES.map((name) => find(form, `[name=${name}]`, HTMLInputElement));
@@ -27,7 +28,8 @@ export function mountLook(form: HTMLFormElement, store: Store, session: Session)
   for (const kind of Object.values(kinds)) kind.addEventListener('change', () => session.show(kind.value as Kind));
   for (const input of switches) input.addEventListener('change', () => store.look({ [input.name]: input.checked }));
 
-  store.subscribe(({ look, pair, tracked }, before) => {
+  store.subscribe(({ look, pair, tracked, live }, before) => {
+    if (live !== before.live) kindsBox.hidden = live !== null;
     if (tracked !== before.tracked) clipOnly.hidden = !isTracked(tracked);
     if (look === before.look && pair === before.pair) return;
     const both = pair.first !== null && pair.second !== null;

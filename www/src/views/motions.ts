@@ -31,7 +31,7 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
     list.ariaBusy = awaited ? 'true' : null;
     if (other || run.phase !== before.run.phase) {
       empty.hidden = look.kind === 'objects' || (live === null && (result !== null || (awaited && rows.length > 0)));
-      empty.textContent = live === null ? whyNone(run) : strings.liveMasks(result?.segmentation.count ?? 0);
+      empty.textContent = live === null ? whyNone(run) : strings.liveMasks((result?.second?.count ?? 1) - 1);
     }
     if (awaited) return;
     if (other) {

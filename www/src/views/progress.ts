@@ -56,7 +56,7 @@ function sentenceFor(state: State): string {
       if (run.cause === 'tracked') return result === null ? strings.notTracked : strings.frameHas(result.segmentation.motions.filter(({ label }) => label > 0).length);
       return result === null ? '' : sentenceAbout(run.cause, state, result);
     case 'live':
-      return status.live(live?.rate ?? 0, result?.segmentation.count ?? 0);
+      return status.live(live?.rate ?? 0, (result?.second?.count ?? 1) - 1);
     case 'idle':
       if (pair.first !== null && pair.second !== null) return ''; // passed while the clip is played
       if (pair.first === null && pair.second === null) return status.idle;
