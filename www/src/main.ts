@@ -22,6 +22,7 @@ import { mountLook } from './views/look.js';
 import { find } from './views/markup.js';
 import { mountMotions } from './views/motions.js';
 import { mountObjects } from './views/objects.js';
+import { mountOnOpening } from './views/opening.js';
 import { mountOptions } from './views/options.js';
 import { mountOverlay } from './views/overlay.js';
 import { mountPicker } from './views/picker.js';
@@ -65,6 +66,7 @@ mountTimings(find(document, '#timings', HTMLElement), store);
 mountLeaving(window, store);
 mountExport(find(document, '#pair-export', HTMLElement), store, session);
 mountClipExport(find(document, '#export', HTMLElement), store, session);
+mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/projects.js')).mountProjects(panel, store, session));
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 
 keepForOffline(store);

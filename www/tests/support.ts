@@ -53,6 +53,14 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
   await done(page);
 }
 
+/** Makes the browser one that keeps no projects, or with `'database'` one without a private file system. */
+export async function withoutStorage(page: Page, except: 'database' | null = null): Promise<void> {
+  await page.addInitScript((kept) => {
+    delete (StorageManager.prototype as { getDirectory?: unknown }).getDirectory;
+    if (kept === null) delete (window as { indexedDB?: unknown }).indexedDB;
+  }, except);
+}
+
 /** Waits for the last request. */
 export async function done(page: Page): Promise<void> {
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });

@@ -49,6 +49,14 @@ function motion(parts: MotionParts): string {
 
 const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
 
+const date = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+
+/** "1.4 MB": of 1000 bytes each, as file managers count. */
+function fileSize(bytes: number): string {
+  if (bytes < 1000) return `${bytes}${NBSP}B`;
+  return bytes < 1e6 ? `${tenths.format(bytes / 1e3)}${NBSP}kB` : `${tenths.format(bytes / 1e6)}${NBSP}MB`;
+}
+
 /** ", about 20 s left"; nothing if it is not known. */
 function remaining(seconds: number | null): string {
   if (seconds === null) return '';
@@ -95,8 +103,29 @@ export const strings = {
     undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
     found: (objects: number, of: number): string => `${objects === 0 ? 'No object moves' : objects === 1 ? 'One object' : `${objects} objects`} in ${frames(of)}.`,
+    continued: (objects: number, of: number): string => `Continued: ${objects === 1 ? 'one object' : `${objects} objects`} in ${frames(of)}.`,
     cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} are done and kept.`,
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} are done and kept.`,
+  },
+  projects: {
+    nothing: 'What you do is kept in this browser. The frames stay where they are.',
+    kept: 'Your work is kept in this browser. Open the same frames again to continue.',
+    notKept: 'Your work is not kept in this browser. Save the project before you leave.',
+    nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
+    correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
+    saved: (name: string): string => `Saved as ${name}.`,
+    waiting: (name: string): string => `The project of “${name}” is open. Now open its frames, which are not part of the file.`,
+    full: 'There is no room left to keep your work in this browser. It is still open here: save the project, or forget old ones.',
+    refused: 'This browser does not allow the page to keep your work. It is still open here: save the project before you leave.',
+    damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
+    newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,
+    otherFrames: (name: string, saved: number, now: number): string => `The project of “${name}” has ${frames(saved)}, but this browser finds ${frames(now)}.`,
+    summary: (count: number): string => (count === 1 ? 'One project in this browser' : `${count} projects in this browser`),
+    facts: (count: number, bytes: number, saved: Date): string => `${frames(count)}, ${fileSize(bytes)}, ${date.format(saved)}`,
+    damagedFile: 'Damaged project',
+    forget: 'Forget',
+    forgetOf: (name: string): string => `Forget the project of ${name}`,
+    forgotten: (name: string): string => `The project of “${name}” is forgotten.`,
   },
   exporting: (done: number, of: number): string => `${whole.format(done)} of ${frames(of)}`,
   exported: (objects: number, of: number): string => `Saved: ${objects === 1 ? 'one object' : `${objects} objects`} in ${frames(of)}.`,

@@ -12,7 +12,7 @@ import { UNLABELLED, keyOf } from '../result/masks.js';
 import { type Said, paintedOver, withSaid } from '../state/said.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
-import { type ClipRun, type Tracked, type TrackedFrame, type Version, untracked, versionOf } from '../state/tracked.js';
+import { type ClipRun, type SolvedPairs, type Tracked, type TrackedFrame, type Version, untracked, versionOf } from '../state/tracked.js';
 import { ClipFrames } from './clip-frames.js';
 import { TimeLeft } from './time-left.js';
 
@@ -20,12 +20,6 @@ import { TimeLeft } from './time-left.js';
 const OFTEN = 100;
 /** The largest number of an object. */
 const MOST_OBJECTS = 254;
-
-/** What the pairs of each frame have told, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
-interface Known {
-  readonly settings: string;
-  readonly pairs: Map<number, Blob>;
-}
 
 interface Hooks {
   /** The masks of some frames have changed; `before`: what there was. */
@@ -49,7 +43,7 @@ export class Tracking {
   readonly #hooks: Hooks;
   readonly #segmenter = new Segmenter();
   /** By the clip's fingerprint. */
-  readonly #known = new Map<string, Known>();
+  readonly #known = new Map<string, SolvedPairs>();
   /** The run under way. */
   #current: AbortController | null = null;
   #carrying: Carrying | null = null;
@@ -191,6 +185,16 @@ export class Tracking {
     const colours = 'colour' in what ? { ...tracked.colours, [key]: what.colour } : tracked.colours;
     this.#store.set({ tracked: { ...tracked, names, colours } });
     this.#store.look({ names, colours });
+  }
+
+  /** What is known of the pairs of a clip, also if its masks are not complete. */
+  solvedPairs(fingerprint: string): SolvedPairs | null {
+    return this.#known.get(fingerprint) ?? null;
+  }
+
+  /** Goes on from these pairs when the clip is segmented. */
+  learn(fingerprint: string, pairs: SolvedPairs): void {
+    this.#known.set(fingerprint, pairs);
   }
 
   /** Records that the masks were exported as they are. */
@@ -342,7 +346,7 @@ export class Tracking {
   }
 
   /** What is known for these settings: other settings begin anew. */
-  #knownOf({ fingerprint }: Clip, settings: Settings): Known {
+  #knownOf({ fingerprint }: Clip, settings: Settings): SolvedPairs {
     const key = JSON.stringify([settings.motions, settings.quality, settings.seed, settings.longestSide]);
     const before = this.#known.get(fingerprint);
     const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };

@@ -1,0 +1,89 @@
+//! A project: the work on one clip, or on one pair of frames, without the frames. It is gathered from the state, and put back into it when
+//! the same frames are opened again. What was undone in a clip is not part of it.
+
+import { asSaved } from '../correction/edits.js';
+import { type Kept, keptFrom } from '../state/kept.js';
+import { type FramePair, type Subject, keyOfPair, subjectOf, subjectOfClip, timelineOf } from '../state/pair.js';
+import type { Settings } from '../state/settings.js';
+import type { State } from '../state/state.js';
+import { type SolvedPairs, type Tracked, type Version, isTracked, untracked, versionOf } from '../state/tracked.js';
+
+/** The objects of a clip. */
+export interface ProjectClip extends Version, Pick<Tracked, 'longestSide' | 'names' | 'colours'> {
+  /** What a run that has not ended knows of the pairs; `null` if it has ended. */
+  readonly solved: SolvedPairs | null;
+}
+
+export interface Project extends Subject {
+  readonly settings: Settings;
+  /** `null` if the subject is no clip, or is not segmented. */
+  readonly clip: ProjectClip | null;
+  /** The edited pairs, by their key. */
+  readonly pairs: ReadonlyMap<string, Kept>;
+}
+
+/** What the state has of this subject; `null` if nothing was ever done with it. */
+export function projectFrom(state: State, of: string, solvedPairs: (fingerprint: string) => SolvedPairs | null): Project | null {
+  const { settings, motionsElsewhere } = state;
+  const pairs = new Map([...state.kept].filter(([, kept]) => kept.subject.of === of));
+  const open = subjectOf(state.pair)?.of === of ? keptFrom(state) : null;
+  if (open !== null) pairs.set(...open);
+  const tracked = trackedOf(state, of);
+  const clip = tracked !== null && (tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
+  const subject = clip === null ? [...pairs.values()][0]?.subject : subjectOfClip(clip.clip);
+  if (subject === undefined) return null;
+  return { ...subject, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, settings, solvedPairs(of)), pairs };
+}
+
+function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {
+  return tracked?.clip.fingerprint === of ? tracked : (keptClips.get(of) ?? null);
+}
+
+function partOf(tracked: Tracked, settings: Settings, solved: SolvedPairs | null): ProjectClip {
+  const { names, colours, state } = tracked;
+  const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
+  // A complete clip can be corrected without its pairs.
+  return { ...versionOf(tracked), longestSide, names, colours, solved: state === null ? solved : null };
+}
+
+/** The state in which what the project has counts as saved, unless it has changed since. */
+export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of, clip, pairs }: Project): Partial<State> {
+  const savedClip = <T extends Tracked | null>(now: T): T =>
+    clip === null || now?.clip.fingerprint !== of ? now : { ...now, saved: { frames: clip.frames, names: clip.names, colours: clip.colours } };
+  const savedEdits = <T extends Kept['edits']>(now: T, key: string | null): T => {
+    const written = pairs.get(key ?? '');
+    return written === undefined ? now : { ...now, saved: asSaved(written.edits).saved };
+  };
+  return {
+    edits: savedEdits(edits, keyOfPair(pair)),
+    kept: new Map([...kept].map(([key, one]) => [key, { ...one, edits: savedEdits(one.edits, key) }])),
+    tracked: savedClip(tracked),
+    keptClips: new Map([...keptClips].map(([fingerprint, one]) => [fingerprint, savedClip(one)])),
+  };
+}
+
+/** The state with the work of the project, which is of this pair or of its clip. */
+export function withProject(state: State, { of, settings, clip, pairs }: Project, pair: FramePair): Partial<State> {
+  const kept = new Map([...state.kept, ...[...pairs].map(([key, one]) => [key, { ...one, edits: asSaved(one.edits) }] as const)]);
+  const common = { settings, motionsElsewhere: null, kept };
+  const opened = timelineOf(pair)?.clip;
+  if (clip === null || opened === undefined) return common;
+  const { tracked, keptClips } = state;
+  if (tracked?.clip.fingerprint === of) return { ...common, tracked: continued(tracked, clip) };
+  return { ...common, keptClips: new Map(keptClips).set(of, continued(keptClips.get(of) ?? untracked(opened), clip)) };
+}
+
+/** Masks of a project that replace others are one more step. */
+function continued(before: Tracked, { solved, ...clip }: ProjectClip): Tracked {
+  const complete = clip.state !== null;
+  const { frames, names, colours } = clip;
+  return {
+    ...before,
+    ...clip,
+    run: complete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: 'cancelled' },
+    solved: complete ? frames.length : (solved?.pairs.size ?? 0),
+    past: isTracked(before) ? [...before.past, versionOf(before)] : [],
+    future: [],
+    saved: { frames, names, colours },
+  };
+}
