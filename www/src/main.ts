@@ -8,7 +8,6 @@ import { Store } from './state/state.js';
 import { mountArrows } from './views/arrows.js';
 import { mountBlink } from './views/blink.js';
 import { Brush } from './views/brush.js';
-import { mountClipExport } from './views/clip-export.js';
 import { mountClipRun } from './views/clip-run.js';
 import { mountCompare } from './views/compare.js';
 import { mountDrop } from './views/drop.js';
@@ -65,8 +64,12 @@ mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountLeaving(window, store);
 mountExport(find(document, '#pair-export', HTMLElement), store, session);
-mountClipExport(find(document, '#export', HTMLElement), store, session);
-mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/projects.js')).mountProjects(panel, store, session));
+mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => {
+  const [clip, preview, projects] = await Promise.all([import('./views/clip-export.js'), import('./views/clip-preview.js'), import('./views/projects.js')]);
+  clip.mountClipExport(panel, store, session);
+  preview.mountClipPreview(panel, store);
+  projects.mountProjects(panel, store, session);
+});
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 
 keepForOffline(store);
