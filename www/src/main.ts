@@ -64,12 +64,7 @@ mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountLeaving(window, store);
 mountExport(find(document, '#pair-export', HTMLElement), store, session);
-mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => {
-  const [clip, preview, projects] = await Promise.all([import('./views/clip-export.js'), import('./views/clip-preview.js'), import('./views/projects.js')]);
-  clip.mountClipExport(panel, store, session);
-  preview.mountClipPreview(panel, store);
-  projects.mountProjects(panel, store, session);
-});
+mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/panel.js')).mountPanel(panel, store, session));
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 
 keepForOffline(store);

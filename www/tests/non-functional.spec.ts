@@ -76,8 +76,8 @@ test('the scripts stay within their size budgets', async ({ page }) => {
   const asked = new Set<string>();
   page.on('request', (request) => asked.add(request.url().replace(/^.*\//, '')));
   await open(page);
-  // The host page has a script of its own, and `exact` is mediabunny.
-  const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|exact)-/.test(name));
+  // The host page has a script of its own. Mediabunny is `reader` and, with what writes videos, `video-file`.
+  const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|reader|video-file)-/.test(name));
   const sizeOf = (names: readonly string[]): number => names.reduce((sum, name) => sum + gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length, 0);
   expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(66 * 1024);
   // What is loaded when it is used.
@@ -88,7 +88,7 @@ test('scripts for videos are loaded only when a video is opened', async ({ page 
   const asked: string[] = [];
   page.on('request', (request) => asked.push(request.url()));
   await open(page);
-  expect(asked.filter((url) => /exact-|approximate-|browser-/.test(url))).toEqual([]);
+  expect(asked.filter((url) => /exact-|approximate-|reader-|video-file-|browser-/.test(url))).toEqual([]);
 });
 
 test('? lists the shortcuts, and single-key shortcuts can be disabled', async ({ page }) => {

@@ -114,7 +114,7 @@ test('export of a clip', async ({ page }) => {
     for (const colorScheme of ['light', 'dark'] as const) {
       await page.emulateMedia({ colorScheme });
       await openExport(page);
-      await page.getByLabel('Format of the clip').selectOption({ label: colorScheme === 'light' ? 'DAVIS' : 'CVAT, tracks' });
+      await page.getByLabel('Format of the clip').selectOption({ label: colorScheme === 'light' ? 'DAVIS' : width === 1280 ? 'CVAT, tracks' : 'Video, transparent' });
       await expect(page.locator('#clip-preview li')).not.toHaveCount(0);
       const all = page.locator('#project details');
       if (colorScheme === 'dark') await all.evaluate((details: HTMLDetailsElement) => (details.open = true));

@@ -12,6 +12,8 @@ import { atSize } from './full-size.js';
 const CLASS = 'object';
 
 export interface ClipFile extends LabelFrame {
+  /** Of the frame in the clip. */
+  readonly index: number;
   readonly image: string;
   /** The name of the frame's own files, without extension. */
   readonly stem: string;
@@ -86,7 +88,7 @@ function exportOfFrames(tracked: Tracked, look: Look, from: number, to: number, 
         // An object that is not seen in the next frame has no motion.
         const moving = new Set(frame.objects.filter(({ id, matrix }) => matrix !== null && wanted.has(id)).map(({ id }) => id));
         if (frame.background !== null) moving.add(0);
-        yield { labels: kept, width, height, image, stem: stemOf(image), motions: motions.filter(({ label }) => moving.has(label)) };
+        yield { index: from + k, labels: kept, width, height, image, stem: stemOf(image), motions: motions.filter(({ label }) => moving.has(label)) };
         told(k + 1, frames.length);
         // The page stays responsive between frames.
         await new Promise((resolve) => setTimeout(resolve));

@@ -3,6 +3,7 @@
 import * as encoders from 'veronese/formats';
 import type { FormatMeta, MotFiles } from 'veronese/formats';
 import type { ClipExport, ClipFile, ClipFormat } from './clip-export.js';
+import { videoFormats } from './clip-video.js';
 import { pngFromLabels } from './png.js';
 
 type Files = Record<string, string | Uint8Array>;
@@ -58,8 +59,12 @@ function classesOf({ meta: { names, labels } }: ClipExport): string[] {
   return [...new Set(labels.map((label) => names[label]!))];
 }
 
-/** In the order of the menu. */
-export const CLIP_FORMATS: readonly ClipFormat[] = [
+/** All formats that this browser can write, in the order of the menu. */
+export async function clipFormats(): Promise<readonly ClipFormat[]> {
+  return [...FORMATS, ...(await videoFormats())];
+}
+
+const FORMATS: readonly ClipFormat[] = [
   {
     id: 'cvat-video',
     title: 'CVAT, tracks',

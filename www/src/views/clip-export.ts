@@ -2,20 +2,19 @@
 
 import { strings } from '../common/strings.js';
 import { type ClipFormat, exportOfClip } from '../export/clip-export.js';
-import { CLIP_FORMATS } from '../export/clip-formats.js';
 import { save } from '../export/save.js';
 import { zipped } from '../export/zip.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { find } from './markup.js';
 
-export function mountClipExport(panel: HTMLElement, store: Store, session: Session): void {
+export function mountClipExport(panel: HTMLElement, store: Store, session: Session, formats: readonly ClipFormat[]): void {
   const root = find(panel, '#clip-export', HTMLElement);
   const select = find(root, 'select', HTMLSelectElement);
   const button = find(root, 'button', HTMLButtonElement);
   const hint = find(root, '#clip-format-hint', HTMLElement);
   const told = find(root, '#clip-export-told', HTMLElement);
-  const chosen = (): ClipFormat => CLIP_FORMATS[select.selectedIndex]!;
+  const chosen = (): ClipFormat => formats[select.selectedIndex]!;
 
   const describe = (): void => void (hint.textContent = chosen().hint);
   select.addEventListener('change', describe);
@@ -45,7 +44,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
   };
   store.subscribe(render);
   render(store.get(), null);
-  select.replaceChildren(...CLIP_FORMATS.map(({ id, title }) => new Option(title, id)));
+  select.replaceChildren(...formats.map(({ id, title }) => new Option(title, id)));
   describe();
   button.disabled = false;
 }

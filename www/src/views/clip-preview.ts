@@ -2,12 +2,12 @@
 
 import { sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
-import { CLIP_FORMATS } from '../export/clip-formats.js';
+import type { ClipFormat } from '../export/clip-export.js';
 import { type Folder, type Preview, previewOf } from '../export/clip-preview.js';
 import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
 
-export function mountClipPreview(panel: HTMLElement, store: Store): void {
+export function mountClipPreview(panel: HTMLElement, store: Store, formats: readonly ClipFormat[]): void {
   const select = find(panel, '#clip-export select', HTMLSelectElement);
   const root = find(panel, '#clip-preview', HTMLElement);
   const list = find(root, 'ul', HTMLUListElement);
@@ -38,7 +38,7 @@ export function mountClipPreview(panel: HTMLElement, store: Store): void {
     while (outdated) {
       outdated = false;
       const { tracked, look, timeline } = store.get();
-      const format = CLIP_FORMATS[select.selectedIndex];
+      const format = formats[select.selectedIndex];
       if (format === undefined || tracked === null || look.kind !== 'objects' || !panel.matches(':popover-open')) break;
       const index = timeline?.first ?? 0;
       picture.alt = strings.preview.picture(index);
@@ -71,6 +71,6 @@ function captionOf(preview: Preview | null, index: number): string {
 function rowOf({ path, files }: Folder): HTMLElement {
   const row = element('li');
   row.append(element('code', `${path}${files[0]!}`));
-  if (files.length > 1) row.append(' … ', element('code', files.at(-1)!), element('span', strings.preview.files(files.length), 'faint'));
+  if (files.length > 1) row.append(' … ', element('code', files.at(-1)), element('span', strings.preview.files(files.length), 'faint'));
   return row;
 }
