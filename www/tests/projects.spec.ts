@@ -41,6 +41,19 @@ async function kept(page: Page): Promise<void> {
   await expect.poll(() => leaves(page)).toBe(true);
 }
 
+/** The only project that the browser keeps, unpacked. */
+function fileInBrowser(page: Page): Promise<string> {
+  return page.evaluate(async () => {
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');
+    let text = '';
+    for await (const name of folder.keys()) {
+      const file = await (await folder.getFileHandle(name)).getFile();
+      text = await new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
+    }
+    return text;
+  });
+}
+
 async function goTo(page: Page, index: number): Promise<void> {
   const track = page.getByRole('slider', { name: 'Current frame' });
   const box = (await track.boundingBox())!;
@@ -87,9 +100,14 @@ async function isContinued(page: Page, files: readonly Upload[]): Promise<void> 
 test('a corrected clip is there after a reload, and can be corrected further', async ({ page }) => {
   const files = await clipFrames(6);
   await correctedClip(page, files);
-  await kept(page);
+  await goTo(page, 3);
+  await page.getByLabel('Show Box').uncheck();
+  await expect.poll(() => fileInBrowser(page)).toContain('"hidden":[2]');
   await page.reload();
   await openClip(page, files);
+  await expect(page.locator('#caption')).toHaveText('Frame 3');
+  await expect(page.getByLabel('Show Box')).not.toBeChecked();
+  await page.getByLabel('Show Box').check();
   await isContinued(page, files);
   expect(await leaves(page)).toBe(true);
 

@@ -28,7 +28,7 @@ export function isContent(value: unknown, frames: number): value is Content {
   if (pairs.some(([, { edits, found }]) => edits.done > edits.actions.length || !(found === null || fits(found.packed)))) return false;
   if (clip === null) return true;
   const images = [...clip.frames.flatMap((frame) => (frame === null ? [] : [frame.runs])), ...clip.painted.map(([, runs]) => runs)];
-  return clip.frames.length === frames && images.every((image) => sameSize(image, images[0]!));
+  return clip.frames.length === frames && clip.at < frames && images.every((image) => sameSize(image, images[0]!));
 }
 
 /** Whether labels and report are of one result. */
@@ -64,6 +64,8 @@ const isClip = objectOf({
   colours: mapOf(isColour),
   frames: listOf(orNull(isFrame)),
   painted: listOf(entryOf(isIndex, isRuns)),
+  at: isIndex,
+  hidden: listOf(isFrom(1, 254)),
   state: orNull(isBlob),
   solved: orNull(objectOf({ settings: isText, pairs: listOf(entryOf(isIndex, isBlob)) })),
 });

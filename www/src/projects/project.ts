@@ -10,6 +10,9 @@ import { type SolvedPairs, type Tracked, type Version, isTracked, untracked, ver
 
 /** The objects of a clip. */
 export interface ProjectClip extends Version, Pick<Tracked, 'longestSide' | 'names' | 'colours'> {
+  /** The frame on screen and the objects that are not ticked, when the project was written. */
+  readonly at: number;
+  readonly hidden: readonly number[];
   /** What a run that has not ended knows of the pairs; `null` if it has ended. */
   readonly solved: SolvedPairs | null;
 }
@@ -32,18 +35,20 @@ export function projectFrom(state: State, of: string, solvedPairs: (fingerprint:
   const clip = tracked !== null && (tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
   const subject = clip === null ? [...pairs.values()][0]?.subject : subjectOfClip(clip.clip);
   if (subject === undefined) return null;
-  return { ...subject, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, settings, solvedPairs(of)), pairs };
+  return { ...subject, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs(of)), pairs };
 }
 
 function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {
   return tracked?.clip.fingerprint === of ? tracked : (keptClips.get(of) ?? null);
 }
 
-function partOf(tracked: Tracked, settings: Settings, solved: SolvedPairs | null): ProjectClip {
+function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: SolvedPairs | null): ProjectClip {
   const { names, colours, state } = tracked;
+  const open = timeline?.clip === tracked.clip ? timeline : null;
+  const hidden = open !== null && look.kind === 'objects' ? [...look.hidden] : [];
   const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
   // A complete clip can be corrected without its pairs.
-  return { ...versionOf(tracked), longestSide, names, colours, solved: state === null ? solved : null };
+  return { ...versionOf(tracked), longestSide, names, colours, at: open?.first ?? 0, hidden, solved: state === null ? solved : null };
 }
 
 /** The state in which what the project has counts as saved, unless it has changed since. */
@@ -74,7 +79,7 @@ export function withProject(state: State, { of, settings, clip, pairs }: Project
 }
 
 /** Masks of a project that replace others are one more step. */
-function continued(before: Tracked, { solved, ...clip }: ProjectClip): Tracked {
+function continued(before: Tracked, { solved, at: _at, hidden: _hidden, ...clip }: ProjectClip): Tracked {
   const complete = clip.state !== null;
   const { frames, names, colours } = clip;
   return {

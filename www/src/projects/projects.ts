@@ -114,7 +114,9 @@ export class Projects {
     const subject = now.pair === before.pair && edited ? subjectOf(now.pair) : null;
     if (subject !== null && (hasEdits(now.edits) || now.motionsElsewhere !== null)) this.#touch(subject.of, SOON);
     const [clip, clipBefore] = [now.tracked, before.tracked];
-    if (clip === null || clip.clip !== clipBefore?.clip || OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
+    if (clip === null || clip.clip !== clipBefore?.clip) return;
+    const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
+    if (!ticked && OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
     if (clip.solved > 0) this.#touch(clip.clip.fingerprint, clip.run.phase === 'working' ? LATER : SOON);
   }
 

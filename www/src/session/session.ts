@@ -12,7 +12,7 @@ import { WHOLE } from '../drawing/viewport.js';
 import { nameOfFile, selectOpenable } from '../frames/files.js';
 import { frameFromBlob, frameFromUrl, smaller } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
-import type { Project } from '../projects/project.js';
+import type { Project, ProjectClip } from '../projects/project.js';
 import { Projects } from '../projects/projects.js';
 import type { Kind } from '../result/masks.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
@@ -381,7 +381,7 @@ export class Session {
         if (project !== null) this.correcting.keep();
         this.projects.restore(project, pair);
         if (frames.length > 0 || project !== null) this.#setPair(pair);
-        if (project !== null) this.show('objects');
+        if (project?.clip) this.#continue(project.clip);
         then(project);
       },
       ({ frames }) => {
@@ -393,6 +393,13 @@ export class Session {
         }
       },
     );
+  }
+
+  /** Goes to where the work on a clip was left. */
+  #continue({ at, hidden }: ProjectClip): void {
+    this.show('objects');
+    if (this.#store.get().look.kind === 'objects') this.#store.look({ hidden: new Set(hidden) });
+    void this.goTo(at);
   }
 
   /**
