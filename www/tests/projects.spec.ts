@@ -217,19 +217,24 @@ test('strokes and names of a pair are there after a reload', async ({ page }) =>
   await expect(page.locator('#status')).toHaveText('Undone.');
 });
 
-test('without a private file system, projects are in a database', async ({ page }) => {
-  await withoutStorage(page, 'database');
-  const files = await clipFrames(6);
-  await correctedClip(page, files);
-  await kept(page);
-  await page.reload();
-  await openClip(page, files);
-  await isContinued(page, files);
-  await openExport(page);
-  await page.getByText('One project in this browser').click();
-  await page.getByRole('button', { name: 'Forget the project' }).click();
-  await expect(page.locator('#projects')).toBeHidden();
-});
+for (const [lack, remove] of [
+  ['has no private file system', () => delete (StorageManager.prototype as { getDirectory?: unknown }).getDirectory],
+  ['cannot write it', () => delete (FileSystemFileHandle.prototype as { createWritable?: unknown }).createWritable],
+] as const) {
+  test(`projects are in a database if the browser ${lack}`, async ({ page }) => {
+    await page.addInitScript(remove);
+    const files = await clipFrames(6);
+    await correctedClip(page, files);
+    await kept(page);
+    await page.reload();
+    await openClip(page, files);
+    await isContinued(page, files);
+    await openExport(page);
+    await page.getByText('One project in this browser').click();
+    await page.getByRole('button', { name: 'Forget the project' }).click();
+    await expect(page.locator('#projects')).toBeHidden();
+  });
+}
 
 test('a full disk loses nothing, and the next change is kept again', async ({ page, context, baseURL }) => {
   const files = await clipFrames(6);

@@ -53,12 +53,12 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
   await done(page);
 }
 
-/** Makes the browser one that keeps no projects, or with `'database'` one without a private file system. */
-export async function withoutStorage(page: Page, except: 'database' | null = null): Promise<void> {
-  await page.addInitScript((kept) => {
+/** Makes the browser one that keeps no projects. */
+export async function withoutStorage(page: Page): Promise<void> {
+  await page.addInitScript(() => {
     delete (StorageManager.prototype as { getDirectory?: unknown }).getDirectory;
-    if (kept === null) delete (window as { indexedDB?: unknown }).indexedDB;
-  }, except);
+    delete (window as { indexedDB?: unknown }).indexedDB;
+  });
 }
 
 /** Waits for the last request. */

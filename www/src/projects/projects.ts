@@ -171,6 +171,7 @@ export class Projects {
 /** Whether nothing can be found, so that a first visit need not look. */
 async function isNothingKept(): Promise<boolean> {
   try {
+    if (!('createWritable' in FileSystemFileHandle.prototype)) return false; // what is kept is in a database
     await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');
     return false;
   } catch (error) {
