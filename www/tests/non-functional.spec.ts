@@ -7,7 +7,7 @@ import { gzipSync } from 'node:zlib';
 
 import { type Page, test as unwatched } from '@playwright/test';
 
-import { done, expect, labelsOnCanvas, open, test } from './support.js';
+import { done, expect, labelsOnCanvas, open, openExport, test } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 
@@ -31,6 +31,10 @@ for (const scheme of ['light', 'dark'] as const) {
     await page.locator('.more summary').nth(1).click();
     await page.keyboard.press('p');
     expect(await axe(page)).toEqual([]);
+    await openExport(page);
+    await expect(page.getByRole('button', { name: 'Save project' })).toBeEnabled();
+    expect(await axe(page)).toEqual([]);
+    await page.keyboard.press('Escape');
     await page.keyboard.press('?');
     await expect(page.getByRole('dialog')).toBeVisible();
     expect(await axe(page)).toEqual([]);
