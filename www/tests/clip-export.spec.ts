@@ -20,8 +20,11 @@ const text = (bytes: Uint8Array | undefined): string => new TextDecoder().decode
 
 /** The labels of a PNG in the DAVIS palette. */
 async function labelsIn(bytes: Uint8Array): Promise<Uint8Array> {
+  return labelsFromColours((await decodeImage(bytes)).data);
+}
+
+function labelsFromColours(data: Uint8Array | Uint8ClampedArray): Uint8Array {
   const byColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
-  const { data } = await decodeImage(bytes);
   return Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get([...data.subarray(4 * p, 4 * p + 3)].join()) ?? -1);
 }
 
@@ -84,4 +87,70 @@ test('a clip is exported in the formats of annotation tools, with the objects th
   await openExport(page);
   await page.getByRole('button', { name: 'Save clip' }).click();
   await expect(page.locator('#notice')).toContainText('Tick an object in the list first.');
+});
+
+test('the preview lists the files that are written, and shows one frame as they have it', async ({ page }) => {
+  const files = await clipFrames(5);
+  const found = await clipInNode(files);
+  await open(page, 'groups');
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText('5 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await page.getByRole('slider', { name: 'Current frame' }).press('End');
+  await expect(page.locator('#caption')).toHaveText('Frame 4');
+
+  const preview = page.locator('#clip-preview');
+  const caption = preview.locator('figcaption');
+  const listed = preview.locator('li');
+  await openExport(page);
+  const formats = page.getByLabel('Format of the clip');
+  await formats.selectOption({ label: 'DAVIS' });
+  await expect(listed).toHaveText(['davis/Annotations/480p/f00/f00.png … f04.png, 5 files', 'davis/ImageSets/2017/val.txt']);
+  const davis = unzipSync((await savedAs(page, 'DAVIS')).bytes);
+  const own = davis['davis/Annotations/480p/f00/f04.png']!;
+  await expect(caption).toHaveText(`f04.png: ${(own.length / 1000).toFixed(1)} kB`);
+  const shown = async (): Promise<Uint8Array> => {
+    const pixels = await preview.locator('img').evaluate(async (image: HTMLImageElement) => {
+      await image.decode();
+      const context = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d')!;
+      context.drawImage(image, 0, 0);
+      return [...context.getImageData(0, 0, image.naturalWidth, image.naturalHeight).data];
+    });
+    return labelsFromColours(Uint8Array.from(pixels));
+  };
+  expect(differences(await shown(), found[4]!)).toBe(0);
+
+  await formats.selectOption({ label: 'YOLO segmentation' });
+  await expect(listed).toHaveText(['yolo/labels/f00.txt … f04.txt, 5 files', 'yolo/names.txt']);
+  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+  const beginning = (await preview.locator('pre').textContent())!.replace(/…$/, '');
+  expect(beginning.length).toBeGreaterThan(40);
+  expect(text(yolo['yolo/labels/f04.txt']).startsWith(beginning)).toBe(true);
+
+  // An archive shows the picture that it packs.
+  await formats.selectOption({ label: 'CVAT, MOTS PNG' });
+  await expect(listed).toHaveText(['cvat-mots.zip']);
+  await expect(preview.locator('img')).toBeVisible();
+  expect(await preview.locator('img').evaluate((image: HTMLImageElement) => image.decode().then(() => [image.naturalWidth, image.naturalHeight]))).toEqual([200, 140]);
+  await formats.selectOption({ label: 'MOTChallenge' });
+  await expect(listed).toHaveText(['mot/gt/gt.txt … labels.txt, 2 files', 'mot/seqinfo.ini']);
+  await expect(preview.locator('pre')).toHaveText(/^1,1,/);
+  await formats.selectOption({ label: 'YouTube-VIS' });
+  await expect(preview.locator('pre')).toContainText('"videos":');
+  await expect(caption).toHaveText(/^youtube-vis\.json with frame 4 alone: \d/);
+
+  // What is not ticked is not shown.
+  await page.keyboard.press('Escape');
+  await page.getByLabel('Show Object 2').uncheck();
+  await openExport(page);
+  await formats.selectOption({ label: 'DAVIS' });
+  await expect(caption).toContainText('f04.png');
+  await expect.poll(async () => differences(await shown(), found[4]!.map((label) => (label === 2 ? 0 : label)))).toBe(0);
+  await page.keyboard.press('Escape');
+  await page.getByLabel('Show Object 1').uncheck();
+  await openExport(page);
+  await expect(caption).toHaveText('Tick an object in the list first.');
+  await expect(listed).toHaveCount(0);
 });

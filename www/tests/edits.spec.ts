@@ -7,7 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Upload, differences, done, expect, labelsOnCanvas, open, openExport, sample, square, test, upload, chooseMotions, openAdvanced, motionsChosen } from './support.js';
+import { type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
 
 type Place = readonly [number, number];
 
@@ -281,6 +281,7 @@ test('corrections are restored when frames are opened again in any way', async (
 
 test('corrections survive the camera', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
+  await withoutStorage(page);
   await open(page);
   await brush(page, 1);
   await draw(page, [0.7, 0.2], [0.8, 0.2]);
@@ -346,6 +347,7 @@ test('strokes and names follow their masks to a result with other settings', asy
 });
 
 test('leaving the page asks first only with unsaved corrections', async ({ page }) => {
+  await withoutStorage(page);
   await openClip(page, await frames(3));
   await page.locator('#look [name=outlines]').uncheck();
   await page.locator('#zoom-in').click();

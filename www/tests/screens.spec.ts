@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { done, expect, sample, screen, square, test, upload } from './support.js';
+import { clipFrames, done, expect, openExport, sample, screen, square, test, upload } from './support.js';
 
 /** Opens the page with its defaults. */
 async function openBest(page: Page): Promise<void> {
@@ -98,4 +98,30 @@ test('progress', async ({ page, context }) => {
   await page.screenshot({ path: screen('progress') });
   release();
   await done(page);
+});
+
+test('export of a clip', async ({ page }) => {
+  await page.goto('./#quality=fast');
+  await done(page);
+  await upload(page, await clipFrames(12, 480, 300));
+  await expect(page.locator('#clip-name')).toContainText('12 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await page.getByRole('slider', { name: 'Current frame' }).press('PageDown');
+  for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
+    await page.setViewportSize({ width, height });
+    for (const colorScheme of ['light', 'dark'] as const) {
+      await page.emulateMedia({ colorScheme });
+      await openExport(page);
+      await page.getByLabel('Format of the clip').selectOption({ label: colorScheme === 'light' ? 'DAVIS' : width === 1280 ? 'CVAT, tracks' : 'Video, transparent' });
+      await expect(page.locator('#clip-preview li')).not.toHaveCount(0);
+      const all = page.locator('#project details');
+      if (colorScheme === 'dark') await all.evaluate((details: HTMLDetailsElement) => (details.open = true));
+      await page.waitForTimeout(300);
+      await page.screenshot({ path: screen(`export-${width}-${colorScheme}`) });
+      await page.locator('#export').evaluate((panel) => panel.scrollTo(0, panel.scrollHeight));
+      await page.screenshot({ path: screen(`project-${width}-${colorScheme}`) });
+    }
+  }
 });

@@ -53,6 +53,14 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
   await done(page);
 }
 
+/** Makes the browser one that keeps no projects. */
+export async function withoutStorage(page: Page): Promise<void> {
+  await page.addInitScript(() => {
+    delete (StorageManager.prototype as { getDirectory?: unknown }).getDirectory;
+    delete (window as { indexedDB?: unknown }).indexedDB;
+  });
+}
+
 /** Waits for the last request. */
 export async function done(page: Page): Promise<void> {
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });

@@ -290,8 +290,8 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
     await goTo(page, index);
     expect(differences(await labelsOnCanvas(page), merged[index]!)).toBe(0);
   }
-  // Leaving would lose this.
-  expect(await leaves()).toBe(false);
+  // It is kept as a project.
+  await expect.poll(leaves).toBe(true);
 
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(rows).toHaveCount(3);
@@ -308,7 +308,7 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
   await expect(page.locator('#timeline')).toBeHidden();
   await done(page);
   await expect(page.locator('#objects')).toBeHidden();
-  expect(await leaves()).toBe(false);
+  await expect.poll(leaves).toBe(true);
   await upload(page, files);
   await shows(page, 0);
   await expect(rows).toHaveCount(2);

@@ -61,6 +61,14 @@ function displacement(parts: MotionParts): string {
 
 const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
 
+const date = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+
+/** "1.4 MB": of 1000 bytes each, as file managers count. */
+function fileSize(bytes: number): string {
+  if (bytes < 1000) return `${bytes}${NBSP}B`;
+  return bytes < 1e6 ? `${tenths.format(bytes / 1e3)}${NBSP}kB` : `${tenths.format(bytes / 1e6)}${NBSP}MB`;
+}
+
 /** ", about 20 s left"; nothing if it is not known. */
 function remaining(seconds: number | null): string {
   if (seconds === null) return '';
@@ -110,11 +118,39 @@ export const strings = {
     undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
     found: (count: number, of: number): string => `${objects(count)} in ${frames(of)}.`,
+    continued: (count: number, of: number): string => `Continued: ${objects(count).toLowerCase()} in ${frames(of)}.`,
     cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
   },
+  projects: {
+    nothing: 'What you do is kept in this browser. The frames stay where they are.',
+    kept: 'Your work is kept in this browser. Open the same frames again to continue.',
+    notKept: 'Your work is not kept in this browser. Save the project before you leave.',
+    nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
+    correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
+    saved: (name: string): string => `Saved as ${name}.`,
+    waiting: (name: string): string => `The project of “${name}” is open. Now open its frames, which are not part of the file.`,
+    full: 'There is no room left to keep your work in this browser. It is still open here: save the project, or forget old ones.',
+    refused: 'This browser does not allow the page to keep your work. It is still open here: save the project before you leave.',
+    damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
+    newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,
+    otherFrames: (name: string, saved: number, now: number): string => `The project of “${name}” has ${frames(saved)}, but this browser finds ${frames(now)}.`,
+    summary: (count: number): string => (count === 1 ? 'One project in this browser' : `${count} projects in this browser`),
+    facts: (count: number, bytes: number, saved: Date): string => `${frames(count)}, ${fileSize(bytes)}, ${date.format(saved).replaceAll(' ', NBSP)}`,
+    damagedFile: 'Damaged project',
+    forget: 'Forget',
+    forgetOf: (name: string): string => `Forget the project of ${name}`,
+    forgotten: (name: string): string => `The project of “${name}” is forgotten.`,
+  },
   exporting: (done: number, of: number): string => `${whole.format(done)} of ${frames(of)}`,
   exported: (count: number, of: number): string => `Saved: ${objects(count).toLowerCase()} in ${frames(of)}.`,
+  preview: {
+    files: (count: number): string => `, ${whole.format(count)}${NBSP}files`,
+    noMasks: 'There are no masks of this frame.',
+    ofFrame: (name: string, bytes: number): string => `${name}: ${fileSize(bytes)}`,
+    ofAll: (name: string, index: number, bytes: number): string => `${name} with frame ${index} alone: ${fileSize(bytes)}`,
+    picture: (index: number): string => `Masks of frame ${index} as they are saved`,
+  },
   frameHas: (count: number): string => `${objects(count)} in this frame.`,
   notTracked: 'This frame has no masks yet.',
   play: 'Play',

@@ -5,13 +5,15 @@ import type { Clip } from '../clips/clip.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { segmentationOf } from '../state/objects.js';
 import type { Look } from '../state/state.js';
-import { type Life, type Tracked, livesOf, rangeOf } from '../state/tracked.js';
+import { type Life, type Range, type Tracked, livesOf, rangeOf } from '../state/tracked.js';
 import { atSize } from './full-size.js';
 
 /** The class of objects without a name of their own, as of `veronese convert`. */
 const CLASS = 'object';
 
 export interface ClipFile extends LabelFrame {
+  /** Of the frame in the clip. */
+  readonly index: number;
   readonly image: string;
   /** The name of the frame's own files, without extension. */
   readonly stem: string;
@@ -30,6 +32,8 @@ export interface ClipExport extends Sequence {
   /** The objects that are exported. */
   readonly objects: readonly Life[];
   readonly count: number;
+  /** The names of the frames' own files, without extension. */
+  readonly stems: readonly string[];
   /** The same from the first frame of the clip on, without objects in frames before: for formats that count the frames of the video. */
   readonly fromStart: Sequence;
 }
@@ -39,13 +43,26 @@ export interface ClipFormat {
   readonly id: string;
   readonly title: string;
   readonly hint: string;
-  make(exported: ClipExport): Promise<Record<string, string | Uint8Array>>;
+  /** The names of all files that `make` gives, in their order. */
+  names(exported: ClipExport): readonly string[];
+  make(exported: ClipExport): Promise<Record<string, string | Uint8Array | Blob>>;
+  /** What a frame looks like, if the file itself cannot show it. */
+  picture?(exported: ClipExport): Promise<Blob>;
 }
 
-/** `told` is called when a frame has been made. */
-export function exportOfClip(tracked: Tracked, look: Look, told: (done: number, of: number) => void): ClipExport {
+/** The frames that have masks. `told` is called when a frame has been made. */
+export function exportOfClip(tracked: Tracked, look: Look, told: (done: number, of: number) => void = () => undefined): ClipExport {
+  return exportOfFrames(tracked, look, rangeOf(tracked.frames) ?? { first: 0, last: -1 }, told);
+}
+
+/** One frame of {@link exportOfClip}; `null` if it has no masks. */
+export function exportOfFrame(tracked: Tracked, look: Look, index: number): ClipExport | null {
+  return (tracked.frames[index] ?? null) === null ? null : exportOfFrames(tracked, look, { first: index, last: index }, () => undefined);
+}
+
+/** The objects are those of all frames. */
+function exportOfFrames(tracked: Tracked, look: Look, { first, last }: Range, told: (done: number, of: number) => void): ClipExport {
   const { clip, frames } = tracked;
-  const { first, last } = rangeOf(frames) ?? { first: 0, last: -1 };
   const count = last - first + 1;
   const objects = livesOf(tracked).filter(({ id }) => !look.hidden.has(id));
   const names = Object.fromEntries(objects.map(({ id }) => [id, tracked.names[keyOf('objects', id)] ?? CLASS]));
@@ -61,8 +78,8 @@ export function exportOfClip(tracked: Tracked, look: Look, told: (done: number, 
     async *frames() {
       for (let index = from; index <= last; index++) {
         const image = clip.nameOf(index);
-        const named = { image, stem: stemOf(image) };
-        const frame = frames[index] ?? null;
+        const named = { index, image, stem: stemOf(image) };
+        const frame = index < first ? null : (frames[index] ?? null);
         if (frame === null) {
           const { width, height } = clip;
           yield { ...named, labels: new Uint8Array(width * height), width, height, motions: [] };
@@ -80,7 +97,8 @@ export function exportOfClip(tracked: Tracked, look: Look, told: (done: number, 
       }
     },
   });
-  return { clip, objects, count, ...sequence(first), fromStart: sequence(0) };
+  const stems = Array.from({ length: count }, (_, k) => stemOf(clip.nameOf(first + k)));
+  return { clip, objects, count, stems, ...sequence(first), fromStart: sequence(0) };
 }
 
 function stemOf(name: string): string {

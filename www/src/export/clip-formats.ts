@@ -3,6 +3,7 @@
 import * as encoders from 'veronese/formats';
 import type { FormatMeta, MotFiles } from 'veronese/formats';
 import type { ClipExport, ClipFile, ClipFormat } from './clip-export.js';
+import { videoFormats } from './clip-video.js';
 import { pngFromLabels } from './png.js';
 
 type Files = Record<string, string | Uint8Array>;
@@ -20,90 +21,120 @@ function given({ meta: { names, labels } }: ClipExport, frame: ClipFile): readon
   return [frame.labels, frame.width, frame.height, { image: frame.image, names, labels, motions: frame.motions ?? [] }];
 }
 
+/** How a format makes one file. */
+function file(name: string, content: (exported: ClipExport) => Promise<string | Uint8Array>): Pick<ClipFormat, 'names' | 'make'> {
+  return { names: () => [name], make: async (exported) => ({ [name]: await content(exported) }) };
+}
+
+/** How a format makes a file for each frame, and others after them. */
+function fileForEach(
+  path: (exported: ClipExport, stem: string) => string,
+  content: (exported: ClipExport, frame: ClipFile) => string | Promise<Uint8Array>,
+  others: (exported: ClipExport) => Files,
+): Pick<ClipFormat, 'names' | 'make'> {
+  return {
+    names: (exported) => [...exported.stems.map((stem) => path(exported, stem)), ...Object.keys(others(exported))],
+    make: async (exported) => {
+      const files: Files = {};
+      for await (const frame of exported.frames()) files[path(exported, frame.stem)] = await content(exported, frame);
+      return { ...files, ...others(exported) };
+    },
+  };
+}
+
 /** A folder as MOTChallenge's sequences are. */
-function sequence(folder: string, { gt, seqinfo, names }: MotFiles): Files {
-  return { [`${folder}/gt/gt.txt`]: gt, [`${folder}/gt/labels.txt`]: lines(names), [`${folder}/seqinfo.ini`]: seqinfo };
+function sequence(folder: string, encode: (exported: ClipExport) => Promise<MotFiles>): Pick<ClipFormat, 'names' | 'make'> {
+  const paths = [`${folder}/gt/gt.txt`, `${folder}/gt/labels.txt`, `${folder}/seqinfo.ini`] as const;
+  return {
+    names: () => paths,
+    make: async (exported) => {
+      const { gt, seqinfo, names } = await encode(exported);
+      return { [paths[0]]: gt, [paths[1]]: lines(names), [paths[2]]: seqinfo };
+    },
+  };
 }
 
-async function labelImages(exported: ClipExport, path: (stem: string) => string): Promise<Files> {
-  const files: Files = {};
-  for await (const { labels, width, height, stem } of exported.frames()) files[path(stem)] = await pngFromLabels(labels, width, height);
-  return files;
+/** The names of the classes, each once. */
+function classesOf({ meta: { names, labels } }: ClipExport): string[] {
+  return [...new Set(labels.map((label) => names[label]!))];
 }
 
-/** In the order of the menu. */
-export const CLIP_FORMATS: readonly ClipFormat[] = [
+/** All formats that this browser can write, in the order of the menu. */
+export async function clipFormats(): Promise<readonly ClipFormat[]> {
+  return [...FORMATS, ...(await videoFormats())];
+}
+
+const FORMATS: readonly ClipFormat[] = [
   {
     id: 'cvat-video',
     title: 'CVAT, tracks',
     hint: 'CVAT for video 1.1: a track with polygons for each object.',
-    make: async ({ clip, fromStart }) => ({ 'cvat-video.xml': await encoders.encodeCvatVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name }, { shape: 'polygon' }) }),
+    ...file('cvat-video.xml', async ({ clip, fromStart }) => await encoders.encodeCvatVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name }, { shape: 'polygon' })),
   },
   {
     id: 'cvat-mots',
     title: 'CVAT, MOTS PNG',
     hint: 'An archive to import into CVAT: exact masks, up to 64 objects.',
-    make: async (exported) => ({ 'cvat-mots.zip': await encoders.encodeCvatMots(exported.frames(), exported.meta) }),
+    ...file('cvat-mots.zip', async (exported) => await encoders.encodeCvatMots(exported.frames(), exported.meta)),
   },
   {
     id: 'youtube-vis',
     title: 'YouTube-VIS',
     hint: 'The objects of the clip as compressed run lengths in the form of COCO.',
-    make: async (exported) => ({ 'youtube-vis.json': json(await encoders.encodeCocoVideo(exported.frames(), exported.meta)) }),
+    ...file('youtube-vis.json', async (exported) => json(await encoders.encodeCocoVideo(exported.frames(), exported.meta))),
   },
   {
     id: 'coco',
     title: 'COCO, RLE',
     hint: 'Every frame is an image; objects have a track_id.',
-    make: async (exported) => ({ 'coco.json': json(await encoders.encodeCocoImages(exported.frames(), exported.meta, { shape: 'rle' })) }),
+    ...file('coco.json', async (exported) => json(await encoders.encodeCocoImages(exported.frames(), exported.meta, { shape: 'rle' }))),
   },
   {
     id: 'mots',
     title: 'MOTS',
     hint: 'The text form of MOTS, with the names of the classes.',
-    make: async (exported) => sequence('mots', await encoders.encodeMots(exported.frames(), exported.meta)),
+    ...sequence('mots', (exported) => encoders.encodeMots(exported.frames(), exported.meta)),
   },
   {
     id: 'mot',
     title: 'MOTChallenge',
     hint: 'Boxes of the objects in every frame.',
-    make: async (exported) => sequence('mot', await encoders.encodeMotChallenge(exported.frames(), exported.meta)),
+    ...sequence('mot', (exported) => encoders.encodeMotChallenge(exported.frames(), exported.meta)),
   },
   {
     id: 'davis',
     title: 'DAVIS',
     hint: 'An indexed PNG for each frame: the index is the number of the object.',
-    make: async (exported) => ({
-      ...(await labelImages(exported, (stem) => `davis/Annotations/480p/${exported.meta.clip}/${stem}.png`)),
-      'davis/ImageSets/2017/val.txt': `${exported.meta.clip}\n`,
-    }),
+    ...fileForEach(
+      ({ meta }, stem) => `davis/Annotations/480p/${meta.clip}/${stem}.png`,
+      (_exported, { labels, width, height }) => pngFromLabels(labels, width, height),
+      ({ meta }) => ({ 'davis/ImageSets/2017/val.txt': `${meta.clip}\n` }),
+    ),
   },
   {
     id: 'yolo',
     title: 'YOLO segmentation',
     hint: 'A text file for each frame with a line per object, and the names of the classes.',
-    make: async (exported) => {
-      const { names, labels } = exported.meta;
-      const classes = [...new Set(labels.map((label) => names[label]!))];
-      const files: Files = {};
-      for await (const frame of exported.frames()) files[`yolo/labels/${frame.stem}.txt`] = encoders.encodeYolo(...given(exported, frame), { classes }).text;
-      return { ...files, 'yolo/names.txt': lines(classes) };
-    },
+    ...fileForEach(
+      (_exported, stem) => `yolo/labels/${stem}.txt`,
+      (exported, frame) => encoders.encodeYolo(...given(exported, frame), { classes: classesOf(exported) }).text,
+      (exported) => ({ 'yolo/names.txt': lines(classesOf(exported)) }),
+    ),
   },
   {
     id: 'label-studio',
     title: 'Label Studio',
     hint: 'A task for each frame with brush labels as predictions.',
-    make: async (exported) => {
+    ...file('label-studio.json', async (exported) => {
       const tasks: unknown[] = [];
       for await (const frame of exported.frames()) tasks.push(encoders.encodeLabelStudio(...given(exported, frame), { shape: 'brush' }));
-      return { 'label-studio.json': json(tasks) };
-    },
+      return json(tasks);
+    }),
   },
   {
     id: 'label-studio-video',
     title: 'Label Studio, video',
     hint: 'One task with boxes that follow the objects.',
-    make: async ({ clip, fromStart }) => ({ 'label-studio-video.json': json([await encoders.encodeLabelStudioVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name })]) }),
+    ...file('label-studio-video.json', async ({ clip, fromStart }) => json([await encoders.encodeLabelStudioVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name })])),
   },
 ];

@@ -33,8 +33,12 @@ function byPath(one: File, other: File): number {
   return a.length - b.length;
 }
 
-/** A video, if there is one, and the images in frame order. */
+/** A project, the work on frames that are not part of it. */
+const PROJECT_NAMES = /\.veronese$/i;
+
+/** A project and a video, if there are any, and the images in frame order. */
 export interface Openable {
+  readonly project: File | null;
   readonly video: File | null;
   readonly images: readonly File[];
 }
@@ -44,8 +48,10 @@ export interface Openable {
  * files that were given themselves are always tried.
  */
 export function selectOpenable(files: Iterable<File>): Openable {
-  const seen = [...files].filter((file) => folderOf(file) === null || !pathOf(file).some((part) => part.startsWith('.'))).sort(byPath);
+  const given = [...files];
+  const project = given.find(({ name }) => PROJECT_NAMES.test(name)) ?? null;
+  const seen = given.filter((file) => !PROJECT_NAMES.test(file.name) && (folderOf(file) === null || !pathOf(file).some((part) => part.startsWith('.')))).sort(byPath);
   const video = seen.find(isVideo) ?? null;
   const images = seen.filter((file) => file.type.startsWith('image/') || (folderOf(file) === null && seen.length <= 2));
-  return { video, images };
+  return { project, video, images };
 }

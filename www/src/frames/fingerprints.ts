@@ -15,6 +15,11 @@ export async function fingerprintOfVideo(blob: Blob): Promise<string> {
   return `${blob.size} ${hashOf(await new Blob(parts).arrayBuffer())}`;
 }
 
+/** Hashes a text, for names of files. */
+export function fingerprintOfText(text: string): string {
+  return hashOf(new TextEncoder().encode(text).buffer);
+}
+
 /** A 64-bit hash. `crypto.subtle` is unavailable on pages without https. */
 function hashOf(buffer: ArrayBuffer): string {
   const whole = buffer.byteLength >> 2;

@@ -9,7 +9,6 @@ import {
   type Appearance,
   asSaved,
   grouped,
-  hasEdits,
   lastStroke,
   maskIdOf,
   maskWith,
@@ -18,11 +17,11 @@ import {
   withAction,
 } from '../correction/edits.js';
 import { type Part, labellingOf, labelsIn, withLabelling } from '../correction/parts.js';
-import { Solutions, packedResult, unpackedResult } from '../correction/solutions.js';
+import { Solutions, unpackedResult } from '../correction/solutions.js';
 import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../correction/strokes.js';
 import type { Colour } from '../drawing/palette.js';
 import { UNLABELLED, type Kind, keyOf, labelSet, merged, ungrouped } from '../result/masks.js';
-import type { Kept } from '../state/kept.js';
+import { type Kept, keptFrom } from '../state/kept.js';
 import { type FramePair, keyOfPair } from '../state/pair.js';
 import { FRESH, type Cause, type Look, type Result, type State, type Store } from '../state/state.js';
 import type { Segmenting } from './segmenting.js';
@@ -140,15 +139,11 @@ export class Correcting {
   /** Keeps the edits of the open pair for when it is opened again. */
   keep(): void {
     this.finishStroke();
-    const { pair, edits, found, result, kept, settings, motionsElsewhere } = this.#store.get();
-    const key = keyOfPair(pair);
-    if (key === null || pair.first === null) return;
-    const ownMotions = motionsElsewhere === null ? null : settings.motions;
-    if (!hasEdits(edits) && ownMotions === null) return;
-    const packed = found === null ? null : { packed: packedResult(found, labellingOf(found)), waited: result?.waited ?? 0 };
-    const { width, height } = pair.first;
+    const { kept, settings, motionsElsewhere } = this.#store.get();
+    const own = keptFrom(this.#store.get());
+    if (own === null) return;
     this.#store.set({
-      kept: new Map(kept).set(key, { edits, ownMotions, width, height, found: packed }),
+      kept: new Map([...kept, own]),
       ...(motionsElsewhere === null ? {} : { settings: { ...settings, motions: motionsElsewhere }, motionsElsewhere: null }),
     });
   }

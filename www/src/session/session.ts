@@ -12,6 +12,8 @@ import { WHOLE } from '../drawing/viewport.js';
 import { nameOfFile, selectOpenable } from '../frames/files.js';
 import { frameFromBlob, frameFromUrl, smaller } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
+import type { Project, ProjectClip } from '../projects/project.js';
+import { Projects } from '../projects/projects.js';
 import type { Kind } from '../result/masks.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import type { Settings } from '../state/settings.js';
@@ -37,6 +39,7 @@ export class Session {
   readonly #segmenting = new Segmenting();
   readonly correcting: Correcting;
   readonly tracking: Tracking;
+  readonly projects: Projects;
   readonly #live: LiveView;
   /** Incremented by each opening, so that a slow one never replaces a later one. */
   #opened = 0;
@@ -53,6 +56,7 @@ export class Session {
       failed: (error) => this.say(sentenceOf(error), codeOf(error)),
       say: (sentence) => this.say(sentence),
     });
+    this.projects = new Projects(store, this.tracking, (sentence, code) => this.say(sentence, code));
     this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
@@ -66,23 +70,31 @@ export class Session {
 
   /**
    * Opens files. A video or more than two images is a clip to choose frames from. Two images make a new pair, in the order of their
-   * names. One image goes into `slot`; without a slot, it becomes the missing second frame or the first of a new pair.
+   * names. One image goes into `slot`; without a slot, it becomes the missing second frame or the first of a new pair. A project continues
+   * with its frames: those given with it, those on screen, or whenever they are opened.
    */
   openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+    let opened: Project | null = null;
     return this.#openFrames(
       async () => {
-        const { video, images } = selectOpenable(await files);
+        const { project, video, images } = selectOpenable(await files);
+        if (project !== null) opened = await this.projects.open(project);
         if (video !== null) return this.#startOf(await openClip(video));
         if (images.length > 2) return this.#startOf(await openFolder(images));
+        if (images.length === 0 && project !== null) return [];
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
         const { longestSide } = this.#store.get().settings;
         return Promise.all(images.map((image) => frameFromBlob(image, nameOfFile(image), longestSide)));
       },
       (frames, pair) => {
         if (frames.length === 2) return pairOf(frames);
-        const [frame] = frames as [LoadedFrame];
+        const [frame] = frames;
+        if (frame === undefined) return pair;
         if (slot !== null) return { ...pair, [slot]: frame };
         return pair.first !== null && pair.second === null ? { ...pair, second: frame } : { first: frame, second: null };
+      },
+      (found) => {
+        if (opened !== null && found !== opened) this.say(strings.projects.waiting(opened.name));
       },
     );
   }
@@ -355,15 +367,27 @@ export class Session {
     );
   }
 
-  /** Loads frames and puts them into the pair. */
-  #openFrames(load: () => Promise<LoadedFrame[]>, place: (frames: LoadedFrame[], pair: FramePair) => FramePair): Promise<void> {
+  /** Loads frames and puts them into the pair, with the work on them that is kept. `then`: after that. */
+  #openFrames(
+    load: () => Promise<readonly LoadedFrame[]>,
+    place: (frames: readonly LoadedFrame[], pair: FramePair) => FramePair,
+    then: (found: Project | null) => void = () => undefined,
+  ): Promise<void> {
     return this.#open(
-      load,
-      (frames) => {
-        this.#live.stop();
-        this.#setPair(place(frames, this.#store.get().pair));
+      async () => {
+        const frames = await load();
+        return { frames, project: await this.projects.find(place(frames, this.#store.get().pair)) };
       },
-      (frames) => {
+      ({ frames, project }) => {
+        const pair = place(frames, this.#store.get().pair);
+        if (frames.length > 0) this.#live.stop();
+        if (project !== null) this.correcting.keep();
+        this.projects.restore(project, pair);
+        if (frames.length > 0 || project !== null) this.#setPair(pair);
+        if (project?.clip) this.#continue(project.clip);
+        then(project);
+      },
+      ({ frames }) => {
         const { first, second } = this.#store.get().pair;
         for (const frame of frames) {
           const { bitmap, origin } = frame;
@@ -372,6 +396,13 @@ export class Session {
         }
       },
     );
+  }
+
+  /** Goes to where the work on a clip was left. */
+  #continue({ at, hidden }: ProjectClip): void {
+    this.show('objects');
+    if (this.#store.get().look.kind === 'objects') this.#store.look({ hidden: new Set(hidden) });
+    void this.goTo(at);
   }
 
   /**

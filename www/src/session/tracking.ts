@@ -12,7 +12,7 @@ import { UNLABELLED, keyOf } from '../result/masks.js';
 import { type Said, paintedOver, withSaid } from '../state/said.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
-import { type ClipRun, type Range, type Tracked, type TrackedFrame, type Version, rangeOf, untracked, versionOf } from '../state/tracked.js';
+import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, rangeOf, untracked, versionOf } from '../state/tracked.js';
 import { ClipFrames, STOPPED } from './clip-frames.js';
 import { TimeLeft } from './time-left.js';
 
@@ -20,12 +20,6 @@ import { TimeLeft } from './time-left.js';
 const OFTEN = 100;
 /** The largest number of an object. */
 const MOST_OBJECTS = 254;
-
-/** What the pairs of each frame have told, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
-interface Known {
-  readonly settings: string;
-  readonly pairs: Map<number, Blob>;
-}
 
 interface Hooks {
   /** The masks of some frames have changed; `before`: what there was. */
@@ -49,7 +43,7 @@ export class Tracking {
   readonly #hooks: Hooks;
   readonly #segmenter = new Segmenter();
   /** By the clip's fingerprint. */
-  readonly #known = new Map<string, Known>();
+  readonly #known = new Map<string, SolvedPairs>();
   /** The run under way, and the frames whose pairs it solves, if it does. */
   #current: AbortController | null = null;
   #solving: ClipFrames | null = null;
@@ -226,6 +220,16 @@ export class Tracking {
     this.#store.look({ names, colours });
   }
 
+  /** What is known of the pairs of a clip, also if its masks are not complete. */
+  solvedPairs(fingerprint: string): SolvedPairs | null {
+    return this.#known.get(fingerprint) ?? null;
+  }
+
+  /** Goes on from these pairs when the clip is segmented. */
+  learn(fingerprint: string, pairs: SolvedPairs): void {
+    this.#known.set(fingerprint, pairs);
+  }
+
   /** Records that the masks were exported as they are. */
   saved(exported: Tracked): void {
     const { tracked } = this.#store.get();
@@ -376,7 +380,7 @@ export class Tracking {
   }
 
   /** What is known for these settings: other settings and another first frame begin anew. */
-  #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): Known {
+  #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): SolvedPairs {
     const key = JSON.stringify([first, settings.motions, settings.quality, settings.longestSide]);
     const before = this.#known.get(fingerprint);
     const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };

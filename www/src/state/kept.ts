@@ -1,7 +1,10 @@
 //! The edits of pairs that are not open, kept until they are opened again.
 
-import { type Edits, isUnsaved } from '../correction/edits.js';
-import type { Packed } from '../correction/solutions.js';
+import type { Segmentation } from 'veronese';
+import { type Edits, hasEdits, isUnsaved } from '../correction/edits.js';
+import { labellingOf } from '../correction/parts.js';
+import { type Packed, packedResult } from '../correction/solutions.js';
+import { type FramePair, type Subject, keyOfPair, subjectOf } from './pair.js';
 import type { Settings } from './settings.js';
 import { type Tracked, isUnsavedClip } from './tracked.js';
 
@@ -15,6 +18,28 @@ export interface Kept {
   /** Size of the first frame. */
   readonly width: number;
   readonly height: number;
+  /** What the pair is part of. */
+  readonly subject: Subject;
+}
+
+/** The parts of the state that an open pair has. */
+interface Open {
+  readonly pair: FramePair;
+  readonly edits: Edits;
+  readonly found: Segmentation | null;
+  readonly result: { readonly waited: number } | null;
+  readonly settings: Settings;
+  readonly motionsElsewhere: Settings['motions'] | null;
+}
+
+/** The edits of the open pair under its key; `null` if there are none. */
+export function keptFrom({ pair, edits, found, result, settings, motionsElsewhere }: Open): readonly [string, Kept] | null {
+  const [key, subject] = [keyOfPair(pair), subjectOf(pair)];
+  const ownMotions = motionsElsewhere === null ? null : settings.motions;
+  if (key === null || subject === null || pair.first === null || (!hasEdits(edits) && ownMotions === null)) return null;
+  const packed = found === null ? null : { packed: packedResult(found, labellingOf(found)), waited: result?.waited ?? 0 };
+  const { width, height } = pair.first;
+  return [key, { edits, ownMotions, width, height, found: packed, subject }];
 }
 
 interface Kinds {

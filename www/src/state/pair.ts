@@ -22,6 +22,27 @@ export function keyOfPair({ first, second }: FramePair): string | null {
   return first === null || second === null ? null : `${first.fingerprint} ${second.fingerprint}`;
 }
 
+/** What work belongs to: a clip, or a pair of frames that are of none. */
+export interface Subject {
+  /** The fingerprint of the clip, or the key of the pair. */
+  readonly of: string;
+  readonly name: string;
+  /** Number of frames. */
+  readonly frames: number;
+}
+
+/** What the work on this pair belongs to; `null` if a frame is missing. */
+export function subjectOf(pair: FramePair): Subject | null {
+  const clip = timelineOf(pair)?.clip;
+  if (clip !== undefined) return subjectOfClip(clip);
+  const of = keyOfPair(pair);
+  return of === null ? null : { of, name: `${pair.first!.name}, ${pair.second!.name}`, frames: 2 };
+}
+
+export function subjectOfClip({ fingerprint, name, count }: Clip): Subject {
+  return { of: fingerprint, name, frames: count };
+}
+
 /** The sample that a pair shows; `null` if either frame is anything else. */
 export function sampleOf({ first, second }: FramePair): { readonly sample: Sample; readonly swapped: boolean } | null {
   const [a, b] = [first?.origin, second?.origin];

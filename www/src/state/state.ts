@@ -98,6 +98,8 @@ export interface State {
   readonly viewport: Viewport;
   readonly tool: Tool;
   readonly notice: Notice | null;
+  /** Whether the browser keeps the work: it has not had to, does, or did not the last time. */
+  readonly keeping: 'nothing' | 'kept' | 'refused';
 }
 
 /** Whether the first result of a new pair is pending. Views keep showing the last one until then, so that the layout does not jump. */
@@ -127,6 +129,7 @@ export const INITIAL: State = {
   viewport: WHOLE,
   tool: { name: 'look', radius: 8 },
   notice: null,
+  keeping: 'nothing',
 };
 
 export type Listener = (now: State, before: State) => void;

@@ -21,13 +21,21 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'corrected' | 'undone' | 'redone'; readonly changed: number }
+  | { readonly phase: 'done'; readonly cause: 'found' | 'corrected' | 'undone' | 'redone' | 'continued'; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
       /** Time left until all masks are there, seconds; `null` until it can be told. */
       readonly left: number | null;
     };
+
+/** What the pairs of each frame have told, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
+export interface SolvedPairs {
+  /** The settings they were solved with, as text. */
+  readonly settings: string;
+  /** By index of the frame. */
+  readonly pairs: Map<number, Blob>;
+}
 
 /** The masks of all frames and what they follow from: one step of undo and redo. Frames that do not change are shared between steps. */
 export interface Version {
@@ -59,7 +67,7 @@ export interface Tracked extends Version {
   /** Names and colours that the user gave to objects, by `keyOf`. */
   readonly names: Readonly<Record<string, string>>;
   readonly colours: Readonly<Record<string, Colour>>;
-  /** What was last exported, or found by itself. */
+  /** What was last exported, kept as a project, or found by itself. */
   readonly saved: Saved;
 }
 
@@ -92,8 +100,14 @@ export function versionOf({ frames, state, painted, largest }: Version): Version
 }
 
 /** Whether leaving would lose what a person did. */
-export function isUnsavedClip({ frames, names, colours, saved, past }: Tracked): boolean {
-  return names !== saved.names || colours !== saved.colours || (frames !== saved.frames && past.length > 0);
+export function isUnsavedClip({ frames, names, colours, saved, past, run }: Tracked): boolean {
+  const corrected = past.length > 0 || isCorrecting(run);
+  return names !== saved.names || colours !== saved.colours || (frames !== saved.frames && corrected);
+}
+
+/** Whether a correction is being carried through the clip. */
+export function isCorrecting(run: ClipRun): boolean {
+  return run.phase === 'working' && run.stage === 'corrections';
 }
 
 /** One object through a clip. */
@@ -133,4 +147,9 @@ export function lengthOf({ first, last }: Range): number {
 /** Whether there are masks of any frame. */
 export function isTracked(tracked: Tracked | null): tracked is Tracked {
   return tracked !== null && tracked.frames.some((frame) => frame !== null);
+}
+
+/** Whether all frames to segment have their masks, and take corrections. */
+export function isComplete({ frames, state, range }: Pick<Tracked, 'frames' | 'state' | 'range'>): boolean {
+  return state !== null && frames.slice(range.first, range.last + 1).every((frame) => frame !== null);
 }

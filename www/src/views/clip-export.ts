@@ -1,47 +1,33 @@
-//! Taking the masks of a whole clip away, with the objects that are ticked.
+//! Taking the masks of a whole clip away, with the objects that are ticked. Loaded with the panel.
 
 import { strings } from '../common/strings.js';
-import { exportOfClip } from '../export/clip-export.js';
-import type { ClipFormat } from '../export/clip-export.js';
+import { type ClipFormat, exportOfClip } from '../export/clip-export.js';
 import { save } from '../export/save.js';
 import { zipped } from '../export/zip.js';
 import type { Session } from '../session/session.js';
-import type { Store } from '../state/state.js';
+import type { State, Store } from '../state/state.js';
 import { find } from './markup.js';
 
-export function mountClipExport(panel: HTMLElement, store: Store, session: Session): void {
+export function mountClipExport(panel: HTMLElement, store: Store, session: Session, formats: readonly ClipFormat[]): void {
   const root = find(panel, '#clip-export', HTMLElement);
   const select = find(root, 'select', HTMLSelectElement);
   const button = find(root, 'button', HTMLButtonElement);
   const hint = find(root, '#clip-format-hint', HTMLElement);
   const told = find(root, '#clip-export-told', HTMLElement);
-  let formats: readonly ClipFormat[] = [];
+  const chosen = (): ClipFormat => formats[select.selectedIndex]!;
 
-  const describe = (): void => void (hint.textContent = formats[select.selectedIndex]?.hint ?? '');
+  const describe = (): void => void (hint.textContent = chosen().hint);
   select.addEventListener('change', describe);
-  panel.addEventListener('toggle', async () => {
-    if (formats.length > 0 || store.get().look.kind !== 'objects') return;
-    try {
-      ({ CLIP_FORMATS: formats } = await import('../export/clip-formats.js'));
-    } catch {
-      return session.say(strings.errors.notLoaded, 'not-loaded');
-    }
-    select.replaceChildren(...formats.map(({ id, title }) => new Option(title, id)));
-    describe();
-  });
 
   button.addEventListener('click', async () => {
     const { tracked, look } = store.get();
-    const format = formats[select.selectedIndex];
-    if (tracked === null || format === undefined) return;
+    const format = chosen();
+    if (tracked === null) return;
     button.disabled = true;
     try {
       const exported = exportOfClip(tracked, look, (done, of) => (told.textContent = strings.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
-      const files = Object.entries(await format.make(exported));
-      const [[name, content]] = files as [(typeof files)[number]];
-      if (files.length === 1) save(typeof content === 'string' ? content : new Uint8Array(content), 'application/octet-stream', name);
-      else save(await zipped(Object.fromEntries(files.map(([path, one]) => [path, typeof one === 'string' ? new TextEncoder().encode(one) : one]))), 'application/zip', `${format.id}.zip`);
+      await saveFiles(format, await format.make(exported));
       session.tracking.saved(tracked);
       told.textContent = strings.exported(exported.objects.length, exported.count);
     } catch (error) {
@@ -52,9 +38,22 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
     }
   });
 
-  store.subscribe(({ look, tracked }, before) => {
-    if (look === before.look && tracked === before.tracked) return;
+  const render = ({ look, tracked }: State, before: State | null): void => {
     root.hidden = look.kind !== 'objects';
-    if (tracked?.frames !== before.tracked?.frames || look.hidden !== before.look.hidden) told.textContent = '';
-  });
+    if (tracked?.frames !== before?.tracked?.frames || look.hidden !== before?.look.hidden) told.textContent = '';
+  };
+  store.subscribe(render);
+  render(store.get(), null);
+  select.replaceChildren(...formats.map(({ id, title }) => new Option(title, id)));
+  describe();
+  button.disabled = false;
+}
+
+/** One file is saved as it is, several as an archive. */
+async function saveFiles(format: ClipFormat, made: Awaited<ReturnType<ClipFormat['make']>>): Promise<void> {
+  const files = Object.entries(made);
+  const [[name, content]] = files as [(typeof files)[number]];
+  if (files.length === 1) return save(content instanceof Uint8Array ? new Uint8Array(content) : content, 'application/octet-stream', name);
+  const bytes = files.map(async ([path, one]) => [path, new Uint8Array(await new Blob([one as BlobPart]).arrayBuffer())] as const);
+  save(await zipped(Object.fromEntries(await Promise.all(bytes))), 'application/zip', `${format.id}.zip`);
 }

@@ -59,7 +59,7 @@ function sentenceFor(tracked: Tracked): string {
     case 'working':
       return run.stage === 'corrections' ? tracking.corrections : tracking.started;
     case 'done':
-      return run.cause === 'found' ? tracking.found(livesOf(tracked).length, withMasks(frames)) : tracking[run.cause](run.changed);
+      return run.cause === 'found' || run.cause === 'continued' ? tracking[run.cause](livesOf(tracked).length, withMasks(frames)) : tracking[run.cause](run.changed);
     case 'cancelled':
     case 'failed':
       return tracking[run.phase](withMasks(frames), lengthOf(range));

@@ -1,0 +1,57 @@
+//! What an export of a clip will write: the names of its files, and what it writes of one frame.
+
+import type { Look } from '../state/state.js';
+import type { Tracked } from '../state/tracked.js';
+import { type ClipFormat, exportOfClip, exportOfFrame } from './clip-export.js';
+
+/** Files of one folder, in their order. */
+export interface Folder {
+  /** Ends with a slash; empty for files without a folder. */
+  readonly path: string;
+  readonly files: readonly string[];
+}
+
+export interface Preview {
+  readonly folders: readonly Folder[];
+  /**
+   * The file that is shown: its size in bytes, and whether it is written for this frame or will have the other frames too. `null` if the
+   * frame has no masks, or if the format has a picture of its own.
+   */
+  readonly file: { readonly name: string; readonly bytes: number; readonly ofFrame: boolean } | null;
+  /** What the file shows: a picture, or the beginning of its text. */
+  readonly shown: Blob | string | null;
+}
+
+/** Characters of a text. */
+const BEGINNING = 480;
+
+/** `null` if no object is ticked. */
+export async function previewOf(format: ClipFormat, tracked: Tracked, look: Look, index: number): Promise<Preview | null> {
+  const whole = exportOfClip(tracked, look);
+  if (whole.objects.length === 0) return null;
+  const folders = foldersOf(format.names(whole));
+  const one = exportOfFrame(tracked, look, index);
+  if (one === null) return { folders, file: null, shown: null };
+  if (format.picture !== undefined) return { folders, file: null, shown: await format.picture(one) };
+  const [[name, content]] = Object.entries(await format.make(one)) as [[string, string | Uint8Array<ArrayBuffer>]];
+  const file = { name: name.replace(/^.*\//, ''), bytes: new Blob([content]).size, ofFrame: name.includes(one.stems[0]!) };
+  if (typeof content !== 'string') return { folders, file, shown: await pictureIn(name, content) };
+  return { folders, file, shown: content.slice(0, BEGINNING) + (content.length > BEGINNING ? '…' : '') };
+}
+
+/** The picture that a file is, or the first that it packs. */
+async function pictureIn(name: string, bytes: Uint8Array<ArrayBuffer>): Promise<Blob | null> {
+  if (!name.endsWith('.zip')) return new Blob([bytes], { type: 'image/png' });
+  const { unzipSync } = await import('fflate');
+  const picture = Object.entries(unzipSync(bytes)).find(([path]) => path.endsWith('.png'))?.[1];
+  return picture === undefined ? null : new Blob([new Uint8Array(picture)], { type: 'image/png' });
+}
+
+function foldersOf(names: readonly string[]): Folder[] {
+  const folders = new Map<string, string[]>();
+  for (const name of names) {
+    const end = name.lastIndexOf('/') + 1;
+    folders.set(name.slice(0, end), [...(folders.get(name.slice(0, end)) ?? []), name.slice(end)]);
+  }
+  return [...folders].map(([path, files]) => ({ path, files }));
+}

@@ -1,0 +1,94 @@
+//! A project: the work on one clip, or on one pair of frames, without the frames. It is gathered from the state, and put back into it when
+//! the same frames are opened again. What was undone in a clip is not part of it.
+
+import { asSaved } from '../correction/edits.js';
+import { type Kept, keptFrom } from '../state/kept.js';
+import { type FramePair, type Subject, keyOfPair, subjectOf, subjectOfClip, timelineOf } from '../state/pair.js';
+import type { Settings } from '../state/settings.js';
+import type { State } from '../state/state.js';
+import { type SolvedPairs, type Tracked, type Version, isComplete, isTracked, lengthOf, untracked, versionOf } from '../state/tracked.js';
+
+/** The objects of a clip. */
+export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'longestSide' | 'names' | 'colours'> {
+  /** The frame on screen and the objects that are not ticked, when the project was written. */
+  readonly at: number;
+  readonly hidden: readonly number[];
+  /** What is known of the pairs while frames to segment have no masks; `null` if all have. */
+  readonly solved: SolvedPairs | null;
+}
+
+export interface Project extends Subject {
+  readonly settings: Settings;
+  /** `null` if the subject is no clip, or is not segmented. */
+  readonly clip: ProjectClip | null;
+  /** The edited pairs, by their key. */
+  readonly pairs: ReadonlyMap<string, Kept>;
+}
+
+/** What the state has of this subject; `null` if nothing was ever done with it. */
+export function projectFrom(state: State, of: string, solvedPairs: (fingerprint: string) => SolvedPairs | null): Project | null {
+  const { settings, motionsElsewhere } = state;
+  const pairs = new Map([...state.kept].filter(([, kept]) => kept.subject.of === of));
+  const open = subjectOf(state.pair)?.of === of ? keptFrom(state) : null;
+  if (open !== null) pairs.set(...open);
+  const tracked = trackedOf(state, of);
+  const clip = tracked !== null && (tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
+  const subject = clip === null ? [...pairs.values()][0]?.subject : subjectOfClip(clip.clip);
+  if (subject === undefined) return null;
+  return { ...subject, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs(of)), pairs };
+}
+
+function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {
+  return tracked?.clip.fingerprint === of ? tracked : (keptClips.get(of) ?? null);
+}
+
+function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: SolvedPairs | null): ProjectClip {
+  const { range, names, colours } = tracked;
+  const open = timeline?.clip === tracked.clip ? timeline : null;
+  const hidden = open !== null && look.kind === 'objects' ? [...look.hidden] : [];
+  const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
+  // What is complete can be corrected without its pairs.
+  return { ...versionOf(tracked), range, longestSide, names, colours, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
+}
+
+/** The state in which what the project has counts as saved, unless it has changed since. */
+export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of, clip, pairs }: Project): Partial<State> {
+  const savedClip = <T extends Tracked | null>(now: T): T =>
+    clip === null || now?.clip.fingerprint !== of ? now : { ...now, saved: { frames: clip.frames, names: clip.names, colours: clip.colours } };
+  const savedEdits = <T extends Kept['edits']>(now: T, key: string | null): T => {
+    const written = pairs.get(key ?? '');
+    return written === undefined ? now : { ...now, saved: asSaved(written.edits).saved };
+  };
+  return {
+    edits: savedEdits(edits, keyOfPair(pair)),
+    kept: new Map([...kept].map(([key, one]) => [key, { ...one, edits: savedEdits(one.edits, key) }])),
+    tracked: savedClip(tracked),
+    keptClips: new Map([...keptClips].map(([fingerprint, one]) => [fingerprint, savedClip(one)])),
+  };
+}
+
+/** The state with the work of the project, which is of this pair or of its clip. */
+export function withProject(state: State, { of, settings, clip, pairs }: Project, pair: FramePair): Partial<State> {
+  const kept = new Map([...state.kept, ...[...pairs].map(([key, one]) => [key, { ...one, edits: asSaved(one.edits) }] as const)]);
+  const common = { settings, motionsElsewhere: null, kept };
+  const opened = timelineOf(pair)?.clip;
+  if (clip === null || opened === undefined) return common;
+  const { tracked, keptClips } = state;
+  if (tracked?.clip.fingerprint === of) return { ...common, tracked: continued(tracked, clip) };
+  return { ...common, keptClips: new Map(keptClips).set(of, continued(keptClips.get(of) ?? untracked(opened), clip)) };
+}
+
+/** Masks of a project that replace others are one more step. */
+function continued(before: Tracked, { solved, at: _at, hidden: _hidden, ...clip }: ProjectClip): Tracked {
+  const complete = isComplete(clip);
+  const { frames, range, names, colours } = clip;
+  return {
+    ...before,
+    ...clip,
+    run: complete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: 'cancelled' },
+    solved: complete ? lengthOf(range) : (solved?.pairs.size ?? 0),
+    past: isTracked(before) ? [...before.past, versionOf(before)] : [],
+    future: [],
+    saved: { frames, names, colours },
+  };
+}

@@ -1,0 +1,180 @@
+//! Keeps the work in this browser while it goes on, and finds it when the same frames are opened again. Only what watches is loaded with
+//! the page.
+
+import { PageError, codeOf, sentenceOf } from '../common/errors.js';
+import { strings } from '../common/strings.js';
+import { NO_EDITS, hasEdits } from '../correction/edits.js';
+import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
+import type { State, Store } from '../state/state.js';
+import { type SolvedPairs, isCorrecting } from '../state/tracked.js';
+import type { Project } from './project.js';
+
+/** How long a change waits for others, milliseconds; and while a clip is segmented, which changes all the time. */
+const SOON = 500;
+const LATER = 10_000;
+
+const OF_EDITS = ['actions', 'done', 'appearances'] as const;
+const OF_CLIP = ['frames', 'state', 'names', 'colours', 'solved', 'run', 'range'] as const;
+
+/** What is not in the state. */
+interface Pairs {
+  solvedPairs(fingerprint: string): SolvedPairs | null;
+  learn(fingerprint: string, pairs: SolvedPairs): void;
+}
+
+type Shelf = typeof import('./shelf.js');
+type Say = (sentence: string, code?: string | null) => void;
+
+export class Projects {
+  readonly #store: Store;
+  readonly #pairs: Pairs;
+  readonly #say: Say;
+  /** What has changed and is not written yet, by the fingerprint of its clip or the key of its pair. */
+  readonly #changed = new Set<string>();
+  /** Projects of files, until their frames are opened. */
+  readonly #opened = new Map<string, Project>();
+  /** What need not be looked for again. */
+  readonly #known = new Set<string>();
+  /** Loaded when it is needed. */
+  #shelf: Shelf | null = null;
+  #timer = 0;
+  #due = Infinity;
+  #writing = false;
+
+  constructor(store: Store, pairs: Pairs, say: Say) {
+    this.#store = store;
+    this.#pairs = pairs;
+    this.#say = say;
+    store.subscribe((now, before) => this.#watch(now, before));
+    document.addEventListener('visibilitychange', () => {
+      if (document.visibilityState === 'hidden') void this.#write();
+    });
+  }
+
+  /** Opens a project's file. Throws a `PageError`. */
+  async open(file: File): Promise<Project> {
+    const { projectFromFile } = await this.#load();
+    const project = await projectFromFile(file, file.name);
+    this.#opened.set(project.of, project);
+    return project;
+  }
+
+  /** The project of these frames, if it is not in the state already. */
+  async find(pair: FramePair): Promise<Project | null> {
+    const subject = subjectOf(pair);
+    if (subject === null) return null;
+    const opened = this.#opened.get(subject.of);
+    if (opened === undefined && (this.#known.has(subject.of) || (await isNothingKept()))) return null;
+    try {
+      const project = opened ?? (await (await this.#load()).get(subject.of, subject.name));
+      // Browsers that read a video approximately may count other frames.
+      if (project === null || project.frames === subject.frames) return project;
+      this.#say(strings.projects.otherFrames(subject.name, project.frames, subject.frames), 'frame-count-mismatch');
+    } catch (error) {
+      this.#say(sentenceOf(error), codeOf(error));
+    }
+    return null;
+  }
+
+  /** Puts what was found for these frames, which are about to be shown, into the state. */
+  restore(project: Project | null, pair: FramePair): void {
+    const subject = subjectOf(pair);
+    if (subject !== null) this.#known.add(subject.of);
+    if (project === null || this.#shelf === null) return;
+    const { withProject } = this.#shelf;
+    this.#opened.delete(project.of);
+    if (project.clip?.solved) this.#pairs.learn(project.of, project.clip.solved);
+    const now = this.#store.get();
+    // The edits on screen are replaced too.
+    const own = keyOfPair(now.pair) === keyOfPair(pair) ? { edits: NO_EDITS, found: null, result: null } : {};
+    this.#store.set({ ...withProject(now, project, pair), ...own, keeping: 'kept' });
+    this.#touch(project.of, SOON);
+  }
+
+  /** The work on what is open, as a file; `null` if there is none. */
+  async file(): Promise<{ readonly name: string; readonly content: Blob } | null> {
+    const { fileOf, projectFrom, withSaved } = await this.#load();
+    const state = this.#store.get();
+    const project = projectFrom(state, subjectOf(state.pair)?.of ?? '', (of) => this.#pairs.solvedPairs(of));
+    if (project === null) return null;
+    const content = await fileOf(project, new Date());
+    this.#store.set(withSaved(this.#store.get(), project));
+    return { name: `${project.name.replace(/\.[^./]*$/, '').replace(/[\\/:*?"<>|#]/g, '_')}.veronese`, content };
+  }
+
+  async #load(): Promise<Shelf> {
+    this.#shelf ??= await import('./shelf.js').catch(() => {
+      throw new PageError('not-loaded', strings.errors.notLoaded);
+    });
+    return this.#shelf;
+  }
+
+  #watch(now: State, before: State): void {
+    const edited = now.found !== before.found || now.motionsElsewhere !== before.motionsElsewhere || OF_EDITS.some((part) => now.edits[part] !== before.edits[part]);
+    const subject = now.pair === before.pair && edited ? subjectOf(now.pair) : null;
+    if (subject !== null && (hasEdits(now.edits) || now.motionsElsewhere !== null)) this.#touch(subject.of, SOON);
+    const [clip, clipBefore] = [now.tracked, before.tracked];
+    if (clip === null || clip.clip !== clipBefore?.clip) return;
+    const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
+    if (!ticked && OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
+    if (clip.solved > 0) this.#touch(clip.clip.fingerprint, clip.run.phase === 'working' ? LATER : SOON);
+  }
+
+  #touch(of: string, delay: number): void {
+    this.#changed.add(of);
+    const due = performance.now() + delay;
+    if (due >= this.#due) return;
+    clearTimeout(this.#timer);
+    this.#due = due;
+    this.#timer = window.setTimeout(() => void this.#write(), delay);
+  }
+
+  /** What can be written: not a clip between two states, whose masks do not belong together. */
+  #ready(): string[] {
+    const { tracked } = this.#store.get();
+    const between = tracked !== null && (isCorrecting(tracked.run) || (tracked.run.phase === 'working' && tracked.past.length > 0));
+    return [...this.#changed].filter((of) => !between || of !== tracked.clip.fingerprint);
+  }
+
+  async #write(): Promise<void> {
+    clearTimeout(this.#timer);
+    this.#due = Infinity;
+    if (this.#writing || this.#ready().length === 0) return;
+    this.#writing = true;
+    try {
+      const { projectFrom, put, withSaved } = await this.#load();
+      for (const of of this.#ready()) {
+        this.#changed.delete(of);
+        const project = projectFrom(this.#store.get(), of, (fingerprint) => this.#pairs.solvedPairs(fingerprint));
+        if (project === null) continue;
+        await put(project);
+        this.#store.set({ ...withSaved(this.#store.get(), project), keeping: 'kept' });
+      }
+    } catch (error) {
+      this.#refuse(error);
+    } finally {
+      this.#writing = false;
+    }
+    const [next] = this.#ready();
+    if (next !== undefined) this.#touch(next, SOON);
+  }
+
+  /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
+  #refuse(error: unknown): void {
+    if (this.#store.get().keeping === 'refused') return;
+    this.#store.set({ keeping: 'refused' });
+    const full = error instanceof Error && error.name === 'QuotaExceededError';
+    this.#say(full ? strings.projects.full : strings.projects.refused, full ? 'storage-full' : 'storage-refused');
+  }
+}
+
+/** Whether nothing can be found, so that a first visit need not look. */
+async function isNothingKept(): Promise<boolean> {
+  try {
+    if (!('createWritable' in FileSystemFileHandle.prototype)) return false; // what is kept is in a database
+    await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');
+    return false;
+  } catch (error) {
+    return error instanceof Error && error.name === 'NotFoundError';
+  }
+}

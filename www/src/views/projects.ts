@@ -1,0 +1,76 @@
+//! The projects: whether the work is kept, saving it as a file, and the list of those that this browser keeps. Loaded with the panel.
+
+import { strings } from '../common/strings.js';
+import { codeOf, sentenceOf } from '../common/errors.js';
+import { save } from '../export/save.js';
+import { type Listed, list, remove } from '../projects/shelf.js';
+import type { Session } from '../session/session.js';
+import type { State, Store } from '../state/state.js';
+import { isCorrecting } from '../state/tracked.js';
+import { element, find } from './markup.js';
+
+export function mountProjects(panel: HTMLElement, store: Store, session: Session): void {
+  const root = find(panel, '#project', HTMLElement);
+  const status = find(root, '#project-status', HTMLElement);
+  const all = find(root, 'details', HTMLDetailsElement);
+  const summary = find(all, 'summary', HTMLElement);
+  const rows = find(all, '#projects', HTMLUListElement);
+
+  const show = ({ keeping }: State): void => void (status.textContent = keeping === 'refused' ? strings.projects.notKept : strings.projects[keeping]);
+
+  const refresh = async (): Promise<void> => {
+    const listed = await list().catch((): Listed[] => []);
+    all.hidden = listed.length === 0;
+    summary.textContent = strings.projects.summary(listed.length);
+    rows.replaceChildren(...listed.map((one) => rowOf(one, () => void forget(one))));
+  };
+
+  const forget = async ({ file, header }: Listed): Promise<void> => {
+    try {
+      await remove(file);
+      session.say(strings.projects.forgotten(header?.name ?? file));
+    } catch (error) {
+      session.say(sentenceOf(error), codeOf(error));
+    }
+    await refresh();
+    (rows.querySelector('button') ?? summary).focus();
+  };
+
+  const button = find(root, '#save-project', HTMLButtonElement);
+  button.addEventListener('click', async () => {
+    const { tracked } = store.get();
+    if (tracked !== null && isCorrecting(tracked.run)) return session.say(strings.projects.correcting);
+    try {
+      const file = await session.projects.file();
+      if (file === null) return session.say(strings.projects.nothingYet);
+      save(file.content, file.content.type, file.name);
+      session.say(strings.projects.saved(file.name));
+    } catch (error) {
+      session.say(sentenceOf(error), codeOf(error));
+    }
+  });
+
+  panel.addEventListener('toggle', () => void refresh());
+  store.subscribe((now, before) => {
+    if (now.keeping === before.keeping) return;
+    show(now);
+    if (panel.matches(':popover-open')) void refresh();
+  });
+  show(store.get());
+  button.disabled = false;
+  void refresh();
+}
+
+function rowOf({ file, header, bytes }: Listed, forget: () => void): HTMLElement {
+  const row = element('li');
+  const text = element('div');
+  const name = header?.name ?? file;
+  text.append(element('strong', header === null ? strings.projects.damagedFile : name));
+  text.append(element('span', header === null ? file : strings.projects.facts(header.frames, bytes, new Date(header.saved)), 'faint'));
+  const button = element('button', strings.projects.forget, 'button small quiet');
+  button.type = 'button';
+  button.setAttribute('aria-label', strings.projects.forgetOf(name));
+  button.addEventListener('click', forget);
+  row.append(text, button);
+  return row;
+}

@@ -1,0 +1,136 @@
+//! Clips exported as videos: played by the browser, and compared with the masks that the package finds in Node.
+
+import { readFile } from 'node:fs/promises';
+
+import { type Page } from '@playwright/test';
+import { decodeImage } from 'veronese/codecs';
+
+import { type Upload, clipFrames, clipInNode, done, expect, open, openExport, test, upload } from './support.js';
+
+/** Odd, which H.264 cannot be. */
+const [WIDTH, HEIGHT] = [201, 141];
+
+async function segmentedClip(page: Page, files: Upload[]): Promise<void> {
+  await open(page, 'groups');
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+}
+
+async function savedVideo(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
+  await openExport(page);
+  await page.getByLabel('Format of the clip').selectOption({ label: format });
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save clip' }).click()]);
+  return { name: download.suggestedFilename(), bytes: await readFile(await download.path()) };
+}
+
+/** The RGBA bytes of these moments, as a `<video>` element shows them, and its size and duration. */
+async function played(page: Page, bytes: Buffer, type: string, times: readonly number[]): Promise<{ width: number; height: number; duration: number; frames: Uint8Array[] }> {
+  const seen = await page.evaluate(
+    async ([base64, type, times]) => {
+      const video = document.createElement('video');
+      video.muted = true;
+      video.src = URL.createObjectURL(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type }));
+      const event = (name: string): Promise<unknown> =>
+        new Promise((resolve, reject) => {
+          video.addEventListener(name, resolve, { once: true });
+          video.addEventListener('error', () => reject(new Error(video.error?.message)), { once: true });
+        });
+      await event('loadeddata');
+      const context = new OffscreenCanvas(video.videoWidth, video.videoHeight).getContext('2d', { willReadFrequently: true })!;
+      const frames: string[] = [];
+      for (const time of times) {
+        const seeked = event('seeked');
+        video.currentTime = time;
+        await seeked;
+        context.clearRect(0, 0, video.videoWidth, video.videoHeight);
+        context.drawImage(video, 0, 0);
+        const { data } = context.getImageData(0, 0, video.videoWidth, video.videoHeight);
+        let binary = '';
+        for (let i = 0; i < data.length; i += 0x8000) binary += String.fromCharCode(...data.subarray(i, i + 0x8000));
+        frames.push(btoa(binary));
+      }
+      return { width: video.videoWidth, height: video.videoHeight, duration: video.duration, frames };
+    },
+    [bytes.toString('base64'), type, times] as const,
+  );
+  return { ...seen, frames: seen.frames.map((base64) => new Uint8Array(Buffer.from(base64, 'base64'))) };
+}
+
+/** The share of pixels for which `shown`, of its RGBA bytes, and `wanted`, of its label, differ. The picture may lack a last column or row. */
+function share(pixels: Uint8Array, width: number, labels: Uint8Array, shown: (rgba: readonly number[]) => boolean, wanted: (label: number) => boolean): number {
+  const count = pixels.length / 4;
+  let wrong = 0;
+  for (let p = 0; p < count; p++) {
+    const label = labels[Math.floor(p / width) * WIDTH + (p % width)]!;
+    if (shown([...pixels.subarray(4 * p, 4 * p + 4)]) !== wanted(label)) wrong += 1;
+  }
+  return wrong / count;
+}
+
+test('a clip is saved as a video with transparency, a green screen and a matte, of the objects that are ticked', async ({ page }) => {
+  const files = await clipFrames(6, WIDTH, HEIGHT);
+  const found = await clipInNode(files);
+  await segmentedClip(page, files);
+  await page.getByLabel('Show Object 2').uncheck();
+  const wanted = (label: number): boolean => label === 1;
+  const at = [0, 3, 5];
+  const times = at.map((k) => (k + 0.5) / 25);
+
+  const transparent = await savedVideo(page, 'Video, transparent');
+  expect(transparent.name).toBe('f00-transparent.webm');
+  const cut = await played(page, transparent.bytes, 'video/webm', times);
+  expect([cut.width, cut.height]).toEqual([WIDTH, HEIGHT]);
+  expect(cut.duration).toBeCloseTo(6 / 25, 2);
+  for (const [i, k] of at.entries()) {
+    const pixels = cut.frames[i]!;
+    expect(share(pixels, WIDTH, found[k]!, (rgba) => rgba[3]! > 127, wanted)).toBeLessThan(0.005);
+    // The colours are those of the frame.
+    const { data } = await decodeImage(files[k]!.buffer);
+    const off = [...found[k]!.keys()].filter((p) => wanted(found[k]![p]!)).map((p) => Math.abs(pixels[4 * p + 1]! - data[4 * p + 1]!));
+    expect(off.reduce((sum, one) => sum + one, 0) / off.length).toBeLessThan(12);
+  }
+
+  const green = await savedVideo(page, 'Video, green screen');
+  expect(green.name).toMatch(/^f00-green\.(mp4|webm)$/);
+  const screen = await played(page, green.bytes, green.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', times);
+  expect([screen.width, screen.height]).toEqual(green.name.endsWith('mp4') ? [WIDTH - 1, HEIGHT - 1] : [WIDTH, HEIGHT]);
+  for (const [i, k] of at.entries()) {
+    const isGreen = ([r, g, b]: readonly number[]): boolean => r! < 60 && g! > 200 && b! < 60;
+    expect(share(screen.frames[i]!, screen.width, found[k]!, (rgba) => !isGreen(rgba), wanted)).toBeLessThan(0.03);
+  }
+
+  const matte = await savedVideo(page, 'Video, matte');
+  const white = await played(page, matte.bytes, matte.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', times);
+  for (const [i, k] of at.entries()) expect(share(white.frames[i]!, white.width, found[k]!, ([r]) => r! > 127, wanted)).toBeLessThan(0.005);
+  await expect(page.locator('#clip-export-told')).toHaveText('Saved: one object in 6 frames.');
+});
+
+test('the preview of a video shows the frame as the video does', async ({ page }) => {
+  const files = await clipFrames(5, WIDTH, HEIGHT);
+  const found = await clipInNode(files);
+  await segmentedClip(page, files);
+  await openExport(page);
+  const preview = page.locator('#clip-preview');
+  await page.getByLabel('Format of the clip').selectOption({ label: 'Video, transparent' });
+  await expect(preview.locator('li')).toHaveText(['f00-transparent.webm']);
+  await expect(preview.locator('figcaption')).toHaveText('Frame 0');
+  const pixels = await preview.locator('img').evaluate(async (image: HTMLImageElement) => {
+    await image.decode();
+    const context = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d')!;
+    context.drawImage(image, 0, 0);
+    return [...context.getImageData(0, 0, image.naturalWidth, image.naturalHeight).data];
+  });
+  expect(share(Uint8Array.from(pixels), WIDTH, found[0]!, (rgba) => rgba[3] === 255, (label) => label > 0)).toBe(0);
+});
+
+test('a browser without encoders does not offer videos', async ({ page }) => {
+  await page.addInitScript(() => delete (window as { VideoEncoder?: unknown }).VideoEncoder);
+  await segmentedClip(page, await clipFrames(5, WIDTH, HEIGHT));
+  await openExport(page);
+  const formats = page.getByLabel('Format of the clip').locator('option');
+  await expect(formats.last()).toHaveText('Label Studio, video');
+  expect((await formats.allTextContents()).filter((title) => title.startsWith('Video'))).toEqual([]);
+});

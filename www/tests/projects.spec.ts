@@ -1,0 +1,312 @@
+//! Projects: what is done with a clip or a pair is kept in the browser and as a file, and is there when the same frames are opened again.
+
+import { readFile } from 'node:fs/promises';
+import { gunzipSync, gzipSync } from 'node:zlib';
+
+import { type Page } from '@playwright/test';
+
+import { video } from './video.js';
+import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, square, test, upload, withoutStorage } from './support.js';
+
+async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
+  return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
+}
+
+async function phase(page: Page, name: string): Promise<void> {
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', name, { timeout: 45_000 });
+}
+
+async function openClip(page: Page, files: Upload[], count = files.length): Promise<void> {
+  await open(page, 'groups');
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText(`${count} frames`);
+  await done(page);
+}
+
+async function segmentClip(page: Page): Promise<void> {
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await phase(page, 'done');
+}
+
+/** Whether the page can be left without a question. */
+function leaves(page: Page): Promise<boolean> {
+  return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
+}
+
+/** Waits until the panel says that the work is kept, and nothing is left to write. */
+async function kept(page: Page): Promise<void> {
+  await openExport(page);
+  await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
+  await page.keyboard.press('Escape');
+  await expect.poll(() => leaves(page)).toBe(true);
+}
+
+/** The only project that the browser keeps, unpacked. */
+function fileInBrowser(page: Page): Promise<string> {
+  return page.evaluate(async () => {
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');
+    let text = '';
+    for await (const name of folder.keys()) {
+      const file = await (await folder.getFileHandle(name)).getFile();
+      text = await new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
+    }
+    return text;
+  });
+}
+
+async function goTo(page: Page, index: number): Promise<void> {
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  const box = (await track.boundingBox())!;
+  const count = Number(await track.getAttribute('aria-valuemax')) + 1;
+  await track.click({ position: { x: ((index + 0.5) * box.width) / count, y: 10 } });
+  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
+  await done(page);
+}
+
+async function rename(page: Page, row: number, name: string): Promise<void> {
+  const input = page.locator('#objects .motion-name').nth(row);
+  await input.fill(name);
+  await input.press('Enter');
+}
+
+async function savedProject(page: Page): Promise<Upload> {
+  await openExport(page);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save project' }).click()]);
+  await page.keyboard.press('Escape');
+  return { name: download.suggestedFilename(), mimeType: '', buffer: await readFile(await download.path()) };
+}
+
+/** A segmented clip of six frames with a name and a correction. */
+async function correctedClip(page: Page, files: Upload[]): Promise<void> {
+  await openClip(page, files);
+  await segmentClip(page);
+  await rename(page, 2, 'Box');
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 1' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of 6 frames/);
+}
+
+/** Whether it is the clip of {@link correctedClip}, continued without being segmented again. */
+async function isContinued(page: Page, files: readonly Upload[]): Promise<void> {
+  const found = await clipInNode(files, { quality: 'fast', edits: { delete: [1] } });
+  await expect(page.locator('#clip-status')).toHaveText('Continued: one object in 6 frames.');
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
+  for (const index of [0, 5]) {
+    await goTo(page, index);
+    expect(differences(await numbersOnCanvas(page), found[index]!)).toBe(0);
+  }
+}
+
+test('a corrected clip is there after a reload, and can be corrected further', async ({ page }) => {
+  const files = await clipFrames(6);
+  await correctedClip(page, files);
+  await goTo(page, 3);
+  await page.getByLabel('Show Box').uncheck();
+  await expect.poll(() => fileInBrowser(page)).toContain('"hidden":[2]');
+  await page.reload();
+  await openClip(page, files);
+  await expect(page.locator('#caption')).toHaveText('Frame 3');
+  await expect(page.getByLabel('Show Box')).not.toBeChecked();
+  await page.getByLabel('Show Box').check();
+  await isContinued(page, files);
+  expect(await leaves(page)).toBe(true);
+
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Box' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0]));
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
+});
+
+test('the settings are those of the project', async ({ page }) => {
+  const files = await clipFrames(5);
+  await openClip(page, files);
+  await page.getByLabel('Seed').fill('7');
+  await page.getByLabel('Seed').blur();
+  await done(page);
+  await segmentClip(page);
+  await kept(page);
+  await page.goto('about:blank');
+  await openClip(page, files);
+  await expect(page.getByLabel('Seed')).toHaveValue('7');
+});
+
+test('a run that was cancelled continues after a reload', async ({ page }) => {
+  await open(page, 'groups');
+  const clip = await video(page, 12, 'webm', 'vp8');
+  await upload(page, [clip]);
+  await expect(page.locator('#clip-name')).toContainText('12 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
+  await page.locator('#clip-cancel').click();
+  await phase(page, 'cancelled');
+  const told = (await page.locator('#clip-status').textContent())!;
+  await kept(page);
+  await page.reload();
+  await openClip(page, [clip], 12);
+  await phase(page, 'cancelled');
+  await expect(page.locator('#clip-status')).toHaveText(told);
+  const before = Number(/(\d+) of 12/.exec(told)?.[1]);
+  await page.getByRole('button', { name: 'Continue' }).click();
+  expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(before);
+  await phase(page, 'done');
+});
+
+test('a project is saved as a file and opened in another browser, with its frames or before them', async ({ page, browser, baseURL }) => {
+  const files = await clipFrames(6);
+  await correctedClip(page, files);
+  const project = await savedProject(page);
+  expect(project.name).toBe('f00.veronese');
+  const [header] = gunzipSync(project.buffer).toString('latin1').split('\n');
+  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 1, name: 'f00.png', frames: 6 });
+
+  const elsewhere = await browser.newContext({ baseURL: baseURL! });
+  const other = await elsewhere.newPage();
+  await open(other, 'groups');
+  await upload(other, [project, ...files]);
+  await expect(other.locator('#clip-name')).toContainText('6 frames');
+  await isContinued(other, files);
+  await elsewhere.close();
+
+  // In this one nothing may be left of it.
+  await openExport(page);
+  await page.getByText('One project in this browser').click();
+  await page.getByRole('button', { name: 'Forget the project of f00.png' }).click();
+  await expect(page.locator('#notice')).toContainText('The project of “f00.png” is forgotten.');
+  await expect(page.locator('#projects')).toBeHidden();
+  await page.reload();
+  await openClip(page, files);
+  await expect(page.locator('#kind-objects')).toBeHidden();
+  // Over the open clip.
+  await upload(page, [project]);
+  await isContinued(page, files);
+  await page.reload();
+  await open(page, 'groups');
+  await upload(page, [project]);
+  await expect(page.locator('#notice')).toContainText('The project of “f00.png” is open. Now open its frames');
+  await upload(page, files);
+  await isContinued(page, files);
+});
+
+test('strokes and names of a pair are there after a reload', async ({ page }) => {
+  const pair = [await square('one.png', 200, 140, 0, 0), await square('two.png', 200, 140, 4, 1)];
+  await open(page, 'groups');
+  await upload(page, pair);
+  await done(page);
+  await page.locator('#motions .motion-name').nth(1).fill('Square');
+  await page.locator('#motions .motion-name').nth(1).press('Enter');
+  await page.locator('#tools [value=brush]').check();
+  const box = (await page.locator('.layers').boundingBox())!;
+  await page.mouse.move(box.x + 0.1 * box.width, box.y + 0.2 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.25 * box.height, { steps: 5 });
+  await page.mouse.up();
+  await expect(page.locator('#status')).toHaveText(/^Labels updated with your stroke/);
+  const painted = await labelsOnCanvas(page);
+  await kept(page);
+  await page.reload();
+  await open(page, 'groups');
+  await upload(page, pair);
+  await expect(page.locator('#motions .motion-name').nth(1)).toHaveValue('Square');
+  await done(page);
+  await expect.poll(async () => differences(await labelsOnCanvas(page), painted)).toBe(0);
+  await page.keyboard.press('Control+z');
+  await expect(page.locator('#status')).toHaveText('Undone.');
+});
+
+for (const [lack, remove] of [
+  ['has no private file system', () => delete (StorageManager.prototype as { getDirectory?: unknown }).getDirectory],
+  ['cannot write it', () => delete (FileSystemFileHandle.prototype as { createWritable?: unknown }).createWritable],
+] as const) {
+  test(`projects are in a database if the browser ${lack}`, async ({ page }) => {
+    await page.addInitScript(remove);
+    const files = await clipFrames(6);
+    await correctedClip(page, files);
+    await kept(page);
+    await page.reload();
+    await openClip(page, files);
+    await isContinued(page, files);
+    await openExport(page);
+    await page.getByText('One project in this browser').click();
+    await page.getByRole('button', { name: 'Forget the project' }).click();
+    await expect(page.locator('#projects')).toBeHidden();
+  });
+}
+
+test('a full disk loses nothing, and the next change is kept again', async ({ page, context, baseURL }) => {
+  const files = await clipFrames(6);
+  await openClip(page, files);
+  await segmentClip(page);
+  await kept(page);
+  const session = await context.newCDPSession(page);
+  await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: 100 });
+  await rename(page, 1, 'Ball');
+  await expect(page.locator('#notice-code')).toHaveText('storage-full');
+  expect(await leaves(page)).toBe(false);
+  await openExport(page);
+  await expect(page.locator('#project-status')).toHaveText('Your work is not kept in this browser. Save the project before you leave.');
+  // What was kept before is whole.
+  await expect(page.locator('#project summary')).toHaveText('One project in this browser');
+  const project = await savedProject(page);
+  expect(await leaves(page)).toBe(true);
+  expect(gunzipSync(project.buffer).toString('latin1')).toContain('"Ball"');
+
+  await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin });
+  await rename(page, 2, 'Box');
+  await kept(page);
+  await page.reload();
+  await openClip(page, files);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Ball');
+  await expect(page.locator('#objects .motion-name').nth(2)).toHaveValue('Box');
+});
+
+test('a browser that keeps nothing says so, and asks before the work is left', async ({ page }) => {
+  await withoutStorage(page);
+  const files = await clipFrames(5);
+  await openClip(page, files);
+  await segmentClip(page);
+  await rename(page, 1, 'Ball');
+  await expect(page.locator('#notice-code')).toHaveText('storage-refused');
+  expect(await leaves(page)).toBe(false);
+  await savedProject(page);
+  expect(await leaves(page)).toBe(true);
+});
+
+test('damaged and foreign projects are refused with a reason, and change nothing', async ({ page }) => {
+  const files = await clipFrames(5);
+  await openClip(page, files);
+  await segmentClip(page);
+  const project = await savedProject(page);
+  const lines = gunzipSync(project.buffer).toString('latin1').split('\n');
+  const remade = (change: (lines: string[]) => string[]): Buffer => gzipSync(Buffer.from(change([...lines]).join('\n'), 'latin1'));
+  const flipped = Buffer.from(project.buffer);
+  flipped[Math.floor(flipped.length / 2)]! ^= 1;
+  const cases: readonly (readonly [Buffer, string])[] = [
+    [Buffer.from(''), 'damaged-project'],
+    [Buffer.from('not a project'), 'damaged-project'],
+    [project.buffer.subarray(0, project.buffer.length - 9), 'damaged-project'],
+    [flipped, 'damaged-project'],
+    [remade(([header, ...rest]) => [header!.replace('"version":1', '"version":2'), ...rest]), 'newer-project'],
+    [remade(([header, ...rest]) => [header!.replace('"frames":5', '"frames":4'), ...rest]), 'damaged-project'],
+    [remade(([header, content, ...rest]) => [header!, content!.replace('"confidence"', '"confident"'), ...rest]), 'damaged-project'],
+    [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('[200,140,', '[200,141,'), ...rest]), 'damaged-project'],
+    [remade(([header, content, ...rest]) => [header!, content!.replace(/\{"image":\d+\}/, '{"image":999}'), ...rest]), 'damaged-project'],
+  ];
+  for (const [buffer, code] of cases) {
+    await upload(page, [{ name: 'other.veronese', mimeType: '', buffer }]);
+    await expect(page.locator('#notice-code')).toHaveText(code);
+    await expect(page.locator('#notice-sentence')).toContainText('“other.veronese”');
+    await page.locator('#notice-close').click();
+  }
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
+});
+
+test('a first visit loads nothing of projects', async ({ page }) => {
+  const asked: string[] = [];
+  page.on('request', (request) => asked.push(request.url()));
+  await open(page);
+  expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
+});
