@@ -5,24 +5,11 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
-import { type Page, test as unwatched } from '@playwright/test';
+import { test as unwatched } from '@playwright/test';
 
-import { chooseMotions, done, expect, labelsOnCanvas, open, test } from './support.js';
+import { axe, chooseMotions, done, expect, labelsOnCanvas, open, test } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
-
-/** The serious and critical violations that axe finds. */
-async function axe(page: Page): Promise<string[]> {
-  const source = readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
-  await page.evaluate(source);
-  return page.evaluate(async () => {
-    const { axe } = window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { target: string[] }[] }[] }> } };
-    const { violations } = await axe.run();
-    return violations
-      .filter(({ impact }) => impact === 'serious' || impact === 'critical')
-      .map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
-  });
-}
 
 for (const scheme of ['light', 'dark'] as const) {
   test(`axe finds nothing serious, ${scheme}`, async ({ page }) => {
@@ -73,8 +60,8 @@ test('the page works without cross-origin isolation', async ({ page }) => {
 });
 
 test('the scripts stay within their size budget', () => {
-  // The host page has a script of its own.
-  const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !name.startsWith('embed-'));
+  // The host page has scripts of its own.
+  const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|element)-/.test(name));
   const sizes = files.map((name) => [name, gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length] as const);
   const [video, own] = [sizes.filter(([name]) => name.startsWith('exact-')), sizes.filter(([name]) => !name.startsWith('exact-'))];
   expect(video).toHaveLength(1); // mediabunny
