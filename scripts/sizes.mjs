@@ -20,6 +20,7 @@ const ROWS = [
   ['`veronese/inline`, with both modules embedded', ['dist/inline.js']],
   ['`veronese/formats`', ['dist/formats/index.js']],
   ['`veronese/element`', ['dist/element.js']],
+  ['`veronese/element` with a clip or in a form', ['dist/element.js', 'dist/element-later.js']],
   ['module with image codecs, for Node only', ['wasm/codecs/veronese_codecs_bg.wasm']],
 ];
 

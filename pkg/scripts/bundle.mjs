@@ -52,7 +52,10 @@ await bundle.write({
   dir: folder('dist'),
   cleanDir: true,
   entryFileNames: '[name].js',
-  chunkFileNames: ({ moduleIds }) => (moduleIds.some((id) => within(['cli/']).test(id)) ? 'cli-[name].js' : '[name].js'),
+  chunkFileNames: ({ moduleIds }) => {
+    const folder = ['cli', 'element'].find((name) => moduleIds.some((id) => within([`${name}/`]).test(id)));
+    return folder ? `${folder}-[name].js` : '[name].js';
+  },
   comments: false,
   minify: false,
   minifyInternalExports: false,

@@ -413,7 +413,7 @@ describe('pictures and labels', () => {
       }
     }
     assert.deepEqual(optionsOf(() => ''), {});
-    assert.deepEqual([...VeroneseSegmenterElement.observedAttributes].sort(), ['first', 'grouped', 'motions', 'quality', 'second', 'seed']);
+    assert.deepEqual([...VeroneseSegmenterElement.observedAttributes].sort(), ['first', 'grouped', 'motions', 'name', 'quality', 'required', 'second', 'seed', 'src']);
   });
 });
 

@@ -57,18 +57,27 @@ test('sizes stay within their budgets', () => {
   assert.ok(core <= 160 * 1024, `the core module has ${core} bytes`);
   const points = zipped('wasm/points/veronese_points_bg.wasm');
   assert.ok(points <= 66 * 1024, `the module of measurements has ${points} bytes`);
-  // Everything that a browser loads for the package's own entry.
-  const scripts = new Set();
-  const follow = (name) => {
-    if (scripts.has(name)) return;
-    scripts.add(name);
-    for (const [, place] of read(name).toString().matchAll(/^(?:import|export) .*? from "(\.[^"]+)";$/gm)) follow(join(dirname(name), place));
-  };
-  follow('dist/web.js');
-  assert.ok(scripts.size > 1, 'the imports are found');
-  const bytes = [...scripts].reduce((sum, name) => sum + zipped(name), 0);
-  assert.ok(bytes <= 19 * 1024, `the JavaScript has ${bytes} bytes`);
+  for (const [entry, kilobytes] of [['web', 19], ['element', 25]]) {
+    const scripts = loadedBy(`dist/${entry}.js`);
+    assert.ok(scripts.size > 1, 'the imports are found');
+    const bytes = [...scripts].reduce((sum, name) => sum + zipped(name), 0);
+    assert.ok(bytes <= kilobytes * 1024, `the JavaScript of ${entry} has ${bytes} bytes`);
+  }
 });
+
+test('the element loads the code for clips when there is one', () => {
+  const scripts = loadedBy('dist/element.js');
+  assert.ok(!scripts.has('dist/element-later.js') && !scripts.has('dist/png-file.js'));
+  assert.match(read('dist/element-class.js').toString(), /import\("\.\/element-later\.js"\)/);
+});
+
+/** A script and everything that a browser loads with it. */
+function loadedBy(name, scripts = new Set()) {
+  if (scripts.has(name)) return scripts;
+  scripts.add(name);
+  for (const [, place] of read(name).toString().matchAll(/^(?:import|export) .*? from "(\.[^"]+)";$/gm)) loadedBy(join(dirname(name), place), scripts);
+  return scripts;
+}
 
 test("the modules do not hold the builder's folders", () => {
   const home = process.env.HOME;

@@ -1,41 +1,115 @@
 // Types of `veronese/element-class`: the element's class, to register under a name of your own.
 
-import type { Pixels, Progress, Segmentation, VeroneseError } from './index.js';
+import type { ClipFrame, ClipProgress, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
 
 /** A frame: a URL, a file, a bitmap, or pixels. */
 export type FrameSource = string | URL | Blob | ImageBitmap | Pixels;
 
-export interface VeroneseSegmenterEventMap extends HTMLElementEventMap {
-  progress: CustomEvent<Progress> & ProgressEvent;
+/**
+ * The frames of a clip, all of one size, in order. Frames of an array and of `{ length, read(index) }` are read again when they are
+ * shown, so they must stay the same. An iterable or async iterable is a stream, such as a camera: each frame is taken once, and a
+ * compressed copy of its picture is kept.
+ */
+export type ClipFrames =
+  | readonly FrameSource[]
+  | { readonly length: number; read(index: number): FrameSource | Promise<FrameSource> }
+  | Iterable<FrameSource | Promise<FrameSource>>
+  | AsyncIterable<FrameSource>;
+
+/** The events of the element's own, each with what its `detail` holds. */
+export interface VeroneseSegmenterEvents {
+  /** Work goes on: on two frames, or on a frame of a clip, whose progress has a `frame`. */
+  progress: Progress | ClipProgress;
+  /** Two frames are segmented. */
+  result: Segmentation;
+  /** A frame of a clip is done. */
+  frame: ClipFrame;
+  /** All frames of a clip are done. */
+  tracks: ClipTracks;
+  /** Another frame of a clip is shown. */
+  show: { index: number; width: number; height: number; labels: Uint8Array };
+  /** A person has chosen an object, or none. */
+  select: number | null;
+  /** Frames could not be read, segmented or shown. */
+  error: VeroneseError;
+}
+
+export interface VeroneseSegmenterEventMap extends Omit<HTMLElementEventMap, keyof VeroneseSegmenterEvents> {
+  progress: CustomEvent<Progress | ClipProgress>;
   result: CustomEvent<Segmentation>;
-  error: CustomEvent<VeroneseError> & ErrorEvent;
+  frame: CustomEvent<ClipFrame>;
+  tracks: CustomEvent<ClipTracks>;
+  show: CustomEvent<{ index: number; width: number; height: number; labels: Uint8Array }>;
+  select: CustomEvent<number | null>;
+  error: CustomEvent<VeroneseError>;
 }
 
 /**
- * Segments two frames and shows the masks over the first one.
+ * Segments two frames or a clip, and shows the masks over the frames.
  *
- * Attributes: `first` and `second` (image URLs), `motions` (`auto` or 1 to 10), `quality` (`fast` or `best`), `seed`,
- * `grouped` (masks are groups of motions). The element segments when it is connected and whenever an attribute changes.
+ * Attributes: `first` and `second` (image URLs), or `src` (URL of a video, which takes precedence); `motions` (`auto` or 1 to 10),
+ * `quality` (`fast` or `best`), `seed`, `grouped` (masks of two frames are groups of motions); `name`, `disabled` and `required`. The
+ * element segments when it is connected and whenever an attribute changes, and stops when it is disconnected.
  *
- * Events: `progress`, `result` and `error`, each with a `detail`. They do not bubble.
+ * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select` and `error`, each with a `detail`. They do not bubble.
  *
- * CSS: `--veronese-opacity`, `--veronese-background`, `--veronese-font`, `--veronese-status-colour`,
- * `--veronese-status-background`, and `--veronese-colour-K` for mask K. Parts: `picture`, `frame`, `masks`, `status`.
+ * Keyboard: in the picture, Up and Down choose an object, Home and End the first and the last, Escape none; Left and Right step through
+ * the frames of a clip. Below it a clip has a slider for its frames. A click chooses the object under the pointer.
+ *
+ * Forms: under its `name`, the element submits indexed PNG files with the DAVIS palette, whose indices are {@link labels}: `labels.png`
+ * of two frames, or one file for each frame of a clip that is done, `00000.png` and on, once the clip has ended or was aborted. It is
+ * invalid while it segments, after an error, and without masks if it is `required`. A reset shows the first frame and chooses no object.
+ * A disabled element still segments, but takes no input and submits nothing.
+ *
+ * CSS: `--veronese-opacity`, `--veronese-background`, `--veronese-font`, `--veronese-status-colour`, `--veronese-status-background`,
+ * `--veronese-focus-colour`, and `--veronese-colour-K` for mask K. Parts: `stage`, `picture`, `frame`, `masks`, `objects`, `object`,
+ * `status`, and of a clip `timeline` and `progress`.
  */
 export class VeroneseSegmenterElement extends HTMLElement {
+  static readonly formAssociated: true;
   static readonly observedAttributes: string[];
-  /** The last result. */
+  /** The last result of two frames; undefined for a clip. */
   readonly result: Segmentation | undefined;
   /** Sets both frames and segments them. Pixels and bitmaps are copied before the call returns. */
   setFrames(first: FrameSource, second: FrameSource): Promise<Segmentation>;
-  /** Segments the frames with the current attributes. A new call cancels the previous one, which rejects with code `cancelled`. */
-  segment(): Promise<Segmentation>;
-  /** Stops at once; the last result is kept. */
+  /**
+   * The frames of a clip, in place of what the attributes name. Setting them cancels what is running and segments them, if the element is
+   * connected. `undefined` or `null` goes back to the attributes.
+   */
+  get frames(): ClipFrames | undefined;
+  set frames(frames: ClipFrames | undefined | null);
+  /** The attribute `src`. Setting it takes the place of frames that were set by a script. */
+  src: string;
+  /** Number of frames of a clip that are done. */
+  readonly frameCount: number;
+  /** Index of the frame of a clip that is shown, or will be once it is read: `show` tells. Kept within the frames that are done. */
+  currentFrame: number;
+  /** The chosen object (or mask of two frames), null for none. Set by a script, it raises no event. */
+  selected: number | null;
+  /** The objects of the frames of a clip that are done; undefined for two frames. */
+  tracks(): ClipTracks | undefined;
+  /**
+   * Segments the frames with the current attributes: two frames to a `Segmentation`, a clip to its tracks. A new call cancels the
+   * previous one, which rejects with code `cancelled`. A stream that has ended cannot be segmented again.
+   */
+  segment(): Promise<Segmentation | ClipTracks>;
+  /** Stops at once; the last result is kept, and so are the frames of a clip that are done. */
   abort(): void;
-  /** One number per pixel: labels, or groups if the element is `grouped`; 255 is unlabelled. */
+  /** One number per pixel of what is shown: labels, or groups if the element is `grouped`; of a clip, objects. 255 is unlabelled. */
   labels(): Uint8Array | undefined;
-  /** 255 where the label (or group) is, 0 elsewhere. */
+  /** 255 where the label (group, object) is, 0 elsewhere. */
   mask(wanted: number): Uint8Array | undefined;
+  /** The attribute of that name, as in other controls of forms. */
+  name: string;
+  disabled: boolean;
+  required: boolean;
+  /** The form that the element belongs to. */
+  readonly form: HTMLFormElement | null;
+  readonly validity: ValidityState;
+  readonly validationMessage: string;
+  readonly willValidate: boolean;
+  checkValidity(): boolean;
+  reportValidity(): boolean;
   addEventListener<K extends keyof VeroneseSegmenterEventMap>(
     type: K,
     listener: (this: VeroneseSegmenterElement, event: VeroneseSegmenterEventMap[K]) => unknown,

@@ -357,6 +357,8 @@ export type ErrorCode =
   | 'worker-failed'
   | 'cancelled'
   | 'internal'
+  // the custom element and the command line
+  | 'unreadable-video'
   // the command line only
   | 'usage'
   | 'file-not-found'
@@ -365,8 +367,7 @@ export type ErrorCode =
   | 'write-failed'
   | 'too-few-frames'
   | 'pairs-failed'
-  | 'ffmpeg-missing'
-  | 'unreadable-video';
+  | 'ffmpeg-missing';
 
 /**
  * Every error that this package throws or rejects with. Exceptions from the caller's own listeners and sources of pairs are passed on

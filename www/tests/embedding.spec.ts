@@ -1,35 +1,133 @@
 //! <veronese-segmenter> in a host page.
 
+import { readFile } from 'node:fs/promises';
+
 import { type Page } from '@playwright/test';
-import { groupLabels } from 'veronese';
+import { davisPalette, groupLabels } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
 
-import { differences, expect, sample, segmentedInNode, test } from './support.js';
+import { axe, clipFrames, clipInNode, differences, expect, sample, segmentedInNode, test } from './support.js';
+import { video } from './video.js';
 
-async function openHost(page: Page): Promise<void> {
+/** Opens the host page with its clip or, by name, another of its sources. */
+async function openHost(page: Page, source = 'Two cars, clip'): Promise<void> {
   await page.goto('./embed.html');
-  await expect(page.locator('#host-status')).toHaveText(/masks received/, { timeout: 30_000 });
+  if (source !== 'Two cars, clip') await page.getByLabel('Source').selectOption(source);
+  await expect(page.locator('#host-status')).toHaveText(source.endsWith('clip') ? /objects? in 9 frames\.$/ : /objects? in two frames\.$/, { timeout: 40_000 });
 }
 
 /** The current labels of the element. */
-function labels(page: Page): Promise<number[]> {
-  return page.locator('veronese-segmenter').evaluate((element) => Array.from((element as HTMLElement & { labels(): Uint8Array }).labels()));
+async function labels(page: Page): Promise<Uint8Array> {
+  const base64 = await page.locator('veronese-segmenter').evaluate((element) => {
+    let binary = '';
+    for (const label of (element as HTMLElement & { labels(): Uint8Array }).labels()) binary += String.fromCharCode(label);
+    return btoa(binary);
+  });
+  return new Uint8Array(Buffer.from(base64, 'base64'));
 }
 
 test('the host receives the masks of the package', async ({ page }) => {
-  await openHost(page);
+  await openHost(page, 'Two cars, pair');
   const expected = await segmentedInNode(await sample('first'), await sample('second'), { quality: 'fast' });
   const groups = groupLabels(expected);
   expect(differences(await labels(page), groups)).toBe(0);
   const objects = [...new Set(groups)].filter((group) => group !== 0);
   await expect(page.locator('#annotations li')).toHaveCount(objects.length);
-  const pixels = groups.filter((group) => group === objects[0]).length;
-  await expect(page.locator('#annotations li').first()).toContainText(`${pixels} pixels`);
+  const pixels = groups.filter((group) => group === 1).length;
+  await expect(page.locator('#annotations li').first()).toContainText(`${pixels.toLocaleString('en-GB')} pixels`);
   await expect(page.getByRole('img', { name: /masks of \d motions?$/ })).toBeVisible();
+  await expect(page.locator('#timeline')).toBeHidden();
+});
+
+test('a clip is stepped, named and saved', async ({ page }) => {
+  await openHost(page);
+  const [first, second] = [await sample('first'), await sample('second')];
+  const third = { ...first, buffer: await readFile(new URL('../public/samples/intel-two-cars/third.png', import.meta.url)) };
+  const expected = await clipInNode([first, second, third, second, first, second, third, second, first]);
+  expect(differences(await labels(page), expected[0]!)).toBe(0);
+  await page.getByRole('button', { name: 'Next frame' }).click();
+  await expect(page.locator('#position')).toHaveText('Frame 2 of 9');
+  expect(differences(await labels(page), expected[1]!)).toBe(0);
+  const lane = page.locator('#lanes > div').nth(1);
+  const box = (await lane.boundingBox())!;
+  await lane.click({ position: { x: box.width - 2, y: 10 } });
+  await expect(page.locator('#position')).toHaveText('Frame 9 of 9');
+  await expect(page.getByRole('option', { name: 'Object 2', selected: true })).toBeAttached();
+  await expect(page.getByRole('button', { name: 'Choose object 2' })).toHaveAttribute('aria-pressed', 'true');
+
+  await page.getByRole('textbox', { name: 'Name of object 2' }).fill('red car');
+  await expect(lane).toHaveText('red car');
+  await page.getByRole('button', { name: 'Save' }).click();
+  const saved = page.getByRole('dialog', { name: 'Saved by the form' });
+  await expect(saved.getByRole('listitem')).toHaveCount(11);
+  await expect(saved.getByRole('listitem').last()).toHaveText('object-2red car');
+  const waiting = page.waitForEvent('download');
+  await saved.getByRole('link', { name: '00002.png' }).click();
+  const download = await waiting;
+  expect(download.suggestedFilename()).toBe('00002.png');
+  const { data } = await decodeImage(await readFile(await download.path()));
+  const palette = davisPalette().map((colour) => [...colour, 255]);
+  const colours = new Uint8Array(data.length);
+  expected[2]!.forEach((label, p) => colours.set(palette[label]!, 4 * p));
+  expect(differences(data, colours)).toBe(0);
+  await saved.getByRole('button', { name: 'Close' }).click();
+
+  await page.getByRole('button', { name: 'Reset' }).click();
+  await expect(page.locator('#position')).toHaveText('Frame 1 of 9');
+  await expect(page.getByRole('textbox', { name: 'Name of object 2' })).toHaveValue('');
+  await expect(page.getByRole('listbox', { name: 'Objects' }).getByRole('option', { selected: true })).toHaveCount(0);
+});
+
+test('nothing is saved before the masks are there, and a clip can be cancelled', async ({ page }) => {
+  await page.goto('./embed.html');
+  const cancel = page.getByRole('button', { name: 'Cancel' });
+  await cancel.waitFor();
+  await page.getByRole('button', { name: 'Save' }).click();
+  await expect(page.getByRole('dialog')).toBeHidden();
+  expect(await page.locator('veronese-segmenter').evaluate((element) => (element as HTMLInputElement).validationMessage)).toBe('The masks are not ready yet.');
+  await cancel.click();
+  await expect(page.locator('#host-status')).toHaveText('Cancelled.');
+  await expect(cancel).toBeHidden();
+});
+
+test('frames and videos are opened from files', async ({ page }) => {
+  await openHost(page, 'Leader and follower, pair');
+  await page.getByLabel('Open a video, or frames as images').setInputFiles((await clipFrames(3, 96, 64)).reverse());
+  await expect(page.locator('#host-status')).toHaveText(/in 3 frames\.$/, { timeout: 30_000 });
+  await page.getByLabel('Open a video, or frames as images').setInputFiles(await video(page, 4, 'webm', 'vp8'));
+  await expect(page.locator('#host-status')).toHaveText(/in 4 frames\.$/, { timeout: 30_000 });
+  await page.getByLabel('Open a video, or frames as images').setInputFiles({ name: 'notes.mp4', mimeType: 'video/mp4', buffer: Buffer.from('text') });
+  await expect(page.locator('#host-status')).toHaveText('No masks: the clip is not a video that this browser can read.');
+});
+
+for (const scheme of ['light', 'dark'] as const) {
+  test(`axe finds nothing serious, ${scheme}`, async ({ page }) => {
+    await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
+    await openHost(page);
+    await page.getByRole('button', { name: 'Choose object 1' }).click();
+    expect(await axe(page)).toEqual([]);
+    await page.getByRole('button', { name: 'Save' }).click();
+    await expect(page.getByRole('dialog')).toBeVisible();
+    expect(await axe(page)).toEqual([]);
+  });
+}
+
+test('no scrolling at 1280 × 720, nor sideways on a phone', async ({ page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await openHost(page);
+  const overflow = (): Promise<number[]> =>
+    page.evaluate(() => {
+      const { scrollWidth, scrollHeight, clientWidth, clientHeight } = document.documentElement;
+      return [scrollWidth - clientWidth, scrollHeight - clientHeight];
+    });
+  expect(await overflow()).toEqual([0, 0]);
+  await page.setViewportSize({ width: 390, height: 844 });
+  expect((await overflow())[0]).toBe(0);
 });
 
 test('attributes, events, methods and colours', async ({ page }) => {
-  await openHost(page);
-  await page.locator('[name=motions]').selectOption('2');
+  await openHost(page, 'Two cars, pair');
+  await page.locator('#motions').selectOption('2');
   await expect
     .poll(() => page.locator('veronese-segmenter').evaluate((element) => (element as HTMLElement & { result: { count: number } }).result.count))
     .toBe(2);
@@ -41,7 +139,7 @@ test('attributes, events, methods and colours', async ({ page }) => {
     for (let i = 0; i < data.length; i += 4) if (data[i + 3] !== 0) seen.add(data.slice(i, i + 4).join());
     return [...seen];
   });
-  expect(colours).toEqual(['255,77,141,255']);
+  expect(colours).toEqual(['255,92,147,255']);
 
   const told = await page.evaluate(async () => {
     const element = document.createElement('veronese-segmenter') as HTMLElement & {
@@ -77,7 +175,7 @@ test('attributes, events, methods and colours', async ({ page }) => {
 });
 
 test('frames are copied, and invalid ones rejected', async ({ page }) => {
-  await openHost(page);
+  await page.goto('./embed.html');
   const told = await page.evaluate(async () => {
     type Frames = HTMLElement & { setFrames(first: unknown, second: unknown): Promise<{ labels: Uint8Array }>; segment(): Promise<{ labels: Uint8Array }> };
     const element = document.createElement('veronese-segmenter') as Frames;
@@ -126,7 +224,10 @@ test('frames are copied, and invalid ones rejected', async ({ page }) => {
 });
 
 test('an unreadable frame raises an error event', async ({ page }) => {
-  await openHost(page);
-  await page.locator('veronese-segmenter').evaluate((element) => element.setAttribute('first', 'embed.html'));
+  await openHost(page, 'Parallax, pair');
+  await page.locator('veronese-segmenter').evaluate((element) => {
+    element.setAttribute('first', 'embed.html');
+    element.setAttribute('second', 'embed.html');
+  });
   await expect(page.locator('#host-status')).toHaveText('No masks: the first frame is not an image that this browser can read.');
 });

@@ -5,24 +5,11 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
-import { type Page, test as unwatched } from '@playwright/test';
+import { test as unwatched } from '@playwright/test';
 
-import { chooseMotions, done, expect, labelsOnCanvas, open, openExport, test } from './support.js';
+import { axe, chooseMotions, done, expect, labelsOnCanvas, open, openExport, test } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
-
-/** The serious and critical violations that axe finds. */
-async function axe(page: Page): Promise<string[]> {
-  const source = readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
-  await page.evaluate(source);
-  return page.evaluate(async () => {
-    const { axe } = window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { target: string[] }[] }[] }> } };
-    const { violations } = await axe.run();
-    return violations
-      .filter(({ impact }) => impact === 'serious' || impact === 'critical')
-      .map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
-  });
-}
 
 for (const scheme of ['light', 'dark'] as const) {
   test(`axe finds nothing serious, ${scheme}`, async ({ page }) => {
@@ -80,8 +67,8 @@ test('the scripts stay within their size budgets', async ({ page }) => {
   const asked = new Set<string>();
   page.on('request', (request) => asked.add(request.url().replace(/^.*\//, '')));
   await open(page);
-  // The host page has a script of its own. Mediabunny is `reader` and, with what writes videos, `video-file`.
-  const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|reader|video-file)-/.test(name));
+  // The host page has scripts of its own. Mediabunny is `reader` and, with what writes videos, `video-file`.
+  const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|element|reader|video-file)-/.test(name));
   const sizeOf = (names: readonly string[]): number => names.reduce((sum, name) => sum + gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length, 0);
   expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(66 * 1024);
   // What is loaded when it is used.

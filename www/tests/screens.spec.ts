@@ -66,11 +66,25 @@ test('keys', async ({ page }) => {
   await page.screenshot({ path: screen('keys') });
 });
 
-test('host page', async ({ page }) => {
-  await page.goto('./embed.html');
-  await expect(page.locator('#host-status')).toHaveText(/masks received/, { timeout: 30_000 });
-  await page.screenshot({ path: screen('embed') });
-});
+for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
+  for (const colorScheme of ['light', 'dark'] as const) {
+    test(`host page, ${width}, ${colorScheme}`, async ({ page }) => {
+      await page.setViewportSize({ width, height });
+      await page.emulateMedia({ colorScheme });
+      await page.goto('./embed.html');
+      await page.locator('#cancel').waitFor();
+      await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-busy`) });
+      await expect(page.locator('#host-status')).toHaveText(/in 9 frames/, { timeout: 40_000 });
+      await page.getByRole('listbox').focus();
+      await page.keyboard.press('ArrowDown');
+      await page.keyboard.press('ArrowRight');
+      await expect(page.locator('#position')).toHaveText('Frame 2 of 9');
+      await page.screenshot({ path: screen(`embed-${width}-${colorScheme}`), fullPage: true });
+      await page.getByRole('button', { name: 'Save' }).click();
+      await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-saved`) });
+    });
+  }
+}
 
 test('phone', async ({ page }) => {
   await page.setViewportSize({ width: 360, height: 740 });

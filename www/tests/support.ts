@@ -1,5 +1,6 @@
 //! Shared by the tests: a page whose errors fail the test, files to upload, masks read back from the canvas.
 
+import { readFileSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
@@ -199,4 +200,17 @@ export async function clipFrames(count: number, width = 200, height = 140): Prom
       return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
     }),
   );
+}
+
+/** The serious and critical violations that axe finds. */
+export async function axe(page: Page): Promise<string[]> {
+  const source = readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
+  await page.evaluate(source);
+  return page.evaluate(async () => {
+    const { axe } = window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { target: string[] }[] }[] }> } };
+    const { violations } = await axe.run();
+    return violations
+      .filter(({ impact }) => impact === 'serious' || impact === 'critical')
+      .map(({ id, nodes }) => `${id}: ${nodes.map(({ target }) => target.join(' ')).join(', ')}`);
+  });
 }

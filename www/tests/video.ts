@@ -14,8 +14,8 @@ export const BITS = 6;
 /** Side of the square that shows one bit, pixels. */
 export const BIT = 24;
 
-/** A video of `count` frames, encoded by the browser, each with its number as black and white squares over moving texture. */
-export async function video(page: Page, count: number, kind: 'webm' | 'mp4', codec: string): Promise<Upload> {
+/** A video of `count` frames, encoded by the browser, each with its number as black and white squares over moving texture. `duration`: of a frame, seconds. */
+export async function video(page: Page, count: number, kind: 'webm' | 'mp4', codec: string, duration = FRAME): Promise<Upload> {
   const bundle = await readFile(new URL('../../node_modules/mediabunny/dist/bundles/mediabunny.mjs', import.meta.url));
   await page.route('**/maker/mediabunny.mjs', (route) => route.fulfill({ body: bundle, contentType: 'text/javascript' }));
   const base64 = await page.evaluate(
@@ -47,7 +47,7 @@ export async function video(page: Page, count: number, kind: 'webm' | 'mp4', cod
       for (const byte of new Uint8Array(target.buffer!)) binary += String.fromCharCode(byte);
       return btoa(binary);
     },
-    [new URL('maker/mediabunny.mjs', page.url()).href, count, kind, codec, WIDTH, HEIGHT, FRAME, BITS, BIT] as const,
+    [new URL('maker/mediabunny.mjs', page.url()).href, count, kind, codec, WIDTH, HEIGHT, duration, BITS, BIT] as const,
   );
   return { name: `clip.${kind}`, mimeType: `video/${kind}`, buffer: Buffer.from(base64, 'base64') };
 }

@@ -1,137 +1,187 @@
-// <veronese-segmenter>: two frames in, their masks over the first one, as a custom element. Importing this file registers nothing.
+// <veronese-segmenter>: two frames or a clip in, masks over the frames out, as a custom element and a control of forms. Importing this
+// file registers nothing.
 
-import type { Pixels, Progress, Segmentation } from '../../types/index.js';
-import { groupLabels } from '../calls/labels.js';
-import { taken } from '../calls/taking.js';
-import { checkedPixels } from '../calls/tasks.js';
-import { reading } from '../common/checks.js';
+import type { ClipFrames, FrameSource, VeroneseSegmenterEvents } from '../../types/element-class.js';
+import type { ClipProgress, ClipTracks, Pixels, Progress, Segmentation } from '../../types/index.js';
+import { groupLabels, maskOf } from '../calls/labels.js';
+import { UNLABELLED } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { Segmenter } from '../entries/web.js';
+import type { ElementClip, ShownFrame } from './clip.js';
 import { optionsOf } from './options.js';
-
-/** What a frame can be given as. */
-type Source = string | URL | Blob | ImageBitmap | Pixels;
-
-/** What is kept of it, which nobody else can change; or why it cannot be used. */
-type Kept = string | Blob | Pixels | VeroneseError;
+import { type Kept, kept, type Place, pixelsOf } from './sources.js';
+import { View } from './view.js';
 
 /** Where there are no elements (Node, a worker), the class can still be imported. */
 const Base = globalThis.HTMLElement ?? class {};
 
-/** After Okabe and Ito, told apart by people with any common kind of colour blindness; each can be replaced in CSS. */
-const COLOURS = ['transparent', '#f0a000', '#56b4e9', '#d66eaf', '#00a878', '#f0e442', '#d55400', '#0068be', '#ececec', '#805228'];
-
-const STYLE = `
-  :host { display: inline-block; position: relative; overflow: hidden; background: var(--veronese-background, #0d0e10); }
-  :host([hidden]) { display: none; }
-  .picture { position: relative; }
-  canvas { display: block; width: 100%; height: auto; }
-  .masks { position: absolute; inset: 0; height: 100%; opacity: var(--veronese-opacity, 0.55); }
-  .status { position: absolute; inset: auto 0 0; margin: 0; padding: 0.3em 0.8em; font: var(--veronese-font, 0.8125rem/1.5 system-ui, sans-serif);
-    color: var(--veronese-status-colour, #fff); background: var(--veronese-status-background, rgb(0 0 0 / 65%)); }
-  .status:empty { display: none; }
-`;
-
 export class VeroneseSegmenterElement extends Base {
-  static readonly observedAttributes = ['first', 'second', 'motions', 'quality', 'seed', 'grouped'];
+  static readonly formAssociated = true;
+  static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'seed', 'grouped', 'name', 'required'];
 
-  readonly #frame: HTMLCanvasElement;
-  readonly #masks: HTMLCanvasElement;
-  readonly #picture: HTMLElement;
-  readonly #status: HTMLElement;
-  readonly #given: { first?: Kept; second?: Kept } = {};
+  readonly #internals: ElementInternals;
+  readonly #view: View;
+  /** By a script, instead of what attributes say. */
+  #given: { first?: Kept; second?: Kept; frames?: ClipFrames } = {};
   #segmenter: InstanceType<typeof Segmenter> | undefined;
   #request: AbortController | undefined;
   #result: Segmentation | undefined;
+  #clip: ElementClip | undefined;
+  /** The labels of the clip's frame that is shown. */
+  #shown: Uint8Array | undefined;
+  #failure: VeroneseError | undefined;
+  #carries = 0;
   #planned = false;
 
   constructor() {
     super();
-    const root = this.attachShadow({ mode: 'open' });
-    const sheet = new CSSStyleSheet();
-    sheet.replaceSync(STYLE);
-    root.adoptedStyleSheets = [sheet];
-    this.#picture = part('div', 'picture');
-    this.#frame = part('canvas', 'frame');
-    this.#masks = part('canvas', 'masks');
-    this.#status = part('p', 'status');
-    this.#picture.setAttribute('role', 'img');
-    this.#status.setAttribute('role', 'status');
-    this.#frame.width = this.#masks.width = 16;
-    this.#frame.height = this.#masks.height = 9;
-    this.#picture.append(this.#frame, this.#masks);
-    root.append(this.#picture, this.#status);
+    this.#internals = this.attachInternals();
+    this.#internals.role = 'group';
+    this.#view = new View(this.attachShadow({ mode: 'open', delegatesFocus: true }), {
+      select: (object) => this.#tell('select', object),
+      step: (frames) => (this.currentFrame += frames),
+    });
   }
 
-  /** The last result, as {@link Segmenter.segmentPair} gave it. */
+  /** The last result of two frames, as {@link Segmenter.segmentPair} gave it. */
   get result(): Segmentation | undefined {
     return this.#result;
   }
 
   /** Sets both frames at once, also from pixels, which attributes cannot name: these and bitmaps are copied at once. */
-  setFrames(first: Source, second: Source): Promise<Segmentation> {
-    this.#given.first = kept('first', first);
-    this.#given.second = kept('second', second);
-    return this.segment();
+  setFrames(first: FrameSource, second: FrameSource): Promise<Segmentation> {
+    this.#given = { first: kept('the first frame', first), second: kept('the second frame', second) };
+    return this.#run((signal) => this.#segmentPair(signal));
+  }
+
+  get frames(): ClipFrames | undefined {
+    return this.#given.frames;
+  }
+
+  /** A clip, instead of what attributes name; it is segmented at once, or when the element is connected. */
+  set frames(frames: ClipFrames | undefined | null) {
+    this.abort();
+    this.#given = frames === undefined || frames === null ? {} : { frames };
+    this.#plan();
+  }
+
+  /** Number of the clip's frames that are done. */
+  get frameCount(): number {
+    return this.#clip?.length ?? 0;
+  }
+
+  /** Index of the frame of a clip that is shown. */
+  get currentFrame(): number {
+    return this.#clip?.current ?? 0;
+  }
+
+  set currentFrame(index: number) {
+    if (this.frameCount > 0 && index !== this.currentFrame) this.#clip?.show(index);
+  }
+
+  /** The chosen object; null for none. */
+  get selected(): number | null {
+    return this.#view.selected;
+  }
+
+  set selected(object: number | null) {
+    this.#view.selected = object;
+  }
+
+  /** The objects of the frames that are done. */
+  tracks(): ClipTracks | undefined {
+    return this.#clip?.tracks();
   }
 
   /**
-   * Segments the frames with the attributes as they are. Made by itself when the element is connected and when an attribute
+   * Segments what is given, with the attributes as they are. Made by itself when the element is connected and when an attribute
    * changes; a new call ends the one before, which rejects with code `cancelled`.
    */
-  async segment(): Promise<Segmentation> {
-    this.#planned = false;
-    this.abort();
-    const request = new AbortController();
-    this.#request = request;
-    const { signal } = request;
-    try {
-      const [first, second] = await Promise.all([this.#pixels('first', signal), this.#pixels('second', signal)]);
-      signal.throwIfAborted();
-      this.#draw(first);
-      this.#segmenter ??= new Segmenter();
-      const result = await this.#segmenter.segmentPair(first, second, {
-        ...optionsOf((name) => this.getAttribute(name)),
-        signal,
-        onProgress: (progress: Progress) => this.#tell('progress', progress),
-      });
-      signal.throwIfAborted();
-      this.#result = result;
-      this.#paint(result);
-      this.#status.textContent = '';
-      this.#tell('result', result);
-      return result;
-    } catch (thrown) {
-      const error = signal.aborted ? new VeroneseError('cancelled', 'the call was cancelled') : veroneseError(thrown);
-      if (this.#request === request) {
-        this.#status.textContent = error.message;
-        this.#tell('error', error);
-      }
-      throw error;
-    } finally {
-      if (this.#request === request) this.#request = undefined;
-    }
+  segment(): Promise<Segmentation | ClipTracks> {
+    return this.#run<Segmentation | ClipTracks>((signal) => (this.#isClip() ? this.#segmentClip(signal) : this.#segmentPair(signal)));
   }
 
-  /** Stops at once; the last result stays. */
+  /** Stops at once; the last result stays, as do the frames of a clip that are done. */
   abort(): void {
     const request = this.#request;
     this.#request = undefined;
-    request?.abort();
+    if (request === undefined) return;
+    request.abort();
+    this.#validate();
+    void this.#carry();
   }
 
-  /** One number per pixel: labels, or groups where the element is `grouped`; 255 is unlabelled. */
+  /** One number per pixel of what is shown: labels, or groups where the element is `grouped`; 255 is unlabelled. */
   labels(): Uint8Array | undefined {
+    if (this.#clip) return this.#shown;
     if (this.#result === undefined) return undefined;
     return this.hasAttribute('grouped') ? groupLabels(this.#result) : this.#result.labels;
   }
 
   /** 255 where the label (or group) is, 0 elsewhere. */
   mask(wanted: number): Uint8Array | undefined {
-    return this.labels()?.map((label) => (label === wanted ? 255 : 0));
+    const labels = this.labels();
+    return labels && maskOf(labels, wanted);
+  }
+
+  get form(): HTMLFormElement | null {
+    return this.#internals.form;
+  }
+
+  get validity(): ValidityState {
+    return this.#internals.validity;
+  }
+
+  get validationMessage(): string {
+    return this.#internals.validationMessage;
+  }
+
+  get willValidate(): boolean {
+    return this.#internals.willValidate;
+  }
+
+  checkValidity(): boolean {
+    return this.#internals.checkValidity();
+  }
+
+  reportValidity(): boolean {
+    return this.#internals.reportValidity();
+  }
+
+  get src(): string {
+    return this.getAttribute('src') ?? '';
+  }
+
+  set src(address: string) {
+    this.setAttribute('src', address);
+  }
+
+  get name(): string {
+    return this.getAttribute('name') ?? '';
+  }
+
+  set name(name: string) {
+    this.setAttribute('name', name);
+  }
+
+  get disabled(): boolean {
+    return this.hasAttribute('disabled');
+  }
+
+  set disabled(disabled: boolean) {
+    this.toggleAttribute('disabled', disabled);
+  }
+
+  get required(): boolean {
+    return this.hasAttribute('required');
+  }
+
+  set required(required: boolean) {
+    this.toggleAttribute('required', required);
   }
 
   connectedCallback(): void {
+    this.#validate();
     this.#plan();
   }
 
@@ -144,14 +194,32 @@ export class VeroneseSegmenterElement extends Base {
   attributeChangedCallback(name: string, before: string | null, now: string | null): void {
     if (before === now) return;
     if (name === 'first' || name === 'second') delete this.#given[name];
-    if (name === 'grouped') {
-      if (this.#result) this.#paint(this.#result);
-    } else this.#plan();
+    if (name === 'src') this.#given = {};
+    if (name === 'required') this.#validate();
+    else if (name === 'name') void this.#carry();
+    else if (name !== 'grouped') this.#plan();
+    else if (this.#result && !this.#clip) {
+      this.#paintPair(this.#result);
+      void this.#carry();
+    }
+  }
+
+  /** Back to how it was before a person touched it. */
+  formResetCallback(): void {
+    this.currentFrame = 0;
+    this.selected = null;
+  }
+
+  /** By the attribute, or by a fieldset around the element. */
+  formDisabledCallback(disabled: boolean): void {
+    this.#view.disabled = disabled;
+    if (this.#clip) this.#clip.timeline.disabled = disabled;
   }
 
   /** Several attributes that change together are one request. */
   #plan(): void {
-    if (this.#planned || !this.isConnected || !this.#has('first') || !this.#has('second')) return;
+    const given = this.#isClip() || (this.#has('first') && this.#has('second'));
+    if (this.#planned || !this.isConnected || !given) return;
     this.#planned = true;
     queueMicrotask(() => {
       if (!this.#planned) return;
@@ -164,105 +232,170 @@ export class VeroneseSegmenterElement extends Base {
     return this.#given[slot] !== undefined || (this.getAttribute(slot) ?? '') !== '';
   }
 
-  async #pixels(slot: 'first' | 'second', signal: AbortSignal): Promise<Pixels> {
-    const source = this.#given[slot] ?? this.getAttribute(slot) ?? '';
-    if (source instanceof VeroneseError) throw source;
-    if (typeof source === 'object' && 'data' in source) return source;
-    const bitmap = await bitmapOf(source, slot, this.ownerDocument.baseURI, signal);
+  #isClip(): boolean {
+    return this.#given.frames !== undefined || (this.#given.first === undefined && this.src !== '');
+  }
+
+  #place(signal?: AbortSignal): Place {
+    return { base: this.ownerDocument.baseURI, signal };
+  }
+
+  /** Makes one request at a time, and tells how it ended. */
+  async #run<T>(work: (signal: AbortSignal) => Promise<T>): Promise<T> {
+    this.#planned = false;
+    this.abort();
+    const request = new AbortController();
+    const { signal } = request;
+    this.#request = request;
+    this.#failure = undefined;
+    this.#validate();
     try {
-      return pixelsOf(bitmap);
-    } finally {
-      bitmap.close();
+      return await work(signal);
+    } catch (thrown) {
+      const error = signal.aborted ? new VeroneseError('cancelled', 'the call was cancelled') : veroneseError(thrown);
+      if (this.#request === request) {
+        this.#request = undefined;
+        this.#fail(error);
+      }
+      throw error;
     }
   }
 
-  #draw({ data, width, height }: Pixels): void {
-    this.#frame.width = this.#masks.width = width;
-    this.#frame.height = this.#masks.height = height;
-    const image = new ImageData(new Uint8ClampedArray(data), width, height);
-    this.#frame.getContext('2d')?.putImageData(image, 0, 0);
+  async #segmentPair(signal: AbortSignal): Promise<Segmentation> {
+    const [first, second] = await Promise.all([this.#pixels('first', signal), this.#pixels('second', signal)]);
+    signal.throwIfAborted();
+    this.#leaveClip();
+    this.#view.draw(first);
+    const result = await this.#worker().segmentPair(first, second, this.#options(signal));
+    signal.throwIfAborted();
+    this.#result = result;
+    this.#paintPair(result);
+    await this.#carry();
+    signal.throwIfAborted();
+    this.#end();
+    this.#tell('result', result);
+    return result;
   }
 
-  #paint({ width, height, count }: Segmentation): void {
+  async #segmentClip(signal: AbortSignal): Promise<ClipTracks> {
+    const { ElementClip } = await import('./later.js');
+    signal.throwIfAborted();
+    this.#leaveClip();
+    this.#result = undefined;
+    const clip = new ElementClip({ show: (frame) => this.#paintFrame(frame), fail: (thrown) => this.#fail(veroneseError(thrown)) });
+    this.#clip = clip;
+    this.#view.stage.append(clip.progress);
+    this.#view.stage.after(clip.timeline);
+    clip.timeline.disabled = this.matches(':disabled');
+    try {
+      await clip.open(this.#given.frames ?? this.src, this.#place(signal));
+      const poster = await clip.poster();
+      signal.throwIfAborted();
+      if (poster) this.#view.draw(poster);
+      const segmenter = this.#worker();
+      for await (const frame of clip.segment((frames) => segmenter.segmentClip(frames, this.#options(signal)))) {
+        this.#tell('frame', frame);
+        // Frames that come once are followed, unless a person looks at an earlier one.
+        if (frame.index === 0 || (clip.streams && clip.current === frame.index - 1)) clip.show(frame.index);
+      }
+      await clip.shown();
+      await this.#carry();
+      signal.throwIfAborted();
+      this.#end();
+      const tracks = clip.tracks();
+      this.#tell('tracks', tracks);
+      return tracks;
+    } finally {
+      clip.progress.remove();
+    }
+  }
+
+  #worker(): InstanceType<typeof Segmenter> {
+    this.#segmenter ??= new Segmenter();
+    return this.#segmenter;
+  }
+
+  #options(signal: AbortSignal) {
+    const onProgress = (progress: Progress | ClipProgress) => {
+      if ('frame' in progress) this.#clip?.report(progress);
+      this.#tell('progress', progress);
+    };
+    return { ...optionsOf((name) => this.getAttribute(name)), signal, onProgress };
+  }
+
+  async #pixels(slot: 'first' | 'second', signal: AbortSignal): Promise<Pixels> {
+    const source = this.#given[slot] ?? this.getAttribute(slot) ?? '';
+    if (source instanceof VeroneseError) throw source;
+    return pixelsOf(`the ${slot} frame`, source, this.#place(signal));
+  }
+
+  #leaveClip(): void {
+    this.#clip?.close();
+    this.#clip = undefined;
+    this.#shown = undefined;
+  }
+
+  #paintPair(result: Segmentation): void {
+    const { width, height, count } = result;
     const labels = this.labels();
-    const context = this.#masks.getContext('2d');
-    if (labels === undefined || context === null) return;
-    this.#masks.width = width;
-    this.#masks.height = height;
-    const words = this.#words();
-    const pixels = new Uint32Array(labels.length);
-    labels.forEach((label, p) => (pixels[p] = words[label] ?? 0));
-    context.putImageData(new ImageData(new Uint8ClampedArray(pixels.buffer), width), 0, 0);
-    this.#picture.setAttribute('aria-label', `the first frame with the masks of ${count} ${count === 1 ? 'motion' : 'motions'}`);
+    if (labels) this.#view.paint(this, labels, width, height, `the first frame with the masks of ${counted(count, 'motion')}`);
   }
 
-  /** The colour of each label as one RGBA word: `--veronese-colour-K`, else that of the palette. A canvas knows every CSS colour. */
-  #words(): Uint32Array {
-    const style = getComputedStyle(this);
-    const context = new OffscreenCanvas(1, 1).getContext('2d', { willReadFrequently: true });
-    return Uint32Array.from({ length: 255 }, (_, label) => {
-      const own = COLOURS[label < COLOURS.length ? label : 1 + ((label - 1) % (COLOURS.length - 1))] ?? '';
-      const given = style.getPropertyValue(`--veronese-colour-${label}`).trim();
-      return context === null ? 0 : wordOf(context, given === '' ? own : given);
-    });
+  #paintFrame({ index, of, picture, labels }: ShownFrame): void {
+    const { width, height } = picture;
+    const objects = new Set(labels.filter((label) => label !== 0 && label !== UNLABELLED)).size;
+    this.#shown = labels;
+    this.#view.draw(picture);
+    this.#view.paint(this, labels, width, height, `frame ${index + 1} of ${of} with the masks of ${counted(objects, 'object')}`);
+    this.#tell('show', { index, width, height, labels });
   }
 
-  #tell(type: 'progress' | 'result' | 'error', detail: unknown): void {
+  /** Hands the masks to the form, as files. */
+  async #carry(): Promise<void> {
+    const turn = ++this.#carries;
+    const { name } = this;
+    const clip = this.#clip;
+    const labels = this.labels();
+    const value = new FormData();
+    if (name !== '' && clip) for (const file of clip.files()) value.append(name, file);
+    if (name !== '' && !clip && labels && this.#result) {
+      const { fileOf, packed } = await import('./later.js');
+      const { width, height } = this.#result;
+      value.append(name, fileOf(await packed(labels, width, height), 'labels.png'));
+    }
+    // A later call knows better.
+    if (turn === this.#carries) this.#internals.setFormValue(value);
+  }
+
+  #validate(): void {
+    const busy = this.#request !== undefined;
+    const missing = this.required && this.labels() === undefined;
+    const sentence = busy ? 'The masks are not ready yet.' : (this.#failure?.message ?? (missing ? 'Frames are missing.' : ''));
+    const flags = missing && !busy && !this.#failure ? { valueMissing: true } : { customError: sentence !== '' };
+    this.#internals.ariaBusy = String(busy);
+    this.#internals.setValidity(flags, sentence, this.#view.objects);
+  }
+
+  /** A request has ended well: validity says so before the event. */
+  #end(): void {
+    this.#request = undefined;
+    this.#view.status.textContent = '';
+    this.#validate();
+  }
+
+  #fail(error: VeroneseError): void {
+    this.#failure = error;
+    this.#view.status.textContent = error.message;
+    this.#validate();
+    void this.#carry();
+    this.#tell('error', error);
+  }
+
+  #tell(type: keyof VeroneseSegmenterEvents, detail: unknown): void {
     this.dispatchEvent(new CustomEvent(type, { detail }));
   }
 }
 
-function part<T extends 'div' | 'canvas' | 'p'>(tag: T, name: string): HTMLElementTagNameMap[T] {
-  const made = document.createElement(tag);
-  made.className = name;
-  made.setAttribute('part', name);
-  return made;
-}
-
-function kept(which: 'first' | 'second', source: Source): Kept {
-  if (typeof source === 'string' || source instanceof Blob) return source;
-  try {
-    if (source instanceof URL) return source.href;
-    if (source instanceof ImageBitmap) return pixelsOf(source);
-    const { data, ...size } = reading(() => checkedPixels(`the ${which} frame`, source));
-    return { ...size, data: taken([data], false)[0] as Uint8Array };
-  } catch (thrown) {
-    return thrown instanceof VeroneseError ? thrown : unreadable(which, thrown);
-  }
-}
-
-function pixelsOf(bitmap: ImageBitmap): Pixels {
-  const { width, height } = bitmap;
-  const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
-  if (context === null) throw new VeroneseError('internal', 'this browser gives no canvas to read pixels from');
-  context.drawImage(bitmap, 0, 0);
-  return context.getImageData(0, 0, width, height);
-}
-
-function unreadable(which: string, cause: unknown): VeroneseError {
-  return new VeroneseError('unreadable-image', `the ${which} frame is not an image that this browser can read`, { cause });
-}
-
-async function bitmapOf(source: string | Blob, which: string, base: string, signal: AbortSignal): Promise<ImageBitmap> {
-  try {
-    const blob = source instanceof Blob ? source : await fetched(new URL(source, base), signal);
-    return await createImageBitmap(blob, { imageOrientation: 'from-image', colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
-  } catch (cause) {
-    throw unreadable(which, cause);
-  }
-}
-
-async function fetched(url: URL, signal: AbortSignal): Promise<Blob> {
-  const response = await fetch(url, { signal });
-  if (!response.ok) throw new Error(`${url.href} answered ${response.status}`);
-  return response.blob();
-}
-
-function wordOf(context: OffscreenCanvasRenderingContext2D, colour: string): number {
-  context.clearRect(0, 0, 1, 1);
-  context.fillStyle = 'transparent';
-  context.fillStyle = colour;
-  context.fillRect(0, 0, 1, 1);
-  const [r = 0, g = 0, b = 0, a = 0] = context.getImageData(0, 0, 1, 1).data;
-  return ((a << 24) | (b << 16) | (g << 8) | r) >>> 0;
+function counted(count: number, thing: string): string {
+  return `${count} ${thing}${count === 1 ? '' : 's'}`;
 }

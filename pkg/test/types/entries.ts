@@ -1,6 +1,7 @@
 // The entries are what the hand-written types say; compiled, never run.
 
 import * as codecs from '../../src/entries/codecs.js';
+import { VeroneseSegmenterElement } from '../../src/element/element-class.js';
 import * as formats from '../../src/formats/index.js';
 import * as inline from '../../src/entries/inline.js';
 import * as node from '../../src/entries/node.js';
@@ -12,3 +13,4 @@ export const partial: (typeof import('veronese/slim'))[] = [slim, inline];
 export const same: typeof import('veronese/inline') = inline;
 export const files: typeof import('veronese/codecs') = codecs;
 export const masks: typeof import('veronese/formats') = formats;
+export const element: typeof import('veronese/element-class').VeroneseSegmenterElement = VeroneseSegmenterElement;

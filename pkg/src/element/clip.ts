@@ -1,0 +1,198 @@
+// A clip in the element: frames of any kind for `segmentClip`, the pictures and masks of those that are done, a timeline. Loaded
+// when there is a clip.
+
+import type { ClipFrames, FrameSource } from '../../types/element-class.js';
+import type { Clip, ClipFrame, ClipProgress, ClipSource, ClipTracks, Pixels } from '../../types/index.js';
+import { fileOf, type Packed, packed, unpacked } from './masks.js';
+import { type Place, pixelsOf } from './sources.js';
+import { Video } from './video.js';
+import { part } from './view.js';
+
+/** What a clip reads its frames from. */
+interface Source {
+  /** For `segmentClip`. */
+  frames: ClipSource;
+  /** Number of frames, if it is known. */
+  length?: number;
+  /** Reads a frame that was given to `segmentClip` already, or any frame of those that can be read again. */
+  picture: (index: number) => Promise<Pixels>;
+  /** Of the frames, once one has been read. */
+  size: { width: number; height: number };
+  close?: () => void;
+}
+
+export interface ShownFrame {
+  index: number;
+  /** Number of frames, as far as it is known. */
+  of: number;
+  picture: Pixels;
+  labels: Uint8Array;
+}
+
+/** What the element does when a clip can show a frame, or cannot. */
+interface Listeners {
+  show: (frame: ShownFrame) => void;
+  fail: (thrown: unknown) => void;
+}
+
+export class ElementClip {
+  readonly timeline = part('input', 'timeline');
+  readonly progress = part('progress', 'progress');
+  readonly #done: Packed[] = [];
+  readonly #listeners: Listeners;
+  #source: Source | undefined;
+  #clip: Clip | undefined;
+  #current = 0;
+  /** Until the frame that is wanted is shown. */
+  #showing: Promise<void> | undefined;
+  #closed = false;
+
+  constructor(listeners: Listeners) {
+    this.#listeners = listeners;
+    this.timeline.type = 'range';
+    this.timeline.min = this.timeline.max = this.timeline.value = '0';
+    this.timeline.setAttribute('aria-label', 'Frame');
+    this.timeline.addEventListener('input', (event) => {
+      // Seen from outside it would be an input of the element, whose value it does not change.
+      event.stopPropagation();
+      this.show(this.timeline.valueAsNumber);
+    });
+    this.progress.setAttribute('aria-label', 'Progress');
+  }
+
+  /** Number of frames that are done. */
+  get length(): number {
+    return this.#done.length;
+  }
+
+  /** Whether frames come once, as those of a camera. */
+  get streams(): boolean {
+    return this.#source?.length === undefined;
+  }
+
+  async open(given: ClipFrames | string, place: Place): Promise<void> {
+    this.#source = await sourceOf(given, place);
+  }
+
+  /** The first frame, before it has masks. Frames that come once are not taken for it. */
+  async poster(): Promise<Pixels | undefined> {
+    return this.#source?.length ? this.#source.picture(0) : undefined;
+  }
+
+  /** Yields each frame when it can be shown. `begin` begins to segment frames. */
+  async *segment(begin: (frames: ClipSource) => Clip): AsyncGenerator<ClipFrame, void, undefined> {
+    const { frames, size } = this.#source as Source;
+    this.#clip = begin(frames);
+    for await (const frame of this.#clip) {
+      this.#done.push(await packed(frame.labels, size.width, size.height));
+      this.#mark();
+      yield frame;
+    }
+  }
+
+  report({ frame, of, stage }: ClipProgress): void {
+    // The pairs are nearly all the work.
+    if (of !== undefined) this.progress.value = stage === 'pairs' ? frame / of : 1;
+  }
+
+  /** The objects of the frames that are done. */
+  tracks(): ClipTracks {
+    return this.#clip?.tracks() ?? { objects: [], background: [], dropped: 0 };
+  }
+
+  /** Index of the frame that is shown, or will be once it is read. */
+  get current(): number {
+    return this.#current;
+  }
+
+  /** Shows a frame, or the one that is done and nearest to it. Of those that are asked for while one is read, the latest is shown. */
+  show(index: number): void {
+    this.#current = Math.max(0, Math.min(this.length - 1, Math.trunc(index) || 0));
+    this.#mark();
+    this.#showing ??= this.#showLatest();
+  }
+
+  /** Waits for the frame that is wanted. */
+  async shown(): Promise<void> {
+    await this.#showing;
+  }
+
+  async #showLatest(): Promise<void> {
+    for (let index = -1; index !== this.#current && !this.#closed; ) {
+      index = this.#current;
+      try {
+        const [picture, labels] = await Promise.all([(this.#source as Source).picture(index), unpacked(this.#done[index] as Packed)]);
+        if (!this.#closed) this.#listeners.show({ index, of: this.#source?.length ?? this.length, picture, labels });
+      } catch (thrown) {
+        if (!this.#closed) this.#listeners.fail(thrown);
+      }
+    }
+    this.#showing = undefined;
+  }
+
+  #mark(): void {
+    this.timeline.max = String(this.length - 1);
+    this.timeline.value = String(this.#current);
+    this.timeline.setAttribute('aria-valuetext', `frame ${this.#current + 1} of ${this.length}`);
+  }
+
+  /** The masks that are done, as `veronese clip` names those of a video. */
+  files(): File[] {
+    return this.#done.map((done, index) => fileOf(done, `${String(index).padStart(5, '0')}.png`));
+  }
+
+  close(): void {
+    this.#closed = true;
+    this.timeline.remove();
+    this.progress.remove();
+    this.#source?.close?.();
+  }
+}
+
+async function sourceOf(given: ClipFrames | string, place: Place): Promise<Source> {
+  const size = { width: 0, height: 0 };
+  const measured = async (frame: Promise<Pixels>) => {
+    const pixels = await frame;
+    [size.width, size.height] = [pixels.width, pixels.height];
+    return pixels;
+  };
+  const decoded = (index: number, source: FrameSource) => measured(pixelsOf(`frame ${index}`, source, place));
+  if (typeof given === 'string') {
+    const video = new Video(new URL(given, place.base).href);
+    await video.open();
+    return { ...again(video.length, (index) => measured(video.read(index))), size, close: () => video.close() };
+  }
+  if (Array.isArray(given) || 'read' in Object(given)) {
+    const frames = Array.isArray(given) ? listed(given.slice()) : (given as Readable);
+    return { ...again(frames.length, async (index) => decoded(index, await frames.read(index))), size };
+  }
+  const each = given as AsyncIterable<FrameSource>;
+  const isIterable = Symbol.asyncIterator in Object(each) || Symbol.iterator in Object(each);
+  const pictures: Promise<Blob>[] = [];
+  async function* once() {
+    for await (const frame of each) {
+      const pixels = await decoded(pictures.length, frame);
+      pictures.push(pictureOf(pixels));
+      yield pixels;
+    }
+  }
+  // `segmentClip` says what is wrong with frames that are no source.
+  return { frames: isIterable ? once() : (given as never), picture: async (index) => decoded(index, await (pictures[index] as Promise<Blob>)), size };
+}
+
+function again(length: number, read: (index: number) => Promise<Pixels>): Pick<Source, 'frames' | 'length' | 'picture'> {
+  return { frames: { length, read }, length, picture: read };
+}
+
+type Readable = Extract<ClipFrames, { read: unknown }>;
+
+function listed(frames: FrameSource[]): Readable {
+  return { length: frames.length, read: (index) => frames[index] as FrameSource };
+}
+
+/** A frame that comes once, kept to be shown again: lossy, since nothing is computed from it. */
+function pictureOf({ data, width, height }: Pixels): Promise<Blob> {
+  const canvas = new OffscreenCanvas(width, height);
+  canvas.getContext('2d')?.putImageData(new ImageData(new Uint8ClampedArray(data), width, height), 0, 0);
+  return canvas.convertToBlob({ type: 'image/webp', quality: 0.9 });
+}

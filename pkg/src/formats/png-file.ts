@@ -1,0 +1,60 @@
+// The container of a PNG around rows that are filtered and compressed already.
+
+const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
+const COLOUR_TYPE = { grey: 0, indexed: 3 } as const;
+
+export interface PngOptions {
+  /** Bits of a sample: 16 is most significant byte first. */
+  depth?: 8 | 16;
+  /** Red, green, blue of every index; without a palette the samples are grey. */
+  palette?: Uint8Array;
+  /** Alpha of the first indices. */
+  alpha?: Uint8Array;
+}
+
+/** `rows`: a zlib stream of all rows, each after the number of its filter. */
+export function pngFile(width: number, height: number, rows: Uint8Array, { depth = 8, palette, alpha }: PngOptions): Uint8Array<ArrayBuffer> {
+  const header = new Uint8Array(13);
+  const view = new DataView(header.buffer);
+  view.setUint32(0, width);
+  view.setUint32(4, height);
+  header.set([depth, palette ? COLOUR_TYPE.indexed : COLOUR_TYPE.grey, 0, 0, 0], 8);
+  return joined([
+    Uint8Array.from(SIGNATURE),
+    chunk('IHDR', header),
+    ...(palette ? [chunk('PLTE', palette)] : []),
+    ...(alpha ? [chunk('tRNS', alpha)] : []),
+    chunk('IDAT', rows),
+    chunk('IEND', new Uint8Array()),
+  ]);
+}
+
+function chunk(name: string, data: Uint8Array): Uint8Array {
+  const bytes = new Uint8Array(data.length + 12);
+  const view = new DataView(bytes.buffer);
+  view.setUint32(0, data.length);
+  for (let at = 0; at < 4; at++) bytes[4 + at] = name.charCodeAt(at);
+  bytes.set(data, 8);
+  view.setUint32(data.length + 8, checksum(bytes.subarray(4, data.length + 8)));
+  return bytes;
+}
+
+/** CRC-32 as PNG has it. */
+function checksum(bytes: Uint8Array): number {
+  let sum = ~0;
+  for (const byte of bytes) {
+    sum ^= byte;
+    for (let bit = 0; bit < 8; bit++) sum = (sum >>> 1) ^ (sum & 1 ? 0xedb88320 : 0);
+  }
+  return ~sum >>> 0;
+}
+
+function joined(parts: readonly Uint8Array[]): Uint8Array<ArrayBuffer> {
+  const bytes = new Uint8Array(parts.reduce((sum, { length }) => sum + length, 0));
+  let at = 0;
+  for (const part of parts) {
+    bytes.set(part, at);
+    at += part.length;
+  }
+  return bytes;
+}

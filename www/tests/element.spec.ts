@@ -1,0 +1,390 @@
+//! <veronese-segmenter> by itself: clips, keyboard, forms.
+
+import { createServer } from 'node:http';
+import { readFile, realpath } from 'node:fs/promises';
+import type { AddressInfo } from 'node:net';
+import { extname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+import { type Page, test as unwatched } from '@playwright/test';
+import type { ClipTracks } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
+import type { VeroneseSegmenterElement } from 'veronese/element';
+
+import { clipFrames, clipInNode, differences, expect, test } from './support.js';
+import { BIT, BITS, video } from './video.js';
+
+/** Opens the host page without its own masks, and gives the page `clip(count)`, frames of a moving square as pixels. */
+async function openEmpty(page: Page): Promise<void> {
+  await page.goto('./embed.html');
+  await page.evaluate(() => {
+    document.querySelector('veronese-segmenter')?.remove();
+    const picture = (shift: number): ImageData => {
+      const image = new ImageData(96, 64);
+      for (let p = 0; p < 96 * 64; p++) {
+        const [x, y] = [p % 96, Math.floor(p / 96)];
+        const inside = x >= 30 + shift && x < 60 + shift && y >= 20 && y < 44;
+        const [u, v] = inside ? [x - shift + 300, y + 90] : [x, y];
+        const grey = 128 + 60 * Math.sin(0.5 * u + 0.2 * v) + 50 * Math.cos(0.4 * v - 0.15 * u);
+        image.data.set([grey, grey, grey, 255], 4 * p);
+      }
+      return image;
+    };
+    Object.assign(window, { clip: (count: number) => Array.from({ length: count }, (_, k) => picture(2 * k)) });
+  });
+}
+
+declare const clip: (count: number) => ImageData[];
+
+test('a clip of files: the labels, objects and tracks of the package', async ({ page }) => {
+  const files = await clipFrames(5);
+  const expected = await clipInNode(files);
+  await openEmpty(page);
+  const found = await page.evaluate(async (frames) => {
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    const told: { index: number; labels: number[]; ids: number[] }[] = [];
+    const stages = new Set<string>();
+    element.addEventListener('frame', ({ detail: { index, labels, objects } }) => told.push({ index, labels: [...labels], ids: objects.map(({ id }) => id) }));
+    element.addEventListener('progress', ({ detail }) => stages.add('frame' in detail ? `${detail.stage} of ${detail.of}` : 'of a pair'));
+    const ended = new Promise<ClipTracks>((resolve) => element.addEventListener('tracks', ({ detail }) => resolve(detail)));
+    element.frames = frames.map((base64) => new Blob([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))]));
+    document.body.append(element);
+    const tracks = await ended;
+    const again = element.tracks();
+    return { told, stages: [...stages], tracks, same: JSON.stringify(again) === JSON.stringify(tracks), count: element.frameCount };
+  }, files.map(({ buffer }) => buffer.toString('base64')));
+  expect(found.told.map(({ index }) => index)).toEqual([0, 1, 2, 3, 4]);
+  found.told.forEach(({ labels }, index) => expect(differences(labels, expected[index]!)).toBe(0));
+  expect(found.stages).toEqual(['pairs of 5', 'labels of 5']);
+  expect(found.tracks.objects.map(({ id }) => id)).toEqual([...new Set(found.told.flatMap(({ ids }) => ids))]);
+  expect(found.tracks.objects.length).toBeGreaterThan(0);
+  expect(found).toMatchObject({ same: true, count: 5 });
+});
+
+test('frames of every kind give the same clip, and a stream can be looked at again', async ({ page }) => {
+  await openEmpty(page);
+  const found = await page.evaluate(async () => {
+    const frames = clip(4);
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    document.body.append(element);
+    const segmented = (given: unknown): Promise<string> =>
+      new Promise((resolve, reject) => {
+        const all: string[] = [];
+        const listen = new AbortController();
+        const { signal } = listen;
+        element.addEventListener('frame', ({ detail }) => all.push(String(detail.labels)), { signal });
+        element.addEventListener('error', ({ detail }) => reject(detail), { signal });
+        element.addEventListener('tracks', () => (listen.abort(), resolve(all.join())), { signal });
+        element.frames = given as ImageData[];
+      });
+    const bitmaps = await Promise.all(frames.map((frame) => createImageBitmap(frame)));
+    async function* stream(): AsyncGenerator<ImageData> {
+      const buffer = new ImageData(96, 64); // one for all frames
+      for (const frame of frames) {
+        buffer.data.set(frame.data);
+        yield buffer;
+      }
+    }
+    const whole = await segmented(frames);
+    const same = [
+      (await segmented({ length: 4, read: async (index: number) => frames[index] })) === whole,
+      (await segmented(bitmaps)) === whole,
+    ];
+    const streamed = await segmented(stream());
+    const [again, last] = [(await segmented(frames.values())) === streamed, element.currentFrame];
+    // The picture of a frame that came once, read back: the same but for compression.
+    element.currentFrame = 1;
+    await new Promise((resolve) => element.addEventListener('show', resolve, { once: true }));
+    const { data } = element.shadowRoot!.querySelector<HTMLCanvasElement>('.frame')!.getContext('2d')!.getImageData(0, 0, 96, 64);
+    const error = data.reduce((sum, value, at) => sum + Math.abs(value - frames[1]!.data[at]!), 0) / data.length;
+    element.remove();
+    return { same, again, last, error };
+  });
+  expect(found).toMatchObject({ same: [true, true], again: true, last: 3 });
+  expect(found.error).toBeLessThan(8);
+});
+
+test('frames that cannot be used are errors with a code', async ({ page }) => {
+  await openEmpty(page);
+  const codes = await page.evaluate(async () => {
+    const element = document.createElement('veronese-segmenter');
+    document.body.append(element);
+    const codes: string[] = [];
+    const code = (): Promise<string> => new Promise((resolve) => element.addEventListener('error', ({ detail }) => resolve(detail.code), { once: true }));
+    const [first, second] = clip(2);
+    for (const given of [5, {}, [first, null], [first, new ImageData(32, 32)], [new Blob(['text'])], { length: 'two', read: () => first }, [first, 'embed.html']]) {
+      const told = code();
+      element.frames = given as ImageData[];
+      codes.push(await told);
+    }
+    const told = code();
+    element.src = URL.createObjectURL(new Blob(['no video']));
+    codes.push(await told);
+    // It goes on.
+    const tracks = new Promise((resolve) => element.addEventListener('tracks', resolve, { once: true }));
+    element.frames = [first!, second!];
+    await tracks;
+    return codes;
+  });
+  expect(codes).toEqual(['invalid-input', 'invalid-input', 'invalid-input', 'frame-size-mismatch', 'unreadable-image', 'invalid-input', 'unreadable-image', 'unreadable-video']);
+});
+
+test('abort keeps what is done; other frames and removal cancel and close the source', async ({ page }) => {
+  await openEmpty(page);
+  const found = await page.evaluate(async () => {
+    const frames = clip(6);
+    const form = document.createElement('form');
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    element.name = 'masks';
+    form.append(element);
+    document.body.append(form);
+    let closed = 0;
+    async function* endless(): AsyncGenerator<ImageData> {
+      try {
+        for (let k = 0; ; k++) yield frames[Math.abs((k % 10) - 5)]!;
+      } finally {
+        closed += 1;
+      }
+    }
+    const frame = (index: number): Promise<void> =>
+      new Promise((resolve) => {
+        const listen = new AbortController();
+        element.addEventListener('frame', ({ detail }) => {
+          if (detail.index < index) return;
+          listen.abort();
+          resolve();
+        }, { signal: listen.signal });
+      });
+    const until = async (holds: () => boolean): Promise<void> => {
+      while (!holds()) await new Promise((resolve) => setTimeout(resolve, 20));
+    };
+    element.frames = endless();
+    await frame(2);
+    element.abort();
+    const kept = element.frameCount;
+    await until(() => closed === 1);
+    await until(() => new FormData(form).getAll('masks').length === kept);
+    const stays = element.frameCount === kept && element.checkValidity();
+    element.frames = endless();
+    await frame(0);
+    const tracks = new Promise((resolve) => element.addEventListener('tracks', resolve, { once: true }));
+    element.frames = frames;
+    await tracks;
+    await until(() => closed === 2);
+    const whole = element.frameCount;
+    element.frames = endless();
+    await frame(0);
+    form.remove();
+    await until(() => closed === 3);
+    return { kept, stays, whole };
+  });
+  expect(found.kept).toBeGreaterThanOrEqual(3);
+  expect(found).toMatchObject({ stays: true, whole: 6 });
+});
+
+test('the keyboard steps through frames and chooses objects', async ({ page }) => {
+  await openEmpty(page);
+  await page.evaluate(async () => {
+    document.body.innerHTML = '<main><h1>Test</h1><label><input type="checkbox" id="before" /> Before</label></main>';
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    const chosen: unknown[] = [];
+    element.addEventListener('select', ({ detail }) => chosen.push(detail));
+    Object.assign(window, { chosen, element });
+    const tracks = new Promise((resolve) => element.addEventListener('tracks', resolve));
+    element.frames = clip(4);
+    document.querySelector('main')!.append(element);
+    await tracks;
+    await new Promise((resolve) => setTimeout(resolve));
+  });
+  const state = (): Promise<unknown> =>
+    page.evaluate(() => {
+      const { chosen, element } = window as unknown as { chosen: unknown[]; element: VeroneseSegmenterElement };
+      return { frame: element.currentFrame, selected: element.selected, chosen };
+    });
+  const list = page.getByRole('listbox', { name: 'Objects' });
+  const picture = page.getByRole('img', { name: /^frame \d of 4 with the masks of 1 object$/ });
+  await expect(picture).toHaveAccessibleName(/^frame 1/);
+  await page.locator('#before').focus();
+  await page.keyboard.press('Tab');
+  await expect(list).toBeFocused();
+  expect(await list.evaluate((element) => getComputedStyle(element).outlineStyle)).toBe('solid');
+  await page.keyboard.press('ArrowDown');
+  await expect(page.getByRole('option', { name: 'Object 1', selected: true })).toBeAttached();
+  expect(await list.getAttribute('aria-activedescendant')).toBe(await page.getByRole('option').getAttribute('id'));
+  await page.keyboard.press('ArrowRight');
+  await expect(picture).toHaveAccessibleName(/^frame 2/);
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowLeft');
+  expect(await state()).toEqual({ frame: 1, selected: 1, chosen: [1] });
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.press('ArrowLeft');
+  expect(await state()).toEqual({ frame: 0, selected: null, chosen: [1, null] });
+  await page.keyboard.press('Tab');
+  const slider = page.getByRole('slider', { name: 'Frame' });
+  await expect(slider).toBeFocused();
+  await page.keyboard.press('End');
+  await expect(slider).toHaveAttribute('aria-valuetext', 'frame 4 of 4');
+  await expect(picture).toHaveAccessibleName(/^frame 4/);
+  // A click chooses what is under it, or nothing.
+  const box = (await list.boundingBox())!;
+  await list.click({ position: { x: (50.5 / 96) * box.width, y: (32.5 / 64) * box.height } });
+  expect(await state()).toMatchObject({ selected: 1 });
+  await list.click({ position: { x: 4, y: 4 } });
+  expect(await state()).toMatchObject({ selected: null });
+});
+
+test('a form carries the masks, and waits for them', async ({ page }) => {
+  await openEmpty(page);
+  const found = await page.evaluate(async () => {
+    document.body.innerHTML = '<form><fieldset><veronese-segmenter name="masks" quality="fast" grouped required></veronese-segmenter></fieldset></form>';
+    const form = document.querySelector('form')!;
+    const element = document.querySelector('veronese-segmenter') as VeroneseSegmenterElement;
+    const once = (name: string): Promise<unknown> => new Promise((resolve) => element.addEventListener(name, resolve, { once: true }));
+    const valid = (): string[] => [String(form.checkValidity()), element.validationMessage];
+    const carried = (): string[] => [...new FormData(form)].map(([name, file]) => `${name} ${(file as File).name} ${(file as File).type}`);
+    const missing = [...valid(), String(element.validity.valueMissing)];
+    const [first, second] = clip(2);
+    const result = element.setFrames(first!, second!);
+    const busy = valid();
+    await result;
+    const pair = [...carried(), ...valid()];
+    const file = new FormData(form).get('masks') as File;
+    const labels = { png: [...new Uint8Array(await file.arrayBuffer())], labels: [...element.labels()!] };
+    const tracks = once('tracks');
+    element.frames = clip(3);
+    await tracks;
+    const whole = [...carried(), ...valid()];
+    const frames = await Promise.all(new FormData(form).getAll('masks').map(async (one) => [...new Uint8Array(await (one as File).arrayBuffer())]));
+    const shown: number[][] = [];
+    for (const index of [2, 1, 0]) {
+      element.currentFrame = index;
+      await once('show');
+      shown[index] = [...element.labels()!];
+    }
+    element.name = 'others';
+    const renamed = carried();
+    element.currentFrame = 2;
+    element.selected = 1;
+    await once('show');
+    form.reset();
+    const reset = [element.currentFrame, element.selected, element.form === form];
+    document.querySelector('fieldset')!.disabled = true;
+    const disabled = [carried().length, element.willValidate, element.disabled, element.shadowRoot!.querySelector('input')!.disabled];
+    document.querySelector('fieldset')!.disabled = false;
+    const failed = once('error');
+    element.frames = [first!, new ImageData(32, 32)];
+    await failed;
+    return { missing, busy, pair, labels, whole, frames, shown, renamed, reset, disabled, failed: valid() };
+  });
+  expect(found.missing).toEqual(['false', 'Frames are missing.', 'true']);
+  expect(found.busy).toEqual(['false', 'The masks are not ready yet.']);
+  expect(found.pair).toEqual(['masks labels.png image/png', 'true', '']);
+  expect(found.whole).toEqual([...['00000.png', '00001.png', '00002.png'].map((name) => `masks ${name} image/png`), 'true', '']);
+  expect(found.renamed).toEqual(['00000.png', '00001.png', '00002.png'].map((name) => `others ${name} image/png`));
+  expect(found.reset).toEqual([0, null, true]);
+  expect(found.disabled).toEqual([0, false, false, true]);
+  expect(found.failed).toEqual(['false', expect.stringContaining('32×32')]);
+  // Read by another decoder, the files have the labels.
+  const pictures = [[found.labels.png, found.labels.labels], ...found.frames.map((png, index) => [png, found.shown[index]!])] as [number[], number[]][];
+  for (const [png, labels] of pictures) expect(await coloursOf(png)).toEqual(await davis(labels));
+});
+
+/** The colours of a PNG, pixel by pixel. */
+async function coloursOf(png: readonly number[]): Promise<string> {
+  const { data, width, height } = await decodeImage(Uint8Array.from(png));
+  return `${width}×${height} ${[...data].filter((_, at) => at % 4 !== 3).join()}`;
+}
+
+async function davis(labels: readonly number[]): Promise<string> {
+  const { davisPalette } = await import('veronese');
+  const palette = davisPalette();
+  return `96×64 ${labels.flatMap((label) => palette[label]!).join()}`;
+}
+
+for (const [count, fps] of [[20, 30], [8, 12.5]] as const) {
+  test(`every frame of a video, ${fps} a second`, async ({ page }) => {
+    await openEmpty(page);
+    const { buffer } = await video(page, count, 'webm', 'vp8', fps === 30 ? undefined : 1 / fps);
+    const read = await page.evaluate(async (base64) => {
+      const element = document.createElement('veronese-segmenter');
+      element.setAttribute('quality', 'fast');
+      document.body.append(element);
+      const tracks = new Promise((resolve, reject) => {
+        element.addEventListener('tracks', resolve);
+        element.addEventListener('error', ({ detail }) => reject(detail));
+      });
+      element.src = URL.createObjectURL(new Blob([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))], { type: 'video/webm' }));
+      await tracks;
+      const pictures: number[][] = [];
+      for (let index = element.frameCount - 1; index >= 0; index--) {
+        if (index !== element.currentFrame) {
+          const shown = new Promise((resolve) => element.addEventListener('show', resolve, { once: true }));
+          element.currentFrame = index;
+          await shown;
+        }
+        const canvas = element.shadowRoot!.querySelector<HTMLCanvasElement>('.frame')!;
+        pictures[index] = [...canvas.getContext('2d')!.getImageData(0, 0, canvas.width, 40).data];
+      }
+      return pictures;
+    }, buffer.toString('base64'));
+    const numbers = read.map((data) => {
+      const width = data.length / 4 / 40;
+      const bit = (b: number): number => Number(data[4 * ((8 + BIT / 2) * width + 8 + b * BIT + BIT / 2)]! > 128);
+      return Array.from({ length: BITS }, (_, b) => bit(b) << b).reduce((sum, value) => sum + value, 0);
+    });
+    expect(numbers).toEqual(Array.from({ length: count }, (_, index) => index));
+  });
+}
+
+// The examples of the package's README, in a page that loads the package without a bundler.
+
+const ROOT = fileURLToPath(new URL('../../', import.meta.url));
+const TYPES: Record<string, string> = { '.js': 'text/javascript', '.wasm': 'application/wasm', '.html': 'text/html; charset=utf-8' };
+
+unwatched('the examples of README.md', async ({ page }) => {
+  const readme = await readFile(join(ROOT, 'pkg/README.md'), 'utf8');
+  const examples = [...readme.matchAll(/^```html element\n([\s\S]*?)^```$/gm)].map(([, code]) => code!);
+  expect(examples).toHaveLength(2);
+  const pictures = new Map((await clipFrames(4, 96, 64)).map(({ buffer }, index) => [`/f${index}.png`, buffer]));
+  pictures.set('/first.png', pictures.get('/f0.png')!).set('/second.png', pictures.get('/f1.png')!);
+  const map = JSON.stringify({ imports: { 'veronese/element': '/pkg/dist/element.js' } });
+  const asked: string[] = [];
+  const server = createServer((request, response) => {
+    const path = request.url ?? '/';
+    asked.push(path);
+    const example = /^\/(\d)\.html$/.exec(path)?.[1];
+    const answer = async (): Promise<string | Buffer> => {
+      if (example) return `<!doctype html><link rel="icon" href="data:," /><script type="importmap">${map}</script>${examples[Number(example)]}`;
+      return pictures.get(path) ?? readFile(await realpath(join(ROOT, new URL(path, 'http://host').pathname)));
+    };
+    answer().then(
+      (body) => response.writeHead(200, { 'Content-Type': TYPES[extname(path)] ?? 'image/png' }).end(body),
+      () => response.writeHead(404).end(),
+    );
+  });
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const address = `http://127.0.0.1:${(server.address() as AddressInfo).port}`;
+  const logged: string[] = [];
+  page.on('console', (message) => logged.push(message.text()));
+  page.on('pageerror', (error) => logged.push(String(error)));
+  try {
+    await page.goto(`${address}/0.html`);
+    await expect(page.getByRole('img', { name: /masks of \d motions?$/ })).toBeAttached({ timeout: 30_000 });
+    // Two frames without a form load nothing that is for clips and files.
+    expect(asked.filter((path) => path.includes('later'))).toEqual([]);
+    expect(logged).toEqual([]);
+    await page.goto(`${address}/1.html`);
+    await expect(page).toHaveTitle(/^\d+ objects$/, { timeout: 30_000 });
+    await page.getByRole('button', { name: 'Save' }).click();
+    await expect.poll(() => logged.at(-1)).toBe('00000.png 00001.png 00002.png 00003.png');
+    expect(logged.slice(0, 4).map((line) => line.split(' ')[0])).toEqual(['0', '1', '2', '3']);
+  } finally {
+    server.close();
+    server.closeAllConnections();
+  }
+});
