@@ -6,7 +6,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openAdvanced, openExport, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
@@ -123,14 +123,15 @@ test('a corrected clip is there after a reload, and can be corrected further', a
 test('the settings are those of the project', async ({ page }) => {
   const files = await clipFrames(5);
   await openClip(page, files);
-  await page.getByLabel('Seed').fill('7');
-  await page.getByLabel('Seed').blur();
+  const unlabelled = page.getByLabel('Leave unexplained pixels unlabelled');
+  await openAdvanced(page);
+  await unlabelled.check();
   await done(page);
   await segmentClip(page);
   await kept(page);
   await page.goto('about:blank');
   await openClip(page, files);
-  await expect(page.getByLabel('Seed')).toHaveValue('7');
+  await expect(unlabelled).toBeChecked();
 });
 
 test('a run that was cancelled continues after a reload', async ({ page }) => {
@@ -204,7 +205,7 @@ test('strokes and names of a pair are there after a reload', async ({ page }) =>
   await page.mouse.down();
   await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.25 * box.height, { steps: 5 });
   await page.mouse.up();
-  await expect(page.locator('#status')).toHaveText(/^Labels updated with your stroke/);
+  await expect(page.locator('#status')).toHaveText(/^Masks updated with your stroke/);
   const painted = await labelsOnCanvas(page);
   await kept(page);
   await page.reload();
