@@ -41,11 +41,12 @@ async function kept(page: Page): Promise<void> {
   await expect.poll(() => leaves(page)).toBe(true);
 }
 
-/** The only project that the browser keeps, unpacked. */
+/** The only project that the browser keeps, unpacked; empty before there is one. */
 function fileInBrowser(page: Page): Promise<string> {
   return page.evaluate(async () => {
-    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects').catch(() => null);
     let text = '';
+    if (folder === null) return text;
     for await (const name of folder.keys()) {
       const file = await (await folder.getFileHandle(name)).getFile();
       text = await new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
