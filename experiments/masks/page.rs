@@ -229,8 +229,8 @@ impl Page<'_> {
             "## Ablation\n\nEach row leaves out one part of a single search, without the mirror images of *best*; the change is in brackets. \
              First the {} generated scenes and \
              the {} scenes of cars on bare ground, with *best* unless something else is said.\n\n\
-             | without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | mean IoU, fast | ms, scenes |\n\
-             |---|---|---|---|---|---|---|---|",
+             | without | mean IoU | n right | sub-pixel | F | mean IoU, bare ground | mean IoU, fast |\n\
+             |---|---|---|---|---|---|---|",
             best.scenes.cases, best.bare.cases
         );
         for worth in self.worths {
@@ -245,7 +245,7 @@ impl Page<'_> {
                 changed(now.bare.miou, of_whole.bare.miou, first),
                 changed(fast.scenes.miou, fast_whole.scenes.miou, first),
             ];
-            let _ = writeln!(text, "| {} | {} | {:.0} |", worth.title, cells.join(" | "), s.milliseconds);
+            let _ = writeln!(text, "| {} | {} |", worth.title, cells.join(" | "));
         }
         text.push('\n');
         if let Some(pairs) = &best.pairs {

@@ -23,8 +23,8 @@ interface Encoded {
 }
 
 export async function videoOf(exported: ClipExport, ground: Ground, codec: string): Promise<Blob> {
-  const { clip, count } = exported;
-  const times = clip.times === null ? null : [...clip.times.subarray(0, count)].map((time) => time - clip.times![0]!);
+  const { count } = exported;
+  const times = exported.meta.timestamps;
   const startOf = (k: number): number => times?.[k] ?? k / FRAMES_PER_SECOND;
   // The last frame is shown as long as the one before.
   const endOf = (k: number): number => (k + 1 < count ? startOf(k + 1) : startOf(k) + (k > 0 ? startOf(k) - startOf(k - 1) : 1 / FRAMES_PER_SECOND));
