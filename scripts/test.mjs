@@ -1,10 +1,12 @@
 // npm test: all tests and all checks; `npm test -- native page` runs the named parts only.
 
+import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
 import { buildModules, buildPackage, buildPage } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
 import { cargoCounts, nodeCounts, playwrightCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
-import { Stop, command, run } from './lib/run.mjs';
+import { Stop, command } from './lib/run.mjs';
+import { tests } from './lib/tests.mjs';
 
 const PARTS = {
   check: { title: 'checks', run: runChecks },
@@ -54,6 +56,15 @@ const PARTS = {
       return tests(playwrightCounts, 'npm', ['test', '--silent', '--workspace', 'www'], env);
     },
   },
+  browsers: {
+    title: 'the page in the browsers that are installed',
+    run: async ({ chromium }) => {
+      await buildModules();
+      await buildPackage();
+      await buildPage();
+      return testInBrowsers(await findBrowsers(chromium.path));
+    },
+  },
 };
 
 await command(async (args) => {
@@ -65,7 +76,7 @@ await command(async (args) => {
   const names = args.length > 0 ? args : Object.keys(PARTS);
   const setup = await prepare({
     checks: names.includes('check'),
-    browser: names.includes('page') || names.includes('hosts'),
+    browser: ['page', 'hosts', 'browsers'].some((name) => names.includes(name)),
     python: names.includes('formats'),
     hosts: names.includes('hosts'),
   });
@@ -84,15 +95,6 @@ async function runPart({ title, run: runTests }, setup) {
     return { passed: 0, failed: 1, skipped: 0, note: error.message };
   });
   return { title, seconds: (Date.now() - start) / 1000, ...outcome };
-}
-
-/** Runs a test program. Its exit code decides: a crash fails the part, and so does a run without tests. */
-async function tests(count, program, args, env = {}) {
-  const { code, text } = await run(program, args, { output: 'both', env });
-  const counts = count(text);
-  if (code !== 0 && counts.failed === 0) return { ...counts, failed: 1, note: `${program} ended with code ${code}` };
-  if (counts.passed + counts.failed === 0) return { ...counts, failed: 1, note: 'no test ran' };
-  return counts;
 }
 
 function summarise(results) {

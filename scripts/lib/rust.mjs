@@ -9,6 +9,7 @@ import { Stop, longStep, run } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 const WASM_PACK = '0.15.1';
+const GECKODRIVER = '0.37.1';
 const RUSTUP = 'https://rustup.rs';
 // Shared by both tools, which have packages in common. Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
@@ -59,6 +60,12 @@ export async function prepareCompiler({ checks }) {
 export async function prepareWasmTools() {
   await cargoInstall('wasm-bindgen', 'wasm-bindgen-cli', wasmBindgenVersion(), ['wasm-bindgen-test-runner']);
   await cargoInstall('wasm-pack', 'wasm-pack', WASM_PACK);
+  rmSync(COMPILE_FOLDER, { recursive: true, force: true });
+}
+
+/** Installs the program that drives Firefox; only its tests need it. */
+export async function prepareGeckodriver() {
+  await cargoInstall('geckodriver', 'geckodriver', GECKODRIVER);
   rmSync(COMPILE_FOLDER, { recursive: true, force: true });
 }
 

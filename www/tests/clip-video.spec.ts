@@ -3,9 +3,11 @@
 import { readFile } from 'node:fs/promises';
 
 import { type Page } from '@playwright/test';
+import { ALL_FORMATS, BufferSource, EncodedPacketSink, Input } from 'mediabunny';
 import { decodeImage } from 'veronese/codecs';
 
 import { type Upload, clipFrames, clipInNode, done, expect, open, openExport, test, upload } from './support.js';
+import { video } from './video.js';
 
 /** Odd, which H.264 cannot be. */
 const [WIDTH, HEIGHT] = [201, 141];
@@ -106,6 +108,46 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
   const white = await played(page, matte.bytes, matte.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', times);
   for (const [i, k] of at.entries()) expect(share(white.frames[i]!, white.width, found[k]!, ([r]) => r! > 127, wanted)).toBeLessThan(0.005);
   await expect(page.locator('#clip-export-told')).toHaveText('Saved: one object in 6 frames.');
+});
+
+/** The times of a video's frames and their durations as its file says them, seconds. */
+async function timesIn(bytes: Buffer): Promise<{ starts: number[]; durations: number[] }> {
+  using input = new Input({ formats: ALL_FORMATS, source: new BufferSource(bytes) });
+  const packets = new EncodedPacketSink((await input.getPrimaryVideoTrack())!);
+  const [starts, durations]: [number[], number[]] = [[], []];
+  for await (const { timestamp, duration } of packets.packets()) {
+    starts.push(timestamp);
+    durations.push(duration);
+  }
+  return { starts, durations };
+}
+
+test('a video of the frames between the in point and the out point has their times', async ({ page }) => {
+  await open(page, 'groups');
+  // No two frames are shown equally long, so that their times tell which they are.
+  const durations = [0.04, 0.1, 0.07, 0.13, 0.05, 0.11, 0.06, 0.08];
+  const file = await video(page, durations.length, 'webm', 'vp8', durations);
+  await upload(page, [file]);
+  await expect(page.locator('#clip-name')).toContainText('8 frames');
+  await done(page);
+  const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
+  for (let k = 0; k < 2; k++) await from.press('ArrowRight');
+  await to.press('ArrowLeft');
+  await page.getByRole('button', { name: 'Segment frames 2–6' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+
+  const { starts } = await timesIn(file.buffer);
+  const wanted = starts.slice(2, 7).map((start) => start - starts[2]!);
+  for (const format of ['Video, transparent', 'Video, green screen']) {
+    const saved = await savedVideo(page, format);
+    const written = await timesIn(saved.bytes);
+    expect(written.starts).toHaveLength(5);
+    // Containers round to a millisecond or finer.
+    for (const [k, start] of written.starts.entries()) expect(Math.abs(start - wanted[k]!)).toBeLessThan(0.0015);
+    expect(Math.abs(written.durations[0]! - 0.07)).toBeLessThan(0.0015);
+    // Nothing says how long the last frame is shown: as long as the one before.
+    if (saved.name.endsWith('mp4')) expect(Math.abs(written.durations[4]! - 0.11)).toBeLessThan(0.0015);
+  }
 });
 
 test('the preview of a video shows the frame as the video does', async ({ page }) => {

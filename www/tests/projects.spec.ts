@@ -55,6 +55,12 @@ function fileInBrowser(page: Page): Promise<string> {
   });
 }
 
+/** The names of objects in that project. */
+async function namesInBrowser(page: Page): Promise<unknown> {
+  const { clip } = JSON.parse((await fileInBrowser(page)).split('\n')[1]!) as { clip: { names: unknown } };
+  return clip.names;
+}
+
 async function goTo(page: Page, index: number): Promise<void> {
   const track = page.getByRole('slider', { name: 'Current frame' });
   const box = (await track.boundingBox())!;
@@ -275,6 +281,43 @@ test('a browser that keeps nothing says so, and asks before the work is left', a
   expect(await leaves(page)).toBe(false);
   await savedProject(page);
   expect(await leaves(page)).toBe(true);
+});
+
+test('a second tab on a clip says that its work is not kept, and overwrites nothing', async ({ page, context }) => {
+  const files = await clipFrames(5);
+  await openClip(page, files);
+  await segmentClip(page);
+  await kept(page);
+
+  const second = await context.newPage();
+  await openClip(second, files);
+  await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
+  await expect(second.locator('#notice-code')).toHaveText('open-elsewhere');
+  await expect(second.locator('#notice-sentence')).toContainText('“f00.png” is open in another tab');
+  await rename(second, 1, 'Ball');
+  expect(await leaves(second)).toBe(false);
+  await openExport(second);
+  await expect(second.locator('#project-status')).toHaveText('Your work is not kept in this browser. Save the project before you leave.');
+  await second.keyboard.press('Escape');
+
+  // The first tab keeps its own work as before, and that stays when it is gone.
+  await rename(page, 2, 'Box');
+  await kept(page);
+  await page.close();
+  await rename(second, 2, 'Square');
+  await second.locator('#notice-close').click();
+  await second.waitForTimeout(1500); // longer than changes wait for each other
+  expect(await namesInBrowser(second)).toEqual({ 'objects-2': 'Box' });
+  expect(await leaves(second)).toBe(false);
+
+  // The only tab left goes on from there.
+  second.on('dialog', (dialog) => void dialog.accept());
+  await second.reload();
+  await openClip(second, files);
+  await expect(second.locator('#objects .motion-name').nth(2)).toHaveValue('Box');
+  await rename(second, 1, 'Ball');
+  await kept(second);
+  expect(await namesInBrowser(second)).toEqual({ 'objects-1': 'Ball', 'objects-2': 'Box' });
 });
 
 test('damaged and foreign projects are refused with a reason, and change nothing', async ({ page }) => {

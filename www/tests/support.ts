@@ -157,7 +157,11 @@ export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixe
 
 /** The number of each pixel's mask, read back from its colour; 0 where nothing is painted. */
 export async function labelsOnCanvas(page: Page): Promise<Uint8Array> {
-  const { data } = await pixelsOf(page, '#fill');
+  return labelsOfColours((await pixelsOf(page, '#fill')).data);
+}
+
+/** The numbers of masks, of the RGBA bytes of their canvas. */
+export function labelsOfColours(data: Uint8Array): Uint8Array {
   const labelByColour = new Map(PALETTE.map((colour, label): [string, number] => [colour.join(), label]).slice(1));
   labelByColour.set(UNKNOWN_COLOUR.join(), 255);
   return Uint8Array.from({ length: data.length / 4 }, (_, i) => {

@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { done, expect, open, test } from './support.js';
+import { clipFrames, done, expect, open, test, upload } from './support.js';
 
 test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
@@ -148,4 +148,35 @@ test('a stroke stays when a second finger or the browser ends it', async ({ page
   await still('touchCancel');
   await expect(page.locator('#strokes .now')).toHaveAttribute('d', '');
   await expect(strokes).toHaveCount(2);
+});
+
+test('a finger finds both handles of the timeline, and drags them', async ({ page }) => {
+  await open(page, 'groups');
+  await upload(page, await clipFrames(12));
+  await expect(page.locator('#clip-name')).toContainText('12 frames');
+  await done(page);
+  await page.locator('#track').evaluate((track) => track.scrollIntoView({ block: 'center' }));
+  const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
+  const track = (await page.locator('#track').boundingBox())!;
+  const drag = async (handle: typeof from, index: number): Promise<void> => {
+    // It follows the finger, wherever it was taken.
+    const { x, y, width, height } = (await handle.boundingBox())!;
+    const by = ((index - Number(await handle.getAttribute('aria-valuenow'))) * track.width) / 12;
+    await fingers(page, [[x + width / 2, y + height / 2], [x + width / 2 + by, y + height / 2]]);
+    await expect(handle).toHaveAttribute('aria-valuenow', String(index));
+  };
+  // With the handles far apart, and with a single frame between them.
+  for (const [first, last] of [[0, 11], [5, 5]] as const) {
+    if (last < 11) await drag(to, last);
+    if (first > 0) await drag(from, first);
+    for (const handle of [from, to]) {
+      const { x, y, width, height } = (await handle.boundingBox())!;
+      expect(Math.min(width, height)).toBeGreaterThanOrEqual(44);
+      const hit = await handle.evaluate(
+        (handle, points) => points.map(([x, y]) => document.elementFromPoint(x!, y!) === handle),
+        [[x + 2, y + 2], [x + width - 2, y + height - 2], [x + width / 2, y + height / 2]],
+      );
+      expect(hit).toEqual([true, true, true]);
+    }
+  }
 });

@@ -17,6 +17,7 @@ import { commandFor, scriptFor } from '../src/export/reproduce.js';
 import type { Matrix } from '../src/result/describe.js';
 import { labelSet, masksOf, merged, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
+import { Numbering } from '../src/session/numbering.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
 import { differences } from './support.js';
@@ -229,4 +230,42 @@ test('edits track what is in effect and what was saved, and can be scaled', () =
   // Motions 1 and 3 swap numbers.
   const swapped = { ...found, labels: found.labels.map((label) => [0, 3, 2, 1][label]!) };
   expect(grouped(swapped, withAction(drawn, grouping), swapped).motions.map(({ group }) => group)).toEqual([0, 2, 0, 1]);
+});
+
+/** A frame of 4 pixels a row; an object for each label but 0 and 255. */
+function cameraFrame(...labels: number[]): Parameters<Numbering['numbered']>[0] {
+  const ids = [...new Set(labels)].filter((label) => label > 0 && label < 255).sort((one, other) => one - other);
+  return { labels: Uint8Array.from(labels), objects: ids.map((id) => ({ id, pixels: 1, bbox: [0, 0, 1, 1], confidence: 1, matrix: null })), background: null };
+}
+
+test('objects before the camera keep their numbers when another stream takes over', () => {
+  const numbering = new Numbering();
+  const seen = (...labels: number[]): number[] => [...numbering.numbered(cameraFrame(...labels)).labels];
+  numbering.renew();
+  expect(seen(0, 0, 1, 1, 255, 255)).toEqual([0, 0, 1, 1, 255, 255]);
+  expect(seen(2, 2, 1, 1, 0, 0)).toEqual([2, 2, 1, 1, 0, 0]);
+  numbering.renew();
+  expect(seen(0, 0, 0, 0, 0, 255)).toEqual([0, 0, 0, 0, 0, 255]); // nothing is found yet
+  // What covers the same pixels is the same object, whatever the new stream calls it; what is new has a number that was never used.
+  expect(seen(1, 1, 2, 2, 3, 3)).toEqual([2, 2, 1, 1, 3, 3]);
+  expect(numbering.numbered(cameraFrame(1, 2, 3, 0, 0, 0)).objects.map(({ id }) => id)).toEqual([2, 1, 3]);
+  // Too little in common: another object.
+  numbering.renew();
+  expect(seen(0, 0, 0, 0, 0, 0)).toEqual([0, 0, 0, 0, 0, 0]);
+  expect(seen(1, 1, 1, 1, 1, 1)).toEqual([4, 4, 4, 4, 4, 4]);
+  // Another size of the frames has nothing to compare.
+  numbering.renew();
+  expect(seen(1, 1)).toEqual([5, 5]);
+});
+
+test('numbers before the camera are used again when all have been, but none twice at a time', () => {
+  const numbering = new Numbering();
+  for (let stream = 0; stream < 300; stream++) {
+    numbering.renew();
+    // The first object stays and each stream has one of its own.
+    const { objects } = numbering.numbered(cameraFrame(1, 1, 1, 1, ...Array.from({ length: 4 }, () => 0)));
+    expect(objects.map(({ id }) => id)).toEqual([1]);
+    const { objects: both } = numbering.numbered(cameraFrame(1, 1, 1, 1, 0, 0, 2, 2));
+    expect(both.map(({ id }) => id)).toEqual([1, 2 + (stream % 253)]);
+  }
 });

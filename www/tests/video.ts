@@ -14,12 +14,17 @@ export const BITS = 6;
 /** Side of the square that shows one bit, pixels. */
 export const BIT = 24;
 
-/** A video of `count` frames, encoded by the browser, each with its number as black and white squares over moving texture. `duration`: of a frame, seconds. */
-export async function video(page: Page, count: number, kind: 'webm' | 'mp4', codec: string, duration = FRAME): Promise<Upload> {
+/**
+ * A video of `count` frames, encoded by the browser, each with its number as black and white squares over moving texture. `duration`: of a
+ * frame, or of each, seconds.
+ */
+export async function video(page: Page, count: number, kind: 'webm' | 'mp4', codec: string, duration: number | readonly number[] = FRAME): Promise<Upload> {
+  const durations = typeof duration === 'number' ? Array<number>(count).fill(duration) : duration;
+  const starts = durations.map((_, k) => durations.slice(0, k).reduce((sum, one) => sum + one, 0));
   const bundle = await readFile(new URL('../../node_modules/mediabunny/dist/bundles/mediabunny.mjs', import.meta.url));
   await page.route('**/maker/mediabunny.mjs', (route) => route.fulfill({ body: bundle, contentType: 'text/javascript' }));
   const base64 = await page.evaluate(
-    async ([url, count, kind, codec, width, height, frame, bits, bit]) => {
+    async ([url, kind, codec, width, height, starts, durations, bits, bit]) => {
       const { BufferTarget, CanvasSource, Mp4OutputFormat, Output, WebMOutputFormat } = (await import(url)) as typeof import('mediabunny');
       const canvas = new OffscreenCanvas(width, height);
       const context = canvas.getContext('2d')!;
@@ -28,7 +33,7 @@ export async function video(page: Page, count: number, kind: 'webm' | 'mp4', cod
       const source = new CanvasSource(canvas, { codec: codec as 'vp8', bitrate: 2e6, keyFrameInterval: 0.5 });
       output.addVideoTrack(source);
       await output.start();
-      for (let k = 0; k < count; k++) {
+      for (const [k, start] of starts.entries()) {
         for (let y = 0; y < height; y += 8) {
           for (let x = 0; x < width; x += 8) {
             const grey = 128 + 70 * Math.sin(0.31 * (x + 2 * k) + 0.17 * y) + 40 * Math.cos(0.23 * y - 0.11 * x);
@@ -40,14 +45,14 @@ export async function video(page: Page, count: number, kind: 'webm' | 'mp4', cod
           context.fillStyle = (k >> b) & 1 ? 'white' : 'black';
           context.fillRect(8 + b * bit, 8, bit, bit);
         }
-        await source.add(k * frame, frame);
+        await source.add(start, durations[k]!);
       }
       await output.finalize();
       let binary = '';
       for (const byte of new Uint8Array(target.buffer!)) binary += String.fromCharCode(byte);
       return btoa(binary);
     },
-    [new URL('maker/mediabunny.mjs', page.url()).href, count, kind, codec, WIDTH, HEIGHT, duration, BITS, BIT] as const,
+    [new URL('maker/mediabunny.mjs', page.url()).href, kind, codec, WIDTH, HEIGHT, starts, durations, BITS, BIT] as const,
   );
   return { name: `clip.${kind}`, mimeType: `video/${kind}`, buffer: Buffer.from(base64, 'base64') };
 }

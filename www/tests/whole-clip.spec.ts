@@ -175,7 +175,7 @@ test('only the frames from the in point to the out point are segmented and expor
   const handle = (await to.boundingBox())!;
   await page.mouse.move(handle.x + handle.width / 2, handle.y + handle.height / 2);
   await page.mouse.down();
-  await page.mouse.move(box.x + (6.5 * box.width) / 9, handle.y + handle.height / 2, { steps: 4 });
+  await page.mouse.move(box.x + (7 * box.width) / 9, handle.y + handle.height / 2, { steps: 4 });
   await page.mouse.up();
   await expect(to).toHaveAttribute('aria-valuenow', '6');
   await expect(track).toHaveAttribute('aria-valuenow', '2'); // dragging a handle does not move the frame

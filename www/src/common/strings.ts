@@ -132,6 +132,8 @@ export const strings = {
     waiting: (name: string): string => `The project of “${name}” is open. Now open its frames, which are not part of the file.`,
     full: 'There is no room left to keep your work in this browser. It is still open here: save the project, or forget old ones.',
     refused: 'This browser does not allow the page to keep your work. It is still open here: save the project before you leave.',
+    elsewhere: (name: string): string =>
+      `“${name}” is open in another tab, whose work is kept. What you do here is not: save the project before you leave, or close the other tab and reload this one.`,
     damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
     newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,
     otherFrames: (name: string, saved: number, now: number): string => `The project of “${name}” has ${frames(saved)}, but this browser finds ${frames(now)}.`,

@@ -7,6 +7,7 @@ import { NO_EDITS, hasEdits } from '../correction/edits.js';
 import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
 import type { State, Store } from '../state/state.js';
 import { type SolvedPairs, isCorrecting } from '../state/tracked.js';
+import { owns } from './owner.js';
 import type { Project } from './project.js';
 
 /** How long a change waits for others, milliseconds; and while a clip is segmented, which changes all the time. */
@@ -35,6 +36,8 @@ export class Projects {
   readonly #opened = new Map<string, Project>();
   /** What need not be looked for again. */
   readonly #known = new Set<string>();
+  /** When the project of each was looked for, as an ISO 8601 date. What is saved later is another tab's. */
+  readonly #lookedFor = new Map<string, string>();
   /** Loaded when it is needed. */
   #shelf: Shelf | null = null;
   #timer = 0;
@@ -64,7 +67,9 @@ export class Projects {
     const subject = subjectOf(pair);
     if (subject === null) return null;
     const opened = this.#opened.get(subject.of);
-    if (opened === undefined && (this.#known.has(subject.of) || (await isNothingKept()))) return null;
+    if (opened === undefined && this.#known.has(subject.of)) return null;
+    this.#lookedFor.set(subject.of, new Date().toISOString());
+    if (opened === undefined && (await isNothingKept())) return null;
     try {
       const project = opened ?? (await (await this.#load()).get(subject.of, subject.name));
       // Browsers that read a video approximately may count other frames.
@@ -142,16 +147,21 @@ export class Projects {
     if (this.#writing || this.#ready().length === 0) return;
     this.#writing = true;
     try {
-      const { projectFrom, put, withSaved } = await this.#load();
+      const { projectFrom, put, savedAt, withSaved } = await this.#load();
       for (const of of this.#ready()) {
         this.#changed.delete(of);
         const project = projectFrom(this.#store.get(), of, (fingerprint) => this.#pairs.solvedPairs(fingerprint));
         if (project === null) continue;
+        if (!(await owns(of, async () => (await savedAt(of)) <= (this.#lookedFor.get(of) ?? '')))) {
+          this.#refuse(strings.projects.elsewhere(project.name), 'open-elsewhere');
+          continue;
+        }
         await put(project);
         this.#store.set({ ...withSaved(this.#store.get(), project), keeping: 'kept' });
       }
     } catch (error) {
-      this.#refuse(error);
+      const full = error instanceof Error && error.name === 'QuotaExceededError';
+      this.#refuse(full ? strings.projects.full : strings.projects.refused, full ? 'storage-full' : 'storage-refused');
     } finally {
       this.#writing = false;
     }
@@ -160,11 +170,10 @@ export class Projects {
   }
 
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
-  #refuse(error: unknown): void {
+  #refuse(sentence: string, code: string): void {
     if (this.#store.get().keeping === 'refused') return;
     this.#store.set({ keeping: 'refused' });
-    const full = error instanceof Error && error.name === 'QuotaExceededError';
-    this.#say(full ? strings.projects.full : strings.projects.refused, full ? 'storage-full' : 'storage-refused');
+    this.#say(sentence, code);
   }
 }
 

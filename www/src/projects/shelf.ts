@@ -41,6 +41,13 @@ export async function get(of: string, name: string): Promise<Project | null> {
   return project?.of === of ? project : null;
 }
 
+/** When the project of this clip or pair was last written, as an ISO 8601 date; empty if none is kept, or a damaged one. */
+export async function savedAt(of: string): Promise<string> {
+  const file = await (await projects()).read(fileNameOf(of));
+  const header = file === null ? null : await headerOf(file, of).catch(() => null);
+  return header?.saved ?? '';
+}
+
 /** The latest first. */
 export async function list(): Promise<Listed[]> {
   const files = [...(await (await projects()).list())];

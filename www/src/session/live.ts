@@ -9,12 +9,13 @@ import type { Kind } from '../result/masks.js';
 import { segmentationFrom } from '../state/objects.js';
 import type { LoadedFrame } from '../state/pair.js';
 import { FRESH, type Result, type State, type Store } from '../state/state.js';
+import { Numbering } from './numbering.js';
 
 /** Longer side of the frames, pixels: small enough for a high rate. */
 const LONGEST_SIDE = 480;
 /** Weight of the newest time in the moving average. */
 const NEWEST = 0.15;
-/** After this number the objects are counted anew: there are 254. */
+/** After this number another stream takes over: there are 254. */
 const LAST_NUMBER = 200;
 
 /** Camera frames are fingerprinted by a counter, because none recurs. */
@@ -99,7 +100,9 @@ export class LiveView {
   async *#views(video: HTMLVideoElement, current: () => boolean): AsyncGenerator<View, void> {
     let milliseconds = 0;
     let last = performance.now();
+    const numbering = new Numbering();
     while (current()) {
+      numbering.renew();
       const { settings } = this.#store.get();
       const taken: LoadedFrame[] = [];
       let most = 0;
@@ -123,8 +126,8 @@ export class LiveView {
         for await (const found of this.#segmenter.segmentClip(frames(wanted), { motions, markUnknown, quality: 'fast', lookAhead: 0 })) {
           if (!current()) return;
           const frame = taken.shift()!;
-          const segmentation = segmentationFrom(found, frame);
-          most = segmentation.motions.reduce((larger, { label }) => Math.max(larger, label), most);
+          const segmentation = segmentationFrom(numbering.numbered(found), frame);
+          most = found.objects.reduce((larger, { id }) => Math.max(larger, id), most);
           const waited = performance.now() - last;
           last += waited;
           milliseconds = milliseconds === 0 ? waited : (1 - NEWEST) * milliseconds + NEWEST * waited;

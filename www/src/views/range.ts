@@ -37,23 +37,30 @@ export function setEdge(store: Store, session: Session, edge: keyof Range): void
 }
 
 function mountHandle(handle: HTMLElement, edge: keyof Range, track: HTMLElement, store: Store, session: Session): void {
-  const indexAt = ({ clientX }: PointerEvent): number => {
+  /** Where a place on the screen lies on the track, frames. */
+  const placeAt = (x: number): number => {
     const { left, width } = track.getBoundingClientRect();
-    return Math.floor(((clientX - left) / width) * (store.get().timeline?.clip.count ?? 1));
+    return ((x - left) / width) * (store.get().timeline?.clip.count ?? 1);
   };
+  /** Where the pointer went down, and how far from the point that it drags, screen pixels. */
   let from: number | null = null;
+  let off = 0;
   handle.addEventListener('pointerdown', (event) => {
-    if (event.button !== 0) return;
+    const range = store.get().tracked?.range;
+    if (event.button !== 0 || range === undefined) return;
     handle.setPointerCapture(event.pointerId);
     from = event.clientX;
+    const { left, width } = track.getBoundingClientRect();
+    const point = edge === 'first' ? range.first : range.last + 1;
+    off = event.clientX - left - (point / (store.get().timeline?.clip.count ?? 1)) * width;
   });
   handle.addEventListener('pointermove', (event) => {
     if (!handle.hasPointerCapture(event.pointerId) || (from !== null && Math.abs(event.clientX - from) < STILL)) return;
     from = null;
-    session.tracking.setRange(edge, indexAt(event));
+    session.tracking.setRange(edge, Math.round(placeAt(event.clientX - off)) - (edge === 'first' ? 0 : 1));
   });
   handle.addEventListener('pointerup', (event) => {
-    if (from !== null) void session.goTo(Math.min(Math.max(indexAt(event), 0), (store.get().timeline?.clip.count ?? 1) - 1));
+    if (from !== null) void session.goTo(Math.min(Math.max(Math.floor(placeAt(event.clientX)), 0), (store.get().timeline?.clip.count ?? 1) - 1));
     from = null;
   });
   handle.addEventListener('keydown', (event) => {
