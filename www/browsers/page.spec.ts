@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 
 import { expect, test } from '@playwright/test';
 import { unzipSync } from 'fflate';
-import { By, Key } from 'selenium-webdriver';
+import { Key } from 'selenium-webdriver';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
@@ -68,7 +68,7 @@ for (const found of BROWSERS) {
       // The file that is saved: one indexed PNG for each frame.
       await find('#open-export').click();
       const davis = '#clip-export select option[value=davis]';
-      await browser.until('the formats', async () => (await browser.driver.findElements(By.css(davis))).length > 0);
+      await browser.until('the formats', () => browser.driver.executeScript<boolean>('return document.querySelector(arguments[0]) !== null;', davis));
       await find(davis).click();
       const save = find('#clip-export button');
       await browser.until('the button that saves', () => save.isEnabled());

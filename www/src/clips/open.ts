@@ -1,6 +1,7 @@
 //! Opens a video with the most exact reader that the browser supports.
 
 import { PageError } from '../common/errors.js';
+import { startMedia } from '../common/media.js';
 import { quoted } from '../common/shell.js';
 import { strings } from '../common/strings.js';
 import { fingerprintOfVideo } from '../frames/fingerprints.js';
@@ -15,6 +16,7 @@ export async function openClip(file: File): Promise<Clip> {
     throw new PageError('unreadable-video', strings.errors.unreadableVideo(file.name));
   });
   if (typeof VideoDecoder === 'function') {
+    startMedia();
     const { openExact } = await import('./exact.js');
     const clip = await openExact(file, fingerprint);
     if (clip !== null) return clip;

@@ -64,18 +64,20 @@ class Database implements Place {
 
   async list(): Promise<ReadonlyMap<string, Blob>> {
     const names = (await settled(this.#files('readonly').getAllKeys())) as string[];
-    const files: Blob[] = await settled(this.#files('readonly').getAll());
-    return new Map(names.map((name, k) => [name, files[k]!]));
+    const files: ArrayBuffer[] = await settled(this.#files('readonly').getAll());
+    return new Map(names.map((name, k) => [name, new Blob([files[k]!])]));
   }
 
   async read(name: string): Promise<Blob | null> {
-    return (await settled<Blob | undefined>(this.#files('readonly').get(name))) ?? null;
+    const file = await settled<ArrayBuffer | undefined>(this.#files('readonly').get(name));
+    return file === undefined ? null : new Blob([file]);
   }
 
   async write(name: string, content: ReadableStream<Uint8Array<ArrayBuffer>>): Promise<void> {
-    const blob = await new Response(content).blob();
+    // WebKit's private windows store bytes, but no blobs.
+    const bytes = await new Response(content).arrayBuffer();
     const files = this.#files('readwrite');
-    files.put(blob, name);
+    files.put(bytes, name);
     await completed(files.transaction);
   }
 
