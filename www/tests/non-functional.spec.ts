@@ -75,6 +75,27 @@ test('the scripts stay within their size budgets', async ({ page }) => {
   expect(sizeOf(files.filter((name) => !asked.has(name)))).toBeLessThanOrEqual(32 * 1024);
 });
 
+test('a first visit loads at most 500 KB, compressed, until it shows masks', async ({ page }) => {
+  // As a web server sends it: text and the module with gzip, pictures as they are.
+  const sizes = new Map<string, number>();
+  await page.route('**', async (route) => {
+    const response = await route.fetch();
+    const body = await response.body();
+    const { pathname } = new URL(route.request().url());
+    sizes.set(pathname, /\.(png|jpe?g|webp)$/.test(pathname) ? body.length : gzipSync(body, { level: 9 }).length);
+    await route.fulfill({ response, body });
+  });
+  await page.goto('./');
+  await expect.poll(async () => new Set(await labelsOnCanvas(page)).size, { intervals: [50] }).toBeGreaterThan(2);
+  const total = [...sizes.values()].reduce((sum, size) => sum + size, 0);
+  console.log(`a first visit: ${total} bytes, ${[...sizes].map(([path, size]) => `${path} ${size}`).join(', ')}`);
+  // The page, its style, its scripts, the module and both frames are counted.
+  for (const part of [/^\/$/, /index-.*\.css$/, /index-.*\.js$/, /worker-.*\.js$/, /\.wasm$/, /intel-two-cars\/first\.png$/, /intel-two-cars\/second\.png$/]) {
+    expect([...sizes].find(([path]) => part.test(path))?.[1]).toBeGreaterThan(1000);
+  }
+  expect(total).toBeLessThanOrEqual(500 * 1024);
+});
+
 test('scripts for videos are loaded only when a video is opened', async ({ page }) => {
   const asked: string[] = [];
   page.on('request', (request) => asked.push(request.url()));

@@ -6,10 +6,11 @@ export interface Sample {
   /** Paths relative to the page. */
   readonly first: string;
   readonly second: string;
+  readonly thumbnail: string;
 }
 
 function sample(id: string, title: string): Sample {
-  return { id, title, first: `samples/${id}/first.png`, second: `samples/${id}/second.png` };
+  return { id, title, first: `samples/${id}/first.png`, second: `samples/${id}/second.png`, thumbnail: `samples/${id}/thumbnail.jpg` };
 }
 
 /** The page opens with the first. */

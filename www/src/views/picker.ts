@@ -52,7 +52,7 @@ function sampleButton(sample: (typeof SAMPLES)[number], session: Session): HTMLE
   const button = element('button', '', 'sample');
   button.type = 'button';
   const picture = element('img');
-  picture.src = sample.first;
+  picture.src = sample.thumbnail;
   picture.alt = '';
   picture.loading = 'lazy';
   picture.decoding = 'async';
