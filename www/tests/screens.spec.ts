@@ -10,61 +10,75 @@ async function openBest(page: Page): Promise<void> {
   await done(page);
 }
 
-test('desktop', async ({ page }) => {
-  await openBest(page);
-  await page.screenshot({ path: screen('desktop') });
-  await page.screenshot({ path: screen('desktop-whole'), fullPage: true });
-});
+for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
+  for (const colorScheme of ['light', 'dark'] as const) {
+    const shot = async (page: Page, state: string, fullPage = false): Promise<void> => {
+      await page.waitForTimeout(300); // transitions and thumbnails
+      await page.screenshot({ path: screen(`${state}-${width}-${colorScheme}`), fullPage });
+    };
 
-test('dark', async ({ page }) => {
-  await page.emulateMedia({ colorScheme: 'dark' });
-  await openBest(page);
-  await page.screenshot({ path: screen('dark') });
-});
+    test.describe(`${width}, ${colorScheme}`, () => {
+      test.use({ viewport: { width, height }, colorScheme, hasTouch: width < 640, isMobile: width < 640 });
 
-test('split, with arrows', async ({ page }) => {
-  await openBest(page);
-  await page.locator('#look [value=split]').check();
-  await page.getByLabel('Arrows').check();
-  await page.screenshot({ path: screen('split') });
-});
+      test('a pair', async ({ page }) => {
+        await openBest(page);
+        await shot(page, 'start');
+        await shot(page, 'start-whole', true);
+        await page.locator('#look [value=split]').check({ force: true });
+        await page.locator('#look [name=arrows]').check({ force: true });
+        await page.locator('.stage').scrollIntoViewIfNeeded();
+        await shot(page, 'split');
+        await page.locator('#look [value=first]').check({ force: true });
+        await page.locator('#look [name=residual]').check({ force: true });
+        await page.locator('#look [name=opacity]').fill('0');
+        await page.locator('#zoom-in').click();
+        await shot(page, 'residual');
+        await page.locator('#zoom-fit').click();
+        await expect(page.locator('#zoom-out')).toBeDisabled();
+        await page.locator('#look [name=residual]').uncheck({ force: true });
+        await page.locator('#look [name=opacity]').fill('50');
+        await page.locator('#tools [value=brush]').check({ force: true });
+        const box = (await page.locator('.layers').boundingBox())!;
+        await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
+        await page.mouse.down();
+        await page.mouse.move(box.x + 0.26 * box.width, box.y + 0.7 * box.height, { steps: 8 });
+        await shot(page, 'brush');
+        await page.mouse.up();
+        await done(page);
+        await page.locator('#motions .more summary').nth(1).click();
+        await page.locator('#settings details summary').click();
+        await page.evaluate(() => window.scrollTo(0, 0));
+        await shot(page, 'details', true);
+        await page.keyboard.press('?');
+        await shot(page, 'keys');
+        await page.keyboard.press('Escape');
+        await upload(page, [await sample('first'), await square('second.png', 640, 480, 0, 0)]);
+        await expect(page.getByRole('alert')).toBeVisible();
+        await shot(page, 'error');
+      });
 
-test('residual, enlarged', async ({ page }) => {
-  await openBest(page);
-  await page.getByLabel('Residual').check();
-  await page.getByLabel('Opacity').fill('0');
-  await page.locator('#zoom-in').click();
-  await page.waitForTimeout(200);
-  await page.screenshot({ path: screen('residual') });
-});
-
-test('brush', async ({ page }) => {
-  await openBest(page);
-  await page.locator('#tools [value=brush]').check();
-  const box = (await page.locator('.layers').boundingBox())!;
-  await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
-  await page.mouse.down();
-  await page.mouse.move(box.x + 0.26 * box.width, box.y + 0.7 * box.height, { steps: 8 });
-  await page.screenshot({ path: screen('brush') });
-  await page.mouse.up();
-  await done(page);
-});
-
-test('folder of frames', async ({ page }) => {
-  await page.emulateMedia({ colorScheme: 'dark' });
-  await openBest(page);
-  await upload(page, await Promise.all([0, 1, 2, 3, 4, 5].map((k) => square(`frame${k}.png`, 320, 180, 3 * k, k))));
-  await done(page);
-  await page.locator('#timeline').scrollIntoViewIfNeeded();
-  await page.waitForTimeout(300);
-  await page.screenshot({ path: screen('clip'), fullPage: true });
-});
-
-test('keys', async ({ page }) => {
-  await openBest(page);
-  await page.keyboard.press('?');
-  await page.screenshot({ path: screen('keys') });
-});
+      test('a clip', async ({ page }) => {
+        await page.goto('./#quality=fast');
+        await done(page);
+        await upload(page, await clipFrames(12, 480, 300));
+        await expect(page.locator('#clip-name')).toContainText('12 frames');
+        await done(page);
+        await shot(page, 'clip-opened', true);
+        await page.locator('#clip-segment').click();
+        await expect(page.locator('#clip-detail')).toContainText('of 12 frames');
+        await page.screenshot({ path: screen(`clip-segmenting-${width}-${colorScheme}`) });
+        await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+        await page.getByRole('slider', { name: 'In point' }).press('ArrowRight');
+        await page.getByRole('slider', { name: 'Out point' }).press('ArrowLeft');
+        await page.locator('#objects li').nth(1).locator('.motion-head').click();
+        await page.locator('#tools [value=brush]').check({ force: true });
+        await page.locator('.stage').scrollIntoViewIfNeeded();
+        await shot(page, 'clip-segmented');
+        await shot(page, 'clip-segmented-whole', true);
+      });
+    });
+  }
+}
 
 for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
   for (const colorScheme of ['light', 'dark'] as const) {
@@ -85,19 +99,6 @@ for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
     });
   }
 }
-
-test('phone', async ({ page }) => {
-  await page.setViewportSize({ width: 360, height: 740 });
-  await openBest(page);
-  await page.screenshot({ path: screen('phone'), fullPage: true });
-});
-
-test('error', async ({ page }) => {
-  await openBest(page);
-  await upload(page, [await sample('first'), await square('second.png', 640, 480, 0, 0)]);
-  await expect(page.getByRole('alert')).toBeVisible();
-  await page.screenshot({ path: screen('error') });
-});
 
 test('progress', async ({ page, context }) => {
   // The worker is held back until the screenshot is taken.

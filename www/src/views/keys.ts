@@ -24,7 +24,13 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     list.append(row);
   }
 
-  open.addEventListener('click', () => dialog.showModal());
+  const show = (): void => {
+    dialog.showModal();
+    // From the top, which the first control may be far from.
+    dialog.focus();
+    dialog.scrollTop = 0;
+  };
+  open.addEventListener('click', show);
   find(dialog, '[data-action=close]', HTMLButtonElement).addEventListener('click', () => dialog.close());
   dialog.addEventListener('click', (event) => {
     if (event.target === dialog) dialog.close(); // a click on the backdrop
@@ -35,7 +41,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     const name = event.key.toLowerCase();
     const command = event.ctrlKey || event.metaKey;
     if (!command && !single.checked && name !== 'escape') return;
-    if (!command && name === '?') return dialog.showModal();
+    if (!command && name === '?') return show();
     if (!command && name === 'b') return peek.press();
     const key = keys.find((one) => one.keys.includes(name) && (one.command ?? false) === command && (one.shift ?? event.shiftKey) === event.shiftKey);
     if (key === undefined || (key.arrows && (store.get().viewport.zoom <= 1 || takesArrows(event.target)))) return;
