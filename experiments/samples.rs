@@ -33,18 +33,27 @@ fn write_thumbnail(folder: &Path) -> Result<(), Box<dyn Error>> {
     let mut rgb = Vec::with_capacity(3 * across * down);
     for y in 0..down {
         for x in 0..across {
-            let range = |start: f64, at: usize| ((start + scale * at as f64) as usize)..((start + scale * (at + 1) as f64) as usize);
+            let range = |start: f64, at: usize| {
+                ((start + scale * at as f64) as usize)..((start + scale * (at + 1) as f64) as usize)
+            };
             let (columns, rows) = (range(left, x), range(top, y));
             let count = columns.len() * rows.len();
             for channel in 0..3 {
                 let pixels = rows.clone().flat_map(|row| columns.clone().map(move |column| (row, column)));
-                let sum: usize = pixels.map(|(row, column)| usize::from(picture.rgba[4 * (row * picture.width + column) + channel])).sum();
+                let sum: usize = pixels
+                    .map(|(row, column)| usize::from(picture.rgba[4 * (row * picture.width + column) + channel]))
+                    .sum();
                 rgb.push(((sum + count / 2) / count) as u8);
             }
         }
     }
     let file = fs::File::create(folder.join("thumbnail.jpg"))?;
-    JpegEncoder::new_with_quality(file, JPEG_QUALITY).write_image(&rgb, across as u32, down as u32, ExtendedColorType::Rgb8)?;
+    JpegEncoder::new_with_quality(file, JPEG_QUALITY).write_image(
+        &rgb,
+        across as u32,
+        down as u32,
+        ExtendedColorType::Rgb8,
+    )?;
     Ok(())
 }
 

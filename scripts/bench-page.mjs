@@ -101,7 +101,8 @@ async function segmented(browser, address, quality) {
       break;
     }
     samples.push({ seconds: (Date.now() - began) / 1000, share: value === null ? null : Number(value), text, bytes: await memory(session) });
-    if (value !== null && Number(value) >= share + 0.1) {
+    // The share begins anew when all pairs are solved.
+    if (value !== null && (Number(value) >= share + 0.1 || Number(value) < share)) {
       share = Number(value);
       console.log(`${samples.at(-1).seconds.toFixed(0)} s, ${text}, ${mib(samples.at(-1).bytes)} MiB`);
     }

@@ -72,7 +72,7 @@ export class Driven {
 
   /** Waits until the text of an element has this in it. */
   untilText(selector: string, text: string): Promise<void> {
-    return this.until(`"${text}" in ${selector}`, async () => String(await this.find(selector).getProperty('textContent')).includes(text));
+    return this.until(`"${text}" in ${selector}`, async () => (await this.find(selector).getProperty('textContent')).includes(text));
   }
 
   /** The RGBA bytes of a canvas. */

@@ -150,12 +150,16 @@ test('a stroke stays when a second finger or the browser ends it', async ({ page
   await expect(strokes).toHaveCount(2);
 });
 
-test('a finger finds both handles of the timeline, and drags them', async ({ page }) => {
+test('a finger finds the buttons and both handles of the timeline, and drags these', async ({ page }) => {
   await open(page, 'groups');
   await upload(page, await clipFrames(12));
   await expect(page.locator('#clip-name')).toContainText('12 frames');
   await done(page);
   await page.locator('#track').evaluate((track) => track.scrollIntoView({ block: 'center' }));
+  for (const name of ['Step both back', 'Play', 'Step both forward']) {
+    const { width, height } = (await page.getByRole('button', { name, exact: true }).boundingBox())!;
+    expect(Math.min(width, height)).toBeGreaterThanOrEqual(44);
+  }
   const [from, to] = [page.getByRole('slider', { name: 'In point' }), page.getByRole('slider', { name: 'Out point' })];
   const track = (await page.locator('#track').boundingBox())!;
   const drag = async (handle: typeof from, index: number): Promise<void> => {

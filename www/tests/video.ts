@@ -45,7 +45,7 @@ export async function video(page: Page, count: number, kind: 'webm' | 'mp4', cod
           context.fillStyle = (k >> b) & 1 ? 'white' : 'black';
           context.fillRect(8 + b * bit, 8, bit, bit);
         }
-        await source.add(start, durations[k]!);
+        await source.add(start, durations[k]);
       }
       await output.finalize();
       let binary = '';

@@ -7,7 +7,6 @@ import { NO_EDITS, hasEdits } from '../correction/edits.js';
 import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
 import type { State, Store } from '../state/state.js';
 import { type SolvedPairs, isCorrecting } from '../state/tracked.js';
-import { owns } from './owner.js';
 import type { Project } from './project.js';
 
 /** How long a change waits for others, milliseconds; and while a clip is segmented, which changes all the time. */
@@ -147,7 +146,7 @@ export class Projects {
     if (this.#writing || this.#ready().length === 0) return;
     this.#writing = true;
     try {
-      const { projectFrom, put, savedAt, withSaved } = await this.#load();
+      const { owns, projectFrom, put, savedAt, withSaved } = await this.#load();
       for (const of of this.#ready()) {
         this.#changed.delete(of);
         const project = projectFrom(this.#store.get(), of, (fingerprint) => this.#pairs.solvedPairs(fingerprint));

@@ -6,6 +6,7 @@ import { type Place, placeOfProjects } from './places.js';
 import type { Project } from './project.js';
 
 export { fileOf, projectFromFile } from './file.js';
+export { owns } from './owner.js';
 export { projectFrom, withProject, withSaved } from './project.js';
 
 /** A project in the list. `header` is `null` if the file is damaged. */
