@@ -252,9 +252,16 @@ impl<const L: usize> Grid<L> {
             for step in first..first + steps {
                 let above = self.above(first, step - first);
                 let shares = self.shares(step, corners);
-                let (costs, right, down) = (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
+                let (costs, right, down) =
+                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
                 let total: [Step; L] = std::array::from_fn(|l| {
-                    let up = lanes(|k| if k == 0 { above.map_or(0.0, |above| self.down[above * L + l][BEHIND]) } else { from_above[l][k - 1] });
+                    let up = lanes(|k| {
+                        if k == 0 {
+                            above.map_or(0.0, |above| self.down[above * L + l][BEHIND])
+                        } else {
+                            from_above[l][k - 1]
+                        }
+                    });
                     plus(plus(sum3(&costs[l], &right[l], &down[l]), from_left[l]), up)
                 });
                 (from_left, _) = message(&total, shares, right, self.to_right[step]);
@@ -281,11 +288,19 @@ impl<const L: usize> Grid<L> {
                 let weights_left = before.map_or([0.0; ROWS], |before| self.to_right[before]);
                 let weights_down = before.map_or([0.0; ROWS], |before| self.to_below[before]);
                 let up: [Step; L] = std::array::from_fn(|l| {
-                    lanes(|k| if k == 0 { above.map_or(0.0, |above| self.down[above * L + l][BEHIND]) } else { before_down[l][k - 1] })
+                    lanes(|k| {
+                        if k == 0 {
+                            above.map_or(0.0, |above| self.down[above * L + l][BEHIND])
+                        } else {
+                            before_down[l][k - 1]
+                        }
+                    })
                 });
-                let weights_up =
-                    lanes(|k| if k == 0 { above.map_or(0.0, |above| self.to_below[above][BEHIND]) } else { weights_down[k - 1] });
-                let (costs, right, down) = (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
+                let weights_up = lanes(|k| {
+                    if k == 0 { above.map_or(0.0, |above| self.to_below[above][BEHIND]) } else { weights_down[k - 1] }
+                });
+                let (costs, right, down) =
+                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
                 let mut total: [Step; L] =
                     std::array::from_fn(|l| sum3(&sum3(&costs[l], &right[l], &down[l]), &left[l], &up[l]));
                 let low = lowest(&total);
