@@ -57,3 +57,24 @@ pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&F
     }
     carried
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::AffineMotion;
+
+    #[test]
+    fn what_came_three_pixels_goes_on_three_pixels() {
+        let (width, height) = (20, 10);
+        let square = |left: usize| -> Buffer<u8> {
+            let inside = |p: usize| (left..left + 4).contains(&(p % width)) && (2..6).contains(&(p / width));
+            (0..width * height).map(|p| u8::from(inside(p))).collect()
+        };
+        // The motions lead back to the frame before.
+        let motions = vec![AffineMotion::STATIC, AffineMotion::translation(-3.0, 0.0)];
+        let flow = |left| Flow { width, labels: square(left), motions: motions.clone(), measured: true };
+        assert_eq!(continued_labels(&flow(5))[..], square(8)[..]);
+        // What leaves the frame is gone.
+        assert_eq!(continued_labels(&flow(14))[..], square(17)[..]);
+    }
+}
