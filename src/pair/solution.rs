@@ -142,7 +142,8 @@ pub(crate) fn solve(
     Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, enough, unexplained }
 }
 
-/// The labels and motions with which the expected ones go on, and the cost up to which they are enough afterwards; none if they do not explain the pair.
+/// The labels and motions with which the expected ones go on, and the cost up to which they are enough afterwards; none if they do not
+/// explain the pair.
 fn follow(
     pair: &mut Pair,
     prior: &Prior,
