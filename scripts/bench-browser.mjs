@@ -1,7 +1,7 @@
 // npm run bench:browser: compares the package in headless Chromium with OpenCV.js, jsfeat and the same source compiled to native
 // code, in alternating calls on the same frames. Writes out/bench/browser.json and prints tables. Options:
 //   --rounds N                 calls of each kind (30)
-//   --sizes 320x240,640x480,…  sizes of the frames (320x240,640x480,1280x720)
+//   --sizes 320x240,640x480,…  sizes of the frames (320x240,640x480,1280x720,1920x1080)
 //   --scaling                  also measure time and memory against pixels and motions (several minutes)
 //   --alone                    without the alternatives; nothing is installed
 //   --write-docs               writes the tables to docs/performance.md as well
@@ -29,6 +29,8 @@ const PEERS = { '@techstark/opencv-js': '5.0.0-release.1', jsfeat: '0.0.8' };
 const PEER_FILES = { opencv: '@techstark/opencv-js/dist/opencv.js', jsfeat: 'jsfeat/build/jsfeat-min.js' };
 const OURS = ['fast', 'best'];
 const THEIRS = ['farneback', 'opencvPipeline', 'jsfeat'];
+/** Clips, of which the median of a frame is measured, and only that. */
+const CLIPS = ['clip', 'clipFlow'];
 /** Number of fresh pages for each case and size, to measure the first call and the time until the page is ready. */
 const FRESH_PAGES = 3;
 /** Rounds that alternate between one and two workers. */
@@ -46,7 +48,7 @@ const HEADERS = { 'X-Content-Type-Options': 'nosniff' };
 
 await command(async (args) => {
   const { rounds, sizes, scaling, alone, writeDocs } = options(args);
-  const cases = alone ? OURS : [...OURS, ...THEIRS];
+  const cases = alone ? [...OURS, CLIPS[0]] : [...OURS, ...THEIRS, ...CLIPS];
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
   await buildModules();
@@ -89,7 +91,7 @@ function options(args) {
     throw new Stop(error.message);
   }
   const rounds = Number(values.rounds ?? 30);
-  const sizes = (values.sizes ?? '320x240,640x480,1280x720').split(',');
+  const sizes = (values.sizes ?? '320x240,640x480,1280x720,1920x1080').split(',');
   if (!Number.isInteger(rounds) || rounds < 1) throw new Stop('--rounds must be a whole number from 1.');
   if (!sizes.every((size) => /^\d+x\d+$/.test(size))) throw new Stop('--sizes must look like 320x240,640x480.');
   if (values.alone && values['write-docs']) throw new Stop('--write-docs writes the comparison: leave --alone out.');
@@ -150,7 +152,7 @@ function downloads(alone) {
 }
 
 async function measured(browser, address, { rounds, sizes, cases }) {
-  const fresh = await freshPages(browser, address, sizes, cases);
+  const fresh = await freshPages(browser, address, sizes, cases.filter((name) => !CLIPS.includes(name)));
   const { calls, native } = await interleaved(browser, address, { rounds, sizes, cases });
   const bySize = {};
   for (const size of sizes) {

@@ -1,6 +1,6 @@
 //! The native part of two benchmarks. For `npm run bench:ratio`, `native inputs DIR` writes the inputs of all cases to files, and `native
 //! times DIR` prints the time of each in milliseconds as JSON. For `npm run bench:browser`, `native scenes DIR 640x480 …` writes pairs of
-//! frames, and `native stages DIR 640x480 …` prints the time of each stage on them.
+//! frames and clips, and `native stages DIR 640x480 …` prints the time of each stage on them.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../../tests/support/protocol.rs"]
@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use protocol::Protocol;
-use veronese::scene::{SceneOptions, generate};
+use veronese::scene::{ClipSceneOptions, Event, MIN_CLIP_FRAMES, SceneOptions, generate, generate_clip};
 use veronese::{
     FitOptions, Frame, Measurements, MotionCount, Quality, SegmentOptions, Stage, fit_motions, segment_pair,
 };
@@ -22,6 +22,8 @@ const PROBLEMS: u64 = 8;
 const MOTIONS: [usize; 3] = [2, 3, 4];
 /// Seed of the scenes of the browser benchmark.
 const SCENE: u64 = 7;
+/// Frames of its clips.
+const CLIP_FRAMES: usize = 12;
 const WIDTH: usize = 320;
 const HEIGHT: usize = 240;
 const QUALITIES: [(&str, Quality); 2] = [("fast", Quality::Fast), ("best", Quality::Best)];
@@ -54,13 +56,19 @@ fn write_inputs(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Writes the RGBA bytes of both frames, and one label per pixel of the first.
+/// Writes the RGBA bytes of both frames, one label per pixel of the first, and the RGBA bytes of all frames of a clip.
 fn write_scene(folder: &Path, size: &str) -> Result<(), Box<dyn Error>> {
     let (width, height) = sides(size)?;
     let scene = generate(&SceneOptions { width, height, seed: SCENE, ..SceneOptions::default() })?;
     for (name, bytes) in [("first", &scene.rgba[1]), ("second", &scene.rgba[2]), ("labels", &scene.labels)] {
         fs::write(folder.join(format!("{name}-{size}")), bytes)?;
     }
+    let events = vec![Event::Pan, Event::Crossing];
+    let options =
+        ClipSceneOptions { width, height, frames: MIN_CLIP_FRAMES, events, seed: SCENE, ..ClipSceneOptions::default() };
+    let clip = generate_clip(&options)?;
+    let frames: Vec<Vec<u8>> = (0..CLIP_FRAMES).map(|t| clip.rgba(t)).collect::<veronese::Result<_>>()?;
+    fs::write(folder.join(format!("clip-{size}")), frames.concat())?;
     Ok(())
 }
 

@@ -7,6 +7,8 @@ const TITLES = {
   farneback: 'OpenCV.js, Farneback’s flow alone',
   opencvPipeline: 'OpenCV.js, flow to labels',
   jsfeat: 'jsfeat, corners tracked',
+  clip: '`segmentClip`, fast, `lookAhead: 0`, a frame',
+  clipFlow: 'OpenCV.js, Farneback’s flow alone, a frame of the clip',
 };
 
 /** The parts of a report by name, without those that were not measured. */
@@ -40,14 +42,20 @@ function calls({ sizes }) {
       TITLES[name],
       ms(median),
       ms(best),
-      beside(first, median),
+      first ? beside(first, median) : '',
       firstWarmedUp ? beside(firstWarmedUp, median) : '',
-      cases.farneback ? (median / cases.farneback.median).toFixed(2) : '',
+      ratioToFlow(name, cases),
       overlap === undefined ? '' : overlap.toFixed(3),
       memoryBytes ? mib(memoryBytes) : '',
     ]),
   );
   return table(['frames', 'call', 'median', 'best', 'first call', 'warmed up', '÷ Farneback', 'overlap', 'memory, MiB'], rows);
+}
+
+/** Farneback’s flow is computed on the same frames: those of the pair, or of the clip. */
+function ratioToFlow(name, cases) {
+  const flow = name.startsWith('clip') ? cases.clipFlow : cases.farneback;
+  return flow ? (cases[name].median / flow.median).toFixed(2) : '';
 }
 
 function workers({ workers: { size, onePairsPerSecond, twoPairsPerSecond, ratio } }) {

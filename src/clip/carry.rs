@@ -3,6 +3,8 @@
 use super::evidence::Flow;
 use crate::frame::Plane;
 use crate::frame::warp::Footprint;
+use crate::labelling::BACKGROUND;
+use crate::workspace::Buffer;
 
 /// What a plane of another frame says about each pixel of this one: its value where the pixel's motion leads, or at the nearest place
 /// inside the frame.
@@ -12,6 +14,25 @@ pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
         let [u, v] = along.at(x, y);
         Footprint::new((x as f64 + u) as f32, (y as f64 + v) as f32, width, height).sample(plane.values())
     })
+}
+
+/// The labels of a frame whose pixels go on with the motions that led from the frame before it to the one before that, whose flow that is.
+pub(crate) fn continued_labels(flow: &Flow) -> Buffer<u8> {
+    let (width, height) = (flow.width, flow.labels.len() / flow.width);
+    let mut labels = Buffer::filled(flow.labels.len(), BACKGROUND as u8);
+    for (number, motion) in (0u8..).zip(&flow.motions).skip(BACKGROUND + 1) {
+        for (y, row) in labels.chunks_exact_mut(width).enumerate() {
+            for (x, label) in row.iter_mut().enumerate() {
+                let [u, v] = motion.flow(x as f64, y as f64);
+                let (px, py) = (x as f64 + u + 0.5, y as f64 + v + 0.5);
+                let inside = px >= 0.0 && py >= 0.0 && px < width as f64 && py < height as f64;
+                if inside && flow.labels[py as usize * width + px as usize] == number {
+                    *label = number;
+                }
+            }
+        }
+    }
+    labels
 }
 
 /// Pixels between a pixel and where its motion and that of the place it leads to bring it, from which it was not in sight there.
@@ -35,4 +56,25 @@ pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&F
         }
     }
     carried
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::motion::AffineMotion;
+
+    #[test]
+    fn what_came_three_pixels_goes_on_three_pixels() {
+        let (width, height) = (20, 10);
+        let square = |left: usize| -> Buffer<u8> {
+            let inside = |p: usize| (left..left + 4).contains(&(p % width)) && (2..6).contains(&(p / width));
+            (0..width * height).map(|p| u8::from(inside(p))).collect()
+        };
+        // The motions lead back to the frame before.
+        let motions = vec![AffineMotion::STATIC, AffineMotion::translation(-3.0, 0.0)];
+        let flow = |left| Flow { width, labels: square(left), motions: motions.clone(), measured: true };
+        assert_eq!(continued_labels(&flow(5))[..], square(8)[..]);
+        // What leaves the frame is gone.
+        assert_eq!(continued_labels(&flow(14))[..], square(17)[..]);
+    }
 }

@@ -77,11 +77,15 @@ impl WorkingFrame<'_> {
 fn boxes(labels: &[u8], width: usize) -> Vec<ClipObject> {
     let mut corners = [[usize::MAX, usize::MAX, 0, 0]; 256];
     let mut pixels = [0usize; 256];
-    for (p, &label) in labels.iter().enumerate() {
-        let (k, x, y) = (usize::from(label), p % width, p / width);
-        let [left, top, right, bottom] = corners[k];
-        corners[k] = [left.min(x), top.min(y), right.max(x + 1), bottom.max(y + 1)];
-        pixels[k] += 1;
+    for (y, row) in labels.chunks_exact(width).enumerate() {
+        let mut x = 0;
+        for run in row.chunk_by(|a, b| a == b) {
+            let (k, end) = (usize::from(run[0]), x + run.len());
+            let [left, top, right, bottom] = corners[k];
+            corners[k] = [left.min(x), top.min(y), right.max(end), bottom.max(y + 1)];
+            pixels[k] += run.len();
+            x = end;
+        }
     }
     let described = |k: u8| {
         let ([left, top, right, bottom], pixels) = (corners[usize::from(k)], pixels[usize::from(k)]);

@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use super::carry::continued_labels;
 use super::evidence::{Flow, Pairs, flow, odds};
 use super::identity::{Identities, Parting};
 use super::record::Record;
@@ -11,9 +12,10 @@ use crate::error::{Error, Result};
 use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
+use crate::options::Quality;
 use crate::pair::settings::Settings;
 use crate::pair::solution::{Prior, Solution, solve};
-use crate::workspace;
+use crate::workspace::{self, Buffer};
 
 /// Frames that a frame of a whole clip waits for, half of them in each round. Evidence from eight frames away has decayed to a sixth in
 /// the first round and to a seventeenth in the second.
@@ -154,8 +156,8 @@ impl Tracker {
     /// In a whole clip a frame has a pair with each of its neighbours.
     fn both_ways(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
         let [mirror, other] = self.mirrors(settings);
-        let onward = self.solve(mirror, [last, newest], self.prior.as_ref(), settings);
-        let back = self.solve(other, [newest, last], Some(&onward.reversed()), settings);
+        let onward = self.solve(mirror, [last, newest], self.prior.as_ref(), None, settings);
+        let back = self.solve(other, [newest, last], Some(&onward.reversed()), None, settings);
         if onward.is_cut() && back.is_cut() {
             return Pairs::default();
         }
@@ -167,11 +169,14 @@ impl Tracker {
     /// In a stream a frame has its pair with the frame before, near what was found there. Only the first frame may wait for the next.
     fn backward(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
         let [mirror, other] = self.mirrors(settings);
-        let back = self.solve(mirror, [newest, last], self.prior.as_ref(), settings);
+        // A fast stream follows what moves as the frame before did.
+        let followed = last.back.as_ref().filter(|_| settings.follows && self.has(ClipPart::WarmStart));
+        let expected = followed.map(|(_, flow)| continued_labels(flow));
+        let back = self.solve(mirror, [newest, last], self.prior.as_ref(), expected, settings);
         if back.is_cut() {
             return Pairs::default();
         }
-        let onward = self.waits.then(|| self.solve(other, [last, newest], None, settings));
+        let onward = self.waits.then(|| self.solve(other, [last, newest], None, None, settings));
         let prior = Some(back.prior());
         let [onward, back] = [onward, Some(back)].map(|view| view.map(|solution| (odds(&solution), flow(solution))));
         Pairs { onward, back, prior }
@@ -197,17 +202,19 @@ impl Tracker {
         mirror: Mirror,
         [first, second]: [&Newest; 2],
         prior: Option<&Prior>,
+        expected: Option<Buffer<u8>>,
         settings: &Settings,
     ) -> Solution {
         let prior = prior.filter(|_| self.has(ClipPart::WarmStart));
         if mirror == Mirror::ALL[0] {
-            return solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior);
+            return solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior, expected);
         }
         let size = settings.working_size([first.frame.width(), first.frame.height()]);
         let prior = prior.map(|prior| prior.mirrored(mirror, size));
         let [first, second] = [first, second].map(|newest| mirror.frame(&newest.frame));
         let [pyramid, other] = [&first, &second].map(|frame| settings.pyramid(frame));
-        solve(&first, &pyramid, &other, settings, prior.as_ref()).mirrored(mirror, size)
+        // Only the best quality has mirror images, and only a fast stream follows labels.
+        solve(&first, &pyramid, &other, settings, prior.as_ref(), None).mirrored(mirror, size)
     }
 
     /// Goes on with what the pairs of the last frame and the newest one have told.
@@ -291,7 +298,9 @@ impl Tracker {
 
     /// The second round starts from the pairs' odds and the first round's cut.
     fn second_round(&mut self, first: Foreground) -> Option<Tracked> {
-        if !self.has(ClipPart::SecondRound) {
+        // Without frames to wait for, a second look tells little that the first does not: .0015 J on ten real clips.
+        let live = self.options.pair.quality == Quality::Fast && self.options.look_ahead == Some(0);
+        if live || !self.has(ClipPart::SecondRound) {
             return Some(self.tracked(first));
         }
         let Foreground { record, mask, .. } = first;

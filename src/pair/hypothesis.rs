@@ -2,12 +2,16 @@
 
 use super::Pair;
 use super::settings::{Part, Settings};
+use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
 use crate::estimation::proposal::algebraic::from_algebra;
 use crate::estimation::proposal::local_flow::local_flow;
 use crate::estimation::proposal::tiles::from_tiles;
 use crate::estimation::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
+use crate::frame::filter::eroded;
+use crate::labelling::{BACKGROUND, mask_of};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
+use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
 
@@ -23,6 +27,8 @@ const ROUNDS: [usize; 3] = [1, 2, 1];
 /// Distance of the pixels looked at on finer levels, and proposals tried there in each round. For speed.
 const FINE_THINNING: usize = 2;
 const FINE_TRIES: usize = 2;
+/// Iterations in which the motion of a pixel that goes on is refined. Not varied.
+const ITERATIONS: usize = 3;
 
 impl Settings {
     /// How motions are added at the selection level (0) and at finer levels (1).
@@ -63,6 +69,47 @@ pub(super) fn best(
     (winner, least)
 }
 
+/// The motions with which labels go on, each refined on the pixels that it is expected to have; those that have become needless are left
+/// out, together with their pixels. And their cost. The first motion is the dominant one.
+pub(super) fn followed(
+    pair: &Pair,
+    dominant: AffineMotion,
+    objects: &[AffineMotion],
+    labels: &mut [u8],
+    settings: &Settings,
+) -> (Found, f64) {
+    let level = &pair.levels[pair.selection];
+    let (width, height) = (level.width(), level.height());
+    let mut selected = vec![ScoredMotion::new(level, dominant)];
+    for (label, motion) in (BACKGROUND + 1..).zip(objects) {
+        let region = softened(&eroded(&mask_of(labels, label as u8, width, height)));
+        let how = Alignment::of_region(ITERATIONS, ridge_of_label(label));
+        let motion = align(level, motion, &Support::weighted(&region), &mut Photometric::default(), how);
+        selected.push(ScoredMotion::new(level, motion));
+    }
+    settings.refit(level, &mut selected, ROUNDS[0]);
+    let all: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
+    if settings.least == 1 {
+        prune(&mut selected, settings.price[0]);
+    }
+    let cost = cost_of(&selected, settings);
+    let number = |motion: &AffineMotion| selected.iter().position(|scored| scored.motion == *motion);
+    let numbers: Vec<u8> = all.iter().map(|motion| number(motion).unwrap_or(BACKGROUND) as u8).collect();
+    labels.iter_mut().for_each(|label| *label = numbers[usize::from(*label)]);
+    (Found { selected, runner_up: None }, cost)
+}
+
+/// The cost of motions.
+pub(super) fn cost(pair: &Pair, motions: &[AffineMotion], settings: &Settings) -> f64 {
+    let level = &pair.levels[pair.selection];
+    let scored: Vec<ScoredMotion> = motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect();
+    cost_of(&scored, settings)
+}
+
+fn cost_of(selected: &[ScoredMotion], settings: &Settings) -> f64 {
+    total(&smallest_cost(selected)) + settings.hypothesis_price * selected.len() as f64
+}
+
 /// The motions selected among those expected, without a search for others, and their cost. The first is the dominant one.
 pub(super) fn expected(
     pair: &Pair,
@@ -74,7 +121,7 @@ pub(super) fn expected(
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, objects, settings.deflation(0));
     settings.refit(level, &mut selected, 1);
-    let cost = total(&smallest_cost(&selected)) + settings.hypothesis_price * selected.len() as f64;
+    let cost = cost_of(&selected, settings);
     (Found { selected, runner_up }, cost)
 }
 
@@ -111,7 +158,7 @@ fn with_dominant(
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(0));
     settings.refit(level, &mut selected, ROUNDS[0]);
-    let cost = total(&smallest_cost(&selected)) + settings.hypothesis_price * selected.len() as f64;
+    let cost = cost_of(&selected, settings);
     (Found { selected, runner_up }, cost)
 }
 

@@ -70,21 +70,30 @@ pub(super) fn label(pair: &Pair, found: Found, settings: &Settings) -> Labelled 
     state.prune();
     state.try_static_background();
     state.correct_occlusion();
-    state.merge();
-    if state.split() {
-        state.prune();
-        state.merge();
-    }
+    state.regroup();
     if pair.draft == 0 {
         state.add_colour_costs(pair);
         state.solve_final();
     } else {
         state.sharpen(pair);
     }
-    let width = pair.finest().width();
-    state.clean(width);
-    let LabelState { motions, labels, runner_up, .. } = state;
-    Labelled { motions, labels, runner_up }
+    state.finished(pair)
+}
+
+/// Labels that go on from those expected at the working size: unless regions are merged or split, they are solved once.
+pub(super) fn label_on(pair: &Pair, found: Found, expected: Buffer<u8>, settings: &Settings) -> Labelled {
+    let mut state = LabelState::new(pair, found, settings);
+    state.labels = expected;
+    state.prune();
+    state.try_static_background();
+    if state.motions.len() > 1 && settings.has(Part::Visibility) {
+        state.update_occlusion();
+    }
+    state.regroup();
+    state.add_colour_costs(pair);
+    state.solve_final();
+    state.prune();
+    state.finished(pair)
 }
 
 /// Smoothness weights on a level.
@@ -143,6 +152,13 @@ impl<'a> LabelState<'a> {
             motions,
             runner_up: None,
         }
+    }
+
+    /// Without small components and motions that have no pixels.
+    fn finished(mut self, pair: &Pair) -> Labelled {
+        self.clean(pair.finest().width());
+        let LabelState { motions, labels, runner_up, .. } = self;
+        Labelled { motions, labels, runner_up }
     }
 
     fn size(&self) -> (usize, usize) {
@@ -270,6 +286,15 @@ impl<'a> LabelState<'a> {
             self.recompute_costs();
             self.solve();
             self.prune();
+        }
+    }
+
+    /// Merges and splits regions where that shortens the description.
+    fn regroup(&mut self) {
+        self.merge();
+        if self.split() {
+            self.prune();
+            self.merge();
         }
     }
 

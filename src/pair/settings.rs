@@ -78,6 +78,8 @@ pub(crate) struct Settings {
     pub(crate) visibility_rounds: usize,
     /// How labels hold together.
     pub(crate) coherence: Coherence,
+    /// Whether a pair starts from the labels of the one before, where there is one.
+    pub(crate) follows: bool,
     /// What is left out.
     #[cfg(feature = "ablation")]
     pub(crate) without: Option<Part>,
@@ -150,6 +152,7 @@ impl Settings {
                 solver: Solver::BEST,
                 sharpening: Solver::BEST,
             },
+            follows: false,
             #[cfg(feature = "ablation")]
             without: None,
         };
@@ -193,7 +196,7 @@ impl Settings {
         }
         let halvings = halvings_to(WORK_SIDE_STREAM, size);
         let coherence = Coherence { smoothness: fast_smoothness(halvings), ..settings.coherence };
-        Settings { halvings, coherence, ..settings }
+        Settings { halvings, coherence, follows: true, ..settings }
     }
 
     /// The solver of final labels.

@@ -7,13 +7,24 @@
 //!
 //! On a pyramid (costs and weights summed over 2×2 blocks, messages handed down at half their size) a handful of
 //! iterations carries information across the image that would otherwise need as many iterations as a region is wide.
+//!
+//! A message depends on the one before it in its row, and on the one above it. Four rows, a band, are therefore processed at once, each a
+//! pixel behind the row above, so that all arithmetic is on four pixels at a time, and gives the same bits as pixel by pixel:
+//!
+//! ```text
+//! step     0  1  2  3  4  5        the columns of four rows of three pixels; the rest is padding, without costs and weights
+//! row 0    0  1  2
+//! row 1       0  1  2
+//! row 2          0  1  2
+//! row 3             0  1  2
+//! ```
 
 use super::potts::{Potts, allowed};
-use crate::workspace::{Buffer, Kept};
+use crate::workspace::Buffer;
 
-/// Labels are handled in vectors of 4, 8 or 16.
+/// Labels are padded to 2, 3, 4, 8 or 16.
 pub(super) const MAX_LABELS: usize = 16;
-/// Cost of the padding labels of a vector.
+/// Cost of the padding labels.
 const PADDING: f32 = 1e20;
 /// Smallest side of a level of the pyramid.
 const SMALLEST: usize = 8;
@@ -23,6 +34,15 @@ const FEW: usize = 2;
 const CLOSED: f64 = 1e-6;
 /// Relative rise of the bound in one iteration below which the iteration stops.
 const STALLED: f64 = 2e-6;
+/// Coarse levels only initialise the messages, so a few iterations are enough.
+const COARSE_ITERATIONS: usize = 3;
+/// Rows of a band.
+const ROWS: usize = 4;
+/// Steps that the last row of a band is behind the first.
+const BEHIND: usize = ROWS - 1;
+
+/// Values of the pixels of a band in one step, one of each row.
+type Step = [f32; ROWS];
 
 /// Labels, and a lower bound of the energy.
 pub(super) struct Solution {
@@ -35,31 +55,15 @@ pub(super) struct Solution {
 #[inline(never)]
 pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
     match problem.costs.len() {
-        0..=4 => solve::<4>(problem, levels, iterations),
+        0..=2 => solve::<2>(problem, levels, iterations),
+        3 => solve::<3>(problem, levels, iterations),
+        4 => solve::<4>(problem, levels, iterations),
         5..=8 => solve::<8>(problem, levels, iterations),
         _ => solve::<16>(problem, levels, iterations),
     }
 }
 
-/// One level: a grid with costs, weights, and the messages on its edges.
-struct Grid<const L: usize>
-where
-    [f32; L]: Kept,
-{
-    width: usize,
-    height: usize,
-    costs: Buffer<[f32; L]>,
-    /// Weight of the edge from p to its right and to its lower neighbour; 0 where there is none.
-    weights: Buffer<[f32; 2]>,
-    /// Message on the edge from p to its right neighbour and to its lower neighbour; all 0 where there is none.
-    right: Buffer<[f32; L]>,
-    down: Buffer<[f32; L]>,
-}
-
-fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution
-where
-    [f32; L]: Kept,
-{
+fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
     let mut pyramid = vec![Grid::<L>::new(problem)];
     while pyramid.len() < levels {
         let finest = &pyramid[pyramid.len() - 1];
@@ -74,7 +78,7 @@ where
     }
     for level in (1..pyramid.len()).rev() {
         for _ in 0..iterations.min(COARSE_ITERATIONS) {
-            pyramid[level].forward(None);
+            pyramid[level].forward();
             pyramid[level].backward();
         }
         let (finer, coarser) = pyramid.split_at_mut(level);
@@ -82,17 +86,17 @@ where
     }
 
     let grid = &mut pyramid[0];
-    let mut labels = Buffer::filled(grid.costs.len(), 0u8);
+    let mut labels = Buffer::filled(grid.width * grid.height, 0u8);
     let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
     let mut bound = f64::NEG_INFINITY;
     let unread = if iterations <= FEW { iterations } else { 0 };
     for _ in 0..unread {
-        grid.forward(None);
+        grid.forward();
         grid.backward();
     }
     for iteration in unread..=iterations {
         // If all messages are still zero, this reads out the costs alone: a valid labelling.
-        let energy = grid.forward(Some(&mut labels));
+        let energy = grid.read_out(&mut labels);
         if energy < lowest {
             lowest = energy;
             best.copy_from_slice(&labels);
@@ -100,6 +104,7 @@ where
         if iteration == iterations || lowest - bound <= CLOSED * (1.0 + lowest.abs()) {
             break;
         }
+        grid.forward();
         let reached = grid.backward();
         if reached - bound <= STALLED * (1.0 + reached.abs()) && iteration > 2 {
             bound = bound.max(reached);
@@ -111,263 +116,328 @@ where
     Solution { labels: best, bound }
 }
 
-/// Coarse levels only initialise the messages, so a few iterations are enough.
-const COARSE_ITERATIONS: usize = 3;
-
-/// State of a row during a pass. Each pixel depends on its neighbour's message, so two rows are processed in turns, the second one
-/// pixel behind.
-struct Row<const L: usize> {
-    /// Index of its first pixel.
-    start: usize,
-    /// The message from the neighbour that was visited last, its label, and the weight of the edge to it.
-    message: [f32; L],
-    label: u8,
-    weight: f32,
-    /// Energy or bound.
-    sum: f64,
-    /// Shares of its first pixel, its last, and those between.
-    shares: [f32; 3],
+/// One level: a grid with costs, weights, and the messages on its edges, in the order of the steps. Padding is 0 throughout.
+struct Grid<const L: usize> {
+    width: usize,
+    height: usize,
+    /// For every step, the costs of each label.
+    costs: Buffer<Step>,
+    /// Weight of the edge from p to its right and to its lower neighbour; 0 where there is none.
+    to_right: Buffer<Step>,
+    to_below: Buffer<Step>,
+    /// Message on the edge from p to its right neighbour and to its lower neighbour, for every step that of each label; all 0 where there
+    /// is none.
+    right: Buffer<Step>,
+    down: Buffer<Step>,
 }
 
-impl<const L: usize> Row<L> {
-    fn new(grid: &Grid<L>, y: usize) -> Self
-    where
-        [f32; L]: Kept,
-    {
-        let last = grid.width - 1;
-        let shares = [grid.share(0, y), grid.share(last, y), grid.share(last.min(1), y)];
-        Row { start: y * grid.width, message: [0.0; L], label: 0, weight: 0.0, sum: 0.0, shares }
-    }
-
-    #[inline(always)]
-    fn share(&self, x: usize, width: usize) -> f32 {
-        if x == 0 {
-            self.shares[0]
-        } else if x + 1 == width {
-            self.shares[1]
-        } else {
-            self.shares[2]
-        }
-    }
-}
-
-impl<const L: usize> Grid<L>
-where
-    [f32; L]: Kept,
-{
+impl<const L: usize> Grid<L> {
     fn new(problem: &Potts<'_>) -> Self {
-        let (width, height) = (problem.width(), problem.height());
-        let size = width * height;
-        // Padding labels keep their price.
-        let mut costs = Buffer::filled(size, [PADDING; L]);
-        for (l, plane) in problem.costs.iter().enumerate() {
-            costs.iter_mut().zip(plane.values()).for_each(|(cost, &of_label)| cost[l] = allowed(of_label));
+        let mut grid = Self::unconnected(problem.width(), problem.height());
+        let (width, height) = (grid.width, grid.height);
+        for l in 0..L {
+            let costs = &mut grid.costs[l..];
+            match problem.costs.get(l) {
+                Some(plane) => stagger(|y| &plane.row(y)[..width], [width, height], allowed, costs, L),
+                // Padding labels keep their price.
+                None => {
+                    let padding = Buffer::filled(width, PADDING);
+                    stagger(|_| &padding, [width, height], |cost| cost, costs, L);
+                }
+            }
         }
-        let (h, v) = (problem.horizontal.values(), problem.vertical.values());
-        let mut weights: Buffer<[f32; 2]> = h.iter().zip(v).map(|(&h, &v)| [h, v]).collect();
-        for row in weights.chunks_exact_mut(width) {
-            row[width - 1][0] = 0.0;
-        }
-        weights[(height - 1) * width..].iter_mut().for_each(|w| w[1] = 0.0);
-        Grid { width, height, costs, weights, right: Buffer::default(), down: Buffer::default() }
+        let (horizontal, vertical) = (problem.horizontal, problem.vertical);
+        let connected = [width - 1, height - 1];
+        stagger(|y| &horizontal.row(y)[..connected[0]], [width, height], |w| w, &mut grid.to_right, 1);
+        stagger(|y| vertical.row(y), [width, connected[1]], |w| w, &mut grid.to_below, 1);
+        grid
+    }
+
+    /// A grid without costs, weights and messages.
+    fn unconnected(width: usize, height: usize) -> Self {
+        let steps = height.div_ceil(ROWS) * (width + BEHIND);
+        let none = |count: usize| Buffer::filled(count, [0.0; ROWS]);
+        let [right, down] = [0; 2].map(|_| Buffer::default());
+        Grid { width, height, costs: none(steps * L), to_right: none(steps), to_below: none(steps), right, down }
+    }
+
+    /// Steps of a band.
+    fn steps(&self) -> usize {
+        self.width + BEHIND
+    }
+
+    /// The step and the lane of a pixel.
+    #[inline(always)]
+    fn place(&self, x: usize, y: usize) -> (usize, usize) {
+        (y / ROWS * self.steps() + x + y % ROWS, y % ROWS)
     }
 
     /// Costs and the weights across the border of 2×2 blocks, summed.
     fn halved(&self) -> Self {
-        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let mut costs = Buffer::with_capacity(width * height);
-        let mut weights = Buffer::with_capacity(width * height);
-        let plus = |a: [f32; L], b: &[f32; L]| std::array::from_fn(|l| a[l] + b[l]);
-        for y in (0..self.height).step_by(2) {
-            let of_row = |y: usize| y * self.width..(y + 1) * self.width;
-            let last = (y + 1).min(self.height - 1);
-            for (upper, lower) in self.costs[of_row(y)].chunks(2).zip(self.costs[of_row(last)].chunks(2)) {
-                let sum = upper[1..].iter().fold(upper[0], plus);
-                costs.push(if last > y { lower.iter().fold(sum, plus) } else { sum });
-            }
-            for (upper, lower) in self.weights[of_row(y)].chunks(2).zip(self.weights[of_row(last)].chunks(2)) {
-                let mut across = [0.0, 0.0];
-                if let ([_, upper], [_, lower]) = (upper, lower) {
-                    across[0] = if last > y { upper[0] + lower[0] } else { upper[0] };
+        let mut half = Self::unconnected(self.width.div_ceil(2), self.height.div_ceil(2));
+        for y in 0..half.height {
+            let ((start, lane), (from, at)) = (half.place(0, y), self.place(0, 2 * y));
+            for x in 0..half.width {
+                let step = start + x;
+                // The pixel on the right is a step further in the same lane, the one below a step further in the next lane, as an even row
+                // is never the last of a band. Outside the grid there is padding, without costs and weights.
+                let upper = from + 2 * x;
+                let beside = upper + 1;
+                let across = (upper + 2).min(self.to_right.len() - 1);
+                for l in 0..L {
+                    let at_step = |step: usize, lane: usize| self.costs[step * L + l][lane];
+                    half.costs[step * L + l][lane] =
+                        at_step(upper, at) + at_step(beside, at) + at_step(beside, at + 1) + at_step(across, at + 1);
                 }
-                if last > y {
-                    across[1] = lower.iter().map(|w| w[1]).sum();
-                }
-                weights.push(across);
+                half.to_right[step][lane] = self.to_right[beside][at] + self.to_right[across][at + 1];
+                half.to_below[step][lane] = self.to_below[beside][at + 1] + self.to_below[across][at + 1];
             }
         }
-        Grid { width, height, costs, weights, right: Buffer::default(), down: Buffer::default() }
+        half
     }
 
     /// Sets all messages to zero.
     fn clear_messages(&mut self) {
-        self.right = Buffer::filled(self.costs.len(), [0.0; L]);
+        self.right = Buffer::filled(self.costs.len(), [0.0; ROWS]);
         self.down = self.right.clone();
     }
 
     /// Initialises the messages from the coarser level. The bound is valid for any messages.
     fn take_messages_from(&mut self, coarser: &Self) {
-        let none = [0.0; L];
-        let half = |m: &[f32; L]| m.map(|m| 0.5 * m);
-        for (messages, of_coarser) in [(&mut self.right, &coarser.right), (&mut self.down, &coarser.down)] {
-            *messages = Buffer::with_capacity(self.width * self.height);
-            for y in 0..self.height {
-                let row = &of_coarser[y / 2 * coarser.width..][..coarser.width];
-                let both = row.iter().flat_map(|m| [half(m); 2]);
-                messages.extend(both.take(self.width));
-            }
-        }
-        // No message leaves the grid.
-        self.right.chunks_exact_mut(self.width).for_each(|row| row[self.width - 1] = none);
-        self.down[(self.height - 1) * self.width..].fill(none);
-    }
-
-    /// Share of a pixel's costs in each message: one over the number of chains through the pixel.
-    fn share(&self, x: usize, y: usize) -> f32 {
-        let ahead = u8::from(x + 1 < self.width) + u8::from(y + 1 < self.height);
-        let behind = u8::from(x > 0) + u8::from(y > 0);
-        1.0 / f32::from(ahead.max(behind).max(1))
-    }
-
-    /// Sends messages right and down. With `labels`, reads them out on the way: each pixel takes the cheapest label given the labels
-    /// before it and the messages from after it. Returns the energy of the labels.
-    fn forward(&mut self, mut labels: Option<&mut [u8]>) -> f64 {
-        let mut energy = 0.0;
-        for y in (0..self.height).step_by(2) {
-            let (mut upper, mut lower) = (Row::new(self, y), Row::new(self, y + 1));
-            let both = y + 1 < self.height;
-            for x in 0..=self.width {
-                if x < self.width {
-                    self.forward_pixel(&mut upper, x, labels.as_deref_mut());
-                }
-                if both && x > 0 {
-                    self.forward_pixel(&mut lower, x - 1, labels.as_deref_mut());
+        self.clear_messages();
+        for y in 0..self.height {
+            let ((start, lane), (from, of)) = (self.place(0, y), coarser.place(0, y / 2));
+            // No message leaves the grid.
+            let down = if y + 1 < self.height { 0.5 } else { 0.0 };
+            for x in 0..self.width {
+                let right = if x + 1 < self.width { 0.5 } else { 0.0 };
+                let (here, there) = ((start + x) * L, (from + x / 2) * L);
+                for l in 0..L {
+                    self.right[here + l][lane] = right * coarser.right[there + l][of];
+                    self.down[here + l][lane] = down * coarser.down[there + l][of];
                 }
             }
-            energy += upper.sum;
-            energy += lower.sum;
         }
-        energy
+    }
+
+    /// Share of a pixel's costs in each message: one over the number of chains through the pixel. That is two, unless the grid is a
+    /// single row or column, or the pixel is the last of the first row or the first of the last row.
+    #[inline(always)]
+    fn shares(&self, step: usize, corners: [(usize, usize); 2]) -> Step {
+        let mut shares = [if self.width.min(self.height) > 1 { 0.5 } else { 1.0 }; ROWS];
+        for (place, lane) in corners {
+            if place == step {
+                shares[lane] = 1.0;
+            }
+        }
+        shares
+    }
+
+    /// The places of the two pixels with a share of one.
+    fn corners(&self) -> [(usize, usize); 2] {
+        [self.place(self.width - 1, 0), self.place(0, self.height - 1)]
+    }
+
+    /// The step, in the band above, of the pixel above the first row's in the step `column` of the band that begins at `first`.
+    #[inline(always)]
+    fn above(&self, first: usize, column: usize) -> Option<usize> {
+        (first > 0 && column < self.width).then(|| first - self.width + column)
+    }
+
+    /// Sends messages right and down.
+    fn forward(&mut self) {
+        let (steps, corners) = (self.steps(), self.corners());
+        for first in (0..self.to_right.len()).step_by(steps) {
+            let (mut from_left, mut from_above) = ([[0.0; ROWS]; L], [[0.0; ROWS]; L]);
+            for step in first..first + steps {
+                let above = self.above(first, step - first);
+                let shares = self.shares(step, corners);
+                let (costs, right, down) =
+                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
+                let total: [Step; L] = std::array::from_fn(|l| {
+                    let up = lanes(|k| {
+                        if k == 0 {
+                            above.map_or(0.0, |above| self.down[above * L + l][BEHIND])
+                        } else {
+                            from_above[l][k - 1]
+                        }
+                    });
+                    plus(plus(sum3(&costs[l], &right[l], &down[l]), from_left[l]), up)
+                });
+                (from_left, _) = message(&total, shares, right, self.to_right[step]);
+                (from_above, _) = message(&total, shares, down, self.to_below[step]);
+                *of_mut::<L>(&mut self.right, step) = from_left;
+                *of_mut::<L>(&mut self.down, step) = from_above;
+            }
+        }
     }
 
     /// Sends messages left and up; returns a lower bound of the energy.
     fn backward(&mut self) -> f64 {
+        let (steps, corners) = (self.steps(), self.corners());
         let mut bound = 0.0;
-        for y in (0..self.height.next_multiple_of(2)).rev().step_by(2) {
-            let (mut lower, mut upper) = (Row::new(self, y), Row::new(self, y - 1));
-            let both = y < self.height;
-            for x in (0..=self.width).rev() {
-                if both && x > 0 {
-                    self.backward_pixel(&mut lower, x - 1);
+        for first in (0..self.to_right.len()).step_by(steps).rev() {
+            let mut sums = [0.0f64; ROWS];
+            for step in (first..first + steps).rev() {
+                let above = self.above(first, step - first);
+                // Before the first step there is nothing.
+                let before = step.checked_sub(1).filter(|_| step > first);
+                let shares = self.shares(step, corners);
+                let left: [Step; L] = before.map_or([[0.0; ROWS]; L], |before| *of::<L>(&self.right, before));
+                let before_down: [Step; L] = before.map_or([[0.0; ROWS]; L], |before| *of::<L>(&self.down, before));
+                let weights_left = before.map_or([0.0; ROWS], |before| self.to_right[before]);
+                let weights_down = before.map_or([0.0; ROWS], |before| self.to_below[before]);
+                let up: [Step; L] = std::array::from_fn(|l| {
+                    lanes(|k| {
+                        if k == 0 {
+                            above.map_or(0.0, |above| self.down[above * L + l][BEHIND])
+                        } else {
+                            before_down[l][k - 1]
+                        }
+                    })
+                });
+                let weights_up = lanes(|k| {
+                    if k == 0 { above.map_or(0.0, |above| self.to_below[above][BEHIND]) } else { weights_down[k - 1] }
+                });
+                let (costs, right, down) =
+                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
+                let mut total: [Step; L] =
+                    std::array::from_fn(|l| sum3(&sum3(&costs[l], &right[l], &down[l]), &left[l], &up[l]));
+                let low = lowest(&total);
+                total.iter_mut().for_each(|t| *t = minus(*t, low));
+                let (to_left, removed_left) = message(&total, shares, &left, weights_left);
+                let (to_above, removed_up) = message(&total, shares, &up, weights_up);
+                for k in 0..ROWS {
+                    sums[k] += f64::from(low[k]);
+                    sums[k] += f64::from(removed_left[k]);
+                    sums[k] += f64::from(removed_up[k]);
                 }
-                if x < self.width {
-                    self.backward_pixel(&mut upper, x);
+                if let Some(before) = before {
+                    *of_mut::<L>(&mut self.right, before) = to_left;
+                    let down = of_mut::<L>(&mut self.down, before);
+                    for l in 0..L {
+                        down[l] = lanes(|k| if k < BEHIND { to_above[l][k + 1] } else { down[l][k] });
+                    }
+                }
+                if let Some(above) = above {
+                    for l in 0..L {
+                        self.down[above * L + l][BEHIND] = to_above[l][0];
+                    }
                 }
             }
-            bound += lower.sum;
-            bound += upper.sum;
+            sums.iter().rev().for_each(|sum| bound += sum);
         }
         bound
     }
 
-    /// A pixel's part of [`forward`](Self::forward). What comes from the left is in `row`.
-    #[inline(always)]
-    fn forward_pixel(&mut self, row: &mut Row<L>, x: usize, labels: Option<&mut [u8]>) {
-        let p = row.start + x;
-        let (costs, right, down) = (&self.costs[p], self.right[p], self.down[p]);
-        let [to_right, to_below] = self.weights[p];
-        let up = if row.start > 0 { self.down[p - self.width] } else { [0.0; L] };
-        let ahead = sum3(costs, &right, &down);
-        if let Some(labels) = labels {
-            let mut fixed = [0.0; L];
-            add_change(&mut fixed, row.label, row.weight);
-            if row.start > 0 {
-                add_change(&mut fixed, labels[p - self.width], self.weights[p - self.width][1]);
+    /// Reads out labels: each pixel takes the cheapest label given the labels before it and the messages from after it. Returns their
+    /// energy.
+    fn read_out(&self, labels: &mut [u8]) -> f64 {
+        let steps = self.steps();
+        let mut energy = 0.0;
+        let mut found_in = Buffer::filled(steps, [0.0; ROWS]);
+        let mut row_above: Buffer<f32> = Buffer::filled(self.width, 0.0);
+        for (first, labels) in (0..).step_by(steps).zip(labels.chunks_mut(ROWS * self.width)) {
+            let mut sums = [0.0f64; ROWS];
+            let (mut last, mut weights, mut weights_down) = ([0.0; ROWS], [0.0; ROWS], [0.0; ROWS]);
+            for (x, found_in) in found_in.iter_mut().enumerate() {
+                let step = first + x;
+                let (above, weight_above) = match self.above(first, x) {
+                    Some(above) => (row_above[x], self.to_below[above][BEHIND]),
+                    None => (0.0, 0.0),
+                };
+                let up = lanes(|k| if k == 0 { above } else { last[k - 1] });
+                let weights_up = lanes(|k| if k == 0 { weight_above } else { weights_down[k - 1] });
+                let (costs, right, down) =
+                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
+                let (mut best, mut prices, mut found) = ([f32::INFINITY; ROWS], [0.0; ROWS], [0.0; ROWS]);
+                for l in 0..L {
+                    let label = l as f32;
+                    let ahead = sum3(&costs[l], &right[l], &down[l]);
+                    let left = lanes(|k| if last[k] == label { 0.0 } else { weights[k] });
+                    let fixed = plus(left, lanes(|k| if up[k] == label { 0.0 } else { weights_up[k] }));
+                    let (values, price) = (plus(ahead, fixed), plus(costs[l], fixed));
+                    found = lanes(|k| if values[k] < best[k] { label } else { found[k] });
+                    prices = lanes(|k| if values[k] < best[k] { price[k] } else { prices[k] });
+                    best = lanes(|k| if values[k] < best[k] { values[k] } else { best[k] });
+                }
+                sums.iter_mut().zip(prices).for_each(|(sum, price)| *sum += f64::from(price));
+                *found_in = found;
+                (last, weights, weights_down) = (found, self.to_right[step], self.to_below[step]);
             }
-            let l = first_lowest::<L>(&std::array::from_fn(|l| ahead[l] + fixed[l]));
-            (row.label, row.weight) = (l as u8, to_right);
-            labels[p] = row.label;
-            row.sum += f64::from(costs[l] + fixed[l]);
+            sums.iter().for_each(|sum| energy += sum);
+            for (k, row) in labels.chunks_mut(self.width).enumerate() {
+                row.iter_mut().zip(&found_in[k..]).for_each(|(label, found)| *label = found[k] as u8);
+            }
+            row_above.iter_mut().zip(&found_in[BEHIND..]).for_each(|(above, found)| *above = found[BEHIND]);
         }
-        let total = sum3(&ahead, &row.message, &up);
-        let share = row.share(x, self.width);
-        (row.message, _) = message(&total, share, &right, to_right);
-        self.right[p] = row.message;
-        (self.down[p], _) = message(&total, share, &down, to_below);
-    }
-
-    /// A pixel's part of [`backward`](Self::backward). What comes from the right is in `row`.
-    #[inline(always)]
-    fn backward_pixel(&mut self, row: &mut Row<L>, x: usize) {
-        let p = row.start + x;
-        let left = if x > 0 { self.right[p - 1] } else { [0.0; L] };
-        let up = if row.start > 0 { self.down[p - self.width] } else { [0.0; L] };
-        let mut total = sum3(&sum3(&self.costs[p], &row.message, &self.down[p]), &left, &up);
-        let lowest = lowest(&total);
-        row.sum += f64::from(lowest);
-        total.iter_mut().for_each(|t| *t -= lowest);
-        let share = row.share(x, self.width);
-        if x > 0 {
-            let removed;
-            (row.message, removed) = message(&total, share, &left, self.weights[p - 1][0]);
-            self.right[p - 1] = row.message;
-            row.sum += f64::from(removed);
-        }
-        if row.start > 0 {
-            let (sent, removed) = message(&total, share, &up, self.weights[p - self.width][1]);
-            self.down[p - self.width] = sent;
-            row.sum += f64::from(removed);
-        }
+        energy
     }
 }
 
-#[inline(always)]
-fn sum3<const L: usize>(a: &[f32; L], b: &[f32; L], c: &[f32; L]) -> [f32; L] {
-    std::array::from_fn(|l| a[l] + b[l] + c[l])
-}
-
-/// Adds the weight to all labels but one.
-#[inline(always)]
-fn add_change<const L: usize>(price: &mut [f32; L], label: u8, weight: f32) {
-    for (l, p) in price.iter_mut().enumerate() {
-        *p += if l == usize::from(label) { 0.0 } else { weight };
+/// Writes a grid's rows, each as long as there are values, to every `stride`-th of `steps`.
+fn stagger<'a>(
+    row: impl Fn(usize) -> &'a [f32],
+    [width, height]: [usize; 2],
+    value: impl Fn(f32) -> f32,
+    steps: &mut [Step],
+    stride: usize,
+) {
+    for y in 0..height {
+        let start = y / ROWS * (width + BEHIND) + y % ROWS;
+        let places = steps[start * stride..].iter_mut().step_by(stride);
+        places.zip(row(y)).for_each(|(step, &v)| step[y % ROWS] = value(v));
     }
 }
 
-/// The smallest value, by halves so that the compiler can compare several at once.
+/// The values of all labels in a step.
 #[inline(always)]
-fn lowest<const L: usize>(values: &[f32; L]) -> f32 {
-    let mut v = *values;
-    let mut half = L / 2;
-    while half > 0 {
-        for l in 0..half {
-            v[l] = if v[l + half] < v[l] { v[l + half] } else { v[l] };
-        }
-        half /= 2;
-    }
-    v[0]
+fn of<const L: usize>(values: &[Step], step: usize) -> &[Step; L] {
+    &values.as_chunks().0[step]
 }
 
-/// The first index of the smallest value.
 #[inline(always)]
-fn first_lowest<const L: usize>(values: &[f32; L]) -> usize {
-    let value = lowest(values);
-    let places: [f32; L] = std::array::from_fn(|l| if values[l] == value { l as f32 } else { L as f32 });
-    // An index below L, unless all values are NaN.
-    (lowest(&places) as usize).min(L - 1)
+fn of_mut<const L: usize>(values: &mut [Step], step: usize) -> &mut [Step; L] {
+    &mut values.as_chunks_mut().0[step]
+}
+
+#[inline(always)]
+fn lanes(f: impl FnMut(usize) -> f32) -> Step {
+    std::array::from_fn(f)
+}
+
+#[inline(always)]
+fn plus(a: Step, b: Step) -> Step {
+    lanes(|k| a[k] + b[k])
+}
+
+#[inline(always)]
+fn minus(a: Step, b: Step) -> Step {
+    lanes(|k| a[k] - b[k])
+}
+
+#[inline(always)]
+fn sum3(a: &Step, b: &Step, c: &Step) -> Step {
+    lanes(|k| a[k] + b[k] + c[k])
+}
+
+/// The smallest value of any label.
+#[inline(always)]
+fn lowest<const L: usize>(values: &[Step; L]) -> Step {
+    values[1..].iter().fold(values[0], |low, value| lanes(|k| if value[k] < low[k] { value[k] } else { low[k] }))
 }
 
 /// The new message along an edge whose message in the opposite direction was `old`, and what was subtracted to make its smallest
 /// entry zero.
 #[inline(always)]
-fn message<const L: usize>(total: &[f32; L], share: f32, old: &[f32; L], weight: f32) -> ([f32; L], f32) {
-    let source: [f32; L] = std::array::from_fn(|l| share * total[l] - old[l]);
+fn message<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
+    let source: [Step; L] = std::array::from_fn(|l| lanes(|k| shares[k] * total[l][k] - old[l][k]));
     let low = lowest(&source);
-    (
-        std::array::from_fn(|l| {
-            let m = source[l] - low;
-            if m < weight { m } else { weight }
-        }),
-        low,
-    )
+    let capped = |value: Step| {
+        lanes(|k| {
+            let m = value[k] - low[k];
+            if m < weights[k] { m } else { weights[k] }
+        })
+    };
+    (source.map(capped), low)
 }
