@@ -54,17 +54,7 @@ pub(super) struct Solution {
 /// At most `iterations` iterations on each of at most `levels` levels.
 #[inline(never)]
 pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
-    match problem.costs.len() {
-        0..=2 => solve::<2>(problem, levels, iterations),
-        3 => solve::<3>(problem, levels, iterations),
-        4 => solve::<4>(problem, levels, iterations),
-        5..=8 => solve::<8>(problem, levels, iterations),
-        _ => solve::<16>(problem, levels, iterations),
-    }
-}
-
-fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) -> Solution {
-    let mut pyramid = vec![Grid::<L>::new(problem)];
+    let mut pyramid = vec![Grid::new(problem)];
     while pyramid.len() < levels {
         let finest = &pyramid[pyramid.len() - 1];
         if finest.width.min(finest.height) < 2 * SMALLEST {
@@ -116,10 +106,22 @@ fn solve<const L: usize>(problem: &Potts<'_>, levels: usize, iterations: usize) 
     Solution { labels: best, bound }
 }
 
+/// Number of labels for which there is code, at least `labels`.
+fn padded(labels: usize) -> usize {
+    match labels {
+        0..=2 => 2,
+        3..=4 => labels,
+        5..=8 => 8,
+        _ => MAX_LABELS,
+    }
+}
+
 /// One level: a grid with costs, weights, and the messages on its edges, in the order of the steps. Padding is 0 throughout.
-struct Grid<const L: usize> {
+struct Grid {
     width: usize,
     height: usize,
+    /// Number of labels with the padding.
+    labels: usize,
     /// For every step, the costs of each label.
     costs: Buffer<Step>,
     /// Weight of the edge from p to its right and to its lower neighbour; 0 where there is none.
@@ -131,18 +133,19 @@ struct Grid<const L: usize> {
     down: Buffer<Step>,
 }
 
-impl<const L: usize> Grid<L> {
+impl Grid {
     fn new(problem: &Potts<'_>) -> Self {
-        let mut grid = Self::unconnected(problem.width(), problem.height());
+        let labels = padded(problem.costs.len());
+        let mut grid = Self::unconnected(problem.width(), problem.height(), labels);
         let (width, height) = (grid.width, grid.height);
-        for l in 0..L {
+        for l in 0..labels {
             let costs = &mut grid.costs[l..];
             match problem.costs.get(l) {
-                Some(plane) => stagger(|y| &plane.row(y)[..width], [width, height], allowed, costs, L),
+                Some(plane) => stagger(|y| &plane.row(y)[..width], [width, height], allowed, costs, labels),
                 // Padding labels keep their price.
                 None => {
                     let padding = Buffer::filled(width, PADDING);
-                    stagger(|_| &padding, [width, height], |cost| cost, costs, L);
+                    stagger(|_| &padding, [width, height], |cost| cost, costs, labels);
                 }
             }
         }
@@ -154,11 +157,20 @@ impl<const L: usize> Grid<L> {
     }
 
     /// A grid without costs, weights and messages.
-    fn unconnected(width: usize, height: usize) -> Self {
+    fn unconnected(width: usize, height: usize, labels: usize) -> Self {
         let steps = height.div_ceil(ROWS) * (width + BEHIND);
         let none = |count: usize| Buffer::filled(count, [0.0; ROWS]);
         let [right, down] = [0; 2].map(|_| Buffer::default());
-        Grid { width, height, costs: none(steps * L), to_right: none(steps), to_below: none(steps), right, down }
+        Grid {
+            width,
+            height,
+            labels,
+            costs: none(steps * labels),
+            to_right: none(steps),
+            to_below: none(steps),
+            right,
+            down,
+        }
     }
 
     /// Steps of a band.
@@ -174,7 +186,8 @@ impl<const L: usize> Grid<L> {
 
     /// Costs and the weights across the border of 2×2 blocks, summed.
     fn halved(&self) -> Self {
-        let mut half = Self::unconnected(self.width.div_ceil(2), self.height.div_ceil(2));
+        let labels = self.labels;
+        let mut half = Self::unconnected(self.width.div_ceil(2), self.height.div_ceil(2), labels);
         for y in 0..half.height {
             let ((start, lane), (from, at)) = (half.place(0, y), self.place(0, 2 * y));
             for x in 0..half.width {
@@ -184,9 +197,9 @@ impl<const L: usize> Grid<L> {
                 let upper = from + 2 * x;
                 let beside = upper + 1;
                 let across = (upper + 2).min(self.to_right.len() - 1);
-                for l in 0..L {
-                    let at_step = |step: usize, lane: usize| self.costs[step * L + l][lane];
-                    half.costs[step * L + l][lane] =
+                for l in 0..labels {
+                    let at_step = |step: usize, lane: usize| self.costs[step * labels + l][lane];
+                    half.costs[step * labels + l][lane] =
                         at_step(upper, at) + at_step(beside, at) + at_step(beside, at + 1) + at_step(across, at + 1);
                 }
                 half.to_right[step][lane] = self.to_right[beside][at] + self.to_right[across][at + 1];
@@ -205,14 +218,15 @@ impl<const L: usize> Grid<L> {
     /// Initialises the messages from the coarser level. The bound is valid for any messages.
     fn take_messages_from(&mut self, coarser: &Self) {
         self.clear_messages();
+        let labels = self.labels;
         for y in 0..self.height {
             let ((start, lane), (from, of)) = (self.place(0, y), coarser.place(0, y / 2));
             // No message leaves the grid.
             let down = if y + 1 < self.height { 0.5 } else { 0.0 };
             for x in 0..self.width {
                 let right = if x + 1 < self.width { 0.5 } else { 0.0 };
-                let (here, there) = ((start + x) * L, (from + x / 2) * L);
-                for l in 0..L {
+                let (here, there) = ((start + x) * labels, (from + x / 2) * labels);
+                for l in 0..labels {
                     self.right[here + l][lane] = right * coarser.right[there + l][of];
                     self.down[here + l][lane] = down * coarser.down[there + l][of];
                 }
@@ -246,6 +260,27 @@ impl<const L: usize> Grid<L> {
 
     /// Sends messages right and down.
     fn forward(&mut self) {
+        match self.labels {
+            2 => self.send_forward::<2>(),
+            3 => self.send_forward::<3>(),
+            4 => self.send_forward::<4>(),
+            8 => self.send_forward::<8>(),
+            _ => self.send_forward::<MAX_LABELS>(),
+        }
+    }
+
+    /// Sends messages left and up; returns a lower bound of the energy.
+    fn backward(&mut self) -> f64 {
+        match self.labels {
+            2 => self.send_backward::<2>(),
+            3 => self.send_backward::<3>(),
+            4 => self.send_backward::<4>(),
+            8 => self.send_backward::<8>(),
+            _ => self.send_backward::<MAX_LABELS>(),
+        }
+    }
+
+    fn send_forward<const L: usize>(&mut self) {
         let (steps, corners) = (self.steps(), self.corners());
         for first in (0..self.to_right.len()).step_by(steps) {
             let (mut from_left, mut from_above) = ([[0.0; ROWS]; L], [[0.0; ROWS]; L]);
@@ -272,8 +307,7 @@ impl<const L: usize> Grid<L> {
         }
     }
 
-    /// Sends messages left and up; returns a lower bound of the energy.
-    fn backward(&mut self) -> f64 {
+    fn send_backward<const L: usize>(&mut self) -> f64 {
         let (steps, corners) = (self.steps(), self.corners());
         let mut bound = 0.0;
         for first in (0..self.to_right.len()).step_by(steps).rev() {
@@ -348,15 +382,15 @@ impl<const L: usize> Grid<L> {
                 };
                 let up = lanes(|k| if k == 0 { above } else { last[k - 1] });
                 let weights_up = lanes(|k| if k == 0 { weight_above } else { weights_down[k - 1] });
-                let (costs, right, down) =
-                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
+                let of_step = |values| labels_of(values, step, self.labels);
+                let each = of_step(&self.costs).iter().zip(of_step(&self.right)).zip(of_step(&self.down));
                 let (mut best, mut prices, mut found) = ([f32::INFINITY; ROWS], [0.0; ROWS], [0.0; ROWS]);
-                for l in 0..L {
+                for (l, ((cost, right), down)) in each.enumerate() {
                     let label = l as f32;
-                    let ahead = sum3(&costs[l], &right[l], &down[l]);
+                    let ahead = sum3(cost, right, down);
                     let left = lanes(|k| if last[k] == label { 0.0 } else { weights[k] });
                     let fixed = plus(left, lanes(|k| if up[k] == label { 0.0 } else { weights_up[k] }));
-                    let (values, price) = (plus(ahead, fixed), plus(costs[l], fixed));
+                    let (values, price) = (plus(ahead, fixed), plus(*cost, fixed));
                     found = lanes(|k| if values[k] < best[k] { label } else { found[k] });
                     prices = lanes(|k| if values[k] < best[k] { price[k] } else { prices[k] });
                     best = lanes(|k| if values[k] < best[k] { values[k] } else { best[k] });
@@ -391,6 +425,11 @@ fn stagger<'a>(
 }
 
 /// The values of all labels in a step.
+fn labels_of(values: &[Step], step: usize, labels: usize) -> &[Step] {
+    &values[step * labels..][..labels]
+}
+
+/// The same where the compiler knows their number.
 #[inline(always)]
 fn of<const L: usize>(values: &[Step], step: usize) -> &[Step; L] {
     &values.as_chunks().0[step]
