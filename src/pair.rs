@@ -22,6 +22,7 @@ use crate::estimation::dominant::{RIDGE, dominant_motion, dominant_motion_near};
 use crate::frame::Frame;
 use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::length;
 use crate::labelling::regions::groups::groups;
 use crate::motion::AffineMotion;
@@ -108,24 +109,27 @@ fn segment_with(
     check_sizes(first, second, before)?;
     let _call = workspace::begin([first.width(), first.height()]);
     let images = if settings.mirror_images { &Mirror::ALL[..] } else { &Mirror::ALL[..1] };
-    let mut stages = Stages::in_rounds(STAGES, images.len(), progress);
+    let detail = settings.of_detail(options, size(first));
+    let rounds = images.len() + usize::from(detail.is_some());
+    let mut stages = Stages::in_rounds(STAGES, rounds, progress);
     let mut searches: Vec<Search> = Vec::with_capacity(images.len());
     for (round, &mirror) in images.iter().enumerate() {
         stages.begin_round(round);
         // One mirror image at a time.
-        let second = settings.pyramid(&mirror.frame(second));
-        let before = before.map(|frame| settings.pyramid(&mirror.frame(frame)));
-        let first = mirror.frame(first);
-        let pyramid = settings.pyramid(&first);
-        let pair = Pair::new(&first, &pyramid, &second, before.as_ref(), &settings);
-        // The pair now has the planes to itself and need not copy what it changes.
-        drop((first, pyramid, second, before));
+        let pair = Pair::of_frames([first, second], before, mirror, &settings);
         searches.push(Search::new(pair, mirror, &settings, &mut stages));
     }
-    stages.begin("masks");
     let noise = searches.iter().map(|search| search.pair.finest().noise).fold(f32::INFINITY, f32::min);
     let findings: Vec<Finding> = searches.iter_mut().map(|search| search.finding(noise)).collect();
-    let Search { mirror, pair, labelled } = searches.swap_remove(nearest_to_majority(&findings));
+    let mut search = searches.swap_remove(nearest_to_majority(&findings));
+    drop(searches);
+    if let Some(settings) = detail {
+        stages.begin_round(images.len());
+        let pair = Pair::of_frames([first, second], before, search.mirror, &settings);
+        search = search.continued(pair, &settings, &mut stages);
+    }
+    stages.begin("masks");
+    let Search { mirror, pair, labelled } = search;
     Ok(report::report(&pair, labelled, mirror, &settings, [first, second], options))
 }
 
@@ -146,6 +150,20 @@ impl Search {
         stages.begin("labels");
         let labelled = labels::label(&pair, found, settings);
         Search { mirror, pair, labelled }
+    }
+
+    /// The search carried on at the working size of `pair`, from the motions that were found.
+    fn continued(self, mut pair: Pair, settings: &Settings, stages: &mut Stages<'_>) -> Search {
+        let scale = self.pair.reduction / pair.reduction;
+        let motions: Vec<AffineMotion> = self.labelled.motions.iter().map(|motion| motion.scaled(scale)).collect();
+        let runner_up = self.labelled.runner_up.map(|motion| motion.scaled(scale));
+        stages.begin("dominant");
+        pair.take_dominant(&motions[BACKGROUND], settings.has(Part::Brightness));
+        stages.begin("refinement");
+        let found = hypothesis::refine(&pair, hypothesis::known(&pair, &motions, runner_up), settings);
+        stages.begin("labels");
+        let labelled = labels::label(&pair, found, settings);
+        Search { mirror: self.mirror, pair, labelled }
     }
 
     /// What was found, in the frames themselves. Descriptions can be compared only if they assume the same noise.
@@ -194,6 +212,16 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
+    /// The pair of a mirror image of two frames.
+    fn of_frames([first, second]: [&Frame; 2], before: Option<&Frame>, mirror: Mirror, settings: &Settings) -> Pair {
+        let second = settings.pyramid(&mirror.frame(second));
+        let before = before.map(|frame| settings.pyramid(&mirror.frame(frame)));
+        let first = mirror.frame(first);
+        let pyramid = settings.pyramid(&first);
+        // The pyramids end here: the pair has the planes to itself and need not copy what it changes.
+        Pair::new(&first, &pyramid, &second, before.as_ref(), settings)
+    }
+
     /// `pyramid` is that of `first`.
     pub(crate) fn new(
         first: &Frame,

@@ -122,6 +122,27 @@ fn generated_scenes_are_segmented() {
     assert!(2 * right > series.len(), "{right} of {} numbers of motions right", series.len());
 }
 
+/// An object that moves by about a pixel, in a frame that is halved twice for the search.
+#[test]
+fn slow_objects_in_large_frames_are_found() {
+    for seed in [70_000, 70_001] {
+        let options = SceneOptions {
+            width: 964,
+            height: 544,
+            objects: 1,
+            speed: Speed::SubPixel,
+            background: Background::Static,
+            colour: true,
+            seed,
+            ..SceneOptions::default()
+        };
+        let scene = scene::generate(&options).unwrap();
+        let result = segment(scene.first(), scene.second(), SegmentOptions::default());
+        let overlap = mean(&overlaps(&scene, &result.labels));
+        assert!(overlap > 0.9, "seed {seed}: {overlap}");
+    }
+}
+
 #[test]
 fn motions_are_measured_to_a_fraction_of_a_pixel() {
     let options = SceneOptions {

@@ -125,6 +125,12 @@ pub(super) fn expected(
     (Found { selected, runner_up }, cost)
 }
 
+/// Motions that were found at another size, scaled to this one. The first is the dominant one.
+pub(super) fn known(pair: &Pair, motions: &[AffineMotion], runner_up: Option<AffineMotion>) -> Found {
+    let level = &pair.levels[pair.selection];
+    Found { selected: motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect(), runner_up }
+}
+
 /// Whether the zero motion explains much that no selected motion does.
 fn static_is_missing(level: &Level, selected: &[ScoredMotion]) -> bool {
     let found = smallest_cost(selected);

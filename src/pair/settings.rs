@@ -86,7 +86,9 @@ pub(crate) struct Settings {
 }
 
 /// Longer side of the working size at most, pixels. Chosen on generated scenes.
-const WORK_SIDE_BEST: usize = 448;
+const WORK_SIDE_BEST: usize = 480;
+/// The same for the detail of frames that are halved more than once to that size. Chosen on generated scenes.
+const DETAIL_SIDE: usize = 960;
 /// The same with quality `fast`. For speed.
 const WORK_SIDE_FAST: usize = 320;
 /// The same in a stream with quality `fast`. For speed.
@@ -197,6 +199,14 @@ impl Settings {
         let halvings = halvings_to(WORK_SIDE_STREAM, size);
         let coherence = Coherence { smoothness: fast_smoothness(halvings), ..settings.coherence };
         Settings { halvings, coherence, follows: true, ..settings }
+    }
+
+    /// The settings with which a search is carried on at a finer working size, so that large frames get their detail; none where quality
+    /// `fast` or the size of the frames asks for no more.
+    pub(crate) fn of_detail(&self, options: &SegmentOptions, size: [usize; 2]) -> Option<Settings> {
+        let halvings = halvings_to(DETAIL_SIDE, size);
+        let wanted = options.quality == Quality::Best && self.halvings > 1 && halvings < self.halvings;
+        wanted.then_some(Settings { halvings, draft_side: DETAIL_SIDE, ..*self })
     }
 
     /// The solver of final labels.
