@@ -90,7 +90,7 @@ pub enum Method {
 pub enum Quality {
     /// For live video: frames are processed at 320 pixels or less (longer side), with fewer candidate motions.
     Fast,
-    /// For stored results: frames are processed at 448 pixels or less (longer side).
+    /// For stored results: frames are processed at 480 pixels or less (longer side), large pairs at 960 in the end.
     #[default]
     Best,
 }
