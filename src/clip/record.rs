@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::evidence::Flow;
+use crate::frame::palette::Palette;
 use crate::frame::pyramid::Appearance;
 use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
@@ -14,7 +15,10 @@ pub(crate) struct Record {
     pub(crate) index: usize,
     /// In a stream, which describes a frame when it leaves.
     pub(crate) frame: Option<Rc<Frame>>,
-    pub(crate) appearance: Rc<Appearance>,
+    /// Quantised colour of every working pixel.
+    pub(crate) palette: Palette,
+    /// Prices of borders between labels, in units of the smoothness. They take less memory than the pictures whose edges they follow.
+    pub(crate) unit_borders: Borders,
     /// Log-odds of object against background from the frame's pairs, nats; zero where there is no pair.
     pub(crate) odds: Plane,
     /// To the next frame; none at the end of a scene.
@@ -31,8 +35,13 @@ impl Record {
 
     /// Prices of borders between labels.
     pub(crate) fn borders(&self, smoothness: f32) -> Borders {
-        Borders::new(&self.appearance.pictures[0], EDGE_NOISE, smoothness)
+        self.unit_borders.times(smoothness)
     }
+}
+
+/// Prices of borders along the edges of a frame, in units of the smoothness.
+pub(crate) fn unit_borders(appearance: &Appearance) -> Borders {
+    Borders::new(&appearance.pictures[0], EDGE_NOISE, 1.0)
 }
 
 /// Noise that the edges of a frame stand out from, grey levels. Frames of clips are compressed more often than noisy. Not varied.

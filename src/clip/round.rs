@@ -99,13 +99,13 @@ impl Round {
         if record.back.is_none() {
             self.colours.clear();
         }
-        let appearance = &record.appearance;
-        let mut all = ColourCounts::of(&appearance.palette, &odds[0]);
+        let palette = &record.palette;
+        let mut all = ColourCounts::of(palette, &odds[0]);
         let own = all.clone();
         self.colours.iter().for_each(|counts| all.add(counts));
         let of_scene = self.waiting.iter().take_while(|waiting| waiting.record.back.is_some());
         for (waiting, odds) in of_scene.zip(&odds[1..]).take(COLOUR_REACH) {
-            all.add(&ColourCounts::of(&waiting.record.appearance.palette, odds));
+            all.add(&ColourCounts::of(&waiting.record.palette, odds));
         }
         self.colours.push_back(own);
         if self.colours.len() > COLOUR_REACH {
@@ -113,7 +113,7 @@ impl Round {
         }
         let ratios = all.ratios();
         let price = |(p, odds): (usize, &f32)| {
-            ODDS_WEIGHT * odds.clamp(-MOST_ODDS, MOST_ODDS) + self.colours_weight * ratios[appearance.palette.index(p)]
+            ODDS_WEIGHT * odds.clamp(-MOST_ODDS, MOST_ODDS) + self.colours_weight * ratios[palette.index(p)]
         };
         let [width, height] = record.size();
         let odds = odds.into_iter().next()?;

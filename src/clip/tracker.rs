@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::carry::continued_labels;
 use super::evidence::{Flow, Pairs, flow, odds};
 use super::identity::{Identities, Parting};
-use super::record::Record;
+use super::record::{Record, unit_borders};
 use super::round::{Foreground, Round};
 use super::{ClipOptions, MAX_LOOK_AHEAD};
 use crate::error::{Error, Result};
@@ -287,9 +287,10 @@ impl Tracker {
             }
         };
         // The pyramid's levels have told all they can.
-        let appearance = pyramid.appearance(&frame).clone();
+        let appearance = pyramid.appearance(&frame);
+        let (palette, unit_borders) = (appearance.palette.clone(), unit_borders(appearance));
         let frame = Some(frame).filter(|_| self.keeps_frames);
-        let record = Rc::new(Record { index: self.count, frame, appearance, odds, onward, back });
+        let record = Rc::new(Record { index: self.count, frame, palette, unit_borders, odds, onward, back });
         self.count += 1;
         let odds = record.odds.clone();
         let foreground = self.rounds[0].push(record, odds)?;

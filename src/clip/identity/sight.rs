@@ -23,7 +23,7 @@ pub(crate) struct Sight {
 
 impl Sight {
     pub(crate) fn of(record: &Record, pixels: &[usize]) -> Sight {
-        let (width, palette) = (record.size()[0], &record.appearance.palette);
+        let (width, palette) = (record.size()[0], &record.palette);
         let size = pixels.len().max(1) as f64;
         let (mut centre, mut colours) = ([0.0; 2], vec![0.0; COLOURS]);
         for &p in pixels {

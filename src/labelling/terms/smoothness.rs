@@ -35,6 +35,14 @@ impl Borders {
         borders
     }
 
+    /// The same prices, multiplied by a factor.
+    pub(crate) fn times(&self, factor: f32) -> Borders {
+        let mut borders = self.clone();
+        let planes = [&mut borders.horizontal, &mut borders.vertical];
+        planes.into_iter().flat_map(|plane| plane.values_mut()).for_each(|price| *price *= factor);
+        borders
+    }
+
     /// Borders that cost the same everywhere.
     pub(crate) fn uniform(width: usize, height: usize, smoothness: f32) -> Borders {
         let everywhere = Plane::filled(width, height, smoothness);
