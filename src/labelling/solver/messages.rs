@@ -19,7 +19,7 @@
 //! row 3             0  1  2
 //! ```
 
-use super::potts::{Potts, allowed};
+use super::potts::{FORBIDDEN, Potts, cut};
 use crate::workspace::Buffer;
 
 /// Labels are padded to 2, 3, 4, 8 or 16.
@@ -38,6 +38,8 @@ const STALLED: f64 = 2e-6;
 const COARSE_ITERATIONS: usize = 3;
 /// Rows of a band.
 const ROWS: usize = 4;
+/// Messages of more labels are computed in a function of their own: inlined four times, they make the module 2 kB larger.
+const INLINED: usize = 4;
 /// Steps that the last row of a band is behind the first.
 const BEHIND: usize = ROWS - 1;
 
@@ -138,21 +140,22 @@ impl Grid {
         let labels = padded(problem.costs.len());
         let mut grid = Self::unconnected(problem.width(), problem.height(), labels);
         let (width, height) = (grid.width, grid.height);
+        let size = [width, height];
         for l in 0..labels {
             let costs = &mut grid.costs[l..];
             match problem.costs.get(l) {
-                Some(plane) => stagger(|y| &plane.row(y)[..width], [width, height], allowed, costs, labels),
+                Some(plane) => stagger(&|y| &plane.row(y)[..width], size, FORBIDDEN, costs, labels),
                 // Padding labels keep their price.
                 None => {
                     let padding = Buffer::filled(width, PADDING);
-                    stagger(|_| &padding, [width, height], |cost| cost, costs, labels);
+                    stagger(&|_| &padding, size, PADDING, costs, labels);
                 }
             }
         }
         let (horizontal, vertical) = (problem.horizontal, problem.vertical);
         let connected = [width - 1, height - 1];
-        stagger(|y| &horizontal.row(y)[..connected[0]], [width, height], |w| w, &mut grid.to_right, 1);
-        stagger(|y| vertical.row(y), [width, connected[1]], |w| w, &mut grid.to_below, 1);
+        stagger(&|y| &horizontal.row(y)[..connected[0]], size, PADDING, &mut grid.to_right, 1);
+        stagger(&|y| vertical.row(y), [width, connected[1]], PADDING, &mut grid.to_below, 1);
         grid
     }
 
@@ -409,18 +412,19 @@ impl Grid {
     }
 }
 
-/// Writes a grid's rows, each as long as there are values, to every `stride`-th of `steps`.
+/// Writes a grid's rows, each as long as there are values, to every `stride`-th of `steps`; values are cut to ±`most`.
+#[inline(never)]
 fn stagger<'a>(
-    row: impl Fn(usize) -> &'a [f32],
+    row: &dyn Fn(usize) -> &'a [f32],
     [width, height]: [usize; 2],
-    value: impl Fn(f32) -> f32,
+    most: f32,
     steps: &mut [Step],
     stride: usize,
 ) {
     for y in 0..height {
         let start = y / ROWS * (width + BEHIND) + y % ROWS;
         let places = steps[start * stride..].iter_mut().step_by(stride);
-        places.zip(row(y)).for_each(|(step, &v)| step[y % ROWS] = value(v));
+        places.zip(row(y)).for_each(|(step, &value)| step[y % ROWS] = cut(value, most));
     }
 }
 
@@ -470,6 +474,16 @@ fn lowest<const L: usize>(values: &[Step; L]) -> Step {
 /// entry zero.
 #[inline(always)]
 fn message<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
+    if L <= INLINED { inlined(total, shares, old, weights) } else { called(total, shares, old, weights) }
+}
+
+#[inline(never)]
+fn called<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
+    inlined(total, shares, old, weights)
+}
+
+#[inline(always)]
+fn inlined<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
     let source: [Step; L] = std::array::from_fn(|l| lanes(|k| shares[k] * total[l][k] - old[l][k]));
     let low = lowest(&source);
     let capped = |value: Step| {

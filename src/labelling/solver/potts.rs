@@ -30,7 +30,7 @@ impl Potts<'_> {
     /// The cost of pixel p under a label, cut to ±[`FORBIDDEN`].
     #[inline]
     pub(super) fn cost(&self, label: usize, p: usize) -> f32 {
-        allowed(self.costs[label].values()[p])
+        cut(self.costs[label].values()[p], FORBIDDEN)
     }
 
     /// Energy of a labelling.
@@ -116,10 +116,10 @@ impl Potts<'_> {
     }
 }
 
-/// A cost cut to ±[`FORBIDDEN`]; NaN is forbidden.
+/// A value cut to ±`most`; NaN becomes `most`.
 #[inline(always)]
 #[allow(clippy::manual_clamp)] // `clamp` would let NaN through
-pub(super) fn allowed(cost: f32) -> f32 {
-    let cost = if cost < FORBIDDEN { cost } else { FORBIDDEN };
-    if cost > -FORBIDDEN { cost } else { -FORBIDDEN }
+pub(super) fn cut(value: f32, most: f32) -> f32 {
+    let value = if value < most { value } else { most };
+    if value > -most { value } else { -most }
 }
