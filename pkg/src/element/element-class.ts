@@ -262,7 +262,10 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   async #segmentPair(signal: AbortSignal): Promise<Segmentation> {
-    const [first, second] = await Promise.all([this.#pixels('first', signal), this.#pixels('second', signal)]);
+    const loading = [this.#pixels('first', signal), this.#pixels('second', signal)] as const;
+    // Where neither can be read the first is named, whichever fails earlier.
+    await Promise.allSettled(loading);
+    const [first, second] = await Promise.all(loading);
     signal.throwIfAborted();
     this.#leaveClip();
     this.#view.draw(first);
