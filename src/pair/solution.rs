@@ -126,9 +126,10 @@ pub(crate) fn solve(
         let dominant = pair.find_dominant(brightness);
         let (found, cost) = hypothesis::best(&pair, dominant, likely, settings, &mut stages);
         let labelled = labels::label(&pair, hypothesis::refine(&pair, found, settings), settings);
-        let enough = match settings.follows {
-            true => (1.0 + TOLERANCE_FOLLOWED) * hypothesis::cost(&pair, &labelled.motions, settings),
-            false => (1.0 + TOLERANCE) * cost,
+        let enough = if settings.follows {
+            (1.0 + TOLERANCE_FOLLOWED) * hypothesis::cost(&pair, &labelled.motions, settings)
+        } else {
+            (1.0 + TOLERANCE) * cost
         };
         (labelled, enough)
     });

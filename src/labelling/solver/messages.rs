@@ -38,7 +38,7 @@ const STALLED: f64 = 2e-6;
 const COARSE_ITERATIONS: usize = 3;
 /// Rows of a band.
 const ROWS: usize = 4;
-/// Messages of more labels are computed in a function of their own: inlined four times, they make the module 2 kB larger.
+/// Messages of up to this many labels are computed where they are sent, larger ones in a function of their own. For the module's size.
 const INLINED: usize = 4;
 /// Steps that the last row of a band is behind the first.
 const BEHIND: usize = ROWS - 1;
@@ -474,16 +474,21 @@ fn lowest<const L: usize>(values: &[Step; L]) -> Step {
 /// entry zero.
 #[inline(always)]
 fn message<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
-    if L <= INLINED { inlined(total, shares, old, weights) } else { called(total, shares, old, weights) }
+    if L <= INLINED { computed(total, shares, old, weights) } else { computed_apart(total, shares, old, weights) }
 }
 
 #[inline(never)]
-fn called<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
-    inlined(total, shares, old, weights)
+fn computed_apart<const L: usize>(
+    total: &[Step; L],
+    shares: Step,
+    old: &[Step; L],
+    weights: Step,
+) -> ([Step; L], Step) {
+    computed(total, shares, old, weights)
 }
 
 #[inline(always)]
-fn inlined<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
+fn computed<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
     let source: [Step; L] = std::array::from_fn(|l| lanes(|k| shares[k] * total[l][k] - old[l][k]));
     let low = lowest(&source);
     let capped = |value: Step| {
