@@ -19,6 +19,8 @@
 //! row 3             0  1  2
 //! ```
 
+use wide::f32x4;
+
 use super::potts::{FORBIDDEN, Potts, cut};
 use crate::workspace::Buffer;
 
@@ -188,6 +190,7 @@ impl Grid {
     }
 
     /// Costs and the weights across the border of 2×2 blocks, summed.
+    #[inline(never)]
     fn halved(&self) -> Self {
         let labels = self.labels;
         let mut half = Self::unconnected(self.width.div_ceil(2), self.height.div_ceil(2), labels);
@@ -219,6 +222,7 @@ impl Grid {
     }
 
     /// Initialises the messages from the coarser level. The bound is valid for any messages.
+    #[inline(never)]
     fn take_messages_from(&mut self, coarser: &Self) {
         self.clear_messages();
         let labels = self.labels;
@@ -240,14 +244,17 @@ impl Grid {
     /// Share of a pixel's costs in each message: one over the number of chains through the pixel. That is two, unless the grid is a
     /// single row or column, or the pixel is the last of the first row or the first of the last row.
     #[inline(always)]
-    fn shares(&self, step: usize, corners: [(usize, usize); 2]) -> Step {
-        let mut shares = [if self.width.min(self.height) > 1 { 0.5 } else { 1.0 }; ROWS];
-        for (place, lane) in corners {
+    fn shares(&self, step: usize, corners: [(usize, usize); 2]) -> f32x4 {
+        let shares = f32x4::splat(if self.width.min(self.height) > 1 { 0.5 } else { 1.0 });
+        corners.iter().fold(shares, |shares, &(place, lane)| {
             if place == step {
+                let mut shares = shares.to_array();
                 shares[lane] = 1.0;
+                f32x4::new(shares)
+            } else {
+                shares
             }
-        }
-        shares
+        })
     }
 
     /// The places of the two pixels with a share of one.
@@ -286,26 +293,19 @@ impl Grid {
     fn send_forward<const L: usize>(&mut self) {
         let (steps, corners) = (self.steps(), self.corners());
         for first in (0..self.to_right.len()).step_by(steps) {
-            let (mut from_left, mut from_above) = ([[0.0; ROWS]; L], [[0.0; ROWS]; L]);
+            let (mut from_left, mut from_above) = ([f32x4::ZERO; L], [f32x4::ZERO; L]);
             for step in first..first + steps {
                 let above = self.above(first, step - first);
                 let shares = self.shares(step, corners);
-                let (costs, right, down) =
-                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
-                let total: [Step; L] = std::array::from_fn(|l| {
-                    let up = lanes(|k| {
-                        if k == 0 {
-                            above.map_or(0.0, |above| self.down[above * L + l][BEHIND])
-                        } else {
-                            from_above[l][k - 1]
-                        }
-                    });
-                    plus(plus(sum3(&costs[l], &right[l], &down[l]), from_left[l]), up)
+                let [costs, right, down] = [&self.costs, &self.right, &self.down].map(|values| at::<L>(values, step));
+                let total: [f32x4; L] = std::array::from_fn(|l| {
+                    let above = above.map_or(0.0, |above| self.down[above * L + l][BEHIND]);
+                    costs[l] + right[l] + down[l] + from_left[l] + lowered(above, from_above[l])
                 });
-                (from_left, _) = message(&total, shares, right, self.to_right[step]);
-                (from_above, _) = message(&total, shares, down, self.to_below[step]);
-                *of_mut::<L>(&mut self.right, step) = from_left;
-                *of_mut::<L>(&mut self.down, step) = from_above;
+                (from_left, _) = message(&total, shares, &right, f32x4::new(self.to_right[step]));
+                (from_above, _) = message(&total, shares, &down, f32x4::new(self.to_below[step]));
+                put(&mut self.right, step, &from_left);
+                put(&mut self.down, step, &from_above);
             }
         }
     }
@@ -320,46 +320,32 @@ impl Grid {
                 // Before the first step there is nothing.
                 let before = step.checked_sub(1).filter(|_| step > first);
                 let shares = self.shares(step, corners);
-                let left: [Step; L] = before.map_or([[0.0; ROWS]; L], |before| *of::<L>(&self.right, before));
-                let before_down: [Step; L] = before.map_or([[0.0; ROWS]; L], |before| *of::<L>(&self.down, before));
-                let weights_left = before.map_or([0.0; ROWS], |before| self.to_right[before]);
-                let weights_down = before.map_or([0.0; ROWS], |before| self.to_below[before]);
-                let up: [Step; L] = std::array::from_fn(|l| {
-                    lanes(|k| {
-                        if k == 0 {
-                            above.map_or(0.0, |above| self.down[above * L + l][BEHIND])
-                        } else {
-                            before_down[l][k - 1]
-                        }
-                    })
+                let messages = |values| before.map_or([f32x4::ZERO; L], |before| at::<L>(values, before));
+                let (left, before_down) = (messages(&self.right), messages(&self.down));
+                let weights = |values: &[Step]| before.map_or(f32x4::ZERO, |before| f32x4::new(values[before]));
+                let (weights_left, weights_down) = (weights(&self.to_right), weights(&self.to_below));
+                let up: [f32x4; L] = std::array::from_fn(|l| {
+                    lowered(above.map_or(0.0, |above| self.down[above * L + l][BEHIND]), before_down[l])
                 });
-                let weights_up = lanes(|k| {
-                    if k == 0 { above.map_or(0.0, |above| self.to_below[above][BEHIND]) } else { weights_down[k - 1] }
-                });
-                let (costs, right, down) =
-                    (of::<L>(&self.costs, step), of::<L>(&self.right, step), of::<L>(&self.down, step));
-                let mut total: [Step; L] =
-                    std::array::from_fn(|l| sum3(&sum3(&costs[l], &right[l], &down[l]), &left[l], &up[l]));
+                let weights_up = lowered(above.map_or(0.0, |above| self.to_below[above][BEHIND]), weights_down);
+                let [costs, right, down] = [&self.costs, &self.right, &self.down].map(|values| at::<L>(values, step));
+                let mut total: [f32x4; L] = std::array::from_fn(|l| costs[l] + right[l] + down[l] + left[l] + up[l]);
                 let low = lowest(&total);
-                total.iter_mut().for_each(|t| *t = minus(*t, low));
+                total.iter_mut().for_each(|t| *t -= low);
                 let (to_left, removed_left) = message(&total, shares, &left, weights_left);
                 let (to_above, removed_up) = message(&total, shares, &up, weights_up);
-                for k in 0..ROWS {
-                    sums[k] += f64::from(low[k]);
-                    sums[k] += f64::from(removed_left[k]);
-                    sums[k] += f64::from(removed_up[k]);
+                for removed in [low, removed_left, removed_up] {
+                    sums.iter_mut().zip(removed.to_array()).for_each(|(sum, removed)| *sum += f64::from(removed));
                 }
+                let to_above = to_above.map(f32x4::to_array);
                 if let Some(before) = before {
-                    *of_mut::<L>(&mut self.right, before) = to_left;
-                    let down = of_mut::<L>(&mut self.down, before);
-                    for l in 0..L {
-                        down[l] = lanes(|k| if k < BEHIND { to_above[l][k + 1] } else { down[l][k] });
-                    }
+                    put(&mut self.right, before, &to_left);
+                    let down = &mut self.down[before * L..][..L];
+                    down.iter_mut().zip(&to_above).for_each(|(down, to)| *down = [to[1], to[2], to[3], down[BEHIND]]);
                 }
                 if let Some(above) = above {
-                    for l in 0..L {
-                        self.down[above * L + l][BEHIND] = to_above[l][0];
-                    }
+                    let down = &mut self.down[above * L..][..L];
+                    down.iter_mut().zip(&to_above).for_each(|(down, to)| down[BEHIND] = to[0]);
                 }
             }
             sums.iter().rev().for_each(|sum| bound += sum);
@@ -369,6 +355,7 @@ impl Grid {
 
     /// Reads out labels: each pixel takes the cheapest label given the labels before it and the messages from after it. Returns their
     /// energy.
+    #[inline(never)]
     fn read_out(&self, labels: &mut [u8]) -> f64 {
         let steps = self.steps();
         let mut energy = 0.0;
@@ -376,31 +363,31 @@ impl Grid {
         let mut row_above: Buffer<f32> = Buffer::filled(self.width, 0.0);
         for (first, labels) in (0..).step_by(steps).zip(labels.chunks_mut(ROWS * self.width)) {
             let mut sums = [0.0f64; ROWS];
-            let (mut last, mut weights, mut weights_down) = ([0.0; ROWS], [0.0; ROWS], [0.0; ROWS]);
+            let (mut last, mut weights, mut weights_down) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);
             for (x, found_in) in found_in.iter_mut().enumerate() {
                 let step = first + x;
                 let (above, weight_above) = match self.above(first, x) {
                     Some(above) => (row_above[x], self.to_below[above][BEHIND]),
                     None => (0.0, 0.0),
                 };
-                let up = lanes(|k| if k == 0 { above } else { last[k - 1] });
-                let weights_up = lanes(|k| if k == 0 { weight_above } else { weights_down[k - 1] });
+                let (up, weights_up) = (lowered(above, last), lowered(weight_above, weights_down));
                 let of_step = |values| labels_of(values, step, self.labels);
                 let each = of_step(&self.costs).iter().zip(of_step(&self.right)).zip(of_step(&self.down));
-                let (mut best, mut prices, mut found) = ([f32::INFINITY; ROWS], [0.0; ROWS], [0.0; ROWS]);
+                let (mut best, mut prices, mut found) = (f32x4::splat(f32::INFINITY), f32x4::ZERO, f32x4::ZERO);
                 for (l, ((cost, right), down)) in each.enumerate() {
-                    let label = l as f32;
-                    let ahead = sum3(cost, right, down);
-                    let left = lanes(|k| if last[k] == label { 0.0 } else { weights[k] });
-                    let fixed = plus(left, lanes(|k| if up[k] == label { 0.0 } else { weights_up[k] }));
-                    let (values, price) = (plus(ahead, fixed), plus(*cost, fixed));
-                    found = lanes(|k| if values[k] < best[k] { label } else { found[k] });
-                    prices = lanes(|k| if values[k] < best[k] { price[k] } else { prices[k] });
-                    best = lanes(|k| if values[k] < best[k] { values[k] } else { best[k] });
+                    let label = f32x4::splat(l as f32);
+                    let [cost, right, down] = [cost, right, down].map(|values| f32x4::new(*values));
+                    let fixed = (last.simd_ne(label) & weights) + (up.simd_ne(label) & weights_up);
+                    let value = cost + right + down + fixed;
+                    let better = value.simd_lt(best);
+                    found = better.select(label, found);
+                    prices = better.select(cost + fixed, prices);
+                    best = value.fast_min(best);
                 }
-                sums.iter_mut().zip(prices).for_each(|(sum, price)| *sum += f64::from(price));
-                *found_in = found;
-                (last, weights, weights_down) = (found, self.to_right[step], self.to_below[step]);
+                sums.iter_mut().zip(prices.to_array()).for_each(|(sum, price)| *sum += f64::from(price));
+                *found_in = found.to_array();
+                (last, weights) = (found, f32x4::new(self.to_right[step]));
+                weights_down = f32x4::new(self.to_below[step]);
             }
             sums.iter().for_each(|sum| energy += sum);
             for (k, row) in labels.chunks_mut(self.width).enumerate() {
@@ -435,67 +422,53 @@ fn labels_of(values: &[Step], step: usize, labels: usize) -> &[Step] {
 
 /// The same where the compiler knows their number.
 #[inline(always)]
-fn of<const L: usize>(values: &[Step], step: usize) -> &[Step; L] {
-    &values.as_chunks().0[step]
+fn at<const L: usize>(values: &[Step], step: usize) -> [f32x4; L] {
+    values.as_chunks::<L>().0[step].map(f32x4::new)
 }
 
 #[inline(always)]
-fn of_mut<const L: usize>(values: &mut [Step], step: usize) -> &mut [Step; L] {
-    &mut values.as_chunks_mut().0[step]
+fn put<const L: usize>(values: &mut [Step], step: usize, new: &[f32x4; L]) {
+    values.as_chunks_mut::<L>().0[step] = new.map(f32x4::to_array);
 }
 
+/// The values of each row in the next one, with `above` in the first.
 #[inline(always)]
-fn lanes(f: impl FnMut(usize) -> f32) -> Step {
-    std::array::from_fn(f)
-}
-
-#[inline(always)]
-fn plus(a: Step, b: Step) -> Step {
-    lanes(|k| a[k] + b[k])
-}
-
-#[inline(always)]
-fn minus(a: Step, b: Step) -> Step {
-    lanes(|k| a[k] - b[k])
-}
-
-#[inline(always)]
-fn sum3(a: &Step, b: &Step, c: &Step) -> Step {
-    lanes(|k| a[k] + b[k] + c[k])
+fn lowered(above: f32, values: f32x4) -> f32x4 {
+    let [first, second, third, _] = values.to_array();
+    f32x4::new([above, first, second, third])
 }
 
 /// The smallest value of any label.
 #[inline(always)]
-fn lowest<const L: usize>(values: &[Step; L]) -> Step {
-    values[1..].iter().fold(values[0], |low, value| lanes(|k| if value[k] < low[k] { value[k] } else { low[k] }))
+fn lowest<const L: usize>(values: &[f32x4; L]) -> f32x4 {
+    values[1..].iter().fold(values[0], |low, value| value.fast_min(low))
 }
 
 /// The new message along an edge whose message in the opposite direction was `old`, and what was subtracted to make its smallest
 /// entry zero.
 #[inline(always)]
-fn message<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
+fn message<const L: usize>(total: &[f32x4; L], shares: f32x4, old: &[f32x4; L], weights: f32x4) -> ([f32x4; L], f32x4) {
     if L <= INLINED { computed(total, shares, old, weights) } else { computed_apart(total, shares, old, weights) }
 }
 
 #[inline(never)]
 fn computed_apart<const L: usize>(
-    total: &[Step; L],
-    shares: Step,
-    old: &[Step; L],
-    weights: Step,
-) -> ([Step; L], Step) {
+    total: &[f32x4; L],
+    shares: f32x4,
+    old: &[f32x4; L],
+    weights: f32x4,
+) -> ([f32x4; L], f32x4) {
     computed(total, shares, old, weights)
 }
 
 #[inline(always)]
-fn computed<const L: usize>(total: &[Step; L], shares: Step, old: &[Step; L], weights: Step) -> ([Step; L], Step) {
-    let source: [Step; L] = std::array::from_fn(|l| lanes(|k| shares[k] * total[l][k] - old[l][k]));
+fn computed<const L: usize>(
+    total: &[f32x4; L],
+    shares: f32x4,
+    old: &[f32x4; L],
+    weights: f32x4,
+) -> ([f32x4; L], f32x4) {
+    let source: [f32x4; L] = std::array::from_fn(|l| shares * total[l] - old[l]);
     let low = lowest(&source);
-    let capped = |value: Step| {
-        lanes(|k| {
-            let m = value[k] - low[k];
-            if m < weights[k] { m } else { weights[k] }
-        })
-    };
-    (source.map(capped), low)
+    (source.map(|value| (value - low).fast_min(weights)), low)
 }
