@@ -3,9 +3,9 @@
 use std::rc::Rc;
 
 use super::evidence::Flow;
+use crate::frame::Frame;
 use crate::frame::palette::Palette;
 use crate::frame::pyramid::Appearance;
-use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
 
 /// A frame with the evidence of its pairs. Rounds over the clip share it.
@@ -19,8 +19,6 @@ pub(crate) struct Record {
     pub(crate) palette: Palette,
     /// Prices of borders between labels, in units of the smoothness. They take less memory than the pictures whose edges they follow.
     pub(crate) unit_borders: Borders,
-    /// Log-odds of object against background from the frame's pairs, nats; zero where there is no pair.
-    pub(crate) odds: Plane,
     /// To the next frame; none at the end of a scene.
     pub(crate) onward: Option<Flow>,
     /// To the frame before; none at the beginning of a scene.
@@ -30,7 +28,7 @@ pub(crate) struct Record {
 impl Record {
     /// Width and height of the working size.
     pub(crate) fn size(&self) -> [usize; 2] {
-        [self.odds.width(), self.odds.height()]
+        self.palette.size()
     }
 
     /// Prices of borders between labels.

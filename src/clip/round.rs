@@ -57,6 +57,8 @@ struct Waiting {
 /// A frame that leaves a round.
 pub(crate) struct Foreground {
     pub(crate) record: Rc<Record>,
+    /// The odds that it came with.
+    pub(crate) own: Plane,
     /// Odds of object against background with the evidence of other frames, nats.
     pub(crate) odds: Plane,
     /// 1 where the frame shows an object, else 0.
@@ -94,51 +96,52 @@ impl Round {
 
     /// The frame that has waited longest leaves.
     pub(crate) fn next(&mut self) -> Option<Foreground> {
-        let odds = self.with_future();
-        let Waiting { record, .. } = self.waiting.pop_front()?;
+        let (odds, own_colours, mut colours) = self.with_future()?;
+        let Waiting { record, odds: own, .. } = self.waiting.pop_front()?;
         if record.back.is_none() {
             self.colours.clear();
         }
-        let palette = &record.palette;
-        let mut all = ColourCounts::of(palette, &odds[0]);
-        let own = all.clone();
-        self.colours.iter().for_each(|counts| all.add(counts));
-        let of_scene = self.waiting.iter().take_while(|waiting| waiting.record.back.is_some());
-        for (waiting, odds) in of_scene.zip(&odds[1..]).take(COLOUR_REACH) {
-            all.add(&ColourCounts::of(&waiting.record.palette, odds));
-        }
-        self.colours.push_back(own);
+        colours.add(&own_colours);
+        self.colours.iter().for_each(|counts| colours.add(counts));
+        self.colours.push_back(own_colours);
         if self.colours.len() > COLOUR_REACH {
             self.colours.pop_front();
         }
-        let ratios = all.ratios();
+        let ratios = colours.ratios();
         let price = |(p, odds): (usize, &f32)| {
-            ODDS_WEIGHT * odds.clamp(-MOST_ODDS, MOST_ODDS) + self.colours_weight * ratios[palette.index(p)]
+            ODDS_WEIGHT * odds.clamp(-MOST_ODDS, MOST_ODDS) + self.colours_weight * ratios[record.palette.index(p)]
         };
         let [width, height] = record.size();
-        let odds = odds.into_iter().next()?;
         let ground = Plane::from_buffer(width, height, odds.values().iter().enumerate().map(price).collect());
         let mask = record.borders(SMOOTHNESS).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver).to_vec();
-        Some(Foreground { record, odds, mask })
+        Some(Foreground { record, own, odds, mask })
     }
 
-    /// For every waiting frame, its evidence with that of all others.
-    fn with_future(&self) -> Vec<Plane> {
-        let mut all = Vec::with_capacity(self.waiting.len());
+    /// The evidence of the frame that has waited longest with that of all others, its colours by that evidence, and those of the waiting
+    /// frames of its scene by theirs.
+    fn with_future(&self) -> Option<(Plane, ColourCounts, ColourCounts)> {
+        let of_scene = self.waiting.iter().skip(1).take_while(|waiting| waiting.record.back.is_some());
+        let last_of_colours = of_scene.count().min(COLOUR_REACH);
+        let mut colours = ColourCounts::none();
         let mut future: Option<Plane> = None;
-        for Waiting { record, odds, past } in self.waiting.iter().rev() {
+        for (k, Waiting { record, odds, past }) in self.waiting.iter().enumerate().rev() {
             let with_future = match (&future, &record.onward) {
                 (Some(future), Some(onward)) => self.joined(odds, &carried(future, onward)),
                 _ => odds.clone(),
             };
-            let mut both = past.clone();
-            let pixels = both.values_mut().iter_mut().zip(with_future.values()).zip(odds.values());
-            pixels.for_each(|((both, future), own)| *both += future - own);
-            all.push(both);
+            if k <= last_of_colours {
+                let mut both = past.clone();
+                let pixels = both.values_mut().iter_mut().zip(with_future.values()).zip(odds.values());
+                pixels.for_each(|((both, future), own)| *both += future - own);
+                let counts = ColourCounts::of(&record.palette, &both);
+                if k == 0 {
+                    return Some((both, counts, colours));
+                }
+                colours.add(&counts);
+            }
             future = Some(with_future);
         }
-        all.reverse();
-        all
+        None
     }
 
     /// A frame's own evidence and that of another one, carried to it.

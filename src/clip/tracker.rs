@@ -275,6 +275,7 @@ impl Tracker {
         if onward_odds.is_some() && !self.has(ClipPart::BothDirections) {
             back_odds = None;
         }
+        // Of object against background from the frame's pairs; zero where there is no pair.
         let odds = match (onward_odds, back_odds) {
             (Some(mut odds), Some(other)) => {
                 odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o = 0.5 * (*o + b));
@@ -290,9 +291,8 @@ impl Tracker {
         let appearance = pyramid.appearance(&frame);
         let (palette, unit_borders) = (appearance.palette.clone(), unit_borders(appearance));
         let frame = Some(frame).filter(|_| self.keeps_frames);
-        let record = Rc::new(Record { index: self.count, frame, palette, unit_borders, odds, onward, back });
+        let record = Rc::new(Record { index: self.count, frame, palette, unit_borders, onward, back });
         self.count += 1;
-        let odds = record.odds.clone();
         let foreground = self.rounds[0].push(record, odds)?;
         self.second_round(foreground)
     }
@@ -304,8 +304,7 @@ impl Tracker {
         if live || !self.has(ClipPart::SecondRound) {
             return Some(self.tracked(first));
         }
-        let Foreground { record, mask, .. } = first;
-        let mut odds = record.odds.clone();
+        let Foreground { record, own: mut odds, mask, .. } = first;
         for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
             let cut = if object > 0 { FIRST_CUT } else { -FIRST_CUT };
             *odds = SECOND_ROUND_ODDS * *odds + cut;
@@ -314,7 +313,7 @@ impl Tracker {
         Some(self.tracked(foreground))
     }
 
-    fn tracked(&mut self, Foreground { record, odds, mask }: Foreground) -> Tracked {
+    fn tracked(&mut self, Foreground { record, odds, mask, .. }: Foreground) -> Tracked {
         let labels = self.identities.assign(&record, &mask);
         let goes_on = match &record.onward {
             None => false,

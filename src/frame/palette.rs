@@ -16,6 +16,11 @@ pub(crate) struct Palette {
 }
 
 impl Palette {
+    /// Width and height.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
     /// Quantises the mean colours over the full-size pixels of each working pixel.
     pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
         let step = frame.width().div_ceil(width).next_power_of_two();
