@@ -56,6 +56,8 @@ export class LiveView {
       return () => undefined;
     }
     this.#stream = stream;
+    // Until the camera gives its first picture.
+    this.#segmenter.warmUp().catch(() => undefined);
     try {
       const video = document.createElement('video');
       video.muted = true;
