@@ -42,19 +42,19 @@ describe('a warm-up in the worker', () => {
     assert.equal(slices, 3);
   });
 
-  test('begins with small pairs, and all are small', async () => {
+  test('begins with the smallest pairs', async () => {
     const pixels = [];
     const warming = new Warming({
       segmentPair: async (first, second, options) => {
         assert.deepEqual([first.width, first.height, options], [second.width, second.height, { quality: 'fast' }]);
         assert.equal(first.data.length, 4 * first.width * first.height);
         pixels.push(first.width * first.height);
-        if (pixels.length === 40) warming.end();
+        if (pixels.length === 20) warming.end();
       },
     });
     await warming.run();
-    assert.deepEqual(pixels.slice(0, 3), pixels.slice(0, 3).sort((one, other) => one - other));
-    assert.ok(pixels.every((count) => count < 20_000));
+    assert.deepEqual(pixels.slice(0, 5), pixels.toSorted((one, other) => one - other).slice(0, 5));
+    assert.ok(pixels[0] < 1000);
     assert.ok(warming.ended);
   });
 
