@@ -164,7 +164,6 @@ async function measured(browser, address, { rounds, sizes, cases }) {
       if (OURS.includes(name)) {
         entry.stages = stageMedians(calls[size][name].map((call) => call.stages));
         entry.native = nativeMedians(native.map((round) => round[size][name]));
-        entry.firstWarmedUp = fresh.warmedUp[size][name];
         entry.memoryBytes = fresh.memory[size][name];
       }
       bySize[size][name] = { ...entry, overlap, count };
@@ -174,15 +173,13 @@ async function measured(browser, address, { rounds, sizes, cases }) {
   return { readyMs, ...(opencv && { peersReadyMs: { opencv, jsfeat } }), sizes: bySize };
 }
 
-/** Opens one page after another, each without cache, and measures the time until ready, the first call, the warmed-up call and memory. */
+/** Opens one page after another, each without cache, and measures the time until ready, the first call and memory. */
 async function freshPages(browser, address, sizes, cases) {
   const ready = {};
   const first = {};
-  const warmedUp = {};
   const memory = {};
   for (const size of sizes) {
     first[size] = {};
-    warmedUp[size] = {};
     memory[size] = {};
     for (const name of cases) {
       console.log(`Fresh pages: ${name}, ${size}`);
@@ -197,14 +194,6 @@ async function freshPages(browser, address, sizes, cases) {
       }
       first[size][name] = median(firsts);
       if (OURS.includes(name)) {
-        const warm = [];
-        for (let k = 0; k < FRESH_PAGES; k += 1) {
-          await onPage(browser, address, async (page) => {
-            await page.evaluate((size) => globalThis.bench.prepare(size), size);
-            warm.push(await page.evaluate((task) => globalThis.bench.warmedUp(...task), [name, size]));
-          });
-        }
-        warmedUp[size][name] = median(warm);
         memory[size][name] = await onPage(browser, address, async (page) => {
           await page.evaluate((size) => globalThis.bench.prepare(size), size);
           return page.evaluate(([name, size]) => globalThis.bench.memory(name, size), [name, size]);
@@ -212,7 +201,7 @@ async function freshPages(browser, address, sizes, cases) {
       }
     }
   }
-  return { ready: Object.fromEntries(Object.entries(ready).map(([k, v]) => [k, median(v)])), first, warmedUp, memory };
+  return { ready: Object.fromEntries(Object.entries(ready).map(([k, v]) => [k, median(v)])), first, memory };
 }
 
 /** Alternates between all cases of all sizes in one page and in native code, so that other load on the machine slows all of them. */

@@ -72,19 +72,6 @@ globalThis.bench = {
     return { milliseconds, stages: result?.milliseconds, count: result?.count, overlap };
   },
 
-  /** Milliseconds of the first call in a worker that has been warmed up. */
-  async warmedUp(quality, size) {
-    await loadVeronese();
-    const { first, second } = frames.get(size);
-    const segmenter = new veronese.Segmenter();
-    await segmenter.warmUp();
-    const start = performance.now();
-    await segmenter.segmentPair(first, second, { quality });
-    const milliseconds = performance.now() - start;
-    segmenter.close();
-    return milliseconds;
-  },
-
   /** Memory of a new instance after one call, bytes. */
   async memory(quality, size) {
     const { glue } = await import('/pkg/build/module/glue.js');

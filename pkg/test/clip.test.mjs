@@ -2,9 +2,10 @@
 
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { setTimeout } from 'node:timers/promises';
+import { setImmediate, setTimeout } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, segmentPair, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
+import { clipOf } from '../build/calls/clip.js';
 import { frame, pair } from './support/frames.mjs';
 import { checkMatrix, failure, timeless } from './support/shapes.mjs';
 
@@ -117,13 +118,14 @@ describe('segmentClip', () => {
       await clip.return();
       return count;
     };
-    assert.equal(await taken({}), 9);
-    assert.equal(await taken({ lookAhead: 0 }), 1);
-    assert.equal(await taken({ lookAhead: 2 }, true), 3);
-    assert.equal(await taken({}, true), 12 + 1);
+    // One more is read while the last of them is worked on.
+    assert.equal(await taken({}), 9 + 1);
+    assert.equal(await taken({ lookAhead: 0 }), 1 + 1);
+    assert.equal(await taken({ lookAhead: 2 }, true), 3 + 1);
+    assert.equal(await taken({}, true), 12 + 1 + 1);
   });
 
-  test('asks for a frame only when the reader waits for one, and lets the source reuse its buffer', async () => {
+  test('asks for frames only when the reader waits for one, and lets the source reuse its buffer', async () => {
     const buffer = frame(0, SIZE);
     let asked = 0;
     const reusing = (function* () {
@@ -137,11 +139,32 @@ describe('segmentClip', () => {
     await setTimeout(20);
     assert.equal(asked, 0);
     const given = [(await clip.next()).value];
-    assert.equal(asked, 2);
+    assert.equal(asked, 2 + 1);
     await setTimeout(20);
-    assert.equal(asked, 2);
+    assert.equal(asked, 2 + 1);
     given.push(...(await all(clip)));
     assert.deepEqual(given, await all(segmentClip(frames(), FAST)));
+  });
+
+  test('reads one frame while another is worked on, and waits neither for it nor for more', async () => {
+    let asked = 0;
+    const silent = (async function* () {
+      while (++asked < 3) yield frame(0, SIZE);
+      await new Promise(() => {});
+    })();
+    const work = [];
+    const perform = async ({ call }) => {
+      if (call === 'pushClip') return new Promise((resolve) => work.push(() => resolve({ index: work.length - 1, objects: [], background: null })));
+    };
+    const clip = clipOf(silent, { lookAhead: 0 }, async () => ({ perform, release() {} }));
+    for (const index of [0, 1]) {
+      const next = clip.next();
+      for (let turn = 0; turn < 50; turn += 1) await setImmediate();
+      assert.deepEqual([work.length, asked], [index + 1, index + 2], 'the next frame was asked for, and no other');
+      work[index]();
+      assert.equal((await next).value.index, index);
+    }
+    await clip.return();
   });
 
   test('transfers frames where it is asked to', async () => {

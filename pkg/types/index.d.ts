@@ -178,8 +178,8 @@ export interface PointMeasurements {
 }
 
 /**
- * The frames of a clip, all of one size, in order. An iterable or async iterable is a stream: a frame is asked for when the one before it
- * is done, and may reuse its buffer. `{ length, read(index) }` is a whole clip: each frame is read for its pairs, then for its labels, and
+ * The frames of a clip, all of one size, in order. An iterable or async iterable is a stream: the next frame is asked for while one is worked
+ * on, and may reuse its buffer. `{ length, read(index) }` is a whole clip: each frame is read for its pairs, then for its labels, and
  * in any order for corrections, and must be the same each time. An array is a stream unless an option needs a whole clip.
  */
 export type ClipSource =
@@ -400,8 +400,8 @@ export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOpti
  * appearance, then by size, then by their topmost, leftmost pixel.
  *
  * A stream returns a frame when the frames it waits for have come (`lookAhead`), the rest at the end. A whole clip, with
- * `{ length, read(index) }`, solves all pairs before it returns the first frame, and takes corrections. A frame is taken from the source
- * only when the reader waits for one. If the source throws or a frame is unusable, the frames before it come first, then the error.
+ * `{ length, read(index) }`, solves all pairs before it returns the first frame, and takes corrections. Frames are taken from the source
+ * only when the reader waits for one, and one more while the last is worked on, so that decoding and segmenting overlap. If the source throws or a frame is unusable, the frames before it come first, then the error.
  *
  * The call occupies its thread while it works on a frame; `signal` is checked between frames. Another direct call that fails inside the
  * module or is cancelled there in the meantime takes the clip with it, which then rejects with code `internal`; a {@link Segmenter} keeps
@@ -513,9 +513,9 @@ export class Segmenter {
    */
   segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
   /**
-   * Starts the worker and segments a small built-in pair in it for half a second or more, so that the engine fully compiles the hot code.
-   * Without it, a first call takes two to three times as long as later ones. One worker warms up for all instances of the module on the
-   * page. Other calls to the same worker wait meanwhile; `close()` ends it.
+   * Starts the worker and segments small built-in pairs in it for half a second, so that the engine fully compiles the hot code. Without
+   * it, a first call takes several times as long as later ones. One worker warms up for all instances of the module on the page. Another
+   * call to the same worker ends it (the promise resolves then), and so does `close()`; a good moment is before frames are decoded.
    */
   warmUp(): Promise<void>;
   /** Ends the worker; running calls reject with code `cancelled`. The next call starts a new worker. */

@@ -34,22 +34,21 @@ function downloads({ wasmGzip, jsGzip, readyMs, peers, peersReadyMs }) {
   return table(['', 'download, gzip', 'ready after'], rows);
 }
 
-/** `first`: on a fresh page; `firstWarmedUp`: on a fresh page after `warmUp()`; `overlap`: mean IoU of the true labels and the labels found. */
+/** `first`: on a fresh page; `overlap`: mean IoU of the true labels and the labels found. */
 function calls({ sizes }) {
   const rows = Object.entries(sizes).flatMap(([size, cases]) =>
-    Object.entries(cases).map(([name, { median, best, first, firstWarmedUp, overlap, memoryBytes }]) => [
+    Object.entries(cases).map(([name, { median, best, first, overlap, memoryBytes }]) => [
       times(size),
       TITLES[name],
       ms(median),
       ms(best),
       first ? beside(first, median) : '',
-      firstWarmedUp ? beside(firstWarmedUp, median) : '',
       ratioToFlow(name, cases),
       overlap === undefined ? '' : overlap.toFixed(3),
       memoryBytes ? mib(memoryBytes) : '',
     ]),
   );
-  return table(['frames', 'call', 'median', 'best', 'first call', 'warmed up', '÷ Farneback', 'overlap', 'memory, MiB'], rows);
+  return table(['frames', 'call', 'median', 'best', 'first call', '÷ Farneback', 'overlap', 'memory, MiB'], rows);
 }
 
 /** Farneback’s flow is computed on the same frames: those of the pair, or of the clip. */

@@ -36,6 +36,25 @@ async function openEmpty(page: Page): Promise<void> {
 
 declare const clip: (count: number) => ImageData[];
 
+test('its worker starts and warms up while the frames are on their way', async ({ page }) => {
+  await openEmpty(page);
+  const [first, second] = (await clipFrames(2)).map(({ buffer }) => buffer);
+  const released: (() => void)[] = [];
+  await page.route('**/held-*.png', async (route) => {
+    await new Promise<void>((resolve) => released.push(resolve));
+    await route.fulfill({ contentType: 'image/png', body: route.request().url().includes('first') ? first! : second! });
+  });
+  const worker = page.waitForEvent('worker');
+  const result = page.evaluate(() => {
+    document.body.insertAdjacentHTML('beforeend', '<veronese-segmenter first="held-first.png" second="held-second.png" quality="fast"></veronese-segmenter>');
+    return new Promise((resolve) => document.querySelector('veronese-segmenter')!.addEventListener('result', ({ detail }) => resolve(detail.width)));
+  });
+  await worker;
+  await expect.poll(() => released.length).toBe(2);
+  for (const release of released) release();
+  expect(await result).toBe(200);
+});
+
 test('a clip of files: the labels, objects and tracks of the package', async ({ page }) => {
   const files = await clipFrames(5);
   const expected = await clipInNode(files);

@@ -20,6 +20,20 @@ async function expectToStep(page: Page, first: number): Promise<void> {
   await done(page);
 }
 
+test('the worker starts and warms up while the first frames are on their way', async ({ page, context }) => {
+  let release = (): void => undefined;
+  const held = new Promise<void>((resolve) => (release = resolve));
+  await context.route('**/samples/**', async (route) => {
+    await held;
+    await route.continue();
+  });
+  const worker = page.waitForEvent('worker');
+  await page.goto('./');
+  await worker;
+  release();
+  await done(page);
+});
+
 test('one image instead of a clip hides the timeline', async ({ page }) => {
   await open(page);
   await openClip(page, 4);

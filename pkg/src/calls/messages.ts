@@ -39,6 +39,7 @@ export type ClipStep =
 /** `clip` is its number. */
 export type ClipTask = { clip: number } & (ClipStep | { call: 'beginClip'; whole: boolean; settings: Settings });
 
+/** A warm-up gives way to any other task. */
 export type Task = CallTask | { call: 'warmUp' };
 
 /** What `relabel` changes of a segmentation. */
@@ -67,6 +68,8 @@ export type Request<T = Task> = { task: T; module?: WebAssembly.Module };
 export type Reply<R = Result> =
   | { kind: 'progress'; progress: Progress }
   | { kind: 'done'; result: R }
+  /** Of a task that gives way, and did not have to. */
+  | { kind: 'rested'; error?: ErrorMessage }
   | { kind: 'failed'; error: ErrorMessage };
 
 /** What is handed over to a worker instead of copied. */

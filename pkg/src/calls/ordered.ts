@@ -8,6 +8,8 @@ export interface OrderOptions {
   /** Ends the wait for the source or an answer; its reason is thrown as `stop` makes it. */
   signal?: AbortSignal | undefined;
   stop: () => unknown;
+  /** Gets what asks the source for an input already, if there is room, while the reader is busy with the answer before. */
+  begun?: (ask: () => void) => void;
 }
 
 /**
@@ -18,7 +20,7 @@ export interface OrderOptions {
 export async function* inOrder<Input, Answer>(
   source: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
   work: (input: Input, index: number) => Promise<Answer>,
-  { room, signal, stop }: OrderOptions,
+  { room, signal, stop, begun }: OrderOptions,
 ): AsyncGenerator<Answer, void, undefined> {
   const inputs = iteratorOf(source);
   const answers: Promise<Answer>[] = [];
@@ -55,16 +57,20 @@ export async function* inOrder<Input, Answer>(
     failure = { thrown };
   };
 
+  const ask = () => {
+    if (ended || taking || answers.length >= room) return;
+    taking = take().catch(fail).finally(() => {
+      // Never before the assignment, also where the source throws at once: a wait for what is over would spin.
+      taking = undefined;
+    });
+  };
+
   const aborted = whenAborted(signal);
   try {
+    begun?.(ask);
     for (;;) {
       if (signal?.aborted) throw stop();
-      if (!ended && !taking && answers.length < room) {
-        taking = take().catch(fail).finally(() => {
-          // Never before the assignment, also where the source throws at once: a wait for what is over would spin.
-          taking = undefined;
-        });
-      }
+      ask();
       const first = answers[0];
       if (!first && !taking) break;
       // A slow source does not hold back an answer that is there.

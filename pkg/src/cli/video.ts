@@ -63,6 +63,8 @@ export class VideoReader {
   /** Index of the frame that the run gives next. */
   #next = 0;
   readonly #kept = new Map<number, Uint8Array>();
+  /** Reads run one at a time: a frame may be read ahead while an earlier one is wanted again. */
+  #queue: Promise<unknown> = Promise.resolve();
   #size = 0;
 
   constructor(file: string, every: number) {
@@ -71,15 +73,30 @@ export class VideoReader {
   }
 
   /** The content of a frame, by its index among those that are taken; undefined after the last one. */
-  async read(index: number): Promise<Uint8Array | undefined> {
+  read(index: number): Promise<Uint8Array | undefined> {
+    return this.#inTurn(() => this.#read(index));
+  }
+
+  /** Ends the run. */
+  close(): Promise<void> {
+    return this.#inTurn(() => this.#close());
+  }
+
+  #inTurn<T>(work: () => Promise<T>): Promise<T> {
+    const turn = this.#queue.then(work);
+    this.#queue = turn.catch(() => undefined);
+    return turn;
+  }
+
+  async #read(index: number): Promise<Uint8Array | undefined> {
     const kept = this.#kept.get(index);
     if (kept) return kept;
-    if (index < this.#next) await this.close();
+    if (index < this.#next) await this.#close();
     this.#run ??= videoFrames(this.#file, this.#every);
     for (;;) {
       const { value } = await this.#run.next();
       if (!value) {
-        await this.close();
+        await this.#close();
         return undefined;
       }
       this.#keep(value.bytes as Uint8Array);
@@ -87,8 +104,7 @@ export class VideoReader {
     }
   }
 
-  /** Ends the run. */
-  async close(): Promise<void> {
+  async #close(): Promise<void> {
     await this.#run?.return();
     this.#run = undefined;
     this.#next = 0;

@@ -262,6 +262,7 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   async #segmentPair(signal: AbortSignal): Promise<Segmentation> {
+    const segmenter = this.#worker();
     const loading = [this.#pixels('first', signal), this.#pixels('second', signal)] as const;
     // Where neither can be read the first is named, whichever fails earlier.
     await Promise.allSettled(loading);
@@ -269,7 +270,7 @@ export class VeroneseSegmenterElement extends Base {
     signal.throwIfAborted();
     this.#leaveClip();
     this.#view.draw(first);
-    const result = await this.#worker().segmentPair(first, second, this.#options(signal));
+    const result = await segmenter.segmentPair(first, second, this.#options(signal));
     signal.throwIfAborted();
     this.#result = result;
     this.#paintPair(result);
@@ -281,6 +282,7 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   async #segmentClip(signal: AbortSignal): Promise<ClipTracks> {
+    const segmenter = this.#worker();
     const { ElementClip } = await import('./later.js');
     signal.throwIfAborted();
     this.#leaveClip();
@@ -295,7 +297,6 @@ export class VeroneseSegmenterElement extends Base {
       const poster = await clip.poster();
       signal.throwIfAborted();
       if (poster) this.#view.draw(poster);
-      const segmenter = this.#worker();
       for await (const frame of clip.segment((frames) => segmenter.segmentClip(frames, this.#options(signal)))) {
         this.#tell('frame', frame);
         // Frames that come once are followed, unless a person looks at an earlier one.
@@ -313,8 +314,12 @@ export class VeroneseSegmenterElement extends Base {
     }
   }
 
+  /** Asked for before the frames are decoded: a new worker warms up meanwhile. */
   #worker(): InstanceType<typeof Segmenter> {
-    this.#segmenter ??= new Segmenter();
+    if (this.#segmenter === undefined) {
+      this.#segmenter = new Segmenter();
+      this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker says why there is none
+    }
     return this.#segmenter;
   }
 

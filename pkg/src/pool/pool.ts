@@ -1,5 +1,5 @@
 // Tasks for a number of workers. Each worker does one at a time. A task is cancelled at once by ending its worker, unless the worker
-// is reserved for a sequence of tasks that share state.
+// is reserved for a sequence of tasks that share state. A task that gives way is ended by the next one that its worker gets.
 
 import type { CallOptions, Progress } from '../../types/index.js';
 import type { Reply, Request } from '../calls/messages.js';
@@ -43,6 +43,8 @@ interface Job<Task, Result> {
   reject: (reason: unknown) => void;
   /** No longer listens to the signal. */
   release: () => void;
+  /** Whether any other job ends it and takes its worker. */
+  givesWay: boolean;
   /** Whether the caller has an answer. */
   settled: boolean;
 }
@@ -86,6 +88,11 @@ export class WorkerPool<Task, Result> {
     return this.#run(task, options);
   }
 
+  /** Runs a task that gives way: it begins when nothing else waits, and is over when something else comes. */
+  async rest(task: Task): Promise<void> {
+    await this.#run(task, {}, undefined, true);
+  }
+
   /** Reserves a worker. A worker has one claim at a time; claims are met in the order of the calls. Other tasks run in between. */
   claim(signal?: AbortSignal): Promise<Claim<Task, Result>> {
     if (signal?.aborted) return Promise.reject(cancelled(signal));
@@ -113,7 +120,7 @@ export class WorkerPool<Task, Result> {
   #assign(): void {
     const free = this.#lanes.filter(({ claim }) => !claim);
     // Idle workers first, then those that have started.
-    free.sort((one, other) => Number(!!one.job) - Number(!!other.job) || Number(!one.thread) - Number(!other.thread));
+    free.sort((one, other) => Number(isBusy(one)) - Number(isBusy(other)) || Number(!one.thread) - Number(!other.thread));
     for (const lane of free) {
       const claimant = this.#claimants.shift();
       if (!claimant) return;
@@ -127,13 +134,13 @@ export class WorkerPool<Task, Result> {
     this.#assign();
   }
 
-  #run(task: Task, { signal, onProgress }: CallOptions = {}, claim?: Claiming): Promise<Result> {
+  #run(task: Task, { signal, onProgress }: CallOptions = {}, claim?: Claiming, givesWay = false): Promise<Result> {
     if (signal?.aborted) return Promise.reject(cancelled(signal));
     if (claim?.lost) return Promise.reject(claim.lost);
     return new Promise((resolve, reject) => {
       const onAbort = () => this.#cancel(job);
       const release = () => signal?.removeEventListener('abort', onAbort);
-      const job: Job<Task, Result> = { task, claim, signal, onProgress, resolve, reject, release, settled: false };
+      const job: Job<Task, Result> = { task, claim, signal, onProgress, resolve, reject, release, givesWay, settled: false };
       signal?.addEventListener('abort', onAbort);
       this.#waiting.push(job);
       this.#next();
@@ -188,13 +195,16 @@ export class WorkerPool<Task, Result> {
   }
 
   #next(): void {
-    const idle = this.#lanes.filter(({ job }) => !job);
+    const idle = this.#lanes.filter((lane) => !isBusy(lane));
     // Reserved workers last, since they expect more tasks; then those that have not started.
     idle.sort((one, other) => Number(!!one.claim) - Number(!!other.claim) || Number(!one.thread) - Number(!other.thread));
     for (const lane of idle) {
-      const job = this.#waiting.find(({ claim }) => !claim || claim === lane.claim);
-      if (!job) continue;
+      const fitting = this.#waiting.filter(({ claim }) => !claim || claim === lane.claim);
+      const job = fitting.find(({ givesWay }) => !givesWay) ?? fitting[0];
+      const { job: left } = lane;
+      if (!job || (left && job.givesWay)) continue;
       this.#waiting.splice(this.#waiting.indexOf(job), 1);
+      if (left) this.#settle(left, () => left.resolve(undefined as Result));
       lane.job = job;
       lane.told = false;
       void this.#start(lane, job);
@@ -237,7 +247,8 @@ export class WorkerPool<Task, Result> {
 
   #receive(lane: Lane<Task, Result>, reply: Reply<Result>): void {
     const { job } = lane;
-    if (!job) return;
+    // What has given way may have ended by itself just before.
+    if (!job || (reply.kind === 'rested' && !job.givesWay)) return;
     if (reply.kind === 'progress') {
       if (job.settled) return;
       try {
@@ -249,14 +260,19 @@ export class WorkerPool<Task, Result> {
     }
     lane.job = undefined;
     // It keeps no module that it could not start.
-    if (reply.kind === 'failed' && reply.error.code === 'wasm-load-failed') lane.modules.clear();
+    const error = reply.kind === 'done' ? undefined : reply.error;
+    if (error?.code === 'wasm-load-failed') lane.modules.clear();
     lane.thread?.hold(false);
     this.#settle(job, () => {
-      if (reply.kind === 'done') job.resolve(reply.result);
-      else job.reject(new VeroneseError(reply.error.code, reply.error.message));
+      if (error) job.reject(new VeroneseError(error.code, error.message));
+      else job.resolve(reply.kind === 'done' ? reply.result : (undefined as Result));
     });
     this.#next();
   }
+}
+
+function isBusy({ job }: { job: { givesWay: boolean } | undefined }): boolean {
+  return job?.givesWay === false;
 }
 
 /** Where the caller makes the workers, anything may be thrown. */

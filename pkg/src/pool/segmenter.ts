@@ -86,7 +86,7 @@ export function segmenters(host: Host) {
     }
 
     async warmUp(): Promise<void> {
-      await this.#pool.run({ call: 'warmUp' });
+      await this.#pool.rest({ call: 'warmUp' });
     }
 
     close(): void {

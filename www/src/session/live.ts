@@ -56,6 +56,8 @@ export class LiveView {
       return () => undefined;
     }
     this.#stream = stream;
+    // Until the camera gives its first picture.
+    this.#segmenter.warmUp().catch(() => undefined);
     try {
       const video = document.createElement('video');
       video.muted = true;
@@ -107,6 +109,7 @@ export class LiveView {
       const taken: LoadedFrame[] = [];
       let most = 0;
       let size = '';
+      let answered = (): void => undefined;
       const frames = async function* (wanted: () => boolean): AsyncGenerator<Pixels, void> {
         while (wanted()) {
           const frame: LoadedFrame = await frameFromBitmap(await createImageBitmap(video), { name: strings.cameraFrame, fingerprint: `camera ${++seen}` }, LONGEST_SIDE, performance.now());
@@ -116,6 +119,8 @@ export class LiveView {
           taken.push(frame);
           const { data, width, height } = frame;
           yield { data, width, height };
+          // The package asks for a frame ahead, but one from before the last masks would be shown late.
+          await new Promise<void>((resolve) => (answered = resolve));
           await new Promise(requestAnimationFrame);
         }
       };
@@ -124,6 +129,7 @@ export class LiveView {
       let before: { readonly frame: LoadedFrame; readonly segmentation: Segmentation } | null = null;
       try {
         for await (const found of this.#segmenter.segmentClip(frames(wanted), { motions, markUnknown, quality: 'fast', lookAhead: 0 })) {
+          answered();
           if (!current()) return;
           const frame = taken.shift()!;
           const segmentation = segmentationFrom(numbering.numbered(found), frame);

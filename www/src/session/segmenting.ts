@@ -12,6 +12,14 @@ interface Pair {
 export class Segmenting {
   readonly #segmenter = new Segmenter();
   #current: AbortController | null = null;
+  #warm = false;
+
+  /** Starts the worker and lets it warm up until there is a request. Called when frames that will be segmented are being decoded. */
+  prepare(): void {
+    if (this.#warm) return;
+    this.#warm = true;
+    this.#segmenter.warmUp().catch(() => undefined); // the request that needs the worker says why there is none
+  }
 
   /** Segments a pair; `null` if the request was cancelled or replaced by another. Throws the package's errors. */
   run(pair: Pair, settings: Settings, onProgress: (progress: Progress) => void = () => undefined): Promise<Segmentation | null> {

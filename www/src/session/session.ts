@@ -373,6 +373,7 @@ export class Session {
     place: (frames: readonly LoadedFrame[], pair: FramePair) => FramePair,
     then: (found: Project | null) => void = () => undefined,
   ): Promise<void> {
+    this.#segmenting.prepare();
     return this.#open(
       async () => {
         const frames = await load();

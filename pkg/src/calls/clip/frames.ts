@@ -19,9 +19,18 @@ export class Frames {
   /** Width and height of all frames, once known. */
   size: Pick<Pixels, 'width' | 'height'> | undefined;
   readonly #signal: AbortSignal | undefined;
+  #ask = () => {};
 
   constructor(signal: AbortSignal | undefined) {
     this.#signal = signal;
+  }
+
+  /**
+   * Asks for the next frame of {@link each}. Called when work on a frame has begun, so that the source decodes one frame while the worker
+   * labels another; more are not taken before the reader wants them.
+   */
+  ahead(): void {
+    this.#ask();
   }
 
   /** Frames up to the first failure, the next one not before it is asked for. Throws only if the signal says so. */
@@ -37,7 +46,8 @@ export class Frames {
       }
     };
     try {
-      const order = { room: 1, signal: this.#signal, stop: () => cancelled(this.#signal) };
+      const begun = (ask: () => void) => (this.#ask = ask);
+      const order = { room: 1, signal: this.#signal, stop: () => cancelled(this.#signal), begun };
       for await (const { frame, failure } of inOrder(source, take, order)) {
         this.failure = failure;
         if (!frame) return;

@@ -19,7 +19,9 @@ export async function* streamed(
   let index = 0;
   for await (const frame of frames.each(each, { transfer })) {
     onProgress?.({ frame: index++, of, stage: 'pairs' });
-    const done = await clip.step<ClipFrame | undefined>({ call: 'pushClip', frame });
+    const step = clip.step<ClipFrame | undefined>({ call: 'pushClip', frame });
+    frames.ahead();
+    const done = await step;
     if (done) yield tracks.add(done);
   }
   const { frames: rest, dropped } = await clip.step<ClipEnd>({ call: 'finishClip' });

@@ -25,7 +25,9 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: As
   for await (const frame of frames.each(reads(read, indices), { indices, transfer })) {
     const index = indices[done++] as number;
     onProgress?.({ frame: index, of, stage: 'labels' });
-    yield told.tracks.add(await clip.step<ClipFrame>({ call: 'clipFrame', index, frame }));
+    const step = clip.step<ClipFrame>({ call: 'clipFrame', index, frame });
+    frames.ahead();
+    yield told.tracks.add(await step);
   }
   const failed = frames.failure ?? failure;
   if (failed) throw failed.thrown;
@@ -40,7 +42,9 @@ async function solved(clip: PlacedClip, frames: Frames, task: Asked): Promise<Cl
     task.onProgress?.({ frame: index, of, stage: 'pairs' });
     const known = await task.knownPairs?.(index);
     const bytes = known === undefined ? undefined : (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
-    const pairs = await clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(bytes && { known: bytes }) });
+    const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(bytes && { known: bytes }) });
+    frames.ahead();
+    const pairs = await step;
     if (pairs) await task.onPairs?.(index, pairs);
     index += 1;
   }

@@ -1,0 +1,104 @@
+// npm run bench:first: the first call in a worker against later ones, without a warm-up, with one that began some time before there
+// were frames, and after a whole one; in Node and in headless Chromium. Each run has a process of its own. Options:
+//   --runs N       runs of each kind (9)
+//   --write-docs   writes the table to docs/performance.md as well
+
+import { mkdirSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { cpus } from 'node:os';
+import { join } from 'node:path';
+import { parseArgs } from 'node:util';
+
+import { buildModules, buildPackage } from './lib/builds.mjs';
+import { writeMarked } from './lib/marked.mjs';
+import { prepare } from './lib/prepare.mjs';
+import { root } from './lib/project.mjs';
+import { Stop, command, must } from './lib/run.mjs';
+import { serve } from './lib/static-server.mjs';
+import { median } from './lib/statistics.mjs';
+
+const PAGE = 'docs/performance.md';
+const FRAMES = join(root, 'out/bench/first');
+const SIZES = ['320x240', '640x480'];
+/** Milliseconds between the begin of the warm-up and the call; null for none, 'whole' for all that it takes. */
+const AHEAD = [null, 50, 100, 200, 'whole'];
+const CALLS = 9;
+/** Calls that are not counted as later ones: the compiler is still at work. */
+const EARLY = 3;
+const HOST = '127.0.0.1';
+
+await command(async (args) => {
+  const { runs, writeDocs } = options(args);
+  const { chromium } = await prepare({ browser: true });
+  if (chromium.problem) throw new Stop(chromium.problem);
+  await buildModules();
+  await buildPackage();
+  mkdirSync(FRAMES, { recursive: true });
+  console.log('Generating the frames (building the native program first if it has changed) …');
+  await must('The frames could not be generated.', 'cargo', ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--', 'scenes', FRAMES, ...SIZES]);
+  const server = await serve(root, { host: HOST, headers: {} });
+  const browsers = createRequire(join(root, 'www/package.json'))('@playwright/test').chromium;
+  const address = `http://${HOST}:${server.address().port}/benches/first-call.html`;
+  let version = '';
+  const places = {
+    Node: async (task) => {
+      const program = [join(root, 'benches/first-call.mjs'), JSON.stringify(task), FRAMES];
+      return JSON.parse((await must('The run failed.', process.execPath, program, { output: 'collect' })).stdout);
+    },
+    Chromium: async (task) => {
+      const browser = await browsers.launch({ executablePath: chromium.path });
+      try {
+        version = browser.version();
+        const page = await browser.newPage();
+        await page.goto(address, { waitUntil: 'load' });
+        return await page.evaluate((task) => globalThis.firstCalls(task), { ...task, frames: '/out/bench/first' });
+      } finally {
+        await browser.close();
+      }
+    },
+  };
+  try {
+    const found = {};
+    for (let run = 0; run < runs; run += 1) {
+      console.log(`Run ${run + 1} of ${runs}`);
+      for (const [place, measure] of Object.entries(places)) {
+        for (const size of SIZES) for (const ahead of AHEAD) ((found[`${place} ${size}`] ??= {})[ahead] ??= []).push(await measure({ size, ahead, calls: CALLS }));
+      }
+    }
+    const text = [origin(version, runs), table(found)].join('\n\n');
+    console.log(`\n${text}`);
+    if (writeDocs) writeMarked(PAGE, { first: text });
+  } finally {
+    server.close();
+    server.closeAllConnections();
+    rmSync(FRAMES, { recursive: true, force: true });
+  }
+});
+
+function options(args) {
+  let values;
+  try {
+    ({ values } = parseArgs({ args, options: { runs: { type: 'string', default: '9' }, 'write-docs': { type: 'boolean', default: false } } }));
+  } catch (error) {
+    throw new Stop(error.message);
+  }
+  const runs = Number(values.runs);
+  if (!Number.isInteger(runs) || runs < 1) throw new Stop('--runs must be a whole number from 1.');
+  return { runs, writeDocs: values['write-docs'] };
+}
+
+function origin(version, runs) {
+  const date = new Date().toISOString().slice(0, 10);
+  const [{ model }] = cpus();
+  return `${model}, ${cpus().length} cores, Node ${process.versions.node}, Chromium ${version}, ${date}: medians of ${runs} runs; milliseconds, and beside them how many times as long as a later call.`;
+}
+
+function table(found) {
+  const head = ['', 'later calls', 'no warm-up', ...AHEAD.slice(1, -1).map((ahead) => `begun ${ahead} ms before`), 'whole'];
+  const rows = Object.entries(found).map(([name, byAhead]) => {
+    const later = median(Object.values(byAhead).flat().flatMap((times) => times.slice(EARLY)));
+    const firsts = AHEAD.map((ahead) => median(byAhead[ahead].map(([first]) => first)));
+    return [name.replace('x', ' × ').replace(' ', ', '), later.toFixed(0), ...firsts.map((first) => `${first.toFixed(0)} (${(first / later).toFixed(1)} ×)`)];
+  });
+  return [head, head.map(() => '---'), ...rows].map((cells) => `| ${cells.join(' | ')} |`).join('\n');
+}
