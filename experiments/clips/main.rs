@@ -29,6 +29,7 @@ Scores labels that persist through time, of generated and real clips, in two ste
 
   --quick            every fourth generated clip, no real ones
   --only A,B         only clips whose name contains one of these
+  --methods A,B      only these methods: clip, stream, stream-fast, live, pairs, pairs-fast, flow, mog2, knn
   --out DIR          output folder; default out/clips
   --shared DIR       folder with real clips, if it exists; default ../shared
   --ablation         also measure the clip segmenter without each of its parts
@@ -39,6 +40,7 @@ struct Options {
     step: String,
     quick: bool,
     only: Vec<String>,
+    methods: Vec<String>,
     out: PathBuf,
     shared: PathBuf,
     ablation: bool,
@@ -67,6 +69,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         step: String::new(),
         quick: false,
         only: Vec::new(),
+        methods: Vec::new(),
         out: PathBuf::from("out/clips"),
         shared: PathBuf::from("../shared"),
         ablation: false,
@@ -80,6 +83,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--quick" => options.quick = true,
             "--ablation" => options.ablation = true,
             "--write-docs" => options.write_docs = true,
+            "--methods" => options.methods = value()?.split(',').map(str::to_owned).collect(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--out" => options.out = PathBuf::from(value()?),
             "--shared" => options.shared = PathBuf::from(value()?),
@@ -116,6 +120,15 @@ fn run(options: &Options) -> Result<(), Failure> {
     let mut methods = Method::ALL.to_vec();
     if options.ablation {
         methods.extend(Method::ABLATIONS);
+    }
+    if !options.methods.is_empty() {
+        if options.write_docs {
+            return Err("docs/clips.md compares all methods: --methods and --write-docs exclude each other.".into());
+        }
+        methods.retain(|method| options.methods.iter().any(|name| name == method.name()));
+    }
+    if methods.is_empty() {
+        return Err("There is no such method.".into());
     }
     let measured = measure::all(&cases, &methods, out)?;
     fs::write(out.join("table.csv"), figures::csv(&measured)).map_err(cannot)?;
