@@ -5,7 +5,7 @@
 //! border. A chain of small jumps therefore does not join two regions that differ along their own border; otherwise a slowly moving
 //! limb would tie a whole animal to the ground.
 
-use crate::labelling::neighbours;
+use crate::labelling::{BACKGROUND, neighbours};
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
 use crate::tuning::{Tuned, tuned};
@@ -23,14 +23,19 @@ const LARGEST_TOLERANCE: f64 = 0.007;
 /// The group of every motion, named by its smallest label. `motions` are in pixels of the labels, each of which is `reduction` pixels
 /// of the frame wide.
 pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, reduction: f64) -> Vec<usize> {
-    let joined = joined(motions.len(), borders(motions, labels, width));
-    let largest = joined.iter().fold(0.0f64, |m, j| m.max(j.jump));
+    let borders = borders(motions, labels, width);
+    let all = joined(motions.len(), borders.clone(), |_| true);
+    let largest = all.iter().fold(0.0f64, |m, j| m.max(j.jump));
     let side = width.max(labels.len() / width) as f64;
+    let least = TOLERANCE / reduction;
     let tolerance = (tuned(Tuned::GroupTolerance, RELATIVE_TOLERANCE) * largest)
         .min(tuned(Tuned::LargestGroupTolerance, LARGEST_TOLERANCE) * side)
-        .max(TOLERANCE / reduction);
+        .max(least);
+    // Before a camera at rest all layers of a rigid background are at rest: what moves is an object.
+    let at_rest = motions[BACKGROUND] == AffineMotion::STATIC;
+    let continuous = |join: &Join| join.jump < if at_rest && join.keep == BACKGROUND { least } else { tolerance };
     let mut group: Vec<usize> = (0..motions.len()).collect();
-    for Join { keep, drop, .. } in joined.into_iter().take_while(|j| j.jump < tolerance) {
+    for Join { keep, drop, .. } in joined(motions.len(), borders, continuous) {
         group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);
     }
     group
@@ -44,10 +49,10 @@ struct Join {
     jump: f64,
 }
 
-/// Joins regions one after another, smallest jump first, until no two touch.
-fn joined(n: usize, mut borders: Vec<Vec<f64>>) -> Vec<Join> {
+/// Joins regions one after another, smallest jump first, until no two may be joined.
+fn joined(n: usize, mut borders: Vec<Vec<f64>>, may_join: impl Fn(&Join) -> bool) -> Vec<Join> {
     let mut joined = Vec::new();
-    while let Some(next) = closest(n, &mut borders) {
+    while let Some(next) = closest(n, &mut borders, &may_join) {
         for other in 0..n {
             let moved = std::mem::take(&mut borders[pair(n, next.drop, other)]);
             if other != next.keep && other != next.drop {
@@ -59,14 +64,14 @@ fn joined(n: usize, mut borders: Vec<Vec<f64>>) -> Vec<Join> {
     joined
 }
 
-/// The pair with the smallest jump along a border that is long enough.
-fn closest(n: usize, borders: &mut [Vec<f64>]) -> Option<Join> {
+/// The pair that may be joined with the smallest jump along a border that is long enough.
+fn closest(n: usize, borders: &mut [Vec<f64>], may_join: impl Fn(&Join) -> bool) -> Option<Join> {
     let mut best: Option<Join> = None;
     for (k, along) in borders.iter_mut().enumerate().filter(|(_, along)| along.len() >= SHORTEST_BORDER) {
-        if let Some(jump) = median_f64(along)
-            && best.as_ref().is_none_or(|b| jump < b.jump)
-        {
-            best = Some(Join { keep: k / n, drop: k % n, jump });
+        let Some(jump) = median_f64(along) else { continue };
+        let join = Join { keep: k / n, drop: k % n, jump };
+        if may_join(&join) && best.as_ref().is_none_or(|best| jump < best.jump) {
+            best = Some(join);
         }
     }
     best
@@ -127,6 +132,25 @@ mod tests {
         ];
         let groups = groups(&motions, &labels, width, 1.0);
         assert_ne!(groups[0], groups[1]);
+    }
+
+    #[test]
+    fn before_a_camera_at_rest_there_are_no_layers_of_the_background() {
+        // Two things: one moves by 5 pixels of the frame against the ground, the other one by 1, as a layer of the ground might.
+        let (width, height) = (90, 40);
+        let labels: Vec<u8> = (0..width * height)
+            .map(|p| match (p % width, p / width) {
+                (10..30, 10..30) => 1,
+                (50..70, 10..30) => 2,
+                _ => 0,
+            })
+            .collect();
+        let groups = |camera: f64| {
+            let motions = [0.0, 0.5, 0.1].map(|u| AffineMotion::translation(camera + u, 0.0));
+            groups(&motions, &labels, width, 10.0)
+        };
+        assert_eq!(groups(1.0), [0, 1, 0]);
+        assert_eq!(groups(0.0), [0, 1, 2]);
     }
 
     #[test]
