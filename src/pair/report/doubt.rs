@@ -1,4 +1,4 @@
-//! The confidence that what moves in another way than the background is an object.
+//! The confidence that what moves in another way than the background, the largest group, is an object.
 //!
 //! That a motion is right does not make its pixels an object: in real scenes, parts of the background at another depth move otherwise too.
 //!
@@ -12,7 +12,7 @@
 //! The weights are a maximum likelihood fit to real pairs and generated scenes; docs/masks.md says which, and has the measurement on others.
 
 use crate::frame::Plane;
-use crate::labelling::{BACKGROUND, neighbours};
+use crate::labelling::neighbours;
 
 /// α: weight of the probability of the motion.
 const MOTION: f64 = 0.45;
@@ -38,7 +38,8 @@ pub(super) fn doubt_objects(
 ) {
     let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
     let misfit = own.sum::<f64>() / labels.len() as f64;
-    for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != groups[BACKGROUND]) {
+    let largest = largest(groups, labels);
+    for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != largest) {
         let on_border = libm::sqrt(share_on_frame_border(labels, k as u8, plane.width()));
         let constant = CONSTANT - FRAME_BORDER * on_border - MISFIT * misfit;
         for (p, agreement) in plane.values_mut().iter_mut().zip(agreement.values()) {
@@ -48,6 +49,13 @@ pub(super) fn doubt_objects(
             *p = 1.0 / (1.0 + libm::expf(-log_odds as f32));
         }
     }
+}
+
+/// The group with most pixels, which a report calls the background; the first of equals.
+fn largest(groups: &[usize], labels: &[u8]) -> usize {
+    let mut sizes = vec![0usize; groups.len()];
+    labels.iter().for_each(|&label| sizes[groups[usize::from(label)]] += 1);
+    (0..sizes.len()).reduce(|best, k| if sizes[k] > sizes[best] { k } else { best }).unwrap_or(0)
 }
 
 /// Share of the outline of a label that lies on the frame's border; 0 of a label without pixels.
@@ -85,6 +93,13 @@ mod tests {
         assert_eq!(share_on_frame_border(&square(0), 1, 12), 0.25);
         assert_eq!(share_on_frame_border(&[1; 96], 1, 12), 1.0);
         assert_eq!(share_on_frame_border(&[1; 96], 2, 12), 0.0);
+    }
+
+    #[test]
+    fn the_background_is_the_largest_group() {
+        assert_eq!(largest(&[0, 1], &square(4)), 0);
+        assert_eq!(largest(&[0, 1], &[1; 96]), 1);
+        assert_eq!(largest(&[0, 1, 1], &[0, 0, 0, 1, 1, 2, 2]), 1);
     }
 
     #[test]
