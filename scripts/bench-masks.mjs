@@ -11,13 +11,14 @@ import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'masks', '--'];
+/** Steps that are measured by themselves, without the baseline. */
+const APART = ['sensitivity', 'stability', 'calibration'];
 
 await command(async (args) => {
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
   await checkRust();
-  if (args.includes('--sensitivity')) {
-    return (await run('cargo', [...CARGO, 'sensitivity', ...args.filter((name) => name !== '--sensitivity')])).code;
-  }
+  const apart = APART.find((step) => args.includes(`--${step}`));
+  if (apart) return (await run('cargo', [...CARGO, apart, ...args.filter((name) => name !== `--${apart}`)])).code;
   const out = resolve(root, valueOf(args, '--out') ?? 'out/masks');
   const baselines = join(out, 'baseline');
   for (const folder of [baselines, join(out, 'frames')]) rmSync(folder, { recursive: true, force: true });

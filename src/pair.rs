@@ -19,9 +19,9 @@ use std::rc::Rc;
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
 use crate::estimation::dominant::{RIDGE, dominant_motion, dominant_motion_near};
-use crate::frame::Frame;
 use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::length;
 use crate::labelling::regions::groups::groups;
@@ -34,7 +34,7 @@ use crate::view::brightness::Photometric;
 use crate::view::cost::{View, noise};
 use crate::view::level::{Level, levels};
 use crate::workspace;
-use consensus::{Finding, foreground, nearest_to_majority};
+use consensus::{Finding, consensus, foreground};
 use labels::Labelled;
 use settings::Settings;
 
@@ -121,7 +121,10 @@ fn segment_with(
     }
     let noise = searches.iter().map(|search| search.pair.finest().noise).fold(f32::INFINITY, f32::min);
     let findings: Vec<Finding> = searches.iter_mut().map(|search| search.finding(noise)).collect();
-    let mut search = searches.swap_remove(nearest_to_majority(&findings));
+    let consensus = consensus(&findings);
+    let mut search = searches.swap_remove(consensus.nearest);
+    let level = search.pair.finest();
+    let agreement = Plane::from_buffer(level.width(), level.height(), consensus.agreement);
     drop(searches);
     if let Some(settings) = detail {
         stages.begin_round(images.len());
@@ -130,7 +133,7 @@ fn segment_with(
     }
     stages.begin("masks");
     let Search { mirror, pair, labelled } = search;
-    Ok(report::report(&pair, labelled, mirror, &settings, [first, second], options))
+    Ok(report::report(&pair, labelled, agreement, mirror, &settings, [first, second], options))
 }
 
 /// The search of the frames or of one of their mirror images.

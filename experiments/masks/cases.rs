@@ -18,6 +18,8 @@ const STILL_SEED: u64 = 43_000;
 const LARGE_SEED: u64 = 44_000;
 const ROBOT_SEED: u64 = 45_000;
 const BARE_SEED: u64 = 46_000;
+/// Where a third of the pairs of a sequence is measured.
+const EVERY: usize = 3;
 /// CDnet's codes for shadow, outside the region of interest and unknown.
 const CDNET_VOID: [u8; 3] = [50, 85, 170];
 
@@ -205,6 +207,19 @@ fn scene_case(set: Set, options: SceneOptions) -> Case {
     let SceneOptions { width, seed, .. } = options;
     let sub_pixel = matches!(options.speed, Speed::SubPixel | Speed::Creeping) && options.objects > 0;
     Case { name: format!("{}-{width}-{seed}", set.name()), set, sub_pixel, source: Source::Scene(options) }
+}
+
+/// Of the pairs of every sequence every third, beginning with the second.
+pub(crate) fn a_third(pairs: impl Iterator<Item = Case>) -> Vec<Case> {
+    let mut sequence = (String::new(), 0);
+    let mut chosen = |case: &Case| {
+        if sequence.0 != case.sequence() {
+            sequence = (case.sequence().to_owned(), 0);
+        }
+        sequence.1 += 1;
+        sequence.1 % EVERY == 2
+    };
+    pairs.filter(|case| chosen(case)).collect()
 }
 
 /// The folders in a folder, by name; none where there is no such folder.

@@ -1,52 +1,106 @@
 //! Whether the pipeline knows what it does not know: how often labels of each confidence are right, and which pixels are marked as
 //! unknown.
 
-use veronese::{Result, SegmentOptions, UNLABELLED, segment_pair};
+use std::fmt::Write;
 
-use crate::cases::Data;
+use serde_json::{Value, json};
+use veronese::{Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair};
+
+use crate::Failure;
+use crate::cases::{Case, Data, Set, a_third};
+use crate::parallel::in_parallel;
+use crate::scores::VOID;
 
 /// Lower edges of the ranges of confidence.
-pub(crate) const RANGES: [f64; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995];
+const RANGES: [f64; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995];
+/// Index of the first range that counts as sure.
+const SURE: usize = 5;
+const QUALITIES: [(Quality, &str); 2] = [(Quality::Best, "best"), (Quality::Fast, "fast")];
 
 /// Pixels in a range of confidence.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Range {
-    pub(crate) pixels: usize,
-    pub(crate) right: usize,
+struct Range {
+    pixels: usize,
+    right: usize,
     /// Sum of the confidences.
-    pub(crate) confidence: f64,
+    confidence: f64,
+}
+
+/// Pixels by the range of their confidence.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ranges([Range; RANGES.len()]);
+
+impl Ranges {
+    fn count(&mut self, confidence: u8, right: bool) {
+        let probability = f64::from(confidence) / 255.0;
+        let above = RANGES.iter().filter(|&&edge| probability >= edge).count();
+        let range = &mut self.0[above.max(1) - 1];
+        range.pixels += 1;
+        range.right += usize::from(right);
+        range.confidence += probability;
+    }
+
+    fn add(&mut self, other: &Ranges) {
+        for (own, other) in self.0.iter_mut().zip(&other.0) {
+            own.pixels += other.pixels;
+            own.right += other.right;
+            own.confidence += other.confidence;
+        }
+    }
+
+    fn pixels(&self) -> usize {
+        self.0.iter().map(|range| range.pixels).sum()
+    }
+
+    /// Expected calibration error: the mean difference between confidence and share of right labels, over the ranges.
+    fn error(&self) -> f64 {
+        self.0.iter().map(|range| (range.confidence - range.right as f64).abs()).sum::<f64>() / self.pixels() as f64
+    }
+
+    /// Share of the pixels with a confidence of .95 or more, and the share of right labels among them.
+    fn sure(&self) -> [f64; 2] {
+        let sum = |figure: fn(&Range) -> usize| self.0[SURE..].iter().map(figure).sum::<usize>() as f64;
+        let pixels = sum(|range| range.pixels);
+        [pixels / self.pixels() as f64, sum(|range| range.right) / pixels]
+    }
+
+    /// Cells of a row of a table: share of the pixels, mean confidence, share of right labels.
+    fn cells(&self, k: usize) -> [String; 3] {
+        let range = &self.0[k];
+        let of = |value: f64| per_cent(value / range.pixels as f64);
+        [per_cent(range.pixels as f64 / self.pixels() as f64), of(range.confidence), of(range.right as f64)]
+    }
+
+    fn json(&self) -> Value {
+        let of = |(r, from): (&Range, f64)| json!({ "from": from, "pixels": r.pixels, "right": r.right, "confidence": r.confidence });
+        self.0.iter().zip(RANGES).map(of).collect()
+    }
 }
 
 /// Counts over the pixels of scenes whose truth is known entirely.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Honesty {
-    pub(crate) ranges: [Range; RANGES.len()],
+struct OfScenes {
+    ranges: Ranges,
     /// Pixels hidden or outside in the second frame, and how many of them are marked as unknown.
-    pub(crate) occluded: [usize; 2],
+    occluded: [usize; 2],
     /// The same of the others.
-    pub(crate) visible: [usize; 2],
+    visible: [usize; 2],
     /// Of the visible pixels that are marked: those whose label would have been wrong.
-    pub(crate) saved: usize,
+    saved: usize,
 }
 
-impl Honesty {
+impl OfScenes {
     /// The counts of one scene; none where it is not known what is hidden.
-    pub(crate) fn of(data: &Data) -> Result<Option<Honesty>> {
+    fn of(data: &Data) -> Result<Option<OfScenes>> {
         let (Some(truth), Some(occluded)) = (&data.truth, &data.occluded) else { return Ok(None) };
         let run = |options: &SegmentOptions| segment_pair(&data.first, &data.second, None, options, &mut |_| {});
         let sure = run(&SegmentOptions { confidence: true, ..SegmentOptions::default() })?;
         let marked = run(&SegmentOptions { mark_unknown: true, ..SegmentOptions::default() })?;
         let meaning = meanings(&sure.labels, truth);
-        let mut counts = Honesty::default();
-        let confidence = sure.confidence.unwrap_or_default();
-        for (p, (&label, &true_label)) in sure.labels.iter().zip(truth).enumerate() {
-            let right = meaning[usize::from(label)] == true_label;
-            let probability = confidence.get(p).map_or(0.0, |&c| f64::from(c) / 255.0);
-            let above = RANGES.iter().filter(|&&edge| probability >= edge).count();
-            let range = &mut counts.ranges[above.max(1) - 1];
-            range.pixels += 1;
-            range.right += usize::from(right);
-            range.confidence += probability;
+        let mut counts = OfScenes::default();
+        for (p, (&label, &confidence)) in sure.labels.iter().zip(sure.confidence.iter().flatten()).enumerate() {
+            let right = meaning[usize::from(label)] == truth[p];
+            counts.ranges.count(confidence, right);
             let mark = marked.labels[p] == UNLABELLED;
             let kind = if occluded[p] { &mut counts.occluded } else { &mut counts.visible };
             kind[0] += 1;
@@ -56,18 +110,57 @@ impl Honesty {
         Ok(Some(counts))
     }
 
-    pub(crate) fn add(&mut self, other: &Honesty) {
-        for (own, other) in self.ranges.iter_mut().zip(&other.ranges) {
-            own.pixels += other.pixels;
-            own.right += other.right;
-            own.confidence += other.confidence;
-        }
+    fn add(&mut self, other: &OfScenes) {
+        self.ranges.add(&other.ranges);
         for k in 0..2 {
             self.occluded[k] += other.occluded[k];
             self.visible[k] += other.visible[k];
         }
         self.saved += other.saved;
     }
+}
+
+/// Counts over the pixels of real pairs, in which one object has a mask: of those that are said to be an object, then of those said to be
+/// background.
+#[derive(Clone, Copy, Debug, Default)]
+struct OfPairs {
+    /// The group says it. An object is right in the mask, background outside it.
+    grouped: [Ranges; 2],
+    /// The truth says it of every label, as a user would join them.
+    by_hand: [Ranges; 2],
+}
+
+impl OfPairs {
+    fn of(data: &Data, quality: Quality) -> Result<OfPairs> {
+        let options = SegmentOptions { quality, confidence: true, ..SegmentOptions::default() };
+        let found = segment_pair(&data.first, &data.second, None, &options, &mut |_| {})?;
+        let truth = data.truth.as_deref().unwrap_or_default();
+        let meaning = meanings(&found.labels, truth);
+        let is_object = objects(&found);
+        let mut counts = OfPairs::default();
+        for ((&label, &confidence), &truth) in found.labels.iter().zip(found.confidence.iter().flatten()).zip(truth) {
+            if truth == VOID {
+                continue;
+            }
+            let [label, inside] = [usize::from(label), usize::from(truth != 0)];
+            let (grouped, by_hand) = (usize::from(is_object[label]), usize::from(meaning[label] != 0));
+            counts.grouped[1 - grouped].count(confidence, grouped == inside);
+            counts.by_hand[1 - by_hand].count(confidence, by_hand == inside);
+        }
+        Ok(counts)
+    }
+
+    fn add(&mut self, other: &OfPairs) {
+        for k in 0..2 {
+            self.grouped[k].add(&other.grouped[k]);
+            self.by_hand[k].add(&other.by_hand[k]);
+        }
+    }
+}
+
+/// Which labels are those of objects: all but those in the largest group.
+fn objects(found: &Segmentation) -> [bool; 256] {
+    std::array::from_fn(|label| found.motions.get(label).is_some_and(|motion| motion.group != 0))
 }
 
 /// The true label that most pixels of each found label have.
@@ -77,4 +170,144 @@ fn meanings(found: &[u8], truth: &[u8]) -> [u8; 256] {
         votes[usize::from(f)][usize::from(t)] += 1;
     }
     std::array::from_fn(|f| (0..=255u8).rev().max_by_key(|&t| votes[f][usize::from(t)]).unwrap_or(0))
+}
+
+/// The counts of a case.
+pub(crate) struct Counted {
+    case: Case,
+    scene: Option<OfScenes>,
+    /// Of a real pair, with each quality.
+    pair: Option<[OfPairs; QUALITIES.len()]>,
+}
+
+/// Counts the generated scenes and two real pairs of each sequence among the cases.
+pub(crate) fn measure(cases: &[Case]) -> std::result::Result<Vec<Counted>, Failure> {
+    let mut chosen = a_third(cases.iter().filter(|case| case.set == Set::Sequences).cloned());
+    chosen.extend(cases.iter().filter(|case| case.set.is_scene()).cloned());
+    in_parallel(&chosen, |case| {
+        let data = case.load().map_err(|error| error.to_string())?;
+        let real = case.set == Set::Sequences;
+        let with = |k: usize| OfPairs::of(&data, QUALITIES[k].0);
+        let pair = if real { Some([with(0)?, with(1)?]) } else { None };
+        eprintln!("{}", case.name);
+        Ok(Counted { case: case.clone(), scene: OfScenes::of(&data)?, pair })
+    })
+}
+
+fn sum_of_scenes(counted: &[Counted]) -> OfScenes {
+    let mut sum = OfScenes::default();
+    counted.iter().filter_map(|one| one.scene.as_ref()).for_each(|counts| sum.add(counts));
+    sum
+}
+
+/// The sums of the real pairs: of all, then of both folds of every second sequence.
+fn sums_of_pairs(counted: &[Counted]) -> [[OfPairs; QUALITIES.len()]; 3] {
+    let pairs: Vec<_> = counted.iter().filter_map(|one| Some((one.case.sequence(), one.pair?))).collect();
+    let mut sequences: Vec<&str> = pairs.iter().map(|(sequence, _)| *sequence).collect();
+    sequences.dedup();
+    let mut sums = [[OfPairs::default(); QUALITIES.len()]; 3];
+    for (sequence, counts) in &pairs {
+        let place = sequences.iter().position(|name| name == sequence).unwrap_or_default();
+        for sum in [0, 1 + place % 2] {
+            sums[sum].iter_mut().zip(counts).for_each(|(sum, counts)| sum.add(counts));
+        }
+    }
+    sums
+}
+
+/// The counts as values for programs.
+pub(crate) fn json(counted: &[Counted]) -> Value {
+    let scenes = sum_of_scenes(counted);
+    let both = |[object, background]: &[Ranges; 2]| json!({ "object": object.json(), "background": background.json() });
+    let of_pairs = |counts: &OfPairs| json!({ "grouped": both(&counts.grouped), "byHand": both(&counts.by_hand) });
+    let named = |name: &str, [best, fast]: &[OfPairs; 2]| json!({ "pairs": name, "best": of_pairs(best), "fast": of_pairs(fast) });
+    let pairs: Vec<Value> = FOLDS.iter().zip(&sums_of_pairs(counted)).map(|(name, sums)| named(name, sums)).collect();
+    json!({
+        "scenes": scenes.ranges.json(), "pairs": pairs,
+        "unknown": {
+            "occluded": scenes.occluded[0], "occludedMarked": scenes.occluded[1],
+            "visible": scenes.visible[0], "visibleMarked": scenes.visible[1], "wrongAndMarked": scenes.saved,
+        },
+    })
+}
+
+const FOLDS: [&str; 3] = ["all", "first fold", "second fold"];
+
+/// The part of the page.
+pub(crate) fn text(counted: &[Counted]) -> String {
+    let mut text = String::from("`confidence` is the probability that a pixel's label is right.");
+    of_scenes(&mut text, &sum_of_scenes(counted));
+    if counted.iter().any(|one| one.pair.is_some()) {
+        of_pairs(&mut text, &sums_of_pairs(counted));
+    }
+    text
+}
+
+/// The ranges of confidence as the first cells of rows.
+fn row_heads() -> impl Iterator<Item = String> {
+    let to = |k: usize| RANGES.get(k + 1).copied().unwrap_or(1.0);
+    (0..RANGES.len()).map(move |k| format!("| {:.1} to {:.1} %", 100.0 * RANGES[k], 100.0 * to(k)))
+}
+
+fn of_scenes(text: &mut String, counts: &OfScenes) {
+    if counts.ranges.pixels() == 0 {
+        return;
+    }
+    text.push_str(
+        " The first table covers all generated scenes; each label stands for the object that most of its pixels belong to.\n\n\
+         | confidence | share of pixels | mean confidence | right |\n|---|---|---|---|\n",
+    );
+    for (k, head) in row_heads().enumerate().filter(|(k, _)| counts.ranges.0[*k].pixels > 0) {
+        let _ = writeln!(text, "{head} | {} |", counts.ranges.cells(k).join(" | "));
+    }
+    let ([occluded, hit], [visible, wrongly]) = (counts.occluded, counts.visible);
+    let _ = writeln!(
+        text,
+        "\n`markUnknown` marks {} of the pixels that are occluded or outside the frame in the second image, and {} of the \
+         others. Of the latter, {} would have had a wrong label.\n",
+        per_cent(hit as f64 / occluded as f64),
+        per_cent(wrongly as f64 / visible as f64),
+        per_cent(counts.saved as f64 / wrongly as f64)
+    );
+}
+
+fn of_pairs(text: &mut String, sums: &[[OfPairs; QUALITIES.len()]; 3]) {
+    text.push_str(REAL);
+    text.push_str(
+        "\n\n| confidence | said to be an object: share | mean confidence | in the mask \
+         | said to be background: share | mean confidence | outside |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    let [object, background] = &sums[0][0].grouped;
+    for (k, head) in row_heads().enumerate() {
+        let _ = writeln!(text, "{head} | {} | {} |", object.cells(k).join(" | "), background.cells(k).join(" | "));
+    }
+    text.push_str(
+        "\nThe expected calibration error is the mean difference between confidence and share of right labels over these ranges, and the \
+         mean of that of objects and that of background. *Sure* are pixels said to be an object with a confidence of 95 % or more. *By hand*, \
+         each label is an object or background as most of its pixels are, as in the table of the generated scenes.\n\n\
+         | pairs | quality | error | sure | of them in the mask | error, by hand | sure, by hand | of them in the mask |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for (fold, sums) in FOLDS.iter().zip(sums) {
+        for ((_, quality), counts) in QUALITIES.iter().zip(sums) {
+            let _ = write!(text, "| {fold} | {quality} |");
+            for [object, background] in [&counts.grouped, &counts.by_hand] {
+                let [sure, right] = object.sure().map(per_cent);
+                let _ = write!(text, " {:.3} | {sure} | {right} |", 0.5 * (object.error() + background.error()));
+            }
+            text.push('\n');
+        }
+    }
+}
+
+const REAL: &str = "\
+Two pairs of each training sequence of DAVIS 2016, with *best*. What is said to be an object is everything but the largest group, and right in
+the mask of the sequence's object; background is right outside it. Other things that move have no mask and count as wrong. In real scenes a
+motion may be right without being that of an object, so the confidence of objects also weighs how many of the searches agree, how much of the
+outline lies on the frame's border, and how well motions explain the frames (src/pair/report/doubt.rs). Its five weights were fitted to pairs
+of the first fold of sequences and to every second of the generated scenes above, both with the same weight. The second fold is held out of the fit.";
+
+fn per_cent(share: f64) -> String {
+    if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
 }

@@ -13,6 +13,7 @@ mod parallel;
 mod pictures;
 mod scores;
 mod sensitivity;
+mod stability;
 mod summary;
 mod tables;
 
@@ -21,7 +22,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cases::Case;
-use honesty::Honesty;
 use measure::Method;
 use parallel::in_parallel;
 
@@ -30,14 +30,19 @@ Scores masks of generated scenes and real pairs against an OpenCV baseline, in t
 
   frames       writes the frames of the generated cases and prints a line per case: its name, a tab, its folder
   measure      measures and writes table.csv, masks.json, masks.md and a picture of every case
-  sensitivity  measures what tuned constants change and writes sensitivity.json and sensitivity.md (npm run bench:masks -- --sensitivity)
+
+Steps of their own, as npm run bench:masks -- --STEP; each writes STEP.json and STEP.md:
+
+  sensitivity  measures what tuned constants change
+  stability    measures what alterations of the frames change
+  calibration  measures how often labels of each confidence are right
 
   --quick            a subset of the generated cases, no large frames, no ablation
   --only A,B         only cases whose name or set contains one of these
   --no-ablation      skip the ablation
   --out DIR          output folder; default out/masks
   --shared DIR       folder with further pairs, if it exists; default ../shared
-  --write-docs       also write docs/masks.md and docs/images/masks-*.png; for the sensitivity, its part of docs/masks.md
+  --write-docs       also write docs/masks.md and docs/images/masks-*.png; a step of its own writes its part of the page
 ";
 
 struct Options {
@@ -81,7 +86,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "sensitivity" => options.step = name,
+            "frames" | "measure" | "sensitivity" | "stability" | "calibration" => options.step = name,
             "--quick" => (options.quick, options.ablation) = (true, false),
             "--no-ablation" => options.ablation = false,
             "--write-docs" => options.write_docs = true,
@@ -92,7 +97,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure or sensitivity.".into()),
+        true => Err("Say which step: frames, measure, sensitivity, stability or calibration.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -118,8 +123,20 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    if options.step == "sensitivity" {
-        return sensitivity(options, cases);
+    match options.step.as_str() {
+        "sensitivity" => {
+            let measured = sensitivity::measure(&sensitivity::chosen(cases))?;
+            return write_apart(options, &sensitivity::json(&measured), &sensitivity::table(&measured));
+        }
+        "stability" => {
+            let compared = stability::measure(&cases)?;
+            return write_apart(options, &stability::json(&compared), &stability::text(&compared));
+        }
+        "calibration" => {
+            let measured = honesty::measure(&cases)?;
+            return write_apart(options, &honesty::json(&measured), &honesty::text(&measured));
+        }
+        _ => {}
     }
     if !here {
         eprintln!("{} is not there: only the generated cases are measured.", options.shared.display());
@@ -127,18 +144,14 @@ fn run(options: &Options) -> Result<(), Failure> {
     let variants = if options.ablation { ablation::variants() } else { Vec::new() };
     let measured = measure::all(&cases, &out.join("baseline"), &variants, ablation::takes_part)?;
     let worths = ablation::worths(&measured);
-    let mut honesty = Honesty::default();
-    measured.iter().filter_map(|one| one.honesty.as_ref()).for_each(|counts| honesty.add(counts));
-
     fs::write(out.join("table.csv"), tables::csv(&measured)).map_err(cannot)?;
-    let json = serde_json::to_string_pretty(&tables::all(&measured, &worths, &honesty))?;
+    let json = serde_json::to_string_pretty(&tables::all(&measured, &worths))?;
     fs::write(out.join("masks.json"), json).map_err(cannot)?;
     for one in &measured {
         fs::write(out.join(format!("{}.png", one.case.name)), &one.picture).map_err(cannot)?;
     }
-    let sensitivity =
-        page::sensitivity_in(&fs::read_to_string(docs().join("masks.md"))?).unwrap_or_default().to_owned();
-    let page = page::Page { measured: &measured, worths: &worths, honesty: &honesty, reasons: reasons()?, sensitivity };
+    let before = fs::read_to_string(docs().join("masks.md"))?;
+    let page = page::Page { measured: &measured, worths: &worths, reasons: reasons()?, before };
     fs::write(out.join("masks.md"), page.text("")).map_err(cannot)?;
     if options.write_docs {
         write_docs(&page)?;
@@ -150,18 +163,17 @@ fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Measures the sensitivity and writes it.
-fn sensitivity(options: &Options, cases: Vec<Case>) -> Result<(), Failure> {
-    let measured = sensitivity::measure(&sensitivity::chosen(cases))?;
-    let table = sensitivity::table(&measured);
-    fs::write(options.out.join("sensitivity.json"), serde_json::to_string_pretty(&sensitivity::json(&measured))?)?;
-    fs::write(options.out.join("sensitivity.md"), &table)?;
-    if options.write_docs {
+/// Writes what a step of its own has measured.
+fn write_apart(options: &Options, json: &serde_json::Value, text: &str) -> Result<(), Failure> {
+    let Options { step, out, write_docs, .. } = options;
+    fs::write(out.join(format!("{step}.json")), serde_json::to_string_pretty(json)?)?;
+    fs::write(out.join(format!("{step}.md")), text)?;
+    if *write_docs {
         let path = docs().join("masks.md");
-        let page = page::with_sensitivity(&fs::read_to_string(&path)?, &table);
-        fs::write(path, page.ok_or("docs/masks.md has no part for the sensitivity")?)?;
+        let page = page::with_text(&fs::read_to_string(&path)?, step, text);
+        fs::write(path, page.ok_or(format!("docs/masks.md has no part for the {step}"))?)?;
     }
-    eprintln!("The results are in {}.", options.out.display());
+    eprintln!("The results are in {}.", out.display());
     Ok(())
 }
 

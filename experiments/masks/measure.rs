@@ -10,7 +10,6 @@ use veronese::{
 };
 
 use crate::cases::{Case, Data, Set, baseline};
-use crate::honesty::Honesty;
 use crate::parallel::in_parallel;
 use crate::pictures;
 use crate::scores::{Scores, flow_error, scores};
@@ -53,8 +52,6 @@ pub(crate) struct Measured {
     pub(crate) case: Case,
     pub(crate) size: [usize; 2],
     pub(crate) outcomes: Vec<Outcome>,
-    /// Known of generated scenes.
-    pub(crate) honesty: Option<Honesty>,
     /// Frame, best, baseline and truth side by side, as a PNG file.
     pub(crate) picture: Vec<u8>,
     /// What each form of the pipeline gives with either quality, in the order of the ablation; empty where the case takes no part in it.
@@ -117,7 +114,6 @@ fn measure(case: &Case, baselines: &Path, variants: &[Variant]) -> Result<Measur
         case: case.clone(),
         size: [width, data.first.height()],
         outcomes,
-        honesty: Honesty::of(&data)?,
         picture: pictures::panels(&data, &shown)?,
         variants: variants.iter().map(|&variant| with_both(variant, &data)).collect::<Result<_>>()?,
     })

@@ -7,7 +7,6 @@ use serde_json::{Map, Value};
 
 use crate::ablation::Worth;
 use crate::cases::Set;
-use crate::honesty::{Honesty, RANGES};
 use crate::measure::{Measured, Method, Outcome};
 use crate::summary::Summary;
 
@@ -19,11 +18,10 @@ const OWN: [Set; 4] = [Set::Generated, Set::Colour, Set::Large, Set::Robots];
 pub(crate) struct Page<'a> {
     pub(crate) measured: &'a [Measured],
     pub(crate) worths: &'a [Worth],
-    pub(crate) honesty: &'a Honesty,
     /// Explanations of the results, by case name.
     pub(crate) reasons: Map<String, Value>,
-    /// The text about the sensitivity, which is measured by itself.
-    pub(crate) sensitivity: String,
+    /// The page as it was, with the texts of the steps that are measured by themselves.
+    pub(crate) before: String,
 }
 
 const HEAD: &str = "\
@@ -60,22 +58,24 @@ one real pair that may be redistributed is [in the README](../README.md); it has
 
 ";
 
-/// Markers around the text about the sensitivity.
-const SENSITIVITY_BEGINS: &str =
-    "<!-- begin sensitivity: written by npm run bench:masks -- --sensitivity --write-docs -->";
-const SENSITIVITY_ENDS: &str = "<!-- end sensitivity -->";
-
-/// The text about the sensitivity in a page, without its markers.
-pub(crate) fn sensitivity_in(page: &str) -> Option<&str> {
-    let (_, rest) = page.split_once(SENSITIVITY_BEGINS)?;
-    Some(rest.split_once(SENSITIVITY_ENDS)?.0.trim())
+/// Markers around the text of a step that is measured by itself.
+fn markers(step: &str) -> [String; 2] {
+    let begins = format!("<!-- begin {step}: written by npm run bench:masks -- --{step} --write-docs -->");
+    [begins, format!("<!-- end {step} -->")]
 }
 
-/// A page with other text about the sensitivity.
-pub(crate) fn with_sensitivity(page: &str, text: &str) -> Option<String> {
-    let (before, rest) = page.split_once(SENSITIVITY_BEGINS)?;
-    let (_, after) = rest.split_once(SENSITIVITY_ENDS)?;
-    Some(format!("{before}{SENSITIVITY_BEGINS}\n{}\n{SENSITIVITY_ENDS}{after}", text.trim()))
+/// The text of a step in a page, without its markers.
+fn text_of<'p>(step: &str, page: &'p str) -> Option<&'p str> {
+    let [begins, ends] = markers(step);
+    Some(page.split_once(&begins)?.1.split_once(&ends)?.0.trim())
+}
+
+/// A page with other text of a step.
+pub(crate) fn with_text(page: &str, step: &str, text: &str) -> Option<String> {
+    let [begins, ends] = markers(step);
+    let (before, rest) = page.split_once(&begins)?;
+    let (_, after) = rest.split_once(&ends)?;
+    Some(format!("{before}{begins}\n{}\n{ends}{after}", text.trim()))
 }
 
 /// The head of a table of real pairs.
@@ -94,8 +94,9 @@ impl Page<'_> {
         self.pairs(&mut text);
         self.flows(&mut text);
         self.ablation(&mut text);
-        self.sensitivity(&mut text);
-        self.honesty(&mut text);
+        self.apart(&mut text, "Sensitivity", "sensitivity");
+        self.apart(&mut text, "Stability", "stability");
+        self.apart(&mut text, "Calibration of the confidence", "calibration");
         self.pictures(&mut text, prefix);
         self.real_ends(&mut text);
         text.push_str(LICENCE);
@@ -279,44 +280,10 @@ impl Page<'_> {
         );
     }
 
-    fn sensitivity(&self, text: &mut String) {
-        let _ =
-            writeln!(text, "## Sensitivity\n\n{SENSITIVITY_BEGINS}\n{}\n{SENSITIVITY_ENDS}\n", self.sensitivity.trim());
-    }
-
-    fn honesty(&self, text: &mut String) {
-        let all: usize = self.honesty.ranges.iter().map(|range| range.pixels).sum();
-        if all == 0 {
-            return;
-        }
-        text.push_str(
-            "## Calibration of the confidence\n\n`confidence` is the probability that a pixel's label is right. The table covers all \
-             generated scenes; each label stands for the object that most of its pixels belong to.\n\n| confidence | share of pixels | mean confidence | right |\n\
-             |---|---|---|---|\n",
-        );
-        for (k, range) in self.honesty.ranges.iter().enumerate().filter(|(_, range)| range.pixels > 0) {
-            let to = RANGES.get(k + 1).copied().unwrap_or(1.0);
-            let of = |value: f64| value / range.pixels as f64;
-            let _ = writeln!(
-                text,
-                "| {:.1} to {:.1} % | {:.1} % | {:.1} % | {:.1} % |",
-                100.0 * RANGES[k],
-                100.0 * to,
-                100.0 * range.pixels as f64 / all as f64,
-                100.0 * of(range.confidence),
-                100.0 * of(range.right as f64)
-            );
-        }
-        let [occluded, hit] = self.honesty.occluded;
-        let [visible, wrongly] = self.honesty.visible;
-        let _ = writeln!(
-            text,
-            "\n`markUnknown` marks {} of the pixels that are occluded or outside the frame in the second image, and {} of the \
-             others. Of the latter, {} would have had a wrong label.\n",
-            per_cent_1(hit as f64 / occluded as f64),
-            per_cent_1(wrongly as f64 / visible as f64),
-            per_cent_1(self.honesty.saved as f64 / wrongly as f64)
-        );
+    /// What another step has measured, as it was.
+    fn apart(&self, text: &mut String, title: &str, step: &str) {
+        let [begins, ends] = markers(step);
+        let _ = writeln!(text, "## {title}\n\n{begins}\n{}\n{ends}\n", text_of(step, &self.before).unwrap_or_default());
     }
 
     fn pictures(&self, text: &mut String, prefix: &str) {
@@ -406,8 +373,4 @@ fn three(value: f64) -> String {
 
 fn per_cent(share: f64) -> String {
     if share.is_finite() { format!("{:.0} %", 100.0 * share) } else { "–".into() }
-}
-
-fn per_cent_1(share: f64) -> String {
-    if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
 }

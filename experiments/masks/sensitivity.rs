@@ -6,15 +6,13 @@ use serde_json::{Value, json};
 use veronese::Tuned;
 
 use crate::Failure;
-use crate::cases::{Case, Set};
+use crate::cases::{Case, Set, a_third};
 use crate::measure::{Method, Outcome, Variant, of_variant};
 use crate::parallel::in_parallel;
 use crate::scores::Scores;
 
 /// What a constant is multiplied by.
 const FACTORS: [f32; 2] = [0.5, 1.5];
-/// Of the pairs of a sequence every third is measured, beginning with the second.
-const EVERY: usize = 3;
 /// A mean change of more standard errors than this is set in bold type.
 const SIGNIFICANT: f64 = 2.0;
 
@@ -84,18 +82,10 @@ pub(crate) struct Varied {
 
 /// The cases that are measured: generated scenes, those with a bare ground, and a third of the pairs of every sequence.
 pub(crate) fn chosen(cases: Vec<Case>) -> Vec<Case> {
-    let mut sequence = (String::new(), 0);
-    let mut chosen = |case: &Case| {
-        if case.set != Set::Sequences {
-            return matches!(case.set, Set::Generated | Set::Colour | Set::Bare);
-        }
-        if sequence.0 != case.sequence() {
-            sequence = (case.sequence().to_owned(), 0);
-        }
-        sequence.1 += 1;
-        sequence.1 % EVERY == 2
-    };
-    cases.into_iter().filter(|case| chosen(case)).collect()
+    let (pairs, mut chosen): (Vec<Case>, Vec<Case>) = cases.into_iter().partition(|case| case.set == Set::Sequences);
+    chosen.retain(|case| matches!(case.set, Set::Generated | Set::Colour | Set::Bare));
+    chosen.extend(a_third(pairs.into_iter()));
+    chosen
 }
 
 /// Measures all cases with all constants.

@@ -6,7 +6,6 @@ use serde_json::{Value, json};
 
 use crate::ablation::Worth;
 use crate::cases::Set;
-use crate::honesty::{Honesty, RANGES};
 use crate::measure::{Measured, Method, Outcome};
 use crate::scores::Scores;
 use crate::summary::Summary;
@@ -69,7 +68,7 @@ pub(crate) fn csv(measured: &[Measured]) -> String {
 }
 
 /// Everything that was measured.
-pub(crate) fn all(measured: &[Measured], ablation: &[Worth], honesty: &Honesty) -> Value {
+pub(crate) fn all(measured: &[Measured], ablation: &[Worth]) -> Value {
     let cases: Vec<Value> = measured
         .iter()
         .map(|one| {
@@ -96,14 +95,6 @@ pub(crate) fn all(measured: &[Measured], ablation: &[Worth], honesty: &Honesty) 
             sets.insert(set.name().into(), Value::Object(methods));
         }
     }
-    let ranges: Vec<Value> = honesty
-        .ranges
-        .iter()
-        .zip(RANGES)
-        .map(|(range, from)| {
-            json!({ "from": from, "pixels": range.pixels, "right": range.right, "confidence": range.confidence })
-        })
-        .collect();
     let worths: Vec<Value> = ablation
         .iter()
         .map(|worth| {
@@ -116,13 +107,7 @@ pub(crate) fn all(measured: &[Measured], ablation: &[Worth], honesty: &Honesty) 
             json!({ "variant": worth.title, "best": best, "fast": fast })
         })
         .collect();
-    json!({
-        "cases": cases, "sets": sets, "ablation": worths, "calibration": ranges,
-        "unknown": {
-            "occluded": honesty.occluded[0], "occludedMarked": honesty.occluded[1],
-            "visible": honesty.visible[0], "visibleMarked": honesty.visible[1], "wrongAndMarked": honesty.saved,
-        },
-    })
+    json!({ "cases": cases, "sets": sets, "ablation": worths })
 }
 
 fn of_outcome(outcome: &Outcome) -> Value {

@@ -27,14 +27,24 @@ pub(super) struct Finding {
     pub(super) length: f64,
 }
 
-/// Index of the finding whose foreground has the largest intersection over union with the pixels that are foreground in at least half of
-/// the findings; the first of equals. A finding with a much longer description than the shortest neither votes nor wins.
-pub(super) fn nearest_to_majority(findings: &[Finding]) -> usize {
+/// What all searches have found together.
+pub(super) struct Consensus {
+    /// Index of the finding that is nearest to the majority.
+    pub(super) nearest: usize,
+    /// How likely another search is to call a pixel foreground too, by the rule of succession: (s + 1) / (n + 2) if s of n have.
+    pub(super) agreement: Buffer<f32>,
+}
+
+/// The nearest finding is that whose foreground has the largest intersection over union with the pixels that are foreground in at least half
+/// of the findings; the first of equals. A finding with a much longer description than the shortest neither votes nor wins.
+pub(super) fn consensus(findings: &[Finding]) -> Consensus {
     let shortest = findings.iter().map(|finding| finding.length).fold(f64::INFINITY, f64::min);
     let eligible: Vec<usize> = (0..findings.len()).filter(|&k| findings[k].length <= LONGEST * shortest).collect();
     let (mut common, mut either) = (vec![0usize; findings.len()], vec![0usize; findings.len()]);
-    for p in 0..findings[0].foreground.len() {
+    let mut agreement = Buffer::filled(findings[0].foreground.len(), 0.0);
+    for (p, agreement) in agreement.iter_mut().enumerate() {
         let votes = eligible.iter().filter(|&&k| findings[k].foreground[p]).count();
+        *agreement = (votes as f32 + 1.0) / (eligible.len() as f32 + 2.0);
         let majority = votes * ONE_OF >= eligible.len();
         for &k in &eligible {
             let foreground = findings[k].foreground[p];
@@ -43,12 +53,17 @@ pub(super) fn nearest_to_majority(findings: &[Finding]) -> usize {
         }
     }
     let overlap = |k: usize| if either[k] == 0 { 1.0 } else { common[k] as f64 / either[k] as f64 };
-    eligible.iter().copied().reduce(|best, k| if overlap(k) > overlap(best) { k } else { best }).unwrap_or(0)
+    let nearest = eligible.iter().copied().reduce(|best, k| if overlap(k) > overlap(best) { k } else { best });
+    Consensus { nearest: nearest.unwrap_or(0), agreement }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn nearest(findings: &[Finding]) -> usize {
+        consensus(findings).nearest
+    }
 
     fn findings(rows: &[&str]) -> Vec<Finding> {
         let foreground = |row: &str| row.bytes().map(|b| b == b'x').collect();
@@ -60,24 +75,32 @@ mod tests {
         let mut findings = findings(&["xx..", "..xx", "..xx", "xx.."]);
         findings[0].length = 1200.0;
         findings[3].length = 1200.0;
-        assert_eq!(nearest_to_majority(&findings), 1);
+        assert_eq!(nearest(&findings), 1);
     }
 
     #[test]
     fn an_object_that_half_of_them_see_is_kept() {
-        assert_eq!(nearest_to_majority(&findings(&["....", "xx..", ".xx.", "...."])), 1);
-        assert_eq!(nearest_to_majority(&findings(&["....", "xx..", "xxx.", ".xx."])), 2);
+        assert_eq!(nearest(&findings(&["....", "xx..", ".xx.", "...."])), 1);
+        assert_eq!(nearest(&findings(&["....", "xx..", "xxx.", ".xx."])), 2);
     }
 
     #[test]
     fn what_only_one_of_them_sees_is_not() {
-        assert_eq!(nearest_to_majority(&findings(&["xx.x", "xx..", "xx..", "xx.."])), 1);
-        assert_eq!(nearest_to_majority(&findings(&["..xx", "....", "....", "...."])), 1);
+        assert_eq!(nearest(&findings(&["xx.x", "xx..", "xx..", "xx.."])), 1);
+        assert_eq!(nearest(&findings(&["..xx", "....", "....", "...."])), 1);
+    }
+
+    #[test]
+    fn agreement_counts_the_searches_that_may_vote() {
+        let mut findings = findings(&["xx..", "x...", "x.x.", "...x"]);
+        assert_eq!(consensus(&findings[..1]).agreement[..], [2.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]);
+        findings[3].length = 1200.0;
+        assert_eq!(consensus(&findings).agreement[..], [0.8, 0.4, 0.4, 0.2]);
     }
 
     #[test]
     fn one_labelling_is_its_own_majority() {
-        assert_eq!(nearest_to_majority(&findings(&["x.."])), 0);
-        assert_eq!(nearest_to_majority(&findings(&["..."])), 0);
+        assert_eq!(nearest(&findings(&["x.."])), 0);
+        assert_eq!(nearest(&findings(&["..."])), 0);
     }
 }

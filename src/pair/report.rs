@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 
+mod doubt;
 mod statistics;
 mod unknown;
 
@@ -45,8 +46,10 @@ pub struct Segmentation {
     /// Number of unlabelled pixels.
     pub unlabelled: usize,
     /// Confidence of every label, row by row, if requested: 255 times the probability of the pixel's motion, given how well all
-    /// motions explain the pixel and its surroundings and which labels surround it. 255 is certain, 0 unlabelled. The probability
-    /// is calibrated: of the pixels with probability P, about the share P is right. It is low where no motion fits.
+    /// motions explain the pixel and its surroundings and which labels surround it. Of an object it is the probability that it is one and
+    /// not a part of the background at another depth: less where the object is cut by the frame's border, where searches disagree, and in
+    /// frames that no motions explain well. 255 is certain, 0 unlabelled. The probability is calibrated on real pairs and generated
+    /// scenes: of the pixels with probability P, about the share P is right. It is low where no motion fits.
     #[serde(skip)]
     pub confidence: Option<Vec<u8>>,
 }
@@ -83,10 +86,12 @@ pub struct PairEvidence {
     pub candidates: Vec<Candidate>,
 }
 
-/// The result of a pair of mirror images, for the frames themselves.
+/// The result of a pair of mirror images, for the frames themselves. The confidence needs the `agreement` of all searches about the
+/// foreground of the frames.
 pub(super) fn report(
     pair: &Pair,
     labelled: Labelled,
+    mut agreement: Plane,
     mirror: Mirror,
     settings: &Settings,
     [first, second]: [&Frame; 2],
@@ -95,17 +100,27 @@ pub(super) fn report(
     let level = pair.finest();
     let size = [level.width(), level.height()];
     let candidates = evidence(pair, &labelled, settings);
-    let sure = (options.mark_unknown || options.confidence)
-        .then(|| probabilities(&costs_where_seen(level, &labelled.motions), &labelled.labels));
-    let unknown = sure.as_ref().filter(|_| options.mark_unknown).map(|sure| unknown::unknown(pair, &labelled, sure));
     let grouping = groups(&labelled.motions, &labelled.labels, size[0], pair.reduction);
+    let costs = if options.mark_unknown || options.confidence {
+        costs_where_seen(level, &labelled.motions)
+    } else {
+        Vec::new()
+    };
+    let mut sure = probabilities(&costs, &labelled.labels);
+    let unknown = options.mark_unknown.then(|| unknown::unknown(pair, &labelled, &sure));
+    if options.confidence {
+        let width = agreement.width();
+        mirror.reorder(agreement.values_mut(), width);
+        doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &grouping, &enlarged(&agreement, size[0], size[1]));
+    }
+    drop(costs);
 
     let full = if settings.has(Part::GuidedEnlarging) {
         upsample(&labelled.labels, size, labelled.motions.len(), mirror.frame(first).luminance())
     } else {
         nearest(&labelled.labels, size, first, pair.reduction)
     };
-    let mut confidence = sure.filter(|_| options.confidence).map(|sure| confidence(&sure, &full, first.width()));
+    let mut confidence = options.confidence.then(|| confidence(&sure, &full, first.width()));
     let order = by_size(&full, labelled.motions.len());
     let mut rank = [0u8; 256];
     order.iter().enumerate().for_each(|(k, &old)| rank[old] = k as u8);

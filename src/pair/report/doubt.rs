@@ -1,0 +1,114 @@
+//! The confidence that what moves in another way than the background, the largest group, is an object.
+//!
+//! That a motion is right does not make its pixels an object: in real scenes, parts of the background at another depth move otherwise too.
+//!
+//! ```text
+//! ln Q/(1−Q) = α ln P/(1−P) + β a − γ √b − δ m + ε        of an object's pixel
+//! ```
+//! P is the probability of its motion and a the agreement of the searches that the pixel is foreground. The share of the object's outline
+//! that lies on the frame's border is b: objects lie within the frame more often than parts of the background do. The mean cost of all
+//! pixels under their own motions is m: where affine motions do not explain the frames, more regions are found that are none.
+//!
+//! The weights are a maximum likelihood fit to real pairs and generated scenes; docs/masks.md says which, and has the measurement on others.
+
+use crate::frame::Plane;
+use crate::labelling::neighbours;
+
+/// α: weight of the probability of the motion.
+const MOTION: f64 = 0.45;
+/// β: weight of the agreement of the searches.
+const AGREEMENT: f64 = 6.4;
+/// γ: weight of the frame's border.
+const FRAME_BORDER: f64 = 7.0;
+/// δ: weight of the mean cost.
+const MISFIT: f64 = 5.0;
+/// ε.
+const CONSTANT: f64 = -1.6;
+/// Smallest and largest P that are told apart. A safeguard.
+const LIMITS: [f32; 2] = [0.002, 0.998];
+
+/// Turns the probabilities of the motions of objects into those of being one. `agreement` is the probability of foreground by the other
+/// searches.
+pub(super) fn doubt_objects(
+    probabilities: &mut [Plane],
+    costs: &[Plane],
+    labels: &[u8],
+    groups: &[usize],
+    agreement: &Plane,
+) {
+    let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
+    let misfit = own.sum::<f64>() / labels.len() as f64;
+    let largest = largest(groups, labels);
+    for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != largest) {
+        let on_border = libm::sqrt(share_on_frame_border(labels, k as u8, plane.width()));
+        let constant = CONSTANT - FRAME_BORDER * on_border - MISFIT * misfit;
+        for (p, agreement) in plane.values_mut().iter_mut().zip(agreement.values()) {
+            let probable = f64::from(p.clamp(LIMITS[0], LIMITS[1]));
+            let log_odds =
+                MOTION * libm::log(probable / (1.0 - probable)) + AGREEMENT * f64::from(*agreement) + constant;
+            *p = 1.0 / (1.0 + libm::expf(-log_odds as f32));
+        }
+    }
+}
+
+/// The group with most pixels, which a report calls the background; the first of equals.
+fn largest(groups: &[usize], labels: &[u8]) -> usize {
+    let mut sizes = vec![0usize; groups.len()];
+    labels.iter().for_each(|&label| sizes[groups[usize::from(label)]] += 1);
+    (0..sizes.len()).reduce(|best, k| if sizes[k] > sizes[best] { k } else { best }).unwrap_or(0)
+}
+
+/// Share of the outline of a label that lies on the frame's border; 0 of a label without pixels.
+fn share_on_frame_border(labels: &[u8], label: u8, width: usize) -> f64 {
+    let is_own = |p: usize| usize::from(labels[p] == label);
+    let (mut sides, mut inside) = (0, 0);
+    neighbours(labels.len(), width, |p, q| {
+        sides += is_own(p) + is_own(q);
+        inside += is_own(p) ^ is_own(q);
+    });
+    // Every pixel has four sides; those without a neighbour lie on the frame's border.
+    let outer = 4 * labels.iter().filter(|own| **own == label).count() - sides;
+    outer as f64 / (inside + outer).max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square of nine pixels, its left column at `x`.
+    fn square(x: usize) -> Vec<u8> {
+        (0..96).map(|p| u8::from((x..x + 3).contains(&(p % 12)) && (2..5).contains(&(p / 12)))).collect()
+    }
+
+    fn doubted(labels: &[u8], groups: &[usize], agreement: f32, cost: f32) -> [f32; 2] {
+        let plane = |value| Plane::filled(12, 8, value);
+        let mut probabilities = [plane(0.9), plane(0.9)];
+        doubt_objects(&mut probabilities, &[plane(cost), plane(cost)], labels, groups, &plane(agreement));
+        probabilities.map(|plane| plane.at(5, 3))
+    }
+
+    #[test]
+    fn the_outline_is_counted_in_sides_of_pixels() {
+        assert_eq!(share_on_frame_border(&square(4), 1, 12), 0.0);
+        assert_eq!(share_on_frame_border(&square(0), 1, 12), 0.25);
+        assert_eq!(share_on_frame_border(&[1; 96], 1, 12), 1.0);
+        assert_eq!(share_on_frame_border(&[1; 96], 2, 12), 0.0);
+    }
+
+    #[test]
+    fn the_background_is_the_largest_group() {
+        assert_eq!(largest(&[0, 1], &square(4)), 0);
+        assert_eq!(largest(&[0, 1], &[1; 96]), 1);
+        assert_eq!(largest(&[0, 1, 1], &[0, 0, 0, 1, 1, 2, 2]), 1);
+    }
+
+    #[test]
+    fn only_objects_are_doubted_and_by_all_evidence() {
+        let [background, object] = doubted(&square(4), &[0, 1], 0.8, 0.4);
+        assert_eq!(background, 0.9);
+        assert!(object < doubted(&square(4), &[0, 1], 0.9, 0.4)[1], "less agreement");
+        assert!(object < doubted(&square(4), &[0, 1], 0.8, 0.3)[1], "more misfit");
+        assert!(object > doubted(&square(0), &[0, 1], 0.8, 0.4)[1], "cut by the frame");
+        assert_eq!(doubted(&square(0), &[0, 0], 0.2, 0.9), [0.9, 0.9], "a part of the background");
+    }
+}
