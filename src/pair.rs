@@ -131,6 +131,7 @@ fn segment_with(
         let pair = Pair::of_frames([first, second], before, search.mirror, &settings);
         search = search.continued(pair, &settings, &mut stages);
     }
+    labels::return_shadows(&search.pair, &mut search.labelled, &settings);
     stages.begin("masks");
     let Search { mirror, pair, labelled } = search;
     Ok(report::report(&pair, labelled, agreement, mirror, &settings, [first, second], options))

@@ -8,7 +8,7 @@ use crate::measure::{Measured, Variant};
 use crate::summary::Summary;
 
 /// The variants of the pipeline, in the order of the table.
-const VARIANTS: [(Variant, &str); 16] = [
+const VARIANTS: [(Variant, &str); 17] = [
     (Variant::Without(Part::MirrorImages), "**one search**"),
     (Variant::Without(Part::Brightness), "gain and bias"),
     (Variant::Without(Part::StaticHypothesis), "static background hypothesis"),
@@ -22,6 +22,7 @@ const VARIANTS: [(Variant, &str); 16] = [
     (Variant::Without(Part::Splitting), "region splitting"),
     (Variant::Without(Part::ModelSelection), "label cost"),
     (Variant::Without(Part::Colour), "colour"),
+    (Variant::Without(Part::Shadows), "return of shadows"),
     (Variant::Without(Part::GuidedEnlarging), "guided upsampling"),
     (Variant::Whole, "*with the mirror images*"),
     (Variant::ThreeFrames, "*with the mirror images and the frame before*"),

@@ -8,6 +8,7 @@ pub(crate) mod coherence;
 pub(crate) mod confidence;
 pub(crate) mod regions;
 pub(crate) mod resolution;
+pub(crate) mod shadows;
 pub(crate) mod solver;
 pub(crate) mod terms;
 

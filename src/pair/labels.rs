@@ -1,7 +1,8 @@
 //! The label of every working pixel.
 //!
 //! Draft labels are solved on a coarser level. There, motions that do not pay for themselves are pruned, costs are corrected for
-//! occlusion, and regions are merged and split. The labels are then sharpened at the working size, and small components removed.
+//! occlusion, and regions are merged and split. The labels are then sharpened at the working size, and small components removed. In the end,
+//! shadows are given back to the background.
 
 use super::Pair;
 use super::hypothesis::Found;
@@ -12,6 +13,7 @@ use crate::labelling::regions::description::{counts, price_of_motion, smallest_s
 use crate::labelling::regions::merging::best_merger;
 use crate::labelling::regions::splitting::{split_bodies, split_components};
 use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
+use crate::labelling::shadows;
 use crate::labelling::solver::Solver;
 use crate::labelling::terms::colour::{ColourPrices, add_colours};
 use crate::labelling::terms::data::LabelCosts;
@@ -94,6 +96,20 @@ pub(super) fn label_on(pair: &Pair, found: Found, expected: Buffer<u8>, settings
     state.solve_final();
     state.prune();
     state.finished(pair)
+}
+
+/// Gives shadows of objects back to the background.
+pub(super) fn return_shadows(pair: &Pair, labelled: &mut Labelled, settings: &Settings) {
+    if labelled.motions.len() < 2 || !settings.returns_shadows || !settings.has(Part::Shadows) {
+        return;
+    }
+    let (palette, borders) = (&pair.appearance.palette, borders(pair, 0, settings));
+    let Labelled { motions, labels, .. } = labelled;
+    shadows::return_shadows(pair.finest(), palette, &borders, motions, labels, settings.coherence.solver);
+    let sizes = absorb_small_components(labels, pair.finest().width(), motions.len());
+    for k in objects(sizes.len()).rev().filter(|&k| sizes[k] == 0) {
+        motions.remove(k);
+    }
 }
 
 /// Smoothness weights on a level.
@@ -369,26 +385,32 @@ impl<'a> LabelState<'a> {
 
     /// Gives small components to the labels around them and removes motions without pixels. Rows of labels are `width` long.
     fn clean(&mut self, width: usize) {
-        let smallest = (smallest_share() * self.labels.len() as f64) as usize;
-        absorb_small(&mut self.labels, width, smallest);
-        let sizes = counts(&self.labels, self.motions.len());
-        let mut next = 0u8;
-        let renumbered: Vec<u8> = (0..self.motions.len())
-            .map(|k| {
-                let number = next;
-                if k == BACKGROUND || sizes[k] > 0 {
-                    next += 1;
-                }
-                number
-            })
-            .collect();
-        self.labels.iter_mut().for_each(|l| *l = renumbered[usize::from(*l)]);
-        for k in objects(sizes.len()).rev() {
-            if sizes[k] == 0 {
-                self.remove(k);
-            }
+        let sizes = absorb_small_components(&mut self.labels, width, self.motions.len());
+        for k in objects(sizes.len()).rev().filter(|&k| sizes[k] == 0) {
+            self.remove(k);
         }
     }
+}
+
+/// Gives small components of labels, in rows of `width`, to the labels around them. Returns the pixels of each of the motions; afterwards the
+/// labels are numbered as if there were no objects without pixels.
+#[inline(never)]
+fn absorb_small_components(labels: &mut [u8], width: usize, motions: usize) -> Vec<usize> {
+    let smallest = (smallest_share() * labels.len() as f64) as usize;
+    absorb_small(labels, width, smallest);
+    let sizes = counts(labels, motions);
+    let mut next = 0u8;
+    let renumbered: Vec<u8> = (0..motions)
+        .map(|k| {
+            let number = next;
+            if k == BACKGROUND || sizes[k] > 0 {
+                next += 1;
+            }
+            number
+        })
+        .collect();
+    labels.iter_mut().for_each(|l| *l = renumbered[usize::from(*l)]);
+    sizes
 }
 
 /// Which pixels lie within `reach` of a label in Chebyshev distance.

@@ -36,6 +36,8 @@ pub enum Part {
     ModelSelection,
     /// The colour term.
     Colour,
+    /// Shadows given back to the background.
+    Shadows,
     /// Upsampling along the edges of the full-size frame.
     GuidedEnlarging,
     /// Searches of the frames' mirror images, which no ablation includes.
@@ -78,6 +80,8 @@ pub(crate) struct Settings {
     pub(crate) visibility_rounds: usize,
     /// How labels hold together.
     pub(crate) coherence: Coherence,
+    /// Whether shadows of objects are given back to the background.
+    pub(crate) returns_shadows: bool,
     /// Whether a pair starts from the labels of the one before, where there is one.
     pub(crate) follows: bool,
     /// What is left out.
@@ -154,6 +158,7 @@ impl Settings {
                 solver: Solver::BEST,
                 sharpening: Solver::BEST,
             },
+            returns_shadows: true,
             follows: false,
             #[cfg(feature = "ablation")]
             without: None,
@@ -162,6 +167,7 @@ impl Settings {
             Quality::Best => best,
             Quality::Fast => Settings {
                 mirror_images: false,
+                returns_shadows: false,
                 halvings: halvings_to(WORK_SIDE_FAST, size),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
                 selection_side: BASE_SIDE,

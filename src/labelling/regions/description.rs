@@ -93,7 +93,7 @@ pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
 }
 
 /// Number of neighbouring pairs of which exactly one has the label.
-fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
+pub(crate) fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
     let mut lengths = vec![0; of];
     neighbours(labels.len(), width, |p, q| {
         let (a, b) = (labels[p], labels[q]);

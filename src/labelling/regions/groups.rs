@@ -24,7 +24,7 @@ const LARGEST_TOLERANCE: f64 = 0.007;
 /// of the frame wide.
 pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, reduction: f64) -> Vec<usize> {
     let borders = borders(motions, labels, width);
-    let all = joined(motions.len(), borders.clone(), |_| true);
+    let all = joined(motions.len(), borders.clone(), &|_| true);
     let largest = all.iter().fold(0.0f64, |m, j| m.max(j.jump));
     let side = width.max(labels.len() / width) as f64;
     let least = TOLERANCE / reduction;
@@ -35,7 +35,7 @@ pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, redu
     let at_rest = motions[BACKGROUND] == AffineMotion::STATIC;
     let continuous = |join: &Join| join.jump < if at_rest && join.keep == BACKGROUND { least } else { tolerance };
     let mut group: Vec<usize> = (0..motions.len()).collect();
-    for Join { keep, drop, .. } in joined(motions.len(), borders, continuous) {
+    for Join { keep, drop, .. } in joined(motions.len(), borders, &continuous) {
         group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);
     }
     group
@@ -50,9 +50,9 @@ struct Join {
 }
 
 /// Joins regions one after another, smallest jump first, until no two may be joined.
-fn joined(n: usize, mut borders: Vec<Vec<f64>>, may_join: impl Fn(&Join) -> bool) -> Vec<Join> {
+fn joined(n: usize, mut borders: Vec<Vec<f64>>, may_join: &dyn Fn(&Join) -> bool) -> Vec<Join> {
     let mut joined = Vec::new();
-    while let Some(next) = closest(n, &mut borders, &may_join) {
+    while let Some(next) = closest(n, &mut borders, may_join) {
         for other in 0..n {
             let moved = std::mem::take(&mut borders[pair(n, next.drop, other)]);
             if other != next.keep && other != next.drop {
@@ -65,7 +65,7 @@ fn joined(n: usize, mut borders: Vec<Vec<f64>>, may_join: impl Fn(&Join) -> bool
 }
 
 /// The pair that may be joined with the smallest jump along a border that is long enough.
-fn closest(n: usize, borders: &mut [Vec<f64>], may_join: impl Fn(&Join) -> bool) -> Option<Join> {
+fn closest(n: usize, borders: &mut [Vec<f64>], may_join: &dyn Fn(&Join) -> bool) -> Option<Join> {
     let mut best: Option<Join> = None;
     for (k, along) in borders.iter_mut().enumerate().filter(|(_, along)| along.len() >= SHORTEST_BORDER) {
         let Some(jump) = median_f64(along) else { continue };

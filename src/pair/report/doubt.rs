@@ -12,7 +12,7 @@
 //! The weights are a maximum likelihood fit to real pairs and generated scenes; docs/masks.md says which, and has the measurement on others.
 
 use crate::frame::Plane;
-use crate::labelling::neighbours;
+use crate::labelling::regions::description::{border_lengths, counts};
 
 /// α: weight of the probability of the motion.
 const MOTION: f64 = 0.45;
@@ -39,9 +39,9 @@ pub(super) fn doubt_objects(
     let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
     let misfit = own.sum::<f64>() / labels.len() as f64;
     let largest = largest(groups, labels);
+    let on_border = shares_on_frame_border(labels, groups.len(), agreement.width());
     for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != largest) {
-        let on_border = libm::sqrt(share_on_frame_border(labels, k as u8, plane.width()));
-        let constant = CONSTANT - FRAME_BORDER * on_border - MISFIT * misfit;
+        let constant = CONSTANT - FRAME_BORDER * libm::sqrt(on_border[k]) - MISFIT * misfit;
         for (p, agreement) in plane.values_mut().iter_mut().zip(agreement.values()) {
             let probable = f64::from(p.clamp(LIMITS[0], LIMITS[1]));
             let log_odds =
@@ -54,21 +54,22 @@ pub(super) fn doubt_objects(
 /// The group with most pixels, which a report calls the background; the first of equals.
 fn largest(groups: &[usize], labels: &[u8]) -> usize {
     let mut sizes = vec![0usize; groups.len()];
-    labels.iter().for_each(|&label| sizes[groups[usize::from(label)]] += 1);
+    counts(labels, groups.len()).iter().zip(groups).for_each(|(count, &group)| sizes[group] += count);
     (0..sizes.len()).reduce(|best, k| if sizes[k] > sizes[best] { k } else { best }).unwrap_or(0)
 }
 
-/// Share of the outline of a label that lies on the frame's border; 0 of a label without pixels.
-fn share_on_frame_border(labels: &[u8], label: u8, width: usize) -> f64 {
-    let is_own = |p: usize| usize::from(labels[p] == label);
-    let (mut sides, mut inside) = (0, 0);
-    neighbours(labels.len(), width, |p, q| {
-        sides += is_own(p) + is_own(q);
-        inside += is_own(p) ^ is_own(q);
-    });
-    // Every pixel has four sides; those without a neighbour lie on the frame's border.
-    let outer = 4 * labels.iter().filter(|own| **own == label).count() - sides;
-    outer as f64 / (inside + outer).max(1) as f64
+/// Share of the outline of each label that lies on the frame's border; 0 of a label without pixels.
+fn shares_on_frame_border(labels: &[u8], of: usize, width: usize) -> Vec<f64> {
+    let mut outer = vec![0; of];
+    let rows = labels.chunks(width).flat_map(|row| [row[0], row[width - 1]]);
+    let columns = labels[..width].iter().chain(&labels[labels.len() - width..]);
+    rows.chain(columns.copied()).for_each(|label| outer[usize::from(label)] += 1);
+    let inside = border_lengths(labels, of, width);
+    inside
+        .iter()
+        .zip(outer)
+        .map(|(&inside, outer)| f64::from(outer) / (inside as f64 + f64::from(outer)).max(1.0))
+        .collect()
 }
 
 #[cfg(test)]
@@ -89,10 +90,11 @@ mod tests {
 
     #[test]
     fn the_outline_is_counted_in_sides_of_pixels() {
-        assert_eq!(share_on_frame_border(&square(4), 1, 12), 0.0);
-        assert_eq!(share_on_frame_border(&square(0), 1, 12), 0.25);
-        assert_eq!(share_on_frame_border(&[1; 96], 1, 12), 1.0);
-        assert_eq!(share_on_frame_border(&[1; 96], 2, 12), 0.0);
+        let of_object = |labels: &[u8]| shares_on_frame_border(labels, 3, 12)[1];
+        assert_eq!(of_object(&square(4)), 0.0);
+        assert_eq!(of_object(&square(0)), 0.25);
+        assert_eq!(of_object(&[1; 96]), 1.0);
+        assert_eq!(of_object(&[0; 96]), 0.0);
     }
 
     #[test]
