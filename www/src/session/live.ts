@@ -15,6 +15,8 @@ import { Numbering } from './numbering.js';
 const LONGEST_SIDE = 480;
 /** Weight of the newest time in the moving average. */
 const NEWEST = 0.15;
+/** Milliseconds after which a picture is taken again though the camera has given no other, or the browser does not say so. */
+const LONGEST_WAIT = 250;
 /** After this number another stream takes over: there are 254. */
 const LAST_NUMBER = 200;
 
@@ -117,11 +119,13 @@ export class LiveView {
           if (!wanted() || (size !== '' && own !== size)) return frame.bitmap.close();
           size = own;
           taken.push(frame);
+          const another = whenAnother(video);
           const { data, width, height } = frame;
           yield { data, width, height };
           // The package asks for a frame ahead, but one from before the last masks would be shown late.
           await new Promise<void>((resolve) => (answered = resolve));
-          await new Promise(requestAnimationFrame);
+          do await new Promise(requestAnimationFrame);
+          while (wanted() && !another());
         }
       };
       const wanted = (): boolean => current() && most <= LAST_NUMBER && this.#store.get().settings === settings;
@@ -167,4 +171,12 @@ async function openCamera(): Promise<MediaStream> {
 
 function end(stream: MediaStream): void {
   for (const track of stream.getTracks()) track.stop();
+}
+
+/** Whether the camera has given another picture since: the same one twice would say that nothing moves. */
+function whenAnother(video: HTMLVideoElement): () => boolean {
+  const since = performance.now();
+  let given = false;
+  if ('requestVideoFrameCallback' in video) video.requestVideoFrameCallback(() => (given = true));
+  return () => given || performance.now() > since + LONGEST_WAIT;
 }
