@@ -185,6 +185,17 @@ fn repeated_frames_do_not_stop_what_is_covered() {
     assert_covered_and_back(things, 22);
 }
 
+/// As where the rate of frames was raised.
+#[test]
+fn what_moves_is_seen_in_repeated_frames_too() {
+    let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * (t / 2) as f32, 44.0])];
+    let (frames, truths) = scene(1, &things, 20);
+    for (quality, look_ahead) in [(Quality::Best, None), (Quality::Best, Some(0)), (Quality::Fast, Some(0))] {
+        let done = segment(&frames, options(quality, look_ahead));
+        one_number(&done, &truths, 1, 4..20);
+    }
+}
+
 #[test]
 fn one_that_stops_is_still_itself() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * if t < 6 { t } else { (t - 4).max(6) } as f32, 44.0])];

@@ -147,6 +147,7 @@ impl Tracker {
             return Ok((tracked, Pairs::default()));
         };
         let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
+            _ if last.frame == newest.frame => self.repeated(&newest, &settings),
             None => self.both_ways(&last, &newest, &settings),
             Some(_) => self.backward(&last, &newest, &settings),
         });
@@ -164,6 +165,15 @@ impl Tracker {
         let prior = Some(back.reversed());
         let [onward, back] = [onward, back].map(|solution| Some((odds(&solution), flow(solution))));
         Pairs { onward, back, prior }
+    }
+
+    /// A frame that is repeated, as where the rate of frames was raised, has the flow of a scene at rest but says nothing of what moves. The
+    /// next pair is expected to be like the last one.
+    fn repeated(&self, newest: &Newest, settings: &Settings) -> Pairs {
+        let size @ [width, height] = settings.working_size([newest.frame.width(), newest.frame.height()]);
+        let told = || (Plane::filled(width, height, 0.0), Flow { measured: true, ..Flow::still(size) });
+        let onward = (self.options.look_ahead.is_none() || self.waits).then(told);
+        Pairs { onward, back: Some(told()), prior: self.prior.clone() }
     }
 
     /// In a stream a frame has its pair with the frame before, near what was found there. Only the first frame may wait for the next.
