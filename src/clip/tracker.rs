@@ -147,7 +147,7 @@ impl Tracker {
             return Ok((tracked, Pairs::default()));
         };
         let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
-            _ if last.frame == newest.frame => self.repeated(&newest, &settings),
+            _ if last.frame.colours() == newest.frame.colours() => self.repeated(&newest, &settings),
             None => self.both_ways(&last, &newest, &settings),
             Some(_) => self.backward(&last, &newest, &settings),
         });
