@@ -15,6 +15,9 @@ export interface Suggestion {
 }
 
 type Junction = Segmentation['junctions'][number];
+type Grouped = Pick<Segmentation, 'motions'>;
+/** Projects of earlier versions have no junctions. */
+type Found = Grouped & Partial<Pick<Segmentation, 'junctions'>>;
 
 /** Motions in different groups that are at least this likely to be one thing are asked about, and those in one group that are less likely. */
 const DOUBT = 0.35;
@@ -22,9 +25,8 @@ const DOUBT = 0.35;
 const MOST = 2;
 
 /** Suggestions about the groups as they are now, the one that is most likely right first. The groups that were found say what is in doubt. */
-export function suggestionsOf(found: Segmentation, now: Pick<Segmentation, 'motions'>, dismissed: ReadonlySet<string>): Suggestion[] {
-  // Projects of earlier versions have no junctions.
-  const { junctions = [] }: Partial<Pick<Segmentation, 'junctions'>> = found;
+export function suggestionsOf(found: Found, now: Grouped, dismissed: ReadonlySet<string>): Suggestion[] {
+  const { junctions = [] } = found;
   const suggestions = new Map<string, Suggestion>();
   for (const junction of junctions.toSorted((a, b) => certainty(found, b) - certainty(found, a))) {
     const advice = adviceOn(found, junction);
@@ -41,7 +43,7 @@ function keyOfJunction({ labels }: Junction): string {
   return labels.join('-');
 }
 
-function groupsOf(segmentation: Pick<Segmentation, 'motions'>, { labels }: Junction): [number, number] {
+function groupsOf(segmentation: Grouped, { labels }: Junction): [number, number] {
   const [one, other] = labels.map((label) => maskOf(label, segmentation, 'groups')) as [number, number];
   return one < other ? [one, other] : [other, one];
 }
@@ -51,13 +53,13 @@ function isApart([one, other]: readonly [number, number]): boolean {
 }
 
 /** What would change the groups that were found; `null` if the likelihood agrees with them. */
-function adviceOn(found: Segmentation, junction: Junction): Suggestion['advice'] | null {
+function adviceOn(found: Grouped, junction: Junction): Suggestion['advice'] | null {
   const likely = junction.likelihood >= DOUBT;
   if (isApart(groupsOf(found, junction)) !== likely) return null;
   return likely ? 'join' : 'separate';
 }
 
 /** How likely the advice is to be right. */
-function certainty(found: Segmentation, junction: Junction): number {
+function certainty(found: Grouped, junction: Junction): number {
   return adviceOn(found, junction) === 'join' ? junction.likelihood : 1 - junction.likelihood;
 }
