@@ -12,7 +12,7 @@ import { command, run } from './lib/run.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'masks', '--'];
 /** Steps that are measured by themselves, without the baseline. */
-const APART = ['sensitivity', 'stability', 'calibration'];
+const APART = ['sensitivity', 'stability', 'calibration', 'junctions'];
 
 await command(async (args) => {
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;

@@ -158,7 +158,8 @@ pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, Segment
 #[doc(hidden)]
 pub use pair::Part;
 pub use pair::{
-    Correction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel, segment_pair,
+    Correction, Junction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel,
+    segment_pair,
 };
 #[cfg(feature = "ablation")]
 #[doc(hidden)]

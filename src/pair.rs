@@ -10,7 +10,7 @@ pub(crate) mod settings;
 pub(crate) mod solution;
 
 pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
-pub use report::{PairEvidence, Segmentation, SegmentedMotion};
+pub use report::{Junction, PairEvidence, Segmentation, SegmentedMotion};
 #[doc(hidden)]
 pub use settings::Part;
 

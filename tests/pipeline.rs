@@ -72,6 +72,16 @@ fn check(result: &Segmentation, options: &SegmentOptions) {
         options.mark_unknown || sizes.is_sorted_by(|a, b| a >= b && *b > 0),
         "groups by decreasing size: {sizes:?}"
     );
+    let pairs: Vec<[u8; 2]> = result.junctions.iter().map(|junction| junction.labels).collect();
+    assert!(pairs.is_sorted_by(|a, b| a < b) && pairs.iter().all(|&[a, b]| a < b && usize::from(b) < result.count));
+    for junction in &result.junctions {
+        assert!((0.0..=1.0).contains(&junction.likelihood) && junction.border > 0);
+        let [a, b] = junction.labels;
+        let meet = |p: usize, q: usize| [[a, b], [b, a]].contains(&[result.labels[p], result.labels[q]]);
+        let right = (0..pixels).any(|p| (p + 1) % result.width != 0 && meet(p, p + 1));
+        let below = (result.width..pixels).any(|p| meet(p - result.width, p));
+        assert!(options.mark_unknown || right || below, "neighbours: {a} and {b}");
+    }
     assert_eq!(counted + result.unlabelled, pixels);
     assert!(options.mark_unknown || result.unlabelled == 0);
     assert!(result.evidence.candidates.iter().all(|c| c.score.is_finite()));

@@ -4,6 +4,7 @@
 mod ablation;
 mod cases;
 mod honesty;
+mod junctions;
 mod measure;
 mod page;
 #[path = "../panels.rs"]
@@ -36,6 +37,7 @@ Steps of their own, as npm run bench:masks -- --STEP; each writes STEP.json and 
   sensitivity  measures what tuned constants change
   stability    measures what alterations of the frames change
   calibration  measures how often labels of each confidence are right
+  junctions    measures how often neighbouring motions are one thing
 
   --quick            a subset of the generated cases, no large frames, no ablation
   --only A,B         only cases whose name or set contains one of these
@@ -86,7 +88,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "sensitivity" | "stability" | "calibration" => options.step = name,
+            "frames" | "measure" | "sensitivity" | "stability" | "calibration" | "junctions" => options.step = name,
             "--quick" => (options.quick, options.ablation) = (true, false),
             "--no-ablation" => options.ablation = false,
             "--write-docs" => options.write_docs = true,
@@ -97,7 +99,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, sensitivity, stability or calibration.".into()),
+        true => Err("Say which step: frames, measure, sensitivity, stability, calibration or junctions.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -135,6 +137,10 @@ fn run(options: &Options) -> Result<(), Failure> {
         "calibration" => {
             let measured = honesty::measure(&cases)?;
             return write_apart(options, &honesty::json(&measured), &honesty::text(&measured));
+        }
+        "junctions" => {
+            let measured = junctions::measure(&cases)?;
+            return write_apart(options, &junctions::json(&measured), &junctions::text(&measured));
         }
         _ => {}
     }

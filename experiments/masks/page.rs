@@ -97,6 +97,7 @@ impl Page<'_> {
         self.apart(&mut text, "Sensitivity", "sensitivity");
         self.apart(&mut text, "Stability", "stability");
         self.apart(&mut text, "Calibration of the confidence", "calibration");
+        self.apart(&mut text, "Which motions are one thing", "junctions");
         self.pictures(&mut text, prefix);
         self.real_ends(&mut text);
         text.push_str(LICENCE);

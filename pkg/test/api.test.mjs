@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { davisPalette, fitMotions, groupLabels, paintLabels, segmentPair, VeroneseError } from 'veronese';
-import { api as codecsApi } from '../dist/codecs.js';
+import { api as codecsApi, decodeImage } from '../dist/codecs.js';
 import { frame, pair, points } from './support/frames.mjs';
 import { checkLabels, checkPair, checkPoints, failure, timeless } from './support/shapes.mjs';
 
@@ -39,6 +39,25 @@ describe('segmentPair', () => {
     const mean = confidence.reduce((sum, sure) => sum + sure, 0) / confidence.length;
     assert.ok(mean > 128, `mean confidence ${mean}`);
     assert.equal((await segmentPair(...pair(), { confidence: false })).confidence, undefined);
+  });
+
+  test('has a junction of motions that touch, with either quality', async () => {
+    const sample = (name) => decodeImage(readFileSync(new URL(`../../www/public/samples/intel-two-cars/${name}.png`, import.meta.url)));
+    const frames = [await sample('first'), await sample('second')];
+    for (const quality of ['fast', 'best']) {
+      const { junctions, labels, width, motions } = await segmentPair(...frames, { quality });
+      assert.ok(junctions.length >= 2, quality);
+      const touching = new Set();
+      labels.forEach((label, p) => {
+        const right = (p + 1) % width === 0 ? label : labels[p + 1];
+        for (const other of [right, labels[p + width] ?? label]) if (other !== label) touching.add([label, other].sort().join());
+      });
+      for (const junction of junctions) assert.ok(touching.has(junction.labels.join()), `${quality}: ${junction.labels}`);
+      // What was joined for its continuous flow is likelier to be one thing than a car and the road.
+      const likelihoods = (joined) =>
+        junctions.filter(({ labels: [a, b] }) => (motions[a].group === motions[b].group) === joined).map(({ likelihood }) => likelihood);
+      assert.ok(Math.min(...likelihoods(true), 1) > Math.min(...likelihoods(false)), quality);
+    }
   });
 
   test('an option that is undefined is an option not given', async () => {

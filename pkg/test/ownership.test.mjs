@@ -75,6 +75,10 @@ describe('arrays that are written to after the call change nothing', () => {
         scribble(motion.matrix);
         motion.group = 9;
       }
+      for (const junction of given.junctions) {
+        scribble(junction.labels);
+        junction.likelihood = 7;
+      }
       given.evidence.candidates.length = 0;
       given.settings.quality = 'fast';
       given.width = 5;

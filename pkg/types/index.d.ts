@@ -106,6 +106,19 @@ export interface SegmentedMotion {
   group: number;
 }
 
+/** The common border of two motions of a {@link Segmentation}. */
+export interface Junction {
+  /** The labels of the two motions, the smaller first. */
+  labels: [number, number];
+  /**
+   * Probability, 0 to 1, that the two motions are of one thing: one object, or one background. It does not decide on groups; where it
+   * disagrees with them or is in between, ask a person.
+   */
+  likelihood: number;
+  /** Length of the border in pixels of the frame, measured at the working size. */
+  border: number;
+}
+
 /** The result of {@link segmentPair}: plain data, nothing to free. */
 export interface Segmentation {
   version: 1;
@@ -115,6 +128,10 @@ export interface Segmentation {
   count: number;
   /** By decreasing number of pixels: `motions[i].label === i`. */
   motions: SegmentedMotion[];
+  /**
+   * Neighbouring motions, by labels. Borders of a few pixels are left out. `relabel` keeps them as they were.
+   */
+  junctions: Junction[];
   /**
    * Description lengths of both frames in nats, from one motion to one more than were found, each with its own labels. The number
    * found need not have the smallest score, because the stages decide in sequence and not by this list alone.

@@ -4,9 +4,11 @@
 use serde::Serialize;
 
 mod doubt;
+mod junctions;
 mod statistics;
 mod unknown;
 
+pub use junctions::Junction;
 pub(crate) use statistics::describe;
 
 use super::Pair;
@@ -41,6 +43,8 @@ pub struct Segmentation {
     /// One label per pixel, row by row; [`UNLABELLED`] where the data cannot tell (only on request).
     #[serde(skip)]
     pub labels: Vec<u8>,
+    /// Which neighbouring motions may be one thing, by labels.
+    pub junctions: Vec<Junction>,
     /// Evidence for the number of motions.
     pub evidence: PairEvidence,
     /// Number of unlabelled pixels.
@@ -137,6 +141,7 @@ pub(super) fn report(
     let matrix =
         |&k: &usize| mirror.motion(&labelled.motions[k].scaled(pair.reduction), [first.width(), first.height()]);
     let matrices: Vec<AffineMotion> = order.iter().map(matrix).collect();
+    let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order);
     let groups: Vec<usize> = order.iter().map(|&k| grouping[k]).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
@@ -146,6 +151,7 @@ pub(super) fn report(
         unlabelled: labels.iter().filter(|&&l| l == UNLABELLED).count(),
         motions,
         labels,
+        junctions,
         evidence: PairEvidence { candidates },
         confidence,
     }

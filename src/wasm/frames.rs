@@ -10,8 +10,8 @@ use super::{
     written,
 };
 use crate::{
-    AffineMotion, Correction, Error, Frame, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions, Segmentation,
-    SegmentedMotion,
+    AffineMotion, Correction, Error, Frame, Junction, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions,
+    Segmentation, SegmentedMotion,
 };
 
 /// Segments two frames, optionally with the frame before the first as a third view. A frame is `{ data, width, height }` with RGBA bytes,
@@ -225,13 +225,15 @@ pub(super) fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
 
 /// Adds the entries of a segmentation except its byte arrays.
 fn add_segmentation(record: Record, segmentation: &Segmentation) -> Record {
-    let Segmentation { width, height, count, motions, labels: _, evidence, unlabelled, confidence: _ } = segmentation;
+    let Segmentation { width, height, count, motions, labels: _, junctions, evidence, unlabelled, confidence: _ } =
+        segmentation;
     let PairEvidence { candidates } = evidence;
     record
         .count("width", *width)
         .count("height", *height)
         .count("count", *count)
         .list("motions", motions, segmented_motion)
+        .list("junctions", junctions, junction)
         .set("evidence", &Record::new().list("candidates", candidates, candidate).into_value())
         .count("unlabelled", *unlabelled)
 }
@@ -251,5 +253,14 @@ fn segmented_motion(motion: &SegmentedMotion) -> JsValue {
         .number("residual", *residual)
         .numbers("bbox", &bbox.map(|side| side as f64))
         .count("group", usize::from(*group))
+        .into_value()
+}
+
+fn junction(junction: &Junction) -> JsValue {
+    let Junction { labels, likelihood, border } = junction;
+    Record::new()
+        .numbers("labels", &labels.map(f64::from))
+        .number("likelihood", *likelihood)
+        .count("border", *border)
         .into_value()
 }

@@ -29,7 +29,7 @@ function blobs(): Segmentation {
     group: label < 2 ? label : label - 1,
   }));
   const settings = { motions: 'auto', quality: 'best', markUnknown: true, before: false, seed: 1, software: '' } as const;
-  return { version: 1, width: WIDTH, height: HEIGHT, count: 4, motions, labels, evidence: { candidates: [] }, unlabelled: 4, milliseconds: { total: 0 }, settings };
+  return { version: 1, width: WIDTH, height: HEIGHT, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 4, milliseconds: { total: 0 }, settings };
 }
 
 test('hidden labels and the background are transparent, the others opaque', () => {

@@ -15,7 +15,8 @@ import { atSize } from '../src/export/full-size.js';
 import { linkFor, settingsFromHash } from '../src/export/link.js';
 import { commandFor, scriptFor } from '../src/export/reproduce.js';
 import type { Matrix } from '../src/result/describe.js';
-import { labelSet, masksOf, merged, ungrouped } from '../src/result/masks.js';
+import { suggestionsOf } from '../src/result/junctions.js';
+import { labelSet, masksOf, merged, separated, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/numbering.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
@@ -37,7 +38,7 @@ function scene(): Segmentation {
     group: [0, 1, 1, 2][label]!,
   }));
   const settings = { motions: 'auto', quality: 'best', markUnknown: false, before: false, seed: 1, software: '' } as const;
-  return { version: 1, width: 8, height: 4, count: 4, motions, labels, evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
+  return { version: 1, width: 8, height: 4, count: 4, motions, labels, junctions: [], evidence: { candidates: [] }, unlabelled: 0, milliseconds: { total: 0 }, settings };
 }
 
 test('masks are groups or motions, and can be merged and ungrouped', () => {
@@ -53,6 +54,36 @@ test('masks are groups or motions, and can be merged and ungrouped', () => {
   // Merging single motions leaves the rest of their groups alone.
   expect(merged(found, 'motions', 0, 3).motions.map(({ group }) => group)).toEqual([0, 1, 1, 0]);
   expect(ungrouped(joined, 1).motions.map(({ group }) => group)).toEqual([0, 1, 2, 3]);
+});
+
+test('a motion is taken out of its group', () => {
+  expect(separated(scene(), 1).motions.map(({ group }) => group)).toEqual([0, 3, 1, 2]);
+});
+
+test('suggestions are about groups, the surest first, until they are followed or dismissed', () => {
+  const junction = (a: number, b: number, likelihood: number): Segmentation['junctions'][number] => ({ labels: [a, b], likelihood, border: 20 });
+  const none = new Set<string>();
+  const about = (found: Segmentation, now = found, dismissed: ReadonlySet<string> = none): string[] =>
+    suggestionsOf(found, now, dismissed).map(({ advice, groups }) => `${advice} ${groups.join()}`);
+  // 1 and 2 are one group, which touches the background with both and 3 with one.
+  const found = { ...scene(), junctions: [junction(0, 1, 0.4), junction(0, 2, 0.5), junction(0, 3, 0.1), junction(1, 2, 0.9), junction(2, 3, 0.7)] };
+  expect(about(found)).toEqual(['join 1,2', 'join 0,1']);
+  expect(about(found, merged(found, 'groups', 1, 2))).toEqual(['join 0,1']);
+  expect(about(found, merged(found, 'groups', 0, 1))).toEqual(['join 0,2']);
+  const [first, second] = suggestionsOf(found, found, none);
+  expect(second!.junctions).toEqual(['0-2', '0-1']);
+  expect(about(found, found, new Set(first!.junctions))).toEqual(['join 0,1']);
+  expect(about(found, found, new Set(second!.junctions))).toEqual(['join 1,2']);
+
+  const apart = { ...found, junctions: [junction(0, 1, 0.1), junction(1, 2, 0.2), junction(2, 3, 0.9)] };
+  expect(about(apart)).toEqual(['join 1,2', 'separate 1,1']);
+  const { label } = suggestionsOf(apart, apart, none)[1]!;
+  expect(about(apart, separated(apart, label))).toEqual(['join 2,3']);
+  // At most two; and none where the likelihood agrees with the groups, or where nothing is known.
+  expect(about({ ...found, junctions: [junction(0, 1, 0.5), junction(0, 3, 0.6), junction(2, 3, 0.7)] })).toEqual(['join 1,2', 'join 0,2']);
+  expect(about({ ...found, junctions: [junction(0, 1, 0.2), junction(1, 2, 0.5)] })).toEqual([]);
+  const { junctions: _, ...old } = found;
+  expect(suggestionsOf(old, old, none)).toEqual([]);
 });
 
 test('a stroke covers the pixels under it, and later strokes win', () => {

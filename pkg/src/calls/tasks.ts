@@ -3,6 +3,7 @@
 import type {
   CallOptions,
   FitOptions,
+  Junction,
   MotionFit,
   Pixels,
   PointMeasurements,
@@ -168,21 +169,27 @@ function checkedArray(which: string, array: unknown, kind: string, of: string): 
 function checkedSegmentation(segmentation: unknown) {
   // How sure the labels were says nothing about those of now.
   const { confidence: _, ...whole } = Object(segmentation) as Partial<Segmentation>;
-  const { motions, labels, settings, evidence } = whole;
+  const { motions, labels, junctions, settings, evidence } = whole;
   const quality = isObject(settings) ? settings.quality : undefined;
   if (!isListOf(motions, isMotion) || !isArrayOf(labels, 'Uint8Array') || typeof quality !== 'string') {
     throw invalidInput('the segmentation must be one that segmentPair or relabel gave');
   }
   checkAttached('the labels', labels);
   const candidates = isListOf(evidence?.candidates, isObject) ? evidence.candidates.map((candidate) => ({ ...candidate })) : [];
+  // Those of an earlier version have none.
+  const known = isListOf(junctions, isJunction) ? { junctions: junctions.map((one) => ({ ...one, labels: [...one.labels] })) } : {};
   return {
     // What is answered anew keeps its place.
-    kept: { ...whole, motions: [], labels: [], evidence: { ...evidence, candidates }, settings: { ...settings } } as unknown as Segmentation,
+    kept: { ...whole, motions: [], labels: [], ...known, evidence: { ...evidence, candidates }, settings: { ...settings } } as unknown as Segmentation,
     labels,
     matrices: Float64Array.from(motions.flatMap(({ matrix }) => matrix)),
     groups: Uint8Array.from(motions, ({ group }) => group),
     settings: { quality },
   };
+}
+
+function isJunction(value: unknown): value is Junction {
+  return isObject(value) && isListOf(value.labels, isNumber);
 }
 
 function isMotion(value: unknown): value is SegmentedMotion {

@@ -28,6 +28,24 @@ function checkCandidates(candidates) {
   }
 }
 
+function checkJunctions({ junctions, count, width, height }) {
+  assert.ok(Array.isArray(junctions));
+  let last = -1;
+  for (const { labels, likelihood, border, ...others } of junctions) {
+    assert.deepEqual(others, {});
+    const [one, other] = labels;
+    assert.equal(labels.length, 2);
+    whole(one, 'a label of a junction');
+    assert.ok(one < other && other < count, 'labels of a junction');
+    assert.ok(one * count + other > last, 'junctions by labels');
+    last = one * count + other;
+    finite(likelihood, 'a likelihood');
+    assert.ok(likelihood >= 0 && likelihood <= 1);
+    whole(border, 'a border');
+    assert.ok(border > 0 && border < 2 * width * height);
+  }
+}
+
 /** The JSON of a pair, without labels. */
 export function checkPair(result, width, height) {
   assert.equal(result.version, 1);
@@ -54,6 +72,7 @@ export function checkPair(result, width, height) {
     if (index > 0) assert.ok(motion.pixels <= result.motions[index - 1].pixels, 'labels by decreasing size');
   });
   assert.equal(pixels, width * height);
+  checkJunctions(result);
   checkCandidates(result.evidence.candidates);
   checkMilliseconds(result.milliseconds);
   assert.match(result.settings.software, /^veronese \d+\.\d+\.\d+/);

@@ -11,10 +11,10 @@ use crate::order::median_f64;
 use crate::tuning::{Tuned, tuned};
 
 /// Common borders with fewer pixel pairs than this are ignored. Not varied.
-const SHORTEST_BORDER: usize = 12;
+pub(crate) const SHORTEST_BORDER: usize = 12;
 /// Flows that differ by less than this (median along the border, full-size pixels) are continuous. The layers of a rigid background
 /// differ by 0.3 to 1.1 pixels, moving objects by 2 and more (fourteen real pairs) …
-const TOLERANCE: f64 = 0.3;
+pub(crate) const TOLERANCE: f64 = 0.3;
 /// … or by less than this share of the largest jump of all joins …
 const RELATIVE_TOLERANCE: f64 = 0.3;
 /// … as long as that is less than this share of the frame's longer side: layers of one background differ little. Chosen on real pairs.
@@ -78,12 +78,12 @@ fn closest(n: usize, borders: &mut [Vec<f64>], may_join: &dyn Fn(&Join) -> bool)
 }
 
 /// Index of a pair of labels in a list of n · n.
-fn pair(n: usize, i: usize, j: usize) -> usize {
+pub(crate) fn pair(n: usize, i: usize, j: usize) -> usize {
     i.min(j) * n + i.max(j)
 }
 
 /// For every [`pair`] of labels, the difference of their flows at each pixel pair of the border.
-fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<Vec<f64>> {
+pub(crate) fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<Vec<f64>> {
     let n = motions.len();
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); n * n];
     neighbours(labels.len(), width, |p, q| {

@@ -59,7 +59,7 @@ fn largest(groups: &[usize], labels: &[u8]) -> usize {
 }
 
 /// Share of the outline of each label that lies on the frame's border; 0 of a label without pixels.
-fn shares_on_frame_border(labels: &[u8], of: usize, width: usize) -> Vec<f64> {
+pub(super) fn shares_on_frame_border(labels: &[u8], of: usize, width: usize) -> Vec<f64> {
     let mut outer = vec![0; of];
     let rows = labels.chunks(width).flat_map(|row| [row[0], row[width - 1]]);
     let columns = labels[..width].iter().chain(&labels[labels.len() - width..]);

@@ -190,6 +190,16 @@ export const strings = {
   copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
+  suggestions: {
+    mayBelong: (name: string, other: string): string => `${name} may belong to ${other}`,
+    mayBeGround: (name: string): string => `${name} may be part of the background`,
+    mayBeTwo: (name: string): string => `${name} may be two things`,
+    join: 'Join',
+    separate: 'Separate',
+    dismiss: 'Dismiss',
+    about: (button: string, sentence: string): string => `${button}: ${sentence}`,
+  },
+
   /** `above`: the score above the lowest; `null` if there is none. */
   forceNumber: (count: number, above: number | null): string =>
     `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${above === null ? '' : `: ${scoreAbove(above)}`}`,
@@ -238,6 +248,7 @@ export const strings = {
     redone: 'Redone.',
     merged: 'Merged.',
     ungrouped: 'Ungrouped.',
+    separated: 'Separated.',
     restored: 'Restored your corrections of these frames.',
     live: (rate: number, count: number): string => `Live: ${tenths.format(rate)} frames per second, ${objects(count).toLowerCase()}.`,
     cancelled: 'Cancelled.',

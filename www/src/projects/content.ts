@@ -82,10 +82,14 @@ const isEdits = objectOf({
   done: isIndex,
   appearances: listOf((value): value is unknown => isAppearance(value) && isNamed(value)),
 });
+const isJunction = objectOf({ labels: listOf(isFrom(0, 15), 2), likelihood: isNumber, border: isIndex });
+/** Files of earlier versions have none. */
+const isJunctions: Check<unknown> = (value): value is unknown => value === undefined || listOf(isJunction)(value);
 const isReport = objectOf({
   width: isSide,
   height: isSide,
   motions: listOf(objectOf({ label: isFrom(0, 15), matrix: isMatrix, pixels: isIndex, share: isNumber, residual: isNumber, bbox: isBox, group: isFrom(0, 255) })),
+  junctions: isJunctions,
   evidence: objectOf({ candidates: listOf(objectOf({ motions: isSide, score: isNumber })) }),
   unlabelled: isIndex,
   milliseconds: mapOf(isNumber),

@@ -74,6 +74,12 @@ export function merged(segmentation: Segmentation, kind: Kind, one: number, othe
   return regrouped(segmentation, (motion) => (joined.includes(motion) ? id : motion.group));
 }
 
+/** The segmentation with a motion in a group of its own, under an unused number. */
+export function separated(segmentation: Segmentation, label: number): Segmentation {
+  const unused = Math.max(...segmentation.motions.map(({ group }) => group)) + 1;
+  return regrouped(segmentation, (motion) => (motion.label === label ? unused : motion.group));
+}
+
 /** The segmentation with a group split into its motions: the largest keeps the number, the others get unused ones. */
 export function ungrouped(segmentation: Segmentation, group: number): Segmentation {
   const used = new Set(segmentation.motions.map((motion) => motion.group));

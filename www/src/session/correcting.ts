@@ -20,7 +20,7 @@ import { type Part, labellingOf, labelsIn, withLabelling } from '../correction/p
 import { Solutions, unpackedResult } from '../correction/solutions.js';
 import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../correction/strokes.js';
 import type { Colour } from '../drawing/palette.js';
-import { UNLABELLED, type Kind, keyOf, labelSet, merged, ungrouped } from '../result/masks.js';
+import { UNLABELLED, type Kind, keyOf, labelSet, merged, separated, ungrouped } from '../result/masks.js';
 import { type Kept, keptFrom } from '../state/kept.js';
 import { type FramePair, keyOfPair } from '../state/pair.js';
 import { FRESH, type Cause, type Look, type Result, type State, type Store } from '../state/state.js';
@@ -58,6 +58,12 @@ export class Correcting {
   ungroup(group: number): void {
     const { result } = this.#store.get();
     if (result !== null) this.#regroup(ungrouped(result.segmentation, group), 'ungrouped');
+  }
+
+  /** Takes a motion out of its group. */
+  separate(label: number): void {
+    const { result } = this.#store.get();
+    if (result !== null) this.#regroup(separated(result.segmentation, label), 'separated');
   }
 
   /** The mask that a new stroke refers to. Returns `null` and tells the user why if the stroke would have no effect. */
@@ -291,9 +297,9 @@ function namesAndColours(appearances: readonly Appearance[], segmentation: Segme
 }
 
 /** Choices that refer to masks by number, with the numbers of these masks in the new result. */
-function carried({ look, result, found }: State, now: Segmentation, foundNow: Segmentation): Pick<Look, 'hidden' | 'solo' | 'stabilised' | 'selected'> {
-  const { hidden: none } = FRESH;
-  if (result === null || found === null) return { hidden: none, solo: null, stabilised: null, selected: null };
+function carried({ look, result, found }: State, now: Segmentation, foundNow: Segmentation): Pick<Look, 'hidden' | 'solo' | 'stabilised' | 'selected' | 'dismissed'> {
+  const { hidden: none, dismissed: asked } = FRESH;
+  if (result === null || found === null) return { hidden: none, solo: null, stabilised: null, selected: null, dismissed: asked };
   const { kind, hidden, solo, stabilised, selected } = look;
   const place = (id: number | null): number | null => {
     if (id === null) return null;
@@ -301,5 +307,6 @@ function carried({ look, result, found }: State, now: Segmentation, foundNow: Se
     if (id === UNLABELLED) return now.unlabelled > 0 ? id : null;
     return maskWith(found === foundNow ? labels : labelsIn({ of: labellingOf(found), labels }, labellingOf(foundNow)), now, kind);
   };
-  return { hidden: new Set([...hidden].map(place).filter((id) => id !== null)), solo: place(solo), stabilised: place(stabilised), selected: place(selected) };
+  const dismissed = found === foundNow ? look.dismissed : asked;
+  return { dismissed, hidden: new Set([...hidden].map(place).filter((id) => id !== null)), solo: place(solo), stabilised: place(stabilised), selected: place(selected) };
 }

@@ -45,6 +45,7 @@ export function segmentationFrom(
     height,
     count: motions.length,
     motions,
+    junctions: [],
     evidence: { candidates: [] },
     unlabelled,
     milliseconds: { total: 0 },

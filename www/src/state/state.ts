@@ -11,7 +11,7 @@ import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 import type { Tracked } from './tracked.js';
 
 /** What led to the masks on screen. */
-export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'restored' | 'tracked';
+export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'separated' | 'restored' | 'tracked';
 
 /** What is running. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
 export type Run =
@@ -47,6 +47,8 @@ export interface Look extends Painting {
   readonly selected: number | null;
   /** The second frame is drawn warped back by the motion of this mask, so that its pixels stay in place. */
   readonly stabilised: number | null;
+  /** The junctions about which the user does not want to be asked. */
+  readonly dismissed: ReadonlySet<string>;
   /** Names that the user gave to masks, by `keyOf`. Like the colours, they follow from the edits. */
   readonly names: Readonly<Record<string, string>>;
 }
@@ -108,7 +110,7 @@ export function isAwaited({ result, run }: State): boolean {
 }
 
 /** The initial values of the parts of a look that belong to one result. */
-export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, blinking: false, names: {}, colours: {} } as const;
+export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, dismissed: new Set<string>(), blinking: false, names: {}, colours: {} } as const;
 
 export const INITIAL: State = {
   pair: { first: null, second: null },

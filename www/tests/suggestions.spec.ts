@@ -1,0 +1,108 @@
+//! The page asks whether neighbouring masks belong together, and does what is answered.
+
+import { type Page } from '@playwright/test';
+
+import { encodeColourPng } from 'veronese/codecs';
+import { type Upload, axe, differences, done, expect, labelsOnCanvas, screen, segmentedInNode, test, upload } from './support.js';
+
+const [WIDTH, HEIGHT] = [320, 240];
+
+/** A textured thing of two parts that touch, before a textured ground: between the frames one part moves by 6 pixels, the other by 3. */
+async function parts(name: string, t: number): Promise<Upload> {
+  const wave = (x: number, y: number, seed: number): number => 128 + 60 * Math.sin(0.31 * x + 0.17 * y + seed) + 50 * Math.cos(0.29 * y - 0.11 * x * seed);
+  const pixels = new Uint8Array(WIDTH * HEIGHT * 3);
+  for (let p = 0; p < WIDTH * HEIGHT; p++) {
+    const [x, y] = [p % WIDTH, Math.floor(p / WIDTH)];
+    const inside = (left: number, top: number, width: number, height: number): boolean => x >= left && x < left + width && y >= top && y < top + height;
+    const upper = inside(100 + 6 * t, 60, 90, 70);
+    const lower = inside(100 + 3 * t, 130, 90, 50);
+    const [u, seed] = upper ? [x - 6 * t, 2] : lower ? [x - 3 * t, 3] : [x, 1];
+    for (let c = 0; c < 3; c++) pixels[3 * p + c] = wave(u + 37 * c, y, seed);
+  }
+  return { name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(WIDTH, HEIGHT, pixels)) };
+}
+
+/** Opens the page with the thing of two parts. */
+async function openParts(page: Page): Promise<void> {
+  await page.goto('./#quality=fast');
+  await done(page);
+  await upload(page, [await parts('first.png', 0), await parts('second.png', 1)]);
+  await expect(page.locator('[data-slot=second] .slot-name')).toContainText('second.png');
+  await done(page);
+}
+
+test('two parts of a thing are joined by a suggestion, with undo', async ({ page }) => {
+  const { motions, junctions } = await segmentedInNode(await parts('first.png', 0), await parts('second.png', 1));
+  expect(motions.map(({ group }) => group)).toEqual([0, 1, 2]);
+  expect(junctions.find(({ labels }) => labels.join() === '1,2')!.likelihood).toBeGreaterThan(0.35);
+
+  await openParts(page);
+  const [suggestions, rows] = [page.locator('#suggestions > li'), page.locator('#motions > li')];
+  await expect(suggestions).toHaveText([/^Object 2 may belong to Object 1/]);
+  const found = await labelsOnCanvas(page);
+  await suggestions.getByRole('button', { name: 'Join: Object 2 may belong to Object 1' }).click();
+  await expect(page.locator('#status')).toHaveText('Merged.');
+  await expect(rows).toHaveCount(2);
+  await expect(suggestions).toHaveCount(0);
+  expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
+  await page.locator('#undo').click();
+  await expect(rows).toHaveCount(3);
+  await expect(suggestions).toHaveCount(1);
+  await page.locator('#redo').click();
+  await expect(suggestions).toHaveCount(0);
+});
+
+test('a suggestion is answered with the keyboard, and read out', async ({ page }) => {
+  await openParts(page);
+  const suggestions = page.locator('#suggestions');
+  await expect(suggestions).toHaveAttribute('aria-live', 'polite');
+  await suggestions.getByRole('button', { name: 'Join' }).focus();
+  await page.keyboard.press('Tab');
+  await expect(suggestions.getByRole('button', { name: 'Dismiss: Object 2 may belong to Object 1' })).toBeFocused();
+  await page.keyboard.press('Enter');
+  await expect(suggestions.locator('li')).toHaveCount(0);
+  await expect(page.locator('#motions > li')).toHaveCount(3);
+  // The focus is not lost with the button.
+  await expect(page.locator('#motions-title')).toBeFocused();
+  // Dismissed is dismissed, also after other corrections.
+  const row = page.locator('#motions > li').nth(1);
+  await row.getByText('More', { exact: true }).click();
+  await row.locator('[data-action=merge]').selectOption('0');
+  await page.locator('#undo').click();
+  await expect(page.locator('#motions > li')).toHaveCount(3);
+  await expect(suggestions.locator('li')).toHaveCount(0);
+});
+
+test('suggestions use the names that masks were given, and are about groups', async ({ page }) => {
+  await openParts(page);
+  const suggestions = page.locator('#suggestions > li');
+  const name = page.locator('#motions > li').nth(1).locator('.motion-name');
+  await name.fill('Robot');
+  await name.press('Enter');
+  await expect(suggestions).toHaveText([/^Object 2 may belong to Robot/]);
+  await page.locator('#look [value=motions]').check({ force: true });
+  await expect(suggestions).toHaveCount(0);
+  await page.locator('#look [value=groups]').check({ force: true });
+  await expect(suggestions).toHaveCount(1);
+});
+
+for (const colorScheme of ['light', 'dark'] as const) {
+  for (const [width, height] of [[1280, 860], [390, 844]] as const) {
+    test(`a suggestion is a line that axe finds nothing wrong with, ${width}, ${colorScheme}`, async ({ page }) => {
+      await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
+      await page.setViewportSize({ width, height });
+      await openParts(page);
+      const [suggestion] = await page.locator('#suggestions > li').all();
+      await suggestion!.scrollIntoViewIfNeeded();
+      await page.screenshot({ path: screen(`suggestion-${width}-${colorScheme}`) });
+      expect(await axe(page)).toEqual([]);
+      expect((await suggestion!.boundingBox())!.height).toBeLessThan(70);
+      expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
+      // The lists above stay where they are when it is dismissed.
+      const place = async (): Promise<number> => page.evaluate(() => document.querySelector('#motions')!.getBoundingClientRect().bottom + scrollY);
+      const before = await place();
+      await suggestion!.getByRole('button', { name: 'Dismiss' }).click();
+      expect(await place()).toBe(before);
+    });
+  }
+}
