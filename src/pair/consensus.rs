@@ -14,10 +14,6 @@ const ONE_OF: usize = 2;
 /// the better masks; failed searches, such as those that took an object for the background, are 20 % longer.
 const LONGEST: f64 = 1.05;
 
-/// Labellings whose overlaps with the majority differ by less than this are equally near. Among those the shorter description tells better
-/// how objects that move alike are divided. Not varied.
-const EQUALLY_NEAR: f64 = 0.01;
-
 /// The foreground of a labelling: all pixels whose motions do not share the group of the background.
 pub(super) fn foreground(labels: &[u8], groups: &[usize]) -> Buffer<bool> {
     labels.iter().map(|&label| groups[usize::from(label)] != groups[BACKGROUND]).collect()
@@ -40,8 +36,7 @@ pub(super) struct Consensus {
 }
 
 /// The nearest finding is that whose foreground has the largest intersection over union with the pixels that are foreground in at least half
-/// of the findings; of those that are equally near, the one with the shortest description. A finding with a much longer description than
-/// the shortest neither votes nor wins.
+/// of the findings; the first of equals. A finding with a much longer description than the shortest neither votes nor wins.
 pub(super) fn consensus(findings: &[Finding]) -> Consensus {
     let shortest = findings.iter().map(|finding| finding.length).fold(f64::INFINITY, f64::min);
     let eligible: Vec<usize> = (0..findings.len()).filter(|&k| findings[k].length <= LONGEST * shortest).collect();
@@ -58,9 +53,7 @@ pub(super) fn consensus(findings: &[Finding]) -> Consensus {
         }
     }
     let overlap = |k: usize| if either[k] == 0 { 1.0 } else { common[k] as f64 / either[k] as f64 };
-    let largest = eligible.iter().map(|&k| overlap(k)).fold(0.0, f64::max);
-    let near = eligible.iter().copied().filter(|&k| overlap(k) > largest - EQUALLY_NEAR);
-    let nearest = near.reduce(|best, k| if findings[k].length < findings[best].length { k } else { best });
+    let nearest = eligible.iter().copied().reduce(|best, k| if overlap(k) > overlap(best) { k } else { best });
     Consensus { nearest: nearest.unwrap_or(0), agreement }
 }
 
@@ -95,14 +88,6 @@ mod tests {
     fn what_only_one_of_them_sees_is_not() {
         assert_eq!(nearest(&findings(&["xx.x", "xx..", "xx..", "xx.."])), 1);
         assert_eq!(nearest(&findings(&["..xx", "....", "....", "...."])), 1);
-    }
-
-    #[test]
-    fn of_equally_near_ones_the_shortest_description_is_taken() {
-        let mut findings = findings(&["xx..", "xx..", "xx..", "x..."]);
-        findings[1].length = 990.0;
-        findings[3].length = 980.0;
-        assert_eq!(nearest(&findings), 1);
     }
 
     #[test]
