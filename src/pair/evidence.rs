@@ -12,17 +12,16 @@ use crate::motion::AffineMotion;
 use crate::options::MAX_MOTIONS;
 
 /// Description lengths with the motions found, with fewer (the least worthy are removed one by one) and with one more. Labels are
-/// solved for each number at the base level or a coarser one, without costs of occlusion and colour.
+/// solved for each number at the base level, without costs of occlusion and colour.
 pub(super) fn evidence(pair: &Pair, labelled: &Labelled, settings: &Settings) -> Vec<Candidate> {
-    let index = (pair.base + settings.evidence_halvings).min(pair.levels.len() - 1);
-    let level = &pair.levels[index];
+    let level = &pair.levels[pair.base];
     let width = level.width();
     let n = labelled.motions.len();
     let motions: Vec<AffineMotion> =
         labelled.motions.iter().chain(&labelled.runner_up).copied().take(MAX_MOTIONS).collect();
     let mut raw = estimation_costs(level, &motions);
     let mut costs = label_costs(level, &motions, settings.coherence);
-    let borders = borders(pair, index, settings);
+    let borders = borders(pair, pair.base, settings);
     let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
     let one_more = (motions.len() > n).then(|| length(&raw, &solve(&costs), width));
     raw.truncate(n);

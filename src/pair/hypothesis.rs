@@ -33,8 +33,7 @@ const ITERATIONS: usize = 3;
 impl Settings {
     /// How motions are added at the selection level (0) and at finer levels (1).
     fn deflation(&self, stage: usize) -> Deflation {
-        let least = self.least_sampled;
-        Deflation { price: self.price[stage], most: self.most, tries: self.tries, least, window: self.gain_window }
+        Deflation { price: self.price[stage], most: self.most, tries: self.tries, window: self.gain_window }
     }
 
     fn refit(&self, level: &Level, selected: &mut [ScoredMotion], rounds: usize) {

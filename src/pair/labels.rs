@@ -349,7 +349,7 @@ impl<'a> LabelState<'a> {
         self.clean(level.width());
         let most = self.settings.most + PARTS;
         let parts = split_components(level, &mut self.motions, &mut self.labels, most);
-        let bodies = split_bodies(level, &mut self.motions, &mut self.labels, most, self.settings.least_split);
+        let bodies = split_bodies(level, &mut self.motions, &mut self.labels, most);
         if !(parts || bodies) {
             return false;
         }

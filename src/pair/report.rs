@@ -85,8 +85,8 @@ pub struct SegmentedMotion {
 pub struct PairEvidence {
     /// Description lengths of both frames in nats, from one motion up to one more than were found; smaller is better. For fewer
     /// motions the least worthy are removed one by one; for one more the best rejected motion is added. Labels are solved for each
-    /// number with the same costs, on a level whose longer side is at most 224 pixels unless the frame is narrow (112 with
-    /// quality `fast`). The stages of the pipeline decide on more than this list, so the number found need not have the smallest score.
+    /// number with the same costs, on a level whose longer side is at most 224 pixels unless the frame is narrow. The stages of
+    /// the pipeline decide on more than this list, so the number found need not have the smallest score.
     pub candidates: Vec<Candidate>,
 }
 

@@ -68,12 +68,6 @@ pub(crate) struct Settings {
     pub(crate) tries: usize,
     /// Gain that pays for a motion in the first selection and at finer levels (costs summed over the pixels looked at).
     pub(crate) price: [f64; 2],
-    /// Share of that gain below which a proposal is rejected on a sample of the pixels. 0: none is.
-    pub(crate) least_sampled: f64,
-    /// Share of the price of a motion that each round of a split must gain, else the split is given up.
-    pub(crate) least_split: f64,
-    /// How much coarser than the base level the evidence for the number of motions is computed, halvings.
-    pub(crate) evidence_halvings: usize,
     /// Price of a motion when two hypotheses about the dominant one are compared.
     pub(crate) hypothesis_price: f64,
     /// Largest number of motions.
@@ -152,9 +146,6 @@ impl Settings {
             tiles: 48,
             tries: 6,
             price: PRICE.map(|price| tuned(Tuned::SelectionPrice, price)),
-            least_sampled: 0.0,
-            least_split: f64::NEG_INFINITY,
-            evidence_halvings: 0,
             hypothesis_price: tuned(Tuned::HypothesisPrice, HYPOTHESIS_PRICE),
             most: 7,
             least: 1,
@@ -185,10 +176,6 @@ impl Settings {
                 measurements: 1000,
                 tiles: 24,
                 tries: 1,
-                // Work that hardly ever changes the outcome is left out.
-                least_sampled: 0.7,
-                least_split: 1.0,
-                evidence_halvings: 1,
                 visibility_rounds: 1,
                 gain_window: tuned(Tuned::GainWindow, 1.5),
                 coherence: Coherence {

@@ -24,8 +24,6 @@ pub(crate) struct Deflation {
     pub(crate) most: usize,
     /// Proposals refined per round.
     pub(crate) tries: usize,
-    /// Share of the price below which the gain on the sample rejects a proposal, without a look at all pixels.
-    pub(crate) least: f64,
     /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
     pub(crate) window: f32,
 }
@@ -125,12 +123,7 @@ pub(crate) fn add_motions(
                 best = Some((gain, scored));
             }
         }
-        let least = how.least * how.price / (thinning * thinning) as f64;
-        let on_all_pixels = |(gain, scored): (f64, ScoredMotion)| match gain < least {
-            true => (gain, scored),
-            false => refined(level, &current, scored.motion, how.window),
-        };
-        match best.map(on_all_pixels) {
+        match best.map(|(_, scored)| refined(level, &current, scored.motion, how.window)) {
             Some((gain, scored)) if gain >= how.price => selected.push(scored),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }

@@ -102,14 +102,8 @@ pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, l
 }
 
 /// Splits objects into two bodies where that pays. Starts from the halves along the long axis; motions are fitted to the halves and
-/// pixels reassigned to the better one. A split is given up where a round gains less than `least` times the price of a motion.
-pub(crate) fn split_bodies(
-    level: &Level,
-    motions: &mut Vec<AffineMotion>,
-    labels: &mut [u8],
-    most: usize,
-    least: f64,
-) -> bool {
+/// pixels reassigned to the better one.
+pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let mut changed = false;
     for label in objects(motions.len()) {
         if motions.len() >= most {
@@ -119,7 +113,7 @@ pub(crate) fn split_bodies(
         if region.len() < 2 * smallest_part(labels.len()) {
             continue;
         }
-        if let Some((pair, second)) = two_bodies(level, &motions[label], &region, least) {
+        if let Some((pair, second)) = two_bodies(level, &motions[label], &region) {
             motions[label] = pair[0];
             motions.push(pair[1]);
             let new = (motions.len() - 1) as u8;
@@ -131,17 +125,9 @@ pub(crate) fn split_bodies(
 }
 
 /// Two motions that explain a region better than one by more than their price, and which of its pixels belong to the second.
-fn two_bodies(
-    level: &Level,
-    motion: &AffineMotion,
-    region: &[usize],
-    least: f64,
-) -> Option<([AffineMotion; 2], Buffer<bool>)> {
+fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Buffer<bool>)> {
     let (width, height) = (level.width(), level.height());
     let around = Area::of(region, width).grown(REACH, width, height);
-    let cost = |motion: &AffineMotion| cost_within(level, &around, motion, CostModel::estimation());
-    let (one, price) = (cost(motion), price_of_motion(width * height));
-    let mut gain = 0.0;
     let mut second = far_half(region, width);
     let mut pair = [*motion; 2];
     for _ in 0..ROUNDS {
@@ -152,27 +138,24 @@ fn two_bodies(
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
             *motion = aligned_on(level, motion, &mask, ITERATIONS_ON_HALF, RIDGE_OF_HALF);
-            costs.push(cost(motion));
+            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation()), WINDOW));
         }
-        let windows = [0, 1].map(|side: usize| gaussian(&costs[side], WINDOW));
         for (&p, s) in region.iter().zip(&mut second) {
             let place = around.index_of(p, width);
-            *s = windows[1].values()[place] < windows[0].values()[place];
+            *s = costs[1].values()[place] < costs[0].values()[place];
         }
         let share = second.iter().filter(|s| **s).count() as f64 / region.len() as f64;
         if !(SMALLEST_HALF..=1.0 - SMALLEST_HALF).contains(&share) {
             return None;
         }
-        gain = 0.0;
-        for (&p, &s) in region.iter().zip(&second) {
-            let place = around.index_of(p, width);
-            gain += 0.5 * f64::from(one.values()[place] - costs[usize::from(s)].values()[place]);
-        }
-        if gain < least * price {
-            return None;
-        }
     }
-    let price = price + price_of_border(inner_border(region, &second, width, height));
+    let [one, two @ ..] = [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::estimation()));
+    let mut gain = 0.0;
+    for (&p, &s) in region.iter().zip(&second) {
+        let place = around.index_of(p, width);
+        gain += 0.5 * f64::from(one.values()[place] - two[usize::from(s)].values()[place]);
+    }
+    let price = price_of_motion(width * height) + price_of_border(inner_border(region, &second, width, height));
     (gain > price).then_some((pair, second))
 }
 
