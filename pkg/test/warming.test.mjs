@@ -49,13 +49,12 @@ describe('a warm-up in the worker', () => {
         assert.deepEqual([first.width, first.height, options], [second.width, second.height, { quality: 'fast' }]);
         assert.equal(first.data.length, 4 * first.width * first.height);
         pixels.push(first.width * first.height);
-        if (pixels.length === 20) warming.end();
+        if (pixels.length === 5) warming.end();
       },
     });
     await warming.run();
-    assert.deepEqual(pixels.slice(0, 5), pixels.toSorted((one, other) => one - other).slice(0, 5));
+    assert.deepEqual(pixels, pixels.toSorted((one, other) => one - other));
     assert.ok(pixels[0] < 1000);
-    assert.ok(warming.ended);
   });
 
   test('runs no other slice once a task has come, and is not answered', async (t) => {

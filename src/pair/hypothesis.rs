@@ -99,6 +99,18 @@ pub(super) fn followed(
     (Found { selected, runner_up: None }, cost)
 }
 
+/// Whether a motion from a single window would pay for itself beside those found. The first of these is the dominant one.
+pub(super) fn is_missing(pair: &Pair, found: &Found, settings: &Settings) -> bool {
+    let (base, level) = (&pair.levels[pair.base], &pair.levels[pair.selection]);
+    let dominant = &found.selected[BACKGROUND].motion;
+    let flow = local_flow(&pair.levels, dominant, pair.base);
+    let proposals = from_tiles(base, dominant, &flow, settings.tiles);
+    let (known, how) = (found.selected.len(), settings.deflation(0));
+    let mut selected = found.selected.clone();
+    add_motions(level, &mut selected, &proposals, Deflation { most: how.most.min(known + 1), ..how });
+    selected.len() > known
+}
+
 /// The cost of motions.
 pub(super) fn cost(pair: &Pair, motions: &[AffineMotion], settings: &Settings) -> f64 {
     let level = &pair.levels[pair.selection];
