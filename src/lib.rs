@@ -125,6 +125,7 @@ mod components;
 pub mod embedding;
 mod error;
 mod estimation;
+mod exponential;
 pub mod factorisation;
 mod frame;
 mod labelling;

@@ -52,8 +52,12 @@ impl Footprint {
     pub(crate) fn new(x: f32, y: f32, width: usize, height: usize) -> Footprint {
         let (right_edge, lower_edge) = ((width - 1) as f32, (height - 1) as f32);
         let inside = x >= 0.0 && y >= 0.0 && x <= right_edge && y <= lower_edge;
-        // max before min: NaN becomes 0, so that an index is always valid.
-        let (cx, cy) = (x.max(0.0).min(right_edge), y.max(0.0).min(lower_edge));
+        // NaN becomes 0, so that an index is always valid. Comparisons, because `f32::max` is a call in WebAssembly.
+        let within = |v: f32, edge: f32| {
+            let v = if v > 0.0 { v } else { 0.0 };
+            if v < edge { v } else { edge }
+        };
+        let (cx, cy) = (within(x, right_edge), within(y, lower_edge));
         // The upper left pixel is never on the last column or row: what lies there has the weights 1.
         let (ix, iy) = ((cx as usize).min(width - 2), (cy as usize).min(height - 2));
         Footprint { index: iy * width + ix, width, fx: cx - ix as f32, fy: cy - iy as f32, inside }

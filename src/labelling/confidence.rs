@@ -12,9 +12,13 @@
 //! β, γ and δ are a maximum likelihood fit to 30 generated scenes (seeds 700 and 900 of the benchmark's series), so that about the
 //! share P of the pixels with probability P is right; docs/masks.md has the measurement on other scenes.
 
+use std::f32::consts::LOG2_E;
+
+use crate::exponential::power_of_two_f32;
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::labelling::mask_of;
+use crate::lanes::each_with;
 
 /// β: weight of the windowed cost.
 const COST_WEIGHT: f32 = 3.5;
@@ -34,18 +38,16 @@ pub(crate) fn probabilities(costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
     let mut weights: Vec<Plane> = Vec::with_capacity(costs.len());
     for (k, cost) in costs.iter().enumerate() {
         let mut weight = gaussian(cost, WINDOWS[0]);
-        let around = gaussian(&mask_of(labels, k as u8, width, height), WINDOWS[1]);
-        for (((w, near), label), t) in
-            weight.values_mut().iter_mut().zip(around.values()).zip(labels).zip(total.values_mut())
-        {
-            let own = if usize::from(*label) == k { OWN_LABEL_WEIGHT } else { 0.0 };
-            *w = libm::expf(NEIGHBOUR_WEIGHT * near + own - COST_WEIGHT * *w);
-            *t += *w;
-        }
+        let own = mask_of(labels, k as u8, width, height);
+        let around = gaussian(&own, WINDOWS[1]);
+        each_with(weight.values_mut(), [around.values(), own.values()], |cost, [near, own]| {
+            power_of_two_f32(LOG2_E * (NEIGHBOUR_WEIGHT * near + OWN_LABEL_WEIGHT * own - COST_WEIGHT * cost))
+        });
+        each_with(total.values_mut(), [weight.values()], |t, [w]| t + w);
         weights.push(weight);
     }
     for weight in &mut weights {
-        weight.values_mut().iter_mut().zip(total.values()).for_each(|(w, t)| *w /= t);
+        each_with(weight.values_mut(), [total.values()], |w, [t]| w / t);
     }
     weights
 }

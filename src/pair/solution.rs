@@ -148,7 +148,15 @@ pub(crate) fn solve(
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
     let probabilities = probabilities(&costs, &labelled.labels);
     let groups = groups(&labelled.motions, &labelled.labels, level.width(), pair.reduction);
-    Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, enough, searched, unexplained }
+    Solution {
+        motions: labelled.motions,
+        labels: labelled.labels,
+        probabilities,
+        groups,
+        enough,
+        searched,
+        unexplained,
+    }
 }
 
 /// The labels and motions with which the expected ones go on, the cost up to which they are enough afterwards, and that after the last search;

@@ -14,9 +14,9 @@
 //! small σ freezes the first assignment. (3) The sum of squares after a step is predicted from the quadratic model, which saves a pass
 //! over the data per iteration. Near convergence the prediction is exact.
 
-use super::exponential::power_of_two;
 use super::samples::{BLOCK, Block, Row, Samples};
 use super::symmetric::{Matrix6, cholesky, quadratic_form, solve};
+use crate::exponential::power_of_two;
 
 /// Density of an outlier's distance, for derivatives of unit length.
 pub(crate) const OUTLIER_DENSITY: f64 = 0.5;

@@ -2,7 +2,6 @@
 //! [`fit_motions`](crate::fit_motions) uses with [`Method::Best`](crate::Method::Best).
 
 mod estimator;
-mod exponential;
 #[cfg(test)]
 mod limit;
 mod mixture;

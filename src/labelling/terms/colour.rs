@@ -60,12 +60,11 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8])
 /// How well the colours of one half of the blocks predict the labels of the other: information per pixel as a share of the
 /// information needed, averaged over the labels; 0…1.
 fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
-    let width = palette.width();
-    let half = |p: usize| (p % width / BLOCK + p / width / BLOCK) % 2;
-    let tables = [0, 1].map(|which| posterior(palette, labels, weights, n, |p| half(p) == which));
+    let half = halves(palette.width(), labels.len());
+    let tables = [0, 1].map(|which| posterior(palette, labels, weights, n, |p| half[p] == which));
     let mut information = vec![(0.0f32, 0.0f32); n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
-        let believed = tables[1 - half(p)][palette.index(p) * n + usize::from(label)];
+        let believed = tables[usize::from(1 - half[p])][palette.index(p) * n + usize::from(label)];
         let (sum, count) = &mut information[usize::from(label)];
         *sum += weight * libm::logf(believed * n as f32);
         *count += weight;
@@ -75,13 +74,23 @@ fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
     shares.sum::<f32>() / n as f32
 }
 
+/// Which half of the blocks, 0 or 1, every pixel belongs to.
+fn halves(width: usize, pixels: usize) -> Buffer<u8> {
+    let mut halves = Buffer::with_capacity(pixels);
+    for y in 0..pixels / width {
+        halves.extend((0..width).map(|x| ((x / BLOCK + y / BLOCK) % 2) as u8));
+    }
+    halves
+}
+
 /// By how much each pixel's own motion is cheaper than the next one.
 fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
     let next = |p: usize, own: usize| {
-        (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]).fold(f32::INFINITY, f32::min)
+        let others = (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]);
+        others.fold(f32::INFINITY, |least, cost| if cost < least { cost } else { least })
     };
     let gap = |(p, &own): (usize, &u8)| next(p, usize::from(own)) - costs[usize::from(own)].values()[p];
-    labels.iter().enumerate().map(gap).map(|gap| gap.max(0.0)).collect()
+    labels.iter().enumerate().map(gap).map(|gap| if gap > 0.0 { gap } else { 0.0 }).collect()
 }
 
 /// Probability of every label for every colour, all labels equally likely beforehand; from the pixels that `counts` admits.
