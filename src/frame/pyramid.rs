@@ -7,6 +7,7 @@ use super::filter::{gaussian, gradients, halve};
 use super::palette::Palette;
 use super::picture::{Picture, colours};
 use super::{Frame, Plane};
+use crate::lanes::each_with;
 
 /// Standard deviation of the blur applied to all frames first, pixels. Bilinear warping averages noise at half-pixel shifts; without
 /// the blur such shifts would win in flat areas. Chosen on generated scenes.
@@ -37,7 +38,7 @@ impl FrameLevel {
     pub(crate) fn energy(&self) -> Rc<Plane> {
         let squares = || {
             let mut energy = (*self.dx).clone();
-            energy.values_mut().iter_mut().zip(self.dy.values()).for_each(|(e, dy)| *e = *e * *e + dy * dy);
+            each_with(energy.values_mut(), [self.dy.values()], |dx, [dy]| dx * dx + dy * dy);
             Rc::new(energy)
         };
         self.energy.get_or_init(squares).clone()

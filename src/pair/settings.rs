@@ -93,10 +93,13 @@ pub(crate) struct Settings {
 const WORK_SIDE_BEST: usize = 480;
 /// The same for the detail of frames that are halved more than once to that size. Chosen on generated scenes.
 const DETAIL_SIDE: usize = 960;
-/// The same with quality `fast`. For speed.
-const WORK_SIDE_FAST: usize = 320;
-/// The same in a stream with quality `fast`. For speed.
-const WORK_SIDE_STREAM: usize = BASE_SIDE;
+/// Frames whose longer side has more pixels than this are large: most of their time passes at full size, so that a larger working size
+/// costs little.
+const LARGE: usize = 960;
+/// The longer side of the working size at most with quality `fast`, of other frames and of large ones. For speed.
+const WORK_SIDE_FAST: [usize; 2] = [320, 480];
+/// The same in a stream. The second keeps at least 160 pixels.
+const WORK_SIDE_STREAM: [usize; 2] = [BASE_SIDE, 319];
 /// Longer side of the level on which motions are selected and labels drafted at most, pixels, unless frames are halved. Chosen on generated
 /// scenes.
 const SELECTION_SIDE: usize = 320;
@@ -119,6 +122,11 @@ fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
         halvings += 1;
     }
     halvings
+}
+
+/// How often frames are halved with quality `fast`, with these sides of the working size.
+fn fast_halvings([side, of_large]: [usize; 2], size: [usize; 2]) -> usize {
+    halvings_to(if size[0].max(size[1]) > LARGE { of_large } else { side }, size)
 }
 
 /// λ of quality `fast` for frames that are halved so many times.
@@ -168,7 +176,7 @@ impl Settings {
             Quality::Fast => Settings {
                 mirror_images: false,
                 returns_shadows: false,
-                halvings: halvings_to(WORK_SIDE_FAST, size),
+                halvings: fast_halvings(WORK_SIDE_FAST, size),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
                 selection_side: BASE_SIDE,
                 draft_side: BASE_SIDE,
@@ -179,7 +187,7 @@ impl Settings {
                 visibility_rounds: 1,
                 gain_window: tuned(Tuned::GainWindow, 1.5),
                 coherence: Coherence {
-                    smoothness: fast_smoothness(halvings_to(WORK_SIDE_FAST, size)),
+                    smoothness: fast_smoothness(fast_halvings(WORK_SIDE_FAST, size)),
                     solver: Solver::FAST,
                     sharpening: Solver::LIGHT,
                     ..best.coherence
@@ -196,15 +204,16 @@ impl Settings {
         settings
     }
 
-    /// The settings for the pairs of a stream. A fast one works at the size of its drafts.
+    /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.
     pub(crate) fn of_stream(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let settings = Settings::new(options, size);
         if options.quality == Quality::Best {
             return settings;
         }
-        let halvings = halvings_to(WORK_SIDE_STREAM, size);
+        let halvings = fast_halvings(WORK_SIDE_STREAM, size);
         let coherence = Coherence { smoothness: fast_smoothness(halvings), ..settings.coherence };
-        Settings { halvings, coherence, follows: true, ..settings }
+        let [_, fine_side] = WORK_SIDE_STREAM;
+        Settings { halvings, selection_side: fine_side, draft_side: fine_side, coherence, follows: true, ..settings }
     }
 
     /// The settings with which a search is carried on at a finer working size, so that large frames get their detail; none where quality

@@ -53,7 +53,8 @@ fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
 
 fn gain_of(improvement: &Plane) -> f64 {
     let margin = tuned(Tuned::GainMargin, MARGIN);
-    let gain = |d: f32| (d - margin).max(0.0);
+    // A comparison, because `f32::max` is a call in WebAssembly.
+    let gain = |d: f32| if d > margin { d - margin } else { 0.0 };
     let (blocks, rest) = improvement.values().as_chunks::<LANES>();
     let mut sum = 0.0;
     for block in blocks {

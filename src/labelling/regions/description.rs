@@ -2,7 +2,7 @@
 //! six parameters and its border.
 
 use crate::frame::Plane;
-use crate::labelling::{BACKGROUND, neighbours};
+use crate::labelling::{BACKGROUND, across_borders};
 use crate::tuning::{Tuned, tuned};
 
 /// Nats for the six parameters of a motion, per ln N: 6/2 (Schwarz, Annals of Statistics 6(2), 1978).
@@ -95,12 +95,9 @@ pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
 /// Number of neighbouring pairs of which exactly one has the label.
 pub(crate) fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
     let mut lengths = vec![0; of];
-    neighbours(labels.len(), width, |p, q| {
-        let (a, b) = (labels[p], labels[q]);
-        if a != b {
-            lengths[usize::from(a)] += 1;
-            lengths[usize::from(b)] += 1;
-        }
+    across_borders(labels, width, |p, q| {
+        lengths[usize::from(labels[p])] += 1;
+        lengths[usize::from(labels[q])] += 1;
     });
     lengths
 }

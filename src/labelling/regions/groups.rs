@@ -5,7 +5,7 @@
 //! border. A chain of small jumps therefore does not join two regions that differ along their own border; otherwise a slowly moving
 //! limb would tie a whole animal to the ground.
 
-use crate::labelling::{BACKGROUND, neighbours};
+use crate::labelling::{BACKGROUND, across_borders};
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
 use crate::tuning::{Tuned, tuned};
@@ -86,9 +86,9 @@ pub(crate) fn pair(n: usize, i: usize, j: usize) -> usize {
 pub(crate) fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<Vec<f64>> {
     let n = motions.len();
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); n * n];
-    neighbours(labels.len(), width, |p, q| {
+    across_borders(labels, width, |p, q| {
         let (i, j) = (usize::from(labels[p]), usize::from(labels[q]));
-        if i != j && i < n && j < n {
+        if i < n && j < n {
             let (x, y) = ((p % width) as f64, (p / width) as f64);
             let ([u, v], [r, s]) = (motions[i].flow(x, y), motions[j].flow(x, y));
             found[pair(n, i, j)].push(((u - r) * (u - r) + (v - s) * (v - s)).sqrt());

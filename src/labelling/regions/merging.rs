@@ -10,7 +10,7 @@ use super::splitting::aligned_on;
 use crate::estimation::alignment::ridge_of_label;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::labelling::{neighbours, pixels};
+use crate::labelling::{across_borders, pixels};
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
@@ -64,11 +64,9 @@ pub(crate) fn best_merger(
 /// Which labels are neighbours somewhere, indexed with the smaller label first.
 fn touching(labels: &[u8], of: usize, width: usize) -> Vec<Vec<bool>> {
     let mut touching = vec![vec![false; of]; of];
-    neighbours(labels.len(), width, |p, q| {
+    across_borders(labels, width, |p, q| {
         let (a, b) = (labels[p], labels[q]);
-        if a != b {
-            touching[usize::from(a.min(b))][usize::from(a.max(b))] = true;
-        }
+        touching[usize::from(a.min(b))][usize::from(a.max(b))] = true;
     });
     touching
 }

@@ -243,7 +243,8 @@ impl GuidedFilter {
         let of_guide = self.mean.values.iter().zip(&self.variance.values);
         for ((s, o), (mean, variance)) in slope.values.iter_mut().zip(offset.values.iter_mut()).zip(of_guide) {
             let covariance = *s - mean * *o;
-            *s = covariance / (variance.max(0.0) + FLAT_VARIANCE);
+            let variance = if *variance > 0.0 { *variance } else { 0.0 };
+            *s = covariance / (variance + FLAT_VARIANCE);
             *o -= *s * mean;
         }
         let mut out = slope.box_mean(tile.clone(), self.full);
