@@ -122,7 +122,7 @@ fn segment_with(
     let noise = searches.iter().map(|search| search.pair.finest().noise).fold(f32::INFINITY, f32::min);
     let findings: Vec<Finding> = searches.iter_mut().map(|search| search.finding(noise)).collect();
     let consensus = consensus(&findings);
-    let mut search = searches.swap_remove(consensus.nearest);
+    let mut search = searches.swap_remove(consensus.chosen);
     let level = search.pair.finest();
     let agreement = Plane::from_buffer(level.width(), level.height(), consensus.agreement);
     drop(searches);
@@ -179,8 +179,10 @@ impl Search {
         let length = length(&labels::estimation_costs(level, motions), labels, width);
         level.noise = measured;
         let mut foreground = foreground(labels, &groups(motions, labels, width, self.pair.reduction));
+        let mut labels = labels.clone();
         self.mirror.reorder(&mut foreground, width);
-        Finding { foreground, length }
+        self.mirror.reorder(&mut labels, width);
+        Finding { foreground, labels, length }
     }
 }
 

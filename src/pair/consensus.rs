@@ -13,6 +13,10 @@ const ONE_OF: usize = 2;
 /// Descriptions up to this many times as long as the shortest are about as good. On real pairs the length does not tell which of those has
 /// the better masks; failed searches, such as those that took an object for the background, are 20 % longer.
 const LONGEST: f64 = 1.05;
+/// Foregrounds whose overlap with the majority is at most this much smaller than the largest are as near. Not varied.
+const AS_NEAR: f64 = 0.01;
+/// Share of the majority's pixels on which the others must divide it into motions in the same way. Not varied.
+const SAME_DIVISION: f64 = 0.9;
 
 /// The foreground of a labelling: all pixels whose motions do not share the group of the background.
 pub(super) fn foreground(labels: &[u8], groups: &[usize]) -> Buffer<bool> {
@@ -23,51 +27,91 @@ pub(super) fn foreground(labels: &[u8], groups: &[usize]) -> Buffer<bool> {
 pub(super) struct Finding {
     /// The pixels of the frame that move in another way than the background.
     pub(super) foreground: Buffer<bool>,
+    /// The label of every pixel.
+    pub(super) labels: Buffer<u8>,
     /// Description length of both frames, nats.
     pub(super) length: f64,
 }
 
 /// What all searches have found together.
 pub(super) struct Consensus {
-    /// Index of the finding that is nearest to the majority.
-    pub(super) nearest: usize,
+    /// Index of the finding that is taken.
+    pub(super) chosen: usize,
     /// How likely another search is to call a pixel foreground too, by the rule of succession: (s + 1) / (n + 2) if s of n have.
     pub(super) agreement: Buffer<f32>,
 }
 
-/// The nearest finding is that whose foreground has the largest intersection over union with the pixels that are foreground in at least half
-/// of the findings; the first of equals. A finding with a much longer description than the shortest neither votes nor wins.
+/// The nearest finding is that whose foreground has the largest intersection over union with the majority: the pixels that are foreground in at
+/// least half of the findings; the first of equals. It is chosen unless the others divide the majority into motions in another way. Then the
+/// choice among those about as near is the one with whose division they agree most; of equals that with the shortest description. A
+/// finding with a much longer description than the shortest neither votes nor wins.
 pub(super) fn consensus(findings: &[Finding]) -> Consensus {
     let shortest = findings.iter().map(|finding| finding.length).fold(f64::INFINITY, f64::min);
     let eligible: Vec<usize> = (0..findings.len()).filter(|&k| findings[k].length <= LONGEST * shortest).collect();
     let (mut common, mut either) = (vec![0usize; findings.len()], vec![0usize; findings.len()]);
     let mut agreement = Buffer::filled(findings[0].foreground.len(), 0.0);
+    let mut majority = Buffer::with_capacity(agreement.len());
     for (p, agreement) in agreement.iter_mut().enumerate() {
         let votes = eligible.iter().filter(|&&k| findings[k].foreground[p]).count();
         *agreement = (votes as f32 + 1.0) / (eligible.len() as f32 + 2.0);
-        let majority = votes * ONE_OF >= eligible.len();
+        let wins = votes * ONE_OF >= eligible.len();
         for &k in &eligible {
             let foreground = findings[k].foreground[p];
-            common[k] += usize::from(foreground && majority);
-            either[k] += usize::from(foreground || majority);
+            common[k] += usize::from(foreground && wins);
+            either[k] += usize::from(foreground || wins);
+        }
+        if wins {
+            majority.push(p);
         }
     }
     let overlap = |k: usize| if either[k] == 0 { 1.0 } else { common[k] as f64 / either[k] as f64 };
-    let nearest = eligible.iter().copied().reduce(|best, k| if overlap(k) > overlap(best) { k } else { best });
-    Consensus { nearest: nearest.unwrap_or(0), agreement }
+    let nearest =
+        eligible.iter().copied().reduce(|best, k| if overlap(k) > overlap(best) { k } else { best }).unwrap_or(0);
+    let same_division = |k: usize| {
+        let others = eligible.iter().filter(|&&other| other != k);
+        let shares = others.map(|&other| same_division(&findings[k].labels, &findings[other].labels, &majority));
+        shares.sum::<f64>() / (eligible.len() - 1) as f64
+    };
+    if eligible.len() == 1 || majority.is_empty() || same_division(nearest) >= SAME_DIVISION {
+        return Consensus { chosen: nearest, agreement };
+    }
+    let as_near = eligible.iter().copied().filter(|&k| overlap(k) >= overlap(nearest) - AS_NEAR);
+    let better =
+        |(a, s): (usize, f64), (b, t): (usize, f64)| s > t || s == t && findings[a].length < findings[b].length;
+    let divided =
+        as_near.map(|k| (k, same_division(k))).reduce(|best, next| if better(next, best) { next } else { best });
+    Consensus { chosen: divided.map_or(nearest, |(k, _)| k), agreement }
+}
+
+/// Share of some pixels that two labellings divide in the same way: each label of one is matched with that of the other with which it has most
+/// of these pixels in common. The mean of both ways.
+fn same_division(one: &[u8], other: &[u8], pixels: &[usize]) -> f64 {
+    let of = |labels: &[u8]| pixels.iter().map(|&p| usize::from(labels[p]) + 1).max().unwrap_or(0);
+    let (rows, columns) = (of(one), of(other));
+    let mut common = vec![0usize; rows * columns];
+    pixels.iter().for_each(|&p| common[usize::from(one[p]) * columns + usize::from(other[p])] += 1);
+    let most = |counts: &mut dyn Iterator<Item = usize>| counts.max().unwrap_or(0);
+    let by_row: usize = common.chunks_exact(columns).map(|row| most(&mut row.iter().copied())).sum();
+    let by_column: usize = (0..columns).map(|k| most(&mut common[k..].iter().copied().step_by(columns))).sum();
+    (by_row + by_column) as f64 / (2 * pixels.len()) as f64
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn nearest(findings: &[Finding]) -> usize {
-        consensus(findings).nearest
+    fn chosen(findings: &[Finding]) -> usize {
+        consensus(findings).chosen
     }
 
+    /// Every letter is a motion, a dot the background.
     fn findings(rows: &[&str]) -> Vec<Finding> {
-        let foreground = |row: &str| row.bytes().map(|b| b == b'x').collect();
-        rows.iter().map(|row| Finding { foreground: foreground(row), length: 1000.0 }).collect()
+        let finding = |row: &&str| Finding {
+            foreground: row.bytes().map(|b| b != b'.').collect(),
+            labels: row.bytes().map(|b| if b == b'.' { 0 } else { b - b'a' + 1 }).collect(),
+            length: 1000.0,
+        };
+        rows.iter().map(finding).collect()
     }
 
     #[test]
@@ -75,19 +119,19 @@ mod tests {
         let mut findings = findings(&["xx..", "..xx", "..xx", "xx.."]);
         findings[0].length = 1200.0;
         findings[3].length = 1200.0;
-        assert_eq!(nearest(&findings), 1);
+        assert_eq!(chosen(&findings), 1);
     }
 
     #[test]
     fn an_object_that_half_of_them_see_is_kept() {
-        assert_eq!(nearest(&findings(&["....", "xx..", ".xx.", "...."])), 1);
-        assert_eq!(nearest(&findings(&["....", "xx..", "xxx.", ".xx."])), 2);
+        assert_eq!(chosen(&findings(&["....", "xx..", ".xx.", "...."])), 1);
+        assert_eq!(chosen(&findings(&["....", "xx..", "xxx.", ".xx."])), 2);
     }
 
     #[test]
     fn what_only_one_of_them_sees_is_not() {
-        assert_eq!(nearest(&findings(&["xx.x", "xx..", "xx..", "xx.."])), 1);
-        assert_eq!(nearest(&findings(&["..xx", "....", "....", "...."])), 1);
+        assert_eq!(chosen(&findings(&["xx.x", "xx..", "xx..", "xx.."])), 1);
+        assert_eq!(chosen(&findings(&["..xx", "....", "....", "...."])), 1);
     }
 
     #[test]
@@ -100,7 +144,27 @@ mod tests {
 
     #[test]
     fn one_labelling_is_its_own_majority() {
-        assert_eq!(nearest(&findings(&["x.."])), 0);
-        assert_eq!(nearest(&findings(&["..."])), 0);
+        assert_eq!(chosen(&findings(&["x.."])), 0);
+        assert_eq!(chosen(&findings(&["..."])), 0);
+    }
+
+    #[test]
+    fn where_foregrounds_are_as_near_the_common_division_is_taken() {
+        // Two things that move in different ways, which the first finding takes for one.
+        assert_eq!(chosen(&findings(&["xxxx..", "xxyy..", "yyxx..", "xxyy.."])), 1);
+        // The foreground weighs more: the others are not as near.
+        assert_eq!(chosen(&findings(&["xxxxx.", "xxyy..", "xxyyyy", "......"])), 0);
+    }
+
+    #[test]
+    fn of_two_divisions_that_differ_the_one_with_the_shorter_description_is_taken() {
+        let mut found = findings(&["xxxx..", "xxyy.."]);
+        assert_eq!(chosen(&found), 0);
+        found[1].length = 990.0;
+        assert_eq!(chosen(&found), 1);
+        // Where they differ little, the nearest is as good.
+        let mut found = findings(&["xxxxxxxxxxxxxxxxxxxx..", "xxxxxxxxxxxxxxxxxxxy.."]);
+        found[1].length = 990.0;
+        assert_eq!(chosen(&found), 0);
     }
 }
