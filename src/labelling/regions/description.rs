@@ -95,7 +95,7 @@ pub(crate) fn counts(labels: &[u8], of: usize) -> Vec<usize> {
 /// Number of neighbouring pairs of which exactly one has the label.
 pub(crate) fn border_lengths(labels: &[u8], of: usize, width: usize) -> Vec<usize> {
     let mut lengths = vec![0; of];
-    across_borders(labels, width, |p, q| {
+    across_borders(labels, width, &mut |p, q| {
         lengths[usize::from(labels[p])] += 1;
         lengths[usize::from(labels[q])] += 1;
     });

@@ -86,7 +86,7 @@ pub(crate) fn pair(n: usize, i: usize, j: usize) -> usize {
 pub(crate) fn borders(motions: &[AffineMotion], labels: &[u8], width: usize) -> Vec<Vec<f64>> {
     let n = motions.len();
     let mut found: Vec<Vec<f64>> = vec![Vec::new(); n * n];
-    across_borders(labels, width, |p, q| {
+    across_borders(labels, width, &mut |p, q| {
         let (i, j) = (usize::from(labels[p]), usize::from(labels[q]));
         if i < n && j < n {
             let (x, y) = ((p % width) as f64, (p / width) as f64);

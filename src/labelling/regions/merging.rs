@@ -64,7 +64,7 @@ pub(crate) fn best_merger(
 /// Which labels are neighbours somewhere, indexed with the smaller label first.
 fn touching(labels: &[u8], of: usize, width: usize) -> Vec<Vec<bool>> {
     let mut touching = vec![vec![false; of]; of];
-    across_borders(labels, width, |p, q| {
+    across_borders(labels, width, &mut |p, q| {
         let (a, b) = (labels[p], labels[q]);
         touching[usize::from(a.min(b))][usize::from(a.max(b))] = true;
     });
