@@ -43,11 +43,11 @@ pub(crate) fn probabilities(costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
         each_with(weight.values_mut(), [around.values(), own.values()], |cost, [near, own]| {
             power_of_two_f32(LOG2_E * (NEIGHBOUR_WEIGHT * near + OWN_LABEL_WEIGHT * own - COST_WEIGHT * cost))
         });
-        each_with(total.values_mut(), [weight.values()], |t, [w]| t + w);
+        total.values_mut().iter_mut().zip(weight.values()).for_each(|(t, w)| *t += w);
         weights.push(weight);
     }
     for weight in &mut weights {
-        each_with(weight.values_mut(), [total.values()], |w, [t]| w / t);
+        weight.values_mut().iter_mut().zip(total.values()).for_each(|(w, t)| *w /= t);
     }
     weights
 }

@@ -65,35 +65,37 @@ pub(super) fn consensus(findings: &[Finding]) -> Consensus {
         }
     }
     let overlap = |k: usize| if either[k] == 0 { 1.0 } else { common[k] as f64 / either[k] as f64 };
-    let nearest =
-        eligible.iter().copied().reduce(|best, k| if overlap(k) > overlap(best) { k } else { best }).unwrap_or(0);
-    let same_division = |k: usize| {
-        let others = eligible.iter().filter(|&&other| other != k);
-        let shares = others.map(|&other| same_division(&findings[k].labels, &findings[other].labels, &majority));
-        shares.sum::<f64>() / (eligible.len() - 1) as f64
+    let overlaps: Vec<f64> = (0..findings.len()).map(overlap).collect();
+    let largest = eligible.iter().fold(0.0, |most, &k| f64::max(most, overlaps[k]));
+    // A finding agrees with itself.
+    let agreeing = |k: usize| -> f64 {
+        eligible.iter().map(|&other| same_division(&findings[k].labels, &findings[other].labels, &majority)).sum()
     };
-    if eligible.len() == 1 || majority.is_empty() || same_division(nearest) >= SAME_DIVISION {
-        return Consensus { chosen: nearest, agreement };
+    let agreed: Vec<f64> = (0..findings.len()).map(agreeing).collect();
+    let mut chosen = eligible.iter().copied().find(|&k| overlaps[k] == largest).unwrap_or(0);
+    if agreed[chosen] - 1.0 < SAME_DIVISION * (eligible.len() - 1) as f64 {
+        for &k in eligible.iter().filter(|&&k| overlaps[k] >= largest - AS_NEAR) {
+            let shorter = agreed[k] == agreed[chosen] && findings[k].length < findings[chosen].length;
+            if agreed[k] > agreed[chosen] || shorter {
+                chosen = k;
+            }
+        }
     }
-    let as_near = eligible.iter().copied().filter(|&k| overlap(k) >= overlap(nearest) - AS_NEAR);
-    let better =
-        |(a, s): (usize, f64), (b, t): (usize, f64)| s > t || s == t && findings[a].length < findings[b].length;
-    let divided =
-        as_near.map(|k| (k, same_division(k))).reduce(|best, next| if better(next, best) { next } else { best });
-    Consensus { chosen: divided.map_or(nearest, |(k, _)| k), agreement }
+    Consensus { chosen, agreement }
 }
 
-/// Share of some pixels that two labellings divide in the same way: each label of one is matched with that of the other with which it has most
-/// of these pixels in common. The mean of both ways.
+/// Share of some pixels that two labellings divide in the same way, the mean of both ways; not a number if there are no pixels.
 fn same_division(one: &[u8], other: &[u8], pixels: &[usize]) -> f64 {
-    let of = |labels: &[u8]| pixels.iter().map(|&p| usize::from(labels[p]) + 1).max().unwrap_or(0);
-    let (rows, columns) = (of(one), of(other));
-    let mut common = vec![0usize; rows * columns];
-    pixels.iter().for_each(|&p| common[usize::from(one[p]) * columns + usize::from(other[p])] += 1);
-    let most = |counts: &mut dyn Iterator<Item = usize>| counts.max().unwrap_or(0);
-    let by_row: usize = common.chunks_exact(columns).map(|row| most(&mut row.iter().copied())).sum();
-    let by_column: usize = (0..columns).map(|k| most(&mut common[k..].iter().copied().step_by(columns))).sum();
-    (by_row + by_column) as f64 / (2 * pixels.len()) as f64
+    (matched(one, other, pixels) + matched(other, one, pixels)) as f64 / (2 * pixels.len()) as f64
+}
+
+/// The number of pixels that match where each label is matched with that of the other labelling with which it has most of them in common.
+#[inline(never)]
+fn matched(labels: &[u8], other: &[u8], pixels: &[usize]) -> usize {
+    let of = 1 + other.iter().copied().fold(0, u8::max) as usize;
+    let mut common = vec![0usize; 256 * of];
+    pixels.iter().for_each(|&p| common[usize::from(labels[p]) * of + usize::from(other[p])] += 1);
+    common.chunks_exact(of).map(|row| row.iter().copied().fold(0, usize::max)).sum()
 }
 
 #[cfg(test)]

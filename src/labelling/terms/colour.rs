@@ -35,7 +35,7 @@ impl ColourPrices {
         let n = costs.len();
         let weights = margins(costs, labels);
         let trust = trust(palette, labels, &weights, n);
-        let mut table = posterior(palette, labels, &weights, n, |_| true);
+        let mut table = posterior(palette, labels, &weights, n);
         let price = tuned(Tuned::ColourPrice, PRICE_PER_NAT);
         let largest = tuned(Tuned::LargestColourPrice, LARGEST_PRICE);
         table.iter_mut().for_each(|p| *p = (-price * trust * trust * libm::logf(*p)).min(largest));
@@ -61,7 +61,10 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8])
 /// information needed, averaged over the labels; 0…1.
 fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
     let half = halves(palette.width(), labels.len());
-    let tables = [0, 1].map(|which| posterior(palette, labels, weights, n, |p| half[p] == which));
+    let tables = [0, 1].map(|which| {
+        let of_half = |(&weight, &half): (&f32, &u8)| if half == which { weight } else { 0.0 };
+        posterior(palette, labels, &weights.iter().zip(&half).map(of_half).collect::<Buffer<f32>>(), n)
+    });
     let mut information = vec![(0.0f32, 0.0f32); n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
         let believed = tables[usize::from(1 - half[p])][palette.index(p) * n + usize::from(label)];
@@ -93,17 +96,12 @@ fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
     labels.iter().enumerate().map(gap).map(|gap| if gap > 0.0 { gap } else { 0.0 }).collect()
 }
 
-/// Probability of every label for every colour, all labels equally likely beforehand; from the pixels that `counts` admits.
-fn posterior(
-    palette: &Palette,
-    labels: &[u8],
-    weights: &[f32],
-    n: usize,
-    counts: impl Fn(usize) -> bool,
-) -> Buffer<f32> {
+/// Probability of every label for every colour, all labels equally likely beforehand; from pixels with these weights.
+#[inline(never)]
+fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> Buffer<f32> {
     let mut table = Buffer::filled(n * COLOURS, 0.0f32);
     let mut totals = vec![1e-9f32; n];
-    for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate().filter(|&(p, _)| counts(p)) {
+    for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
         table[palette.index(p) * n + usize::from(label)] += weight;
         totals[usize::from(label)] += weight;
     }
