@@ -106,11 +106,11 @@ mod tests {
         consensus(findings).chosen
     }
 
-    /// Every letter is a motion, a dot the background.
+    /// Every digit is a motion, a dot the background.
     fn findings(rows: &[&str]) -> Vec<Finding> {
         let finding = |row: &&str| Finding {
             foreground: row.bytes().map(|b| b != b'.').collect(),
-            labels: row.bytes().map(|b| if b == b'.' { 0 } else { b - b'a' + 1 }).collect(),
+            labels: row.bytes().map(|b| if b == b'.' { 0 } else { b - b'0' }).collect(),
             length: 1000.0,
         };
         rows.iter().map(finding).collect()
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_failed_search_does_not_vote() {
-        let mut findings = findings(&["xx..", "..xx", "..xx", "xx.."]);
+        let mut findings = findings(&["11..", "..11", "..11", "11.."]);
         findings[0].length = 1200.0;
         findings[3].length = 1200.0;
         assert_eq!(chosen(&findings), 1);
@@ -126,19 +126,19 @@ mod tests {
 
     #[test]
     fn an_object_that_half_of_them_see_is_kept() {
-        assert_eq!(chosen(&findings(&["....", "xx..", ".xx.", "...."])), 1);
-        assert_eq!(chosen(&findings(&["....", "xx..", "xxx.", ".xx."])), 2);
+        assert_eq!(chosen(&findings(&["....", "11..", ".11.", "...."])), 1);
+        assert_eq!(chosen(&findings(&["....", "11..", "111.", ".11."])), 2);
     }
 
     #[test]
     fn what_only_one_of_them_sees_is_not() {
-        assert_eq!(chosen(&findings(&["xx.x", "xx..", "xx..", "xx.."])), 1);
-        assert_eq!(chosen(&findings(&["..xx", "....", "....", "...."])), 1);
+        assert_eq!(chosen(&findings(&["11.1", "11..", "11..", "11.."])), 1);
+        assert_eq!(chosen(&findings(&["..11", "....", "....", "...."])), 1);
     }
 
     #[test]
     fn agreement_counts_the_searches_that_may_vote() {
-        let mut findings = findings(&["xx..", "x...", "x.x.", "...x"]);
+        let mut findings = findings(&["11..", "1...", "1.1.", "...1"]);
         assert_eq!(consensus(&findings[..1]).agreement[..], [2.0 / 3.0, 2.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0]);
         findings[3].length = 1200.0;
         assert_eq!(consensus(&findings).agreement[..], [0.8, 0.4, 0.4, 0.2]);
@@ -146,26 +146,26 @@ mod tests {
 
     #[test]
     fn one_labelling_is_its_own_majority() {
-        assert_eq!(chosen(&findings(&["x.."])), 0);
+        assert_eq!(chosen(&findings(&["1.."])), 0);
         assert_eq!(chosen(&findings(&["..."])), 0);
     }
 
     #[test]
     fn where_foregrounds_are_as_near_the_common_division_is_taken() {
         // Two things that move in different ways, which the first finding takes for one.
-        assert_eq!(chosen(&findings(&["xxxx..", "xxyy..", "yyxx..", "xxyy.."])), 1);
+        assert_eq!(chosen(&findings(&["1111..", "1122..", "2211..", "1122.."])), 1);
         // The foreground weighs more: the others are not as near.
-        assert_eq!(chosen(&findings(&["xxxxx.", "xxyy..", "xxyyyy", "......"])), 0);
+        assert_eq!(chosen(&findings(&["11111.", "1122..", "112222", "......"])), 0);
     }
 
     #[test]
     fn of_two_divisions_that_differ_the_one_with_the_shorter_description_is_taken() {
-        let mut found = findings(&["xxxx..", "xxyy.."]);
+        let mut found = findings(&["1111..", "1122.."]);
         assert_eq!(chosen(&found), 0);
         found[1].length = 990.0;
         assert_eq!(chosen(&found), 1);
         // Where they differ little, the nearest is as good.
-        let mut found = findings(&["xxxxxxxxxxxxxxxxxxxx..", "xxxxxxxxxxxxxxxxxxxy.."]);
+        let mut found = findings(&["11111111111111111111..", "11111111111111111112.."]);
         found[1].length = 990.0;
         assert_eq!(chosen(&found), 0);
     }
