@@ -142,7 +142,7 @@ pub(super) fn report(
         |&k: &usize| mirror.motion(&labelled.motions[k].scaled(pair.reduction), [first.width(), first.height()]);
     let matrices: Vec<AffineMotion> = order.iter().map(matrix).collect();
     let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order);
-    let groups: Vec<usize> = order.iter().map(|&k| grouping[k]).collect();
+    let groups = junctions::groups(&junctions, &order.iter().map(|&k| grouping[k]).collect::<Vec<usize>>());
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
         width: first.width(),

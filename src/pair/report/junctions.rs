@@ -1,7 +1,7 @@
-//! Junctions: how likely two neighbouring regions are to be one thing, whether they were put in one group or not.
+//! Junctions: how likely two neighbouring regions are to be one thing; and the groups that follow.
 //!
 //! Things at rest in part, people and animals move in parts that affine motions cannot join. Where two frames cannot tell, a person can,
-//! so the regions worth asking about are offered. Nothing else depends on the likelihood.
+//! so the regions worth asking about are offered.
 //!
 //! ```text
 //! ln P/(1−P) = ε − α j − β √b₁ + γ √min(b₂, b) + δ s
@@ -34,6 +34,10 @@ const LESS_ON_FRAME: f64 = 34.4;
 const OUTLINE: f64 = 2.2;
 /// ε.
 const CONSTANT: f64 = 2.8;
+/// Motions whose flow is continuous are one group if they are at least as likely to be one thing as not, …
+const LIKELY: f64 = 0.5;
+/// … others if that is all but certain. Chosen on real pairs, as all of the above.
+const CERTAIN: f64 = 0.9;
 /// b: a larger share of the outline on the frame's border says no more. Chosen on real pairs.
 const ENOUGH_ON_FRAME: f64 = 0.02;
 
@@ -42,7 +46,8 @@ const ENOUGH_ON_FRAME: f64 = 0.02;
 pub struct Junction {
     /// The labels of the two motions, the smaller first.
     pub labels: [u8; 2],
-    /// Probability, 0…1, that the two motions are of one thing: one object, or one background. It is not what decides on groups.
+    /// Probability, 0…1, that the two motions are of one thing: one object, or one background. Groups also depend on whether the flow is
+    /// continuous.
     pub likelihood: f64,
     /// Length of the border, pixels of the full-size frame. It is measured at the working size.
     pub border: usize,
@@ -81,6 +86,19 @@ pub(super) fn junctions(
         }
     }
     found
+}
+
+/// The group of every label of the report, from its `junctions` and the labels' groups by the flow alone.
+pub(super) fn groups(junctions: &[Junction], by_flow: &[usize]) -> Vec<usize> {
+    let mut groups: Vec<usize> = (0..by_flow.len()).collect();
+    for Junction { labels, likelihood, .. } in junctions {
+        let [one, other] = labels.map(usize::from);
+        if *likelihood > if by_flow[one] == by_flow[other] { LIKELY } else { CERTAIN } {
+            let [kept, joined] = [groups[one].min(groups[other]), groups[one].max(groups[other])];
+            groups.iter_mut().filter(|group| **group == joined).for_each(|group| *group = kept);
+        }
+    }
+    groups
 }
 
 /// What is known of a border.
@@ -162,6 +180,20 @@ mod tests {
         assert_eq!(renumbered.iter().map(|junction| junction.labels).collect::<Vec<_>>(), [[0, 1], [0, 2], [1, 2]]);
         let likelihoods = [&renumbered[1], &renumbered[0], &renumbered[2]].map(|junction| junction.likelihood);
         assert_eq!(likelihoods, [&found[0], &found[1], &found[3]].map(|junction| junction.likelihood));
+    }
+
+    #[test]
+    fn continuous_flow_and_likelihood_decide_on_groups() {
+        let junction = |labels, likelihood| Junction { labels, likelihood, border: 20 };
+        let groups = |likelihoods: [f64; 3], by_flow| {
+            let [a, b, c] = likelihoods;
+            super::groups(&[junction([0, 1], a), junction([0, 2], b), junction([1, 2], c)], by_flow)
+        };
+        assert_eq!(groups([0.1, 0.1, 0.6], &[0, 1, 1]), [0, 1, 1]);
+        assert_eq!(groups([0.1, 0.1, 0.4], &[0, 1, 1]), [0, 1, 2], "continuous, but unlikely");
+        assert_eq!(groups([0.1, 0.8, 0.95], &[0, 1, 2]), [0, 1, 1], "a jump, but certain");
+        assert_eq!(groups([0.1, 0.95, 0.95], &[0, 1, 2]), [0, 0, 0]);
+        assert_eq!(super::groups(&[], &[0, 0]), [0, 1], "nothing is known without a common border");
     }
 
     #[test]
