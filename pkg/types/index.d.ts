@@ -111,8 +111,8 @@ export interface Junction {
   /** The labels of the two motions, the smaller first. */
   labels: [number, number];
   /**
-   * Probability, 0 to 1, that the two motions are of one thing: one object, or one background. It does not decide on groups; where it
-   * disagrees with them or is in between, ask a person.
+   * Probability, 0 to 1, that the two motions are of one thing: one object, or one background. Groups also depend on whether the flow is
+   * continuous; where the probability is in between, ask a person.
    */
   likelihood: number;
   /** Length of the border in pixels of the frame, measured at the working size. */

@@ -34,10 +34,8 @@ const LESS_ON_FRAME: f64 = 34.4;
 const OUTLINE: f64 = 2.2;
 /// ε.
 const CONSTANT: f64 = 2.8;
-/// Motions whose flow is continuous are one group if they are at least as likely to be one thing as not, …
+/// Motions whose flow is continuous are one group if they are more likely than this to be one thing. Chosen on real pairs.
 const LIKELY: f64 = 0.5;
-/// … others if that is all but certain. Chosen on real pairs, as all of the above.
-const CERTAIN: f64 = 0.9;
 /// b: a larger share of the outline on the frame's border says no more. Chosen on real pairs.
 const ENOUGH_ON_FRAME: f64 = 0.02;
 
@@ -88,12 +86,13 @@ pub(super) fn junctions(
     found
 }
 
-/// The group of every label of the report, from its `junctions` and the labels' groups by the flow alone.
+/// The group of every label of the report, from its `junctions` and the groups by the flow alone: motions whose flow is continuous but which are
+/// unlikely to be one thing are apart.
 pub(super) fn groups(junctions: &[Junction], by_flow: &[usize]) -> Vec<usize> {
     let mut groups: Vec<usize> = (0..by_flow.len()).collect();
     for Junction { labels, likelihood, .. } in junctions {
         let [one, other] = labels.map(usize::from);
-        if *likelihood > if by_flow[one] == by_flow[other] { LIKELY } else { CERTAIN } {
+        if by_flow[one] == by_flow[other] && *likelihood > LIKELY {
             let [kept, joined] = [groups[one].min(groups[other]), groups[one].max(groups[other])];
             groups.iter_mut().filter(|group| **group == joined).for_each(|group| *group = kept);
         }
@@ -191,8 +190,8 @@ mod tests {
         };
         assert_eq!(groups([0.1, 0.1, 0.6], &[0, 1, 1]), [0, 1, 1]);
         assert_eq!(groups([0.1, 0.1, 0.4], &[0, 1, 1]), [0, 1, 2], "continuous, but unlikely");
-        assert_eq!(groups([0.1, 0.8, 0.95], &[0, 1, 2]), [0, 1, 1], "a jump, but certain");
-        assert_eq!(groups([0.1, 0.95, 0.95], &[0, 1, 2]), [0, 0, 0]);
+        assert_eq!(groups([0.1, 0.8, 0.95], &[0, 1, 2]), [0, 1, 2], "likely, but not continuous");
+        assert_eq!(groups([0.1, 0.8, 0.95], &[0, 0, 0]), [0, 0, 0], "one by way of another");
         assert_eq!(super::groups(&[], &[0, 0]), [0, 1], "nothing is known without a common border");
     }
 
