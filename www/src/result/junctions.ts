@@ -19,8 +19,10 @@ type Grouped = Pick<Segmentation, 'motions'>;
 /** Projects of earlier versions have no junctions. */
 type Found = Grouped & Partial<Pick<Segmentation, 'junctions'>>;
 
-/** Motions in different groups that are at least this likely to be one thing are asked about, and those in one group that are less likely. */
-const DOUBT = 0.35;
+/** Motions in different groups that are at least this likely to be one thing are asked about … */
+const MAY_BE_ONE = 0.35;
+/** … and those in one group that are less likely than this. */
+const MAY_BE_TWO = 0.5;
 /** At most this many questions at a time. */
 const MOST = 2;
 
@@ -52,11 +54,10 @@ function isApart([one, other]: readonly [number, number]): boolean {
   return one !== other;
 }
 
-/** What would change the groups that were found; `null` if the likelihood agrees with them. */
+/** What would change the groups that were found; `null` if the likelihood does not speak against them. */
 function adviceOn(found: Grouped, junction: Junction): Suggestion['advice'] | null {
-  const likely = junction.likelihood >= DOUBT;
-  if (isApart(groupsOf(found, junction)) !== likely) return null;
-  return likely ? 'join' : 'separate';
+  if (isApart(groupsOf(found, junction))) return junction.likelihood >= MAY_BE_ONE ? 'join' : null;
+  return junction.likelihood < MAY_BE_TWO ? 'separate' : null;
 }
 
 /** How likely the advice is to be right. */
