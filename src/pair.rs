@@ -18,7 +18,7 @@ use std::rc::Rc;
 
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
-use crate::estimation::dominant::{RIDGE, dominant_motion, dominant_motion_near};
+use crate::estimation::dominant::{DominantSearch, RIDGE, dominant_motion, dominant_motion_near};
 use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::{Frame, Plane};
@@ -147,7 +147,7 @@ struct Search {
 impl Search {
     fn new(mut pair: Pair, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search {
         stages.begin("dominant");
-        let dominant = pair.find_dominant(settings.has(Part::Brightness));
+        let dominant = pair.find_dominant(settings.dominant_search());
         let (found, _) = hypothesis::best(&pair, dominant, &[], settings, stages);
         stages.begin("refinement");
         let found = hypothesis::refine(&pair, found, settings);
@@ -244,31 +244,31 @@ impl Pair {
         Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
     }
 
-    /// Finds the dominant motion, measures the noise and, with `brightness`, removes the change of brightness from every view.
-    fn find_dominant(&mut self, brightness: bool) -> AffineMotion {
-        let found = dominant_motion(&self.levels, self.base, brightness);
-        self.settle_dominant(found, brightness)
+    /// Finds the dominant motion, measures the noise and removes the change of brightness from every view, if it is estimated.
+    fn find_dominant(&mut self, how: DominantSearch) -> AffineMotion {
+        let found = dominant_motion(&self.levels, self.base, how);
+        self.settle_dominant(found, how)
     }
 
     /// As [`find_dominant`](Self::find_dominant), near a motion that is expected.
-    fn find_dominant_near(&mut self, expected: &AffineMotion, brightness: bool) -> AffineMotion {
-        let found = dominant_motion_near(&self.levels, self.base, expected, brightness);
-        self.settle_dominant(found, brightness)
+    fn find_dominant_near(&mut self, expected: &AffineMotion, how: DominantSearch) -> AffineMotion {
+        let found = dominant_motion_near(&self.levels, self.base, expected, how);
+        self.settle_dominant(found, how)
     }
 
     fn settle_dominant(
         &mut self,
         (mut motion, photometric): (AffineMotion, Photometric),
-        brightness: bool,
+        search: DominantSearch,
     ) -> AffineMotion {
         self.remove(photometric, View::Second);
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];
             base.noise = noise(base, &motion);
-            let how = Alignment::of_region(ITERATIONS, RIDGE);
+            let how = Alignment { convergence: search.convergence, ..Alignment::of_region(ITERATIONS, RIDGE) };
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
         }
-        self.measure_along(&motion, brightness);
+        self.measure_along(&motion, search.brightness);
         motion
     }
 

@@ -1,6 +1,6 @@
 //! The dominant motion: the affine motion that explains most of the frame, and the change of brightness between the frames.
 
-use super::alignment::{Alignment, Freedom, Support, align};
+use super::alignment::{Alignment, Convergence, Freedom, Support, align};
 use crate::motion::AffineMotion;
 use crate::tuning::{Tuned, tuned};
 use crate::view::brightness::Photometric;
@@ -24,11 +24,19 @@ const ROBUSTNESS: [f32; 3] = [9.0, 6.0, 2.0];
 /// At the base level every second pixel of every second row is enough.
 const THINNING: usize = 2;
 
-/// The dominant motion of the working frame and the change of brightness (none unless `brightness` allows it), from the levels
-/// `base` and coarser.
-pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -> (AffineMotion, Photometric) {
+/// How the dominant motion is found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DominantSearch {
+    /// Whether a change of brightness is estimated.
+    pub(crate) brightness: bool,
+    /// What has to converge.
+    pub(crate) convergence: Convergence,
+}
+
+/// The dominant motion of the working frame and the change of brightness (none unless it is estimated), from the levels `base` and coarser.
+pub(crate) fn dominant_motion(levels: &[Level], base: usize, how: DominantSearch) -> (AffineMotion, Photometric) {
     let coarsest = &levels[levels.len() - 1];
-    let start = match brightness {
+    let start = match how.brightness {
         true => Photometric::from_moments(&coarsest.first, &coarsest.second),
         false => Photometric::default(),
     };
@@ -38,9 +46,9 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, brightness: bool) -
         candidates.push(shift);
     }
     let finest = &levels[base].thinned(THINNING);
-    let mut best = static_candidate(finest, start, brightness);
+    let mut best = static_candidate(finest, start, how.brightness);
     for candidate in candidates {
-        let (motion, photometric) = descend(levels, base, finest, candidate, start, brightness);
+        let (motion, photometric) = descend(levels, base, finest, candidate, start, how);
         let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation()));
         if sum < best.0 {
             best = (sum, motion, photometric);
@@ -54,15 +62,15 @@ pub(crate) fn dominant_motion_near(
     levels: &[Level],
     base: usize,
     expected: &AffineMotion,
-    brightness: bool,
+    how: DominantSearch,
 ) -> (AffineMotion, Photometric) {
     let finest = &levels[base].thinned(THINNING);
-    let start = match brightness {
+    let start = match how.brightness {
         true => Photometric::from_moments(&finest.first, &finest.second),
         false => Photometric::default(),
     };
-    let mut best = static_candidate(finest, start, brightness);
-    let (motion, photometric) = descend(&levels[..=base], base, finest, *expected, start, brightness);
+    let mut best = static_candidate(finest, start, how.brightness);
+    let (motion, photometric) = descend(&levels[..=base], base, finest, *expected, start, how);
     let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation()));
     if sum < best.0 {
         best = (sum, motion, photometric);
@@ -94,14 +102,15 @@ fn descend(
     finest: &Level,
     mut motion: AffineMotion,
     mut photometric: Photometric,
-    brightness: bool,
+    how: DominantSearch,
 ) -> (AffineMotion, Photometric) {
     let affine = Alignment {
         freedom: Freedom::Affine,
         iterations: ITERATIONS[1],
+        convergence: how.convergence,
         robustness: ROBUSTNESS[1],
         ridge: RIDGE,
-        photometric: brightness,
+        photometric: how.brightness,
     };
     let translation =
         Alignment { freedom: Freedom::Translation, iterations: ITERATIONS[0], robustness: ROBUSTNESS[0], ..affine };

@@ -3,6 +3,7 @@
 use super::Pair;
 use super::settings::{Part, Settings};
 use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
+use crate::estimation::dominant::DominantSearch;
 use crate::estimation::proposal::algebraic::from_algebra;
 use crate::estimation::proposal::local_flow::local_flow;
 use crate::estimation::proposal::tiles::from_tiles;
@@ -31,13 +32,24 @@ const FINE_TRIES: usize = 2;
 const ITERATIONS: usize = 3;
 
 impl Settings {
+    /// How the dominant motion is found.
+    pub(super) fn dominant_search(&self) -> DominantSearch {
+        DominantSearch { brightness: self.has(Part::Brightness), convergence: self.dominant }
+    }
+
     /// How motions are added at the selection level (0) and at finer levels (1).
     fn deflation(&self, stage: usize) -> Deflation {
-        Deflation { price: self.price[stage], most: self.most, tries: self.tries, window: self.gain_window }
+        Deflation {
+            price: self.price[stage],
+            most: self.most,
+            tries: self.tries,
+            window: self.gain_window,
+            convergence: self.refinement,
+        }
     }
 
     fn refit(&self, level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
-        refit(level, selected, if self.has(Part::Refinement) { rounds } else { 0 });
+        refit(level, selected, if self.has(Part::Refinement) { rounds } else { 0 }, self.refinement);
     }
 }
 

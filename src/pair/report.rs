@@ -112,20 +112,24 @@ pub(super) fn report(
     };
     let mut sure = probabilities(&costs, &labelled.labels);
     let unknown = options.mark_unknown.then(|| unknown::unknown(pair, &labelled, &sure));
-    if options.confidence {
-        let width = agreement.width();
-        mirror.reorder(agreement.values_mut(), width);
-        doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &grouping, &enlarged(&agreement, size[0], size[1]));
-    }
-    drop(costs);
-
     let full = if settings.has(Part::GuidedEnlarging) {
         upsample(&labelled.labels, size, labelled.motions.len(), mirror.frame(first).luminance())
     } else {
         nearest(&labelled.labels, size, first, pair.reduction)
     };
-    let mut confidence = options.confidence.then(|| confidence(&sure, &full, first.width()));
     let order = by_size(&full, labelled.motions.len());
+    let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order);
+    let groups = junctions::groups(&junctions, &order.iter().map(|&k| grouping[k]).collect::<Vec<usize>>());
+    let mut confidence = options.confidence.then(|| {
+        let width = agreement.width();
+        mirror.reorder(agreement.values_mut(), width);
+        let agreement = enlarged(&agreement, size[0], size[1]);
+        let mut group_of = vec![0; labelled.motions.len()];
+        order.iter().zip(&groups).for_each(|(&k, &group)| group_of[k] = group);
+        doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, &agreement);
+        confidence(&sure, &full, first.width())
+    });
+    drop(costs);
     let mut rank = [0u8; 256];
     order.iter().enumerate().for_each(|(k, &old)| rank[old] = k as u8);
     let mut labels = full;
@@ -141,8 +145,6 @@ pub(super) fn report(
     let matrix =
         |&k: &usize| mirror.motion(&labelled.motions[k].scaled(pair.reduction), [first.width(), first.height()]);
     let matrices: Vec<AffineMotion> = order.iter().map(matrix).collect();
-    let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order);
-    let groups = junctions::groups(&junctions, &order.iter().map(|&k| grouping[k]).collect::<Vec<usize>>());
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
         width: first.width(),

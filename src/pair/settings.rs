@@ -1,6 +1,7 @@
 //! Every number of the pipeline that depends on the quality, an option or the size of the frames. Unless something else is said they were
 //! chosen on generated scenes, those of `fast` for speed. Numbers that never change are constants beside the code that uses them.
 
+use crate::estimation::alignment::Convergence;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, MIN_SIDE};
 use crate::labelling::coherence::Coherence;
@@ -66,6 +67,10 @@ pub(crate) struct Settings {
     pub(crate) tiles: usize,
     /// Proposals tried in earnest per round of the selection.
     pub(crate) tries: usize,
+    /// What has to converge when the dominant motion is found …
+    pub(crate) dominant: Convergence,
+    /// … and when motions are refined on their pixels during selection.
+    pub(crate) refinement: Convergence,
     /// Gain that pays for a motion in the first selection and at finer levels (costs summed over the pixels looked at).
     pub(crate) price: [f64; 2],
     /// Price of a motion when two hypotheses about the dominant one are compared.
@@ -153,6 +158,8 @@ impl Settings {
             measurements: 2000,
             tiles: 48,
             tries: 6,
+            dominant: Convergence::Every,
+            refinement: Convergence::Every,
             price: PRICE.map(|price| tuned(Tuned::SelectionPrice, price)),
             hypothesis_price: tuned(Tuned::HypothesisPrice, HYPOTHESIS_PRICE),
             most: 7,
@@ -184,6 +191,7 @@ impl Settings {
                 measurements: 1000,
                 tiles: 24,
                 tries: 1,
+                refinement: Convergence::Translation,
                 visibility_rounds: 1,
                 gain_window: tuned(Tuned::GainWindow, 1.5),
                 coherence: Coherence {
@@ -204,9 +212,16 @@ impl Settings {
         settings
     }
 
+    /// The settings for the pairs of a clip. What the neighbours of a frame say makes up for motions that have not converged; streams even
+    /// lost by waiting.
+    pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
+        let dominant = Convergence::Translation;
+        Settings { dominant, refinement: dominant, ..Settings::new(options, size) }
+    }
+
     /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.
     pub(crate) fn of_stream(options: &SegmentOptions, size: [usize; 2]) -> Settings {
-        let settings = Settings::new(options, size);
+        let settings = Settings::of_clip(options, size);
         if options.quality == Quality::Best {
             return settings;
         }

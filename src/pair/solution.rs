@@ -1,6 +1,6 @@
 //! A pair solved at the working size, for those who go on from there: no numbering, no full-size labels, no evidence for the number.
 
-use super::settings::{Part, Settings};
+use super::settings::Settings;
 use super::{Pair, hypothesis, labels};
 use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::FramePyramid;
@@ -109,7 +109,6 @@ pub(crate) fn solve(
     let mut ignored = |_| {};
     let mut stages = Stages::new(super::STAGES, &mut ignored);
     let mut pair = Pair::new(first, pyramid, second, None, settings);
-    let brightness = settings.has(Part::Brightness);
     let likely = prior.map_or(&[][..], |prior| &prior.motions[BACKGROUND + 1..]);
     let prior = prior.filter(|prior| prior.enough > 0.0);
     let (labelled, [enough, searched]) = match (prior, expected) {
@@ -118,7 +117,7 @@ pub(crate) fn solve(
             follow(&mut pair, prior, labels, settings)
         }
         (Some(prior), _) => {
-            let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], brightness);
+            let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], settings.dominant_search());
             let (found, cost) = hypothesis::expected(&pair, dominant, likely, settings);
             let is_enough = cost < prior.enough + settings.price[0];
             is_enough.then(|| {
@@ -130,7 +129,7 @@ pub(crate) fn solve(
     }
     .unwrap_or_else(|| {
         pair = Pair::new(first, pyramid, second, None, settings);
-        let dominant = pair.find_dominant(brightness);
+        let dominant = pair.find_dominant(settings.dominant_search());
         let (found, cost) = hypothesis::best(&pair, dominant, likely, settings, &mut stages);
         let labelled = labels::label(&pair, hypothesis::refine(&pair, found, settings), settings);
         let limits = if settings.follows {
@@ -167,7 +166,7 @@ fn follow(
     mut labels: Buffer<u8>,
     settings: &Settings,
 ) -> Option<(labels::Labelled, [f64; 2])> {
-    let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], settings.has(Part::Brightness));
+    let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], settings.dominant_search());
     let objects = &prior.motions[BACKGROUND + 1..];
     let (found, cost) = hypothesis::followed(pair, dominant, objects, &mut labels, settings);
     // Costs rise when a motion is missing, but also when more is occluded.

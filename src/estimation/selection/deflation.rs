@@ -3,7 +3,7 @@
 
 use super::{ScoredMotion, smallest_cost};
 use crate::components::{Connectivity, components};
-use crate::estimation::alignment::{Alignment, Freedom, Support, align};
+use crate::estimation::alignment::{Alignment, Convergence, Freedom, Support, align};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::lanes::{LANES, each_with};
@@ -26,6 +26,8 @@ pub(crate) struct Deflation {
     pub(crate) tries: usize,
     /// Standard deviation of the window over which gains are averaged, pixels of the level (of the sample where it is thinned).
     pub(crate) window: f32,
+    /// What has to converge when a proposal is refined.
+    pub(crate) convergence: Convergence,
 }
 
 /// Gain per pixel that does not count: windows across borders and chance produce as much. Chosen on generated scenes.
@@ -119,12 +121,17 @@ pub(crate) fn add_motions(
             if gains[k] < SMALLEST_TRIED_GAIN * how.price {
                 break;
             }
-            let (gain, scored) = refined(&thinned, &current_sample, proposals[k], how.window / thinning as f32);
+            let (gain, scored) = refined(
+                &thinned,
+                &current_sample,
+                proposals[k],
+                Deflation { window: how.window / thinning as f32, ..how },
+            );
             if best.as_ref().is_none_or(|b| gain > b.0) {
                 best = Some((gain, scored));
             }
         }
-        match best.map(|(_, scored)| refined(level, &current, scored.motion, how.window)) {
+        match best.map(|(_, scored)| refined(level, &current, scored.motion, how)) {
             Some((gain, scored)) if gain >= how.price => selected.push(scored),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
@@ -132,14 +139,14 @@ pub(crate) fn add_motions(
 }
 
 /// Refines a proposal in a few rounds on the region where it beats the current motions. Returns its gain and the motion.
-fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) -> (f64, ScoredMotion) {
+fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflation) -> (f64, ScoredMotion) {
     let mut scored = ScoredMotion::new(level, proposal);
-    let mut improved = improvement(current, &scored.cost, window);
+    let mut improved = improvement(current, &scored.cost, how.window);
     let mut gain = gain_of(&improved);
     for round in 0..ROUNDS {
         let Some(region) = heaviest_region(&improved, current, &scored.cost) else { break };
         let support = Support::weighted(&region);
-        let affine = Alignment::of_region(ITERATIONS, RIDGE);
+        let affine = Alignment { convergence: how.convergence, ..Alignment::of_region(ITERATIONS, RIDGE) };
         let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {
@@ -147,7 +154,7 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, window: f32) 
         }
         motion = align(level, &motion, &support, none, affine);
         let refined = ScoredMotion::new(level, motion);
-        let refined_improvement = improvement(current, &refined.cost, window);
+        let refined_improvement = improvement(current, &refined.cost, how.window);
         let better = gain_of(&refined_improvement);
         if better > gain {
             (scored, improved, gain) = (refined, refined_improvement, better);

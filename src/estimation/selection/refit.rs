@@ -1,7 +1,7 @@
 //! Every motion refined on the pixels where it wins.
 
 use super::ScoredMotion;
-use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
+use crate::estimation::alignment::{Alignment, Convergence, Support, align, ridge_of_label, softened};
 use crate::frame::Plane;
 use crate::frame::filter::eroded;
 use crate::lanes::each_with;
@@ -17,12 +17,12 @@ const SMALLEST_REGION: usize = 20;
 const ITERATIONS: usize = 2;
 
 /// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
-pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
+pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize, convergence: Convergence) {
     for _ in 0..rounds {
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
         for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
-            let how = Alignment::of_region(ITERATIONS, ridge_of_label(k));
+            let how = Alignment { convergence, ..Alignment::of_region(ITERATIONS, ridge_of_label(k)) };
             let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
             let refined = ScoredMotion::new(level, motion);
             if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
