@@ -306,7 +306,7 @@ Two pairs of each training sequence of DAVIS 2016, with *best*. What is said to 
 the mask of the sequence's object; background is right outside it. Other things that move have no mask and count as wrong. In real scenes a
 motion may be right without being that of an object, so the confidence of objects also weighs how many of the searches agree, how much of the
 outline lies on the frame's border, and how well motions explain the frames (src/pair/report/doubt.rs). Its five weights were fitted to pairs
-of the first fold of sequences and to every second of the generated scenes above, both with the same weight. The second fold is held out of the fit.";
+of the first fold of sequences and to every second of the generated scenes above, with both qualities and the same weight each. The second fold is held out of the fit.";
 
 fn per_cent(share: f64) -> String {
     if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }

@@ -9,21 +9,21 @@
 //! that lies on the frame's border is b: objects lie within the frame more often than parts of the background do. The mean cost of all
 //! pixels under their own motions is m: where affine motions do not explain the frames, more regions are found that are none.
 //!
-//! The weights are a maximum likelihood fit to real pairs and generated scenes; docs/masks.md says which, and has the measurement on others.
+//! The weights are a maximum likelihood fit to real pairs and generated scenes, with both qualities; docs/masks.md says which, and has the measurement on others.
 
 use crate::frame::Plane;
 use crate::labelling::regions::description::{border_lengths, counts};
 
 /// α: weight of the probability of the motion.
-const MOTION: f64 = 0.45;
+const MOTION: f64 = 0.6;
 /// β: weight of the agreement of the searches.
-const AGREEMENT: f64 = 6.4;
+const AGREEMENT: f64 = 4.44;
 /// γ: weight of the frame's border.
-const FRAME_BORDER: f64 = 7.0;
+const FRAME_BORDER: f64 = 4.06;
 /// δ: weight of the mean cost.
-const MISFIT: f64 = 5.0;
+const MISFIT: f64 = 4.06;
 /// ε.
-const CONSTANT: f64 = -1.6;
+const CONSTANT: f64 = -1.06;
 /// Smallest and largest P that are told apart. A safeguard.
 const LIMITS: [f32; 2] = [0.002, 0.998];
 
