@@ -212,8 +212,7 @@ impl Settings {
         settings
     }
 
-    /// The settings for the pairs of a clip. What the neighbours of a frame say makes up for motions that have not converged; streams even
-    /// lost by waiting.
+    /// The settings for the pairs of a clip. They do not wait for linear terms: fast streams lost by it, and whole clips were not measured.
     pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let dominant = Convergence::Translation;
         Settings { dominant, refinement: dominant, ..Settings::new(options, size) }
