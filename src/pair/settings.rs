@@ -158,8 +158,8 @@ impl Settings {
             measurements: 2000,
             tiles: 48,
             tries: 6,
-            dominant: Convergence::Every,
-            refinement: Convergence::Every,
+            dominant: Convergence::Translation,
+            refinement: Convergence::Translation,
             price: PRICE.map(|price| tuned(Tuned::SelectionPrice, price)),
             hypothesis_price: tuned(Tuned::HypothesisPrice, HYPOTHESIS_PRICE),
             most: 7,
@@ -191,7 +191,6 @@ impl Settings {
                 measurements: 1000,
                 tiles: 24,
                 tries: 1,
-                refinement: Convergence::Translation,
                 visibility_rounds: 1,
                 gain_window: tuned(Tuned::GainWindow, 1.5),
                 coherence: Coherence {
@@ -212,15 +211,17 @@ impl Settings {
         settings
     }
 
-    /// The settings for the pairs of a clip. They do not wait for linear terms: fast streams lost by it, and whole clips were not measured.
-    pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
-        let dominant = Convergence::Translation;
-        Settings { dominant, refinement: dominant, ..Settings::new(options, size) }
+    /// Waits for linear terms to converge. Clips do not: fast streams lost by it, and whole clips were not measured.
+    pub(crate) fn converge(&mut self, quality: Quality) {
+        self.dominant = Convergence::Every;
+        if quality == Quality::Best {
+            self.refinement = Convergence::Every;
+        }
     }
 
     /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.
     pub(crate) fn of_stream(options: &SegmentOptions, size: [usize; 2]) -> Settings {
-        let settings = Settings::of_clip(options, size);
+        let settings = Settings::new(options, size);
         if options.quality == Quality::Best {
             return settings;
         }
