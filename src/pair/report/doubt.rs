@@ -9,7 +9,8 @@
 //! that lies on the frame's border is b: objects lie within the frame more often than parts of the background do. The mean cost of all
 //! pixels under their own motions is m: where affine motions do not explain the frames, more regions are found that are none.
 //!
-//! The weights are a maximum likelihood fit to real pairs and generated scenes, with both qualities; docs/masks.md says which, and has the measurement on others.
+//! The weights are a maximum likelihood fit to real pairs and generated scenes, with both qualities; docs/masks.md says which, and has the
+//! measurement on others.
 
 use crate::frame::Plane;
 use crate::labelling::regions::description::{border_lengths, counts};
