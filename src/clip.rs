@@ -57,7 +57,7 @@ impl ClipOptions {
     fn settings(&self, size: [usize; 2]) -> Settings {
         match self.look_ahead {
             Some(_) => Settings::of_stream(&self.pair, size),
-            None => Settings::new(&self.pair, size),
+            None => Settings::of_clip(&self.pair, size),
         }
     }
 }

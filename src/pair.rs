@@ -102,12 +102,11 @@ fn segment_with(
     second: &Frame,
     before: Option<&Frame>,
     options: &SegmentOptions,
-    mut settings: Settings,
+    settings: Settings,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
     options.motions.validate()?;
     check_sizes(first, second, before)?;
-    settings.converge(options.quality);
     let _call = workspace::begin([first.width(), first.height()]);
     let images = if settings.mirror_images { &Mirror::ALL[..] } else { &Mirror::ALL[..1] };
     let detail = settings.of_detail(options, size(first));

@@ -93,7 +93,10 @@ fn strokes_hold_exactly_and_distant_labels_do_not_change() {
             assert_eq!(corrected.labels[p], case.found.labels[p]);
         }
     }
-    assert!(corrected.motions[1].pixels < case.found.motions[1].pixels);
+    // The object loses the stroke and what goes with it.
+    let lost = (0..case.pixels()).filter(|&p| case.found.labels[p] == 1 && corrected.labels[p] == 0).count();
+    let stroke = (0..case.pixels()).filter(|&p| case.found.labels[p] == 1 && allowed[p] != 0).count();
+    assert!(stroke > 0 && lost > stroke, "{lost} of a stroke of {stroke}");
     let counted: usize = corrected.motions.iter().map(|m| m.pixels).sum();
     assert_eq!(counted + corrected.unlabelled, case.pixels());
 }

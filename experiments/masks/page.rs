@@ -10,8 +10,10 @@ use crate::cases::Set;
 use crate::measure::{Measured, Method, Outcome};
 use crate::summary::Summary;
 
-/// How many of the best and of the worst cases are shown.
+/// How many of the best and of the worst cases are shown …
 const SHOWN: usize = 5;
+/// … and of the worst real pairs.
+const WORST_REAL: usize = 20;
 /// Sets whose pictures belong to the project and whose truth has one label per object.
 const OWN: [Set; 4] = [Set::Generated, Set::Colour, Set::Large, Set::Robots];
 
@@ -109,7 +111,8 @@ impl Page<'_> {
 
     /// The cases whose pictures are shown: the best, then the worst.
     pub(crate) fn shown(&self) -> Vec<&Measured> {
-        let [best, worst] = ends(self.ranked(|one| OWN.contains(&one.case.set), |best| best.single.map(|s| s.miou)));
+        let ranked = self.ranked(|one| OWN.contains(&one.case.set), |best| best.single.map(|s| s.miou));
+        let [best, worst] = ends(ranked, [SHOWN; 2]);
         best.into_iter().chain(worst).map(|(one, _)| one).collect()
     }
 
@@ -289,7 +292,7 @@ impl Page<'_> {
 
     fn pictures(&self, text: &mut String, prefix: &str) {
         let ranked = self.ranked(|one| OWN.contains(&one.case.set), |best| best.single.map(|s| s.miou));
-        let [best, worst] = ends(ranked);
+        let [best, worst] = ends(ranked, [SHOWN; 2]);
         for (title, list) in [("The five best scenes", best), ("The five worst scenes", worst)] {
             if list.is_empty() {
                 continue;
@@ -308,9 +311,10 @@ impl Page<'_> {
     }
 
     fn real_ends(&self, text: &mut String) {
-        let ranked = self.ranked(|one| one.case.set == Set::Pairs, |best| best.grouped.and_then(|s| s.j_background));
-        let [best, worst] = ends(ranked);
-        for (title, list) in [("The five best real pairs", best), ("The five worst real pairs", worst)] {
+        let real = |one: &Measured| [Set::Pairs, Set::Sequences].contains(&one.case.set);
+        let ranked = self.ranked(real, |best| best.grouped.and_then(|s| s.j_background));
+        let [best, worst] = ends(ranked, [SHOWN, WORST_REAL]);
+        for (title, list) in [("The five best real pairs", best), ("The twenty worst real pairs", worst)] {
             if list.is_empty() {
                 continue;
             }
@@ -354,12 +358,12 @@ impl Page<'_> {
     }
 }
 
-/// The first few and the last few, the latter in reverse; no case is in both.
-fn ends<T>(mut list: Vec<T>) -> [Vec<T>; 2] {
-    let many = SHOWN.min(list.len() / 2);
-    let mut worst = list.split_off(list.len() - many);
+/// So many of the first and of the last, the latter in reverse; no case is in both.
+fn ends<T>(mut list: Vec<T>, [first, last]: [usize; 2]) -> [Vec<T>; 2] {
+    let half = list.len() / 2;
+    let mut worst = list.split_off(list.len() - last.min(half));
     worst.reverse();
-    list.truncate(many);
+    list.truncate(first.min(half));
     [list, worst]
 }
 

@@ -25,12 +25,12 @@ pub(crate) enum Freedom {
 }
 
 /// What has to stand still before the iterations end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Convergence {
     /// The translation. The prior slows the linear terms down, so that they may still be on their way.
     Translation,
-    /// Every entry, for which there are [`PATIENCE`] times as many iterations.
-    Every,
+    /// Every entry, for which there are `patience` times as many iterations. Only this share of the prior is left for regions.
+    Every { patience: usize, prior: f64 },
 }
 
 /// How to align.
@@ -64,6 +64,15 @@ impl Alignment {
             photometric: false,
         }
     }
+
+    /// The same until this has converged.
+    pub(crate) fn until(self, convergence: Convergence) -> Alignment {
+        let share = match convergence {
+            Convergence::Translation => 1.0,
+            Convergence::Every { prior, .. } => prior,
+        };
+        Alignment { convergence, ridge: share * self.ridge, ..self }
+    }
 }
 
 /// Ridge prior for the motion of a label's region; label 0 is the dominant motion.
@@ -83,8 +92,6 @@ pub(crate) fn softened(region: &Plane) -> Plane {
 const SMALL_STEP: f64 = 0.003;
 /// Steps are measured at this distance from the centre, as a share of the width and height of the support together: halfway to its border.
 const DISTANCE: f64 = 0.125;
-/// How many times as many iterations there are at most for every entry to converge. Chosen on real pairs.
-const PATIENCE: usize = 2;
 /// Below this sum of support weights a motion is left as it is: two pixels for each of its six entries.
 const SMALLEST_SUPPORT: f64 = 12.0;
 /// Largest linear entry, a zoom by 40 % or a rotation by 23°. Estimates beyond it have diverged, and the cost would reward them for
@@ -160,8 +167,8 @@ pub(crate) fn align(
     let (iterations, distance) = match how.convergence {
         Convergence::Translation => (how.iterations, 0.0),
         // In the units of the linear terms.
-        Convergence::Every => {
-            (PATIENCE * how.iterations, DISTANCE * (support.columns.len() + support.rows.len()) as f64 / scale)
+        Convergence::Every { patience, .. } => {
+            (patience * how.iterations, DISTANCE * (support.columns.len() + support.rows.len()) as f64 / scale)
         }
     };
     for _ in 0..iterations {
@@ -451,7 +458,7 @@ mod tests {
                 align(level, &AffineMotion::STATIC, &Support::everything(level), &mut Photometric::default(), how);
             (found.matrix[0] - truth.matrix[0]).abs() + (found.matrix[4] - truth.matrix[4]).abs()
         };
-        assert!(error(Convergence::Every) < 0.2 * error(Convergence::Translation));
+        assert!(error(Convergence::Every { patience: 2, prior: 1.0 }) < 0.2 * error(Convergence::Translation));
     }
 
     #[test]

@@ -112,6 +112,10 @@ const SELECTION_SIDE: usize = 320;
 const BASE_SIDE: usize = 224;
 /// λ of frames at their original size, chosen on generated scenes, and of frames that were halved, chosen on real pairs.
 const SMOOTHNESS: [f32; 2] = [8.0, 12.0];
+/// How the linear terms of motions converge in frames at their original size, where a motion with little prior spans two small bodies that
+/// move alike, and in frames that were halved. The latter was chosen on real pairs, where priors of .01 to .3 differ by less than chance.
+const CONVERGING: [Convergence; 2] =
+    [Convergence::Every { patience: 2, prior: 1.0 }, Convergence::Every { patience: 3, prior: 0.1 }];
 /// Price of an object's pixel, costs: 1/40 of the largest. Chosen on generated scenes.
 const OBJECT_BIAS: f32 = 0.05;
 /// Gains that pay for a motion in the first selection and, on a quarter of the pixels, at finer levels. Chosen on generated scenes.
@@ -147,6 +151,7 @@ impl Settings {
         // size itself, with a higher smoothness. For frames at their original size, a coarser level averages the noise.
         let (fine_side, smoothness) =
             if halvings > 0 { (WORK_SIDE_BEST, SMOOTHNESS[1]) } else { (SELECTION_SIDE, SMOOTHNESS[0]) };
+        let converging = CONVERGING[usize::from(halvings > 0)];
         let best = Settings {
             mirror_images: true,
             halvings,
@@ -158,8 +163,8 @@ impl Settings {
             measurements: 2000,
             tiles: 48,
             tries: 6,
-            dominant: Convergence::Translation,
-            refinement: Convergence::Translation,
+            dominant: converging,
+            refinement: converging,
             price: PRICE.map(|price| tuned(Tuned::SelectionPrice, price)),
             hypothesis_price: tuned(Tuned::HypothesisPrice, HYPOTHESIS_PRICE),
             most: 7,
@@ -182,6 +187,8 @@ impl Settings {
             Quality::Best => best,
             Quality::Fast => Settings {
                 mirror_images: false,
+                dominant: CONVERGING[0],
+                refinement: Convergence::Translation,
                 returns_shadows: false,
                 halvings: fast_halvings(WORK_SIDE_FAST, size),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
@@ -211,17 +218,16 @@ impl Settings {
         settings
     }
 
-    /// Waits for linear terms to converge. Clips do not: fast streams lost by it, and whole clips were not measured.
-    pub(crate) fn converge(&mut self, quality: Quality) {
-        self.dominant = Convergence::Every;
-        if quality == Quality::Best {
-            self.refinement = Convergence::Every;
-        }
+    /// The settings for the pairs of a clip. They do not wait for linear terms: fast streams lost by it, in small frames unrelated ones were
+    /// explained too well for a cut to be seen, and whole clips gained no more than chance.
+    pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
+        let [dominant, refinement] = [Convergence::Translation; 2];
+        Settings { dominant, refinement, ..Settings::new(options, size) }
     }
 
     /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.
     pub(crate) fn of_stream(options: &SegmentOptions, size: [usize; 2]) -> Settings {
-        let settings = Settings::new(options, size);
+        let settings = Settings::of_clip(options, size);
         if options.quality == Quality::Best {
             return settings;
         }

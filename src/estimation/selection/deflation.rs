@@ -146,7 +146,7 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflatio
     for round in 0..ROUNDS {
         let Some(region) = heaviest_region(&improved, current, &scored.cost) else { break };
         let support = Support::weighted(&region);
-        let affine = Alignment { convergence: how.convergence, ..Alignment::of_region(ITERATIONS, RIDGE) };
+        let affine = Alignment::of_region(ITERATIONS, RIDGE).until(how.convergence);
         let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {

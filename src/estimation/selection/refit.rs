@@ -22,7 +22,7 @@ pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize,
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
         for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
-            let how = Alignment { convergence, ..Alignment::of_region(ITERATIONS, ridge_of_label(k)) };
+            let how = Alignment::of_region(ITERATIONS, ridge_of_label(k)).until(convergence);
             let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
             let refined = ScoredMotion::new(level, motion);
             if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
