@@ -16,15 +16,15 @@ use crate::frame::Plane;
 use crate::labelling::regions::description::{border_lengths, counts};
 
 /// α: weight of the probability of the motion.
-const MOTION: f64 = 0.6;
+const MOTION: f64 = 0.55;
 /// β: weight of the agreement of the searches.
-const AGREEMENT: f64 = 4.44;
+const AGREEMENT: f64 = 2.72;
 /// γ: weight of the frame's border.
-const FRAME_BORDER: f64 = 4.06;
+const FRAME_BORDER: f64 = 5.64;
 /// δ: weight of the mean cost.
-const MISFIT: f64 = 4.06;
+const MISFIT: f64 = 5.32;
 /// ε.
-const CONSTANT: f64 = -1.06;
+const CONSTANT: f64 = 1.08;
 /// Smallest and largest P that are told apart. A safeguard.
 const LIMITS: [f32; 2] = [0.002, 0.998];
 
