@@ -311,15 +311,20 @@ impl RowBuffers {
         for (k, ((weight, residuals), (gx, gy))) in buffers.enumerate() {
             let chunk = k * CHUNK..((k + 1) * CHUNK).min(first.len());
             let n = chunk.len();
-            at.follow(&path, chunk.start, n, width, height);
-            at.sample(level.second.values(), &mut second);
-            at.sample(level.second_dx.values(), &mut second_dx);
-            at.sample(level.second_dy.values(), &mut second_dy);
             let mut given = [0.0; CHUNK];
             match weights {
                 Some(weights) => given[..n].copy_from_slice(&weights[chunk.clone()]),
                 None => given[..n].fill(1.0),
             }
+            if given.iter().all(|&weight| weight <= SMALLEST_WEIGHT) {
+                // Nothing counts here, as in much of the box around a region.
+                (*weight, *residuals, *gx, *gy) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
+                continue;
+            }
+            at.follow(&path, chunk.start, n, width, height);
+            at.sample(level.second.values(), &mut second);
+            at.sample(level.second_dx.values(), &mut second_dx);
+            at.sample(level.second_dy.values(), &mut second_dy);
             let (first, energy) =
                 (whole(&first[chunk.clone()], space_first), whole(&energy[chunk.clone()], space_energy));
             let (dx, dy) = (whole(&dx[chunk.clone()], space_dx), whole(&dy[chunk], space_dy));
