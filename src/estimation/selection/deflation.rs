@@ -104,8 +104,8 @@ pub(crate) fn add_motions(
 ) -> Option<AffineMotion> {
     let thinning = level.thinning(THINNING);
     let thinned = level.thinned(thinning);
-    let sampled: Vec<ScoredMotion> = proposals.iter().map(|&motion| ScoredMotion::new(&thinned, motion)).collect();
-    let rough: Vec<Plane> = sampled.iter().map(|scored| blocks(&scored.cost, BLOCK / thinning)).collect();
+    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
+    let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
     loop {
         let current = smallest_cost(selected);
         let current_blocks = blocks(&current, BLOCK);
@@ -124,14 +124,14 @@ pub(crate) fn add_motions(
             let (gain, scored) = refined(
                 &thinned,
                 &current_sample,
-                sampled[k].clone(),
+                proposals[k],
                 Deflation { window: how.window / thinning as f32, ..how },
             );
             if best.as_ref().is_none_or(|b| gain > b.0) {
                 best = Some((gain, scored));
             }
         }
-        match best.map(|(_, scored)| refined(level, &current, ScoredMotion::new(level, scored.motion), how)) {
+        match best.map(|(_, scored)| refined(level, &current, scored.motion, how)) {
             Some((gain, scored)) if gain >= how.price => selected.push(scored),
             rejected => return rejected.map(|r| r.1.motion).or(next),
         }
@@ -139,7 +139,8 @@ pub(crate) fn add_motions(
 }
 
 /// Refines a proposal in a few rounds on the region where it beats the current motions. Returns its gain and the motion.
-fn refined(level: &Level, current: &Plane, mut scored: ScoredMotion, how: Deflation) -> (f64, ScoredMotion) {
+fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflation) -> (f64, ScoredMotion) {
+    let mut scored = ScoredMotion::new(level, proposal);
     let mut improved = improvement(current, &scored.cost, how.window);
     let mut gain = gain_of(&improved);
     for round in 0..ROUNDS {
