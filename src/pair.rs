@@ -1,5 +1,6 @@
 //! The image pipeline: the stages that turn two frames into masks, in order.
 
+mod background;
 mod consensus;
 mod correction;
 mod evidence;
@@ -23,7 +24,6 @@ use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::{Appearance, FramePyramid};
 use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
-use crate::labelling::regions::description::length;
 use crate::labelling::regions::groups::groups;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
@@ -34,12 +34,15 @@ use crate::view::brightness::Photometric;
 use crate::view::cost::{View, noise};
 use crate::view::level::{Level, levels};
 use crate::workspace;
+use background::Solved;
 use consensus::{Finding, consensus, foreground};
 use labels::Labelled;
 use settings::Settings;
 
 /// Iterations that refine the dominant motion once the brightness is known. Chosen on generated scenes.
 const ITERATIONS: usize = 3;
+/// How often the change of brightness of a background at rest is measured: before its noise is known, and after. Not varied.
+const BRIGHTNESS_ROUNDS: usize = 2;
 
 /// The stages of [`segment_pair`], in order.
 const STAGES: &[&str] =
@@ -120,7 +123,7 @@ fn segment_with(
         searches.push(Search::new(pair, mirror, &settings, &mut stages));
     }
     let noise = searches.iter().map(|search| search.pair.finest().noise).fold(f32::INFINITY, f32::min);
-    let findings: Vec<Finding> = searches.iter_mut().map(|search| search.finding(noise)).collect();
+    let findings: Vec<Finding> = searches.iter().map(|search| search.finding(noise)).collect();
     let consensus = consensus(&findings);
     let mut search = searches.swap_remove(consensus.chosen);
     let level = search.pair.finest();
@@ -145,14 +148,8 @@ struct Search {
 }
 
 impl Search {
-    fn new(mut pair: Pair, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search {
-        stages.begin("dominant");
-        let dominant = pair.find_dominant(settings.dominant_search());
-        let (found, _) = hypothesis::best(&pair, dominant, &[], settings, stages);
-        stages.begin("refinement");
-        let found = hypothesis::refine(&pair, found, settings);
-        stages.begin("labels");
-        let labelled = labels::label(&pair, found, settings);
+    fn new(pair: Pair, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search {
+        let Solved { pair, labelled, .. } = background::solve(pair, &[], settings, stages);
         Search { mirror, pair, labelled }
     }
 
@@ -171,18 +168,14 @@ impl Search {
     }
 
     /// What was found, in the frames themselves. Descriptions can be compared only if they assume the same noise.
-    fn finding(&mut self, noise: f32) -> Finding {
+    fn finding(&self, noise: f32) -> Finding {
         let Labelled { motions, labels, .. } = &self.labelled;
-        let level = &mut self.pair.levels[0];
-        let width = level.width();
-        let measured = std::mem::replace(&mut level.noise, noise);
-        let length = length(&labels::estimation_costs(level, motions), labels, width);
-        level.noise = measured;
-        let mut foreground = foreground(labels, &groups(motions, labels, width, self.pair.reduction));
+        let level = self.pair.finest();
+        let mut foreground = foreground(labels, &groups(motions, labels, level.width(), self.pair.reduction));
         let mut labels = labels.clone();
-        self.mirror.reorder(&mut foreground, width);
-        self.mirror.reorder(&mut labels, width);
-        Finding { foreground, labels, length }
+        self.mirror.reorder(&mut foreground, level.width());
+        self.mirror.reorder(&mut labels, level.width());
+        Finding { foreground, labels, length: self.labelled.length(level, noise) }
     }
 }
 
@@ -202,6 +195,7 @@ fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<
 
 /// The levels of a pair, from the working size down. The frame before, if there is one, is a third view of the same scene; a pair
 /// of the same frames the other way round is one with the frames swapped.
+#[derive(Clone)]
 pub(crate) struct Pair {
     /// Level 0 is the working size.
     levels: Vec<Level>,
@@ -278,6 +272,22 @@ impl Pair {
             self.remove(photometric, View::Second);
         }
         self.measure_along(motion, brightness);
+    }
+
+    /// As [`find_dominant`](Self::find_dominant) where the background is at rest and objects, labelled at the working size, have these motions.
+    /// Along a single motion the change of brightness of plain ground would be that of the objects.
+    fn take_rest(&mut self, objects: &[AffineMotion], labels: &[u8], brightness: bool) {
+        let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(objects).copied().collect();
+        let width = self.finest().width();
+        for _ in 0..if brightness { BRIGHTNESS_ROUNDS } else { 0 } {
+            let level = &self.levels[self.base];
+            let label = |x: usize, y: usize| usize::from(labels[(y << level.index) * width + (x << level.index)]);
+            let photometric = Photometric::along_labels(level, &motions, label);
+            self.remove(photometric, View::Second);
+            let level = &mut self.levels[self.base];
+            level.noise = noise(level, &AffineMotion::STATIC);
+        }
+        self.measure_along(&AffineMotion::STATIC, brightness);
     }
 
     /// Measures the noise along the dominant motion and removes the change of brightness from the frame before.

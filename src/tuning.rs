@@ -30,8 +30,6 @@ pub enum Tuned {
     GainMargin,
     /// Gain that pays for a motion in the selection.
     SelectionPrice,
-    /// Price of a motion when two hypotheses about the dominant one are compared.
-    HypothesisPrice,
     /// Price of a border between labels.
     Smoothness,
     /// Share of it that remains at the strongest edge.

@@ -17,7 +17,7 @@ const FACTORS: [f32; 2] = [0.5, 1.5];
 const SIGNIFICANT: f64 = 2.0;
 
 /// The constants, each with what it is and its name in the sources, in the order of the pipeline.
-const CONSTANTS: [(Tuned, &str); 31] = [
+const CONSTANTS: [(Tuned, &str); 30] = [
     (Tuned::PositionSigma, "position error of a correct motion, `POSITION_SIGMA`"),
     (Tuned::EstimationTruncation, "largest cost in estimation, `ESTIMATION_TRUNCATION`"),
     (Tuned::LabelTruncation, "largest cost of a label, `LABEL_TRUNCATION`"),
@@ -29,7 +29,6 @@ const CONSTANTS: [(Tuned, &str); 31] = [
     (Tuned::GainWindow, "window of gains, `gain_window`"),
     (Tuned::GainMargin, "gain that does not count, `deflation::MARGIN`"),
     (Tuned::SelectionPrice, "price of a motion in selection, `price`"),
-    (Tuned::HypothesisPrice, "price of a motion of a hypothesis, `hypothesis_price`"),
     (Tuned::Smoothness, "price of a border, `smoothness`"),
     (Tuned::EdgeShare, "share of it left at an edge, `EDGE_SHARE`"),
     (Tuned::EdgeStep, "step that makes an edge, `SMALLEST_STEP` and `NOISE_STEPS`"),

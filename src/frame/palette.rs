@@ -8,6 +8,12 @@ const STEPS: usize = 8;
 /// Number of different colours.
 pub(crate) const COLOURS: usize = STEPS * STEPS * STEPS;
 
+/// The colour that is a step brighter in every channel, if there is one.
+pub(crate) fn brighter(colour: usize) -> Option<usize> {
+    let channels = [colour / (STEPS * STEPS), colour / STEPS % STEPS, colour % STEPS];
+    channels.iter().all(|&channel| channel + 1 < STEPS).then_some(colour + (STEPS + 1) * STEPS + 1)
+}
+
 /// The quantised colour of every working pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {

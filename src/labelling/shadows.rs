@@ -18,7 +18,7 @@ use super::terms::smoothness::Borders;
 use super::{BACKGROUND, is_background, objects};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
-use crate::frame::palette::{COLOURS, Palette};
+use crate::frame::palette::{COLOURS, Palette, brighter};
 use crate::frame::warp::warp;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost};
@@ -109,10 +109,11 @@ fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane) -> Option<Buffer
         }
     }
     let [ground, object] = totals;
-    let ratio = |&[of_ground, of_object]: &[f32; 2]| {
+    let ratio = |(colour, &[of_ground, of_object]): (usize, &[f32; 2])| {
+        let of_ground = brighter(colour).map_or(of_ground, |brighter| f32::max(of_ground, counts[brighter][0]));
         libm::logf((of_object / object + PRIOR) / (of_ground / ground + PRIOR)).clamp(-MOST, MOST)
     };
-    (ground >= FEWEST && object >= FEWEST).then(|| counts.iter().map(ratio).collect())
+    (ground >= FEWEST && object >= FEWEST).then(|| counts.iter().enumerate().map(ratio).collect())
 }
 
 #[cfg(test)]

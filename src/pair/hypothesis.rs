@@ -1,4 +1,4 @@
-//! The motions of a pair: they are proposed and selected under each hypothesis about the dominant motion, then refined level by level.
+//! The motions of a pair: they are proposed and selected beside the dominant one, then refined level by level.
 
 use super::Pair;
 use super::settings::{Part, Settings};
@@ -16,13 +16,6 @@ use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
 
-/// The hypothesis of a static background is tried only if adding the zero motion to those found lowers the cost below this share.
-/// In frames with large flat areas, one affine motion fitted across several objects can explain more than the static background does;
-/// much of the background is then left unexplained. Chosen on generated scenes.
-const STATIC_GAIN_SHARE: f64 = 0.95;
-/// The hypothesis wins only if its motions together cost less than this share of those found with the dominant motion. A background
-/// that moves by less than a pixel costs about the same as a static one plus one more motion. Chosen on generated scenes.
-const CLEARLY_CHEAPER: f64 = 0.9;
 /// Rounds of refinement after the first selection, of the winning hypothesis, and at each finer level. Chosen on generated scenes.
 const ROUNDS: [usize; 3] = [1, 2, 1];
 /// Distance of the pixels looked at on finer levels, and proposals tried there in each round. For speed.
@@ -59,28 +52,6 @@ pub(super) struct Found {
     pub(super) runner_up: Option<AffineMotion>,
 }
 
-/// The motions selected with the dominant motion as found or, where those are clearly cheaper, with a static background; and their cost.
-pub(super) fn best(
-    pair: &Pair,
-    dominant: AffineMotion,
-    likely: &[AffineMotion],
-    settings: &Settings,
-    stages: &mut Stages<'_>,
-) -> (Found, f64) {
-    let (mut winner, mut least) = with_dominant(pair, dominant, likely, settings, stages);
-    let other = dominant != AffineMotion::STATIC && settings.has(Part::StaticHypothesis);
-    if other && static_is_missing(&pair.levels[pair.selection], &winner.selected) {
-        let (found, cost) = {
-            let others: Vec<AffineMotion> = likely.iter().copied().chain([dominant]).collect();
-            with_dominant(pair, AffineMotion::STATIC, &others, settings, stages)
-        };
-        if cost < CLEARLY_CHEAPER * least {
-            (winner, least) = (found, cost);
-        }
-    }
-    (winner, least)
-}
-
 /// The motions with which labels go on, each refined on the pixels that it is expected to have; those that have become needless are left
 /// out, together with their pixels. And their cost. The first motion is the dominant one.
 pub(super) fn followed(
@@ -104,7 +75,7 @@ pub(super) fn followed(
     if settings.least == 1 {
         prune(&mut selected, settings.price[0]);
     }
-    let cost = cost_of(&selected, settings);
+    let cost = cost_of(&selected);
     let number = |motion: &AffineMotion| selected.iter().position(|scored| scored.motion == *motion);
     let numbers: Vec<u8> = all.iter().map(|motion| number(motion).unwrap_or(BACKGROUND) as u8).collect();
     labels.iter_mut().for_each(|label| *label = numbers[usize::from(*label)]);
@@ -124,14 +95,14 @@ pub(super) fn is_missing(pair: &Pair, found: &Found, settings: &Settings) -> boo
 }
 
 /// The cost of motions.
-pub(super) fn cost(pair: &Pair, motions: &[AffineMotion], settings: &Settings) -> f64 {
+pub(super) fn cost(pair: &Pair, motions: &[AffineMotion]) -> f64 {
     let level = &pair.levels[pair.selection];
     let scored: Vec<ScoredMotion> = motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect();
-    cost_of(&scored, settings)
+    cost_of(&scored)
 }
 
-fn cost_of(selected: &[ScoredMotion], settings: &Settings) -> f64 {
-    total(&smallest_cost(selected)) + settings.hypothesis_price * selected.len() as f64
+fn cost_of(selected: &[ScoredMotion]) -> f64 {
+    total(&smallest_cost(selected))
 }
 
 /// The motions selected among those expected, without a search for others, and their cost. The first is the dominant one.
@@ -145,7 +116,7 @@ pub(super) fn expected(
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, objects, settings.deflation(0));
     settings.refit(level, &mut selected, 1);
-    let cost = cost_of(&selected, settings);
+    let cost = cost_of(&selected);
     (Found { selected, runner_up }, cost)
 }
 
@@ -155,16 +126,8 @@ pub(super) fn known(pair: &Pair, motions: &[AffineMotion], runner_up: Option<Aff
     Found { selected: motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect(), runner_up }
 }
 
-/// Whether the zero motion explains much that no selected motion does.
-fn static_is_missing(level: &Level, selected: &[ScoredMotion]) -> bool {
-    let found = smallest_cost(selected);
-    let mut with_static = found.clone();
-    ScoredMotion::new(level, AffineMotion::STATIC).lower(&mut with_static);
-    total(&with_static) < STATIC_GAIN_SHARE * total(&found)
-}
-
-/// The motions selected under one hypothesis, and their cost.
-fn with_dominant(
+/// The motions selected beside the dominant one, and their cost.
+pub(super) fn with_dominant(
     pair: &Pair,
     dominant: AffineMotion,
     others: &[AffineMotion],
@@ -188,7 +151,7 @@ fn with_dominant(
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(0));
     settings.refit(level, &mut selected, ROUNDS[0]);
-    let cost = cost_of(&selected, settings);
+    let cost = cost_of(&selected);
     (Found { selected, runner_up }, cost)
 }
 

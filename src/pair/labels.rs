@@ -9,7 +9,7 @@ use super::hypothesis::Found;
 use super::settings::{Part, Settings};
 use crate::components::absorb_small;
 use crate::frame::Plane;
-use crate::labelling::regions::description::{counts, price_of_motion, smallest_share, worth};
+use crate::labelling::regions::description::{counts, length, price_of_motion, smallest_share, worth};
 use crate::labelling::regions::merging::best_merger;
 use crate::labelling::regions::splitting::{split_bodies, split_components};
 use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
@@ -45,6 +45,14 @@ pub(super) struct Labelled {
     pub(super) labels: Buffer<u8>,
     /// The best motion that was rejected, here or during selection, because it did not pay for itself.
     pub(super) runner_up: Option<AffineMotion>,
+}
+
+impl Labelled {
+    /// Description length of both frames on the level of the working size if their noise is as given, nats.
+    pub(super) fn length(&self, level: &Level, noise: f32) -> f64 {
+        let level = Level { noise, ..level.clone() };
+        length(&estimation_costs(&level, &self.motions), &self.labels, level.width())
+    }
 }
 
 /// A labelling in progress: the motions, their costs and the current labels.

@@ -73,8 +73,6 @@ pub(crate) struct Settings {
     pub(crate) refinement: Convergence,
     /// Gain that pays for a motion in the first selection and at finer levels (costs summed over the pixels looked at).
     pub(crate) price: [f64; 2],
-    /// Price of a motion when two hypotheses about the dominant one are compared.
-    pub(crate) hypothesis_price: f64,
     /// Largest number of motions.
     pub(crate) most: usize,
     /// Number of motions below which none is taken away again.
@@ -120,8 +118,6 @@ const CONVERGING: [Convergence; 2] =
 const OBJECT_BIAS: f32 = 0.05;
 /// Gains that pay for a motion in the first selection and, on a quarter of the pixels, at finer levels. Chosen on generated scenes.
 const PRICE: [f64; 2] = [60.0, 30.0];
-/// Price of a motion in the comparison of two hypotheses. Insensitive.
-const HYPOTHESIS_PRICE: f64 = 300.0;
 
 /// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.
 fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
@@ -166,7 +162,6 @@ impl Settings {
             dominant: converging,
             refinement: converging,
             price: PRICE.map(|price| tuned(Tuned::SelectionPrice, price)),
-            hypothesis_price: tuned(Tuned::HypothesisPrice, HYPOTHESIS_PRICE),
             most: 7,
             least: 1,
             gain_window: tuned(Tuned::GainWindow, 2.0),

@@ -1,5 +1,6 @@
 //! A pair solved at the working size, for those who go on from there: no numbering, no full-size labels, no evidence for the number.
 
+use super::background::{self, Solved};
 use super::settings::Settings;
 use super::{Pair, hypothesis, labels};
 use crate::frame::mirror::Mirror;
@@ -128,12 +129,11 @@ pub(crate) fn solve(
         _ => None,
     }
     .unwrap_or_else(|| {
-        pair = Pair::new(first, pyramid, second, None, settings);
-        let dominant = pair.find_dominant(settings.dominant_search());
-        let (found, cost) = hypothesis::best(&pair, dominant, likely, settings, &mut stages);
-        let labelled = labels::label(&pair, hypothesis::refine(&pair, found, settings), settings);
+        let Solved { pair: solved, labelled, cost } =
+            background::solve(Pair::new(first, pyramid, second, None, settings), likely, settings, &mut stages);
+        pair = solved;
         let limits = if settings.follows {
-            let cost = hypothesis::cost(&pair, &labelled.motions, settings);
+            let cost = hypothesis::cost(&pair, &labelled.motions);
             [(1.0 + TOLERANCE_FOLLOWED) * cost, cost]
         } else {
             [(1.0 + TOLERANCE) * cost, cost]

@@ -48,14 +48,32 @@ impl Photometric {
             View::Second => (&*level.second, *motion),
             View::Before => (level.before.as_deref()?, inverse(motion)?),
         };
-        let scaled = level.scaled(&motion);
+        Some(Photometric::measured(level, view, &[motion], |_, _| 0))
+    }
+
+    /// The change between the first frame and the second where each pixel has one of several motions, the one of its `label`.
+    pub(crate) fn along_labels(
+        level: &Level,
+        motions: &[AffineMotion],
+        label: impl Fn(usize, usize) -> usize,
+    ) -> Photometric {
+        Photometric::measured(level, &level.second, motions, label)
+    }
+
+    fn measured(
+        level: &Level,
+        view: &Plane,
+        motions: &[AffineMotion],
+        label: impl Fn(usize, usize) -> usize,
+    ) -> Photometric {
+        let scaled: Vec<AffineMotion> = motions.iter().map(|motion| level.scaled(motion)).collect();
         let sample = |x: usize, y: usize| {
-            let (px, py) = level.path(&scaled, x, y).at(0);
+            let (px, py) = level.path(&scaled[label(x, y)], x, y).at(0);
             let footprint = Footprint::new(px, py, view.width(), view.height());
             footprint.inside.then(|| footprint.sample(view.values()))
         };
         let start = Photometric::from_moments(&level.first, view);
-        Some((0..STEPS).fold(start, |photometric, _| photometric.step(level, sample)))
+        (0..STEPS).fold(start, |photometric, _| photometric.step(level, sample))
     }
 
     /// One reweighted least squares step between the pixels of the first frame and the samples of the view that belong to them.
