@@ -2,6 +2,8 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
+#[path = "../experiments/boundary.rs"]
+mod boundary;
 #[path = "../experiments/clips/scores.rs"]
 mod scores;
 

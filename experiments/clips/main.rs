@@ -1,6 +1,8 @@
 //! The clip benchmark: labels that persist through time, of generated and real clips, beside what OpenCV gives.
 //! `npm run bench:clips` runs it.
 
+#[path = "../boundary.rs"]
+mod boundary;
 mod cases;
 mod figures;
 mod linking;

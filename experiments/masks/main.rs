@@ -2,10 +2,13 @@
 //! `npm run bench:masks` runs it.
 
 mod ablation;
+#[path = "../boundary.rs"]
+mod boundary;
 mod cases;
 mod honesty;
 mod junctions;
 mod measure;
+mod outcome;
 mod page;
 #[path = "../panels.rs"]
 mod panels;
@@ -23,7 +26,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cases::Case;
-use measure::Method;
+use outcome::Method;
 use parallel::in_parallel;
 
 const HELP: &str = "\

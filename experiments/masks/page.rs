@@ -7,7 +7,8 @@ use serde_json::{Map, Value};
 
 use crate::ablation::Worth;
 use crate::cases::Set;
-use crate::measure::{Measured, Method, Outcome};
+use crate::measure::Measured;
+use crate::outcome::{Method, Outcome};
 use crate::summary::Summary;
 
 /// How many of the best and of the worst cases are shown …
