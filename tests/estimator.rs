@@ -1,7 +1,7 @@
 //! The estimator compared with the statistical limit, on the paper's experiment and on difficult inputs.
 //!
-//! The oracle knows the true labels. No method without them can be more accurate; not knowing them costs up to 15 %. The full tables:
-//! `cargo test --release --test estimator -- --ignored --nocapture` (environment variables TRIALS, SEED).
+//! The oracle knows the true labels. No method without them can be more accurate; not knowing them costs up to 15 %. The full table:
+//! `npm run paper -- --table limit`.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
@@ -280,86 +280,3 @@ fn the_same_input_gives_the_same_bits_everywhere() {
 
 /// Changes with the arithmetic (see CONTRIBUTING.md, "Golden hashes"). A failing test prints the new value.
 const GOLDEN: u64 = 0xe4fd_ba56_39b4_eb3e;
-
-#[cfg(not(target_arch = "wasm32"))]
-mod tables {
-    use std::time::Instant;
-
-    use super::support::protocol::{Problem, Relation};
-    use super::*;
-
-    fn environment(name: &str, default: u64) -> u64 {
-        std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(default)
-    }
-
-    fn print(name: &str, protocol: &Protocol) {
-        let (trials, seed) = (environment("TRIALS", 50), environment("SEED", 1));
-        let cell = cell(protocol, trials, seed);
-        let mut times: Vec<f64> =
-            (0..trials.min(50)).map(|t| milliseconds(&protocol.problem(t), protocol.motions)).collect();
-        times.sort_by(f64::total_cmp);
-        println!(
-            "{name:22} n {}  p {:4.2}  outliers {:.1}  error {:6.3} %  oracle {:6.3} %  ratio {:.3}  failures {}/{trials}  {:.2} ms",
-            protocol.motions,
-            protocol.noise,
-            protocol.outliers,
-            100.0 * cell.error,
-            100.0 * cell.oracle,
-            cell.error / cell.oracle,
-            cell.failures,
-            times[times.len() / 2]
-        );
-    }
-
-    fn milliseconds(problem: &Problem, n: usize) -> f64 {
-        let start = Instant::now();
-        fit(&problem.measurements, MotionCount::Given(n)).unwrap();
-        start.elapsed().as_secs_f64() * 1e3
-    }
-
-    #[test]
-    #[ignore = "a table, for reading"]
-    fn ratios() {
-        for noise in [0.02, 0.05] {
-            (2..=6).for_each(|n| print("general", &Protocol::new(n, noise)));
-        }
-        (2..=5).for_each(|n| print("outliers", &Protocol { outliers: 0.3, ..Protocol::new(n, 0.02) }));
-        print("one motion 5 %", &Protocol { first_share: Some(0.05), ..Protocol::new(4, 0.05) });
-        for distance in [0.2, 0.1] {
-            (2..=3).for_each(|n| {
-                print("near", &Protocol { relation: Relation::Near(distance), ..Protocol::new(n, 0.05) })
-            });
-        }
-    }
-
-    #[test]
-    #[ignore = "a table, for reading"]
-    fn configurations() {
-        for relation in SPECIAL {
-            (2..=4).for_each(|n| print(&format!("{relation:?}"), &Protocol { relation, ..Protocol::new(n, 0.05) }));
-        }
-    }
-
-    #[test]
-    #[ignore = "a table, for reading"]
-    fn numbers() {
-        let (trials, seed) = (environment("TRIALS", 50), environment("SEED", 1));
-        for (noise, outliers) in
-            [(0.0, 0.0), (0.02, 0.0), (0.05, 0.0), (0.1, 0.0), (0.0, 0.2), (0.02, 0.2), (0.05, 0.2)]
-        {
-            for n in 1..=5 {
-                let right = number_right(&Protocol { outliers, ..Protocol::new(n, noise) }, trials, seed);
-                println!("p {noise:4.2}  outliers {outliers:.1}  n {n}: {right}/{trials} right");
-            }
-        }
-    }
-
-    #[test]
-    #[ignore = "a table, for reading"]
-    fn large_inputs() {
-        for count in [1_000, 10_000, 100_000, 300_000] {
-            let problem = Protocol { count, ..Protocol::new(4, 0.05) }.problem(1);
-            println!("N {count}: {:.1} ms", milliseconds(&problem, 4));
-        }
-    }
-}
