@@ -1,15 +1,12 @@
-//! Cases measured on a few threads.
+//! Cases measured side by side, each on a thread of its own.
 
 use std::error::Error;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Threads at most: each works on a case of its own.
-const MOST_THREADS: usize = 2;
-
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
-/// `work` on every case, on a few threads; the results in the order of the cases, or the first error.
+/// `work` on every case, on all cores; the results in the order of the cases, or the first error.
 pub(crate) fn in_parallel<C: Sync, T: Send>(cases: &[C], work: impl Fn(&C) -> Result<T> + Sync) -> Result<Vec<T>> {
     let next = AtomicUsize::new(0);
     let results: Mutex<Vec<(usize, Result<T>)>> = Mutex::new(Vec::new());
@@ -26,7 +23,7 @@ pub(crate) fn in_parallel<C: Sync, T: Send>(cases: &[C], work: impl Fn(&C) -> Re
             }
         }
     };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(MOST_THREADS);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
     std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(worker))));
     let mut results = results.into_inner().map_err(|_| "a thread ended early")?;
     results.sort_by_key(|(k, _)| *k);

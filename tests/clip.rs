@@ -140,6 +140,7 @@ fn scene(ground: u64, things: &[Thing], count: usize) -> (Vec<Frame>, Vec<Vec<us
     (0..count).map(|t| frame(ground, things, t)).unzip()
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn two_that_cross_keep_their_numbers() {
     let things = [
@@ -163,6 +164,7 @@ fn assert_covered_and_back(things: [Thing; 2], count: usize) {
     assert_eq!(one_number(&done, &truths, 1, hidden[hidden.len() - 1] + 3..count), before);
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_was_covered_by_another_gets_its_number_back() {
     let things = [
@@ -172,6 +174,7 @@ fn one_that_was_covered_by_another_gets_its_number_back() {
     assert_covered_and_back(things, 20);
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn repeated_frames_do_not_stop_what_is_covered() {
     // Frame 7 repeats frame 6 and frame 12 repeats frame 11, where the one is hidden.
@@ -186,6 +189,7 @@ fn repeated_frames_do_not_stop_what_is_covered() {
 }
 
 /// As where the rate of frames was raised.
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn what_moves_is_seen_in_repeated_frames_too() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * (t / 2) as f32, 44.0])];
@@ -196,6 +200,7 @@ fn what_moves_is_seen_in_repeated_frames_too() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_stops_is_still_itself() {
     let things = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * if t < 6 { t } else { (t - 4).max(6) } as f32, 44.0])];
@@ -206,6 +211,7 @@ fn one_that_stops_is_still_itself() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_that_was_hidden_gets_its_number_back() {
     // Behind a post that belongs to the background.
@@ -217,6 +223,7 @@ fn one_that_was_hidden_gets_its_number_back() {
     assert_eq!(one_number(&done, &truths, 1, 17..20), before);
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn parts_that_move_together_are_one_object() {
     // A post of the background stands before it in all frames: it is never in sight as a whole.
@@ -227,6 +234,7 @@ fn parts_that_move_together_are_one_object() {
     assert!(done.iter().all(|frame| frame.objects.len() == 1), "one object and no other");
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_cut_ends_all_objects() {
     let one = [thing(2, [34.0, 30.0], |t| [20.0 + 4.0 * t as f32, 44.0])];
@@ -316,6 +324,7 @@ fn moving_and_resting() -> (Vec<Frame>, Vec<Vec<usize>>) {
     scene(1, &things, 12)
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_corrected_mask_holds_and_spreads_both_ways() {
     let (frames, truths) = moving_and_resting();
@@ -340,6 +349,7 @@ fn a_corrected_mask_holds_and_spreads_both_ways() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_stroke_takes_the_region_around_it_along() {
     let (frames, truths) = moving_and_resting();
@@ -363,6 +373,7 @@ fn a_stroke_takes_the_region_around_it_along() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_new_number_of_an_object_lasts() {
     let (frames, truths) = moving_and_resting();
@@ -372,6 +383,7 @@ fn a_new_number_of_an_object_lasts() {
     assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 40);
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn objects_can_be_merged_and_removed() {
     let (frames, truths) = moving_and_resting();
@@ -436,6 +448,7 @@ fn a_clip_goes_on_from_known_pairs_to_the_same_labels() {
     assert!(FramePairs::from_bytes(&pairs.to_bytes()[..4]).is_err());
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn undecided_pixels_are_marked_when_asked() {
     let (frames, _) = moving_and_resting();

@@ -101,6 +101,7 @@ fn strokes_hold_exactly_and_distant_labels_do_not_change() {
     assert_eq!(counted + corrected.unlabelled, case.pixels());
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn one_stroke_corrects_a_region() {
     // An object was labelled as background: its labels are lost, its motion is known.
@@ -121,6 +122,7 @@ fn one_stroke_corrects_a_region() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn an_excluded_label_is_removed_and_a_full_set_is_no_constraint() {
     let case = Case::new(320, 240, 5);
@@ -138,6 +140,7 @@ fn an_excluded_label_is_removed_and_a_full_set_is_no_constraint() {
     assert_eq!(kept.labels[y * case.found.width + x], 1);
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn unlabelled_pixels_without_strokes_stay_unlabelled() {
     let case = Case::new(320, 240, 5);

@@ -290,6 +290,7 @@ fn by_the_five_steps(data: &Measurements, n: usize, _: &mut Random) -> Vec<Affin
     five_steps(&MultibodyMotion::estimate(data, n).unwrap())
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_open_problem_is_solved_every_special_configuration_is_recovered() {
     for (name, special) in CONFIGURATIONS {
@@ -299,6 +300,7 @@ fn the_open_problem_is_solved_every_special_configuration_is_recovered() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn every_special_configuration_is_recovered_with_noise() {
     for (name, special) in CONFIGURATIONS {

@@ -4,6 +4,8 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
+use std::ops::Range;
+
 use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
 use veronese::{
     AffineMotion, Error, Frame, MAX_MOTIONS, MotionCount, Plane, Quality, SegmentOptions, Segmentation,
@@ -117,6 +119,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn generated_scenes_are_segmented() {
     let mut all = Vec::new();
@@ -179,6 +182,7 @@ fn motions_are_measured_to_a_fraction_of_a_pixel() {
 }
 
 /// The scene of Figures 2 and 3 of the paper: two small robots with nearly the same motion on a static background.
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_leader_and_the_follower_are_separate_motions() {
     let mut told_apart = 0;
@@ -191,6 +195,7 @@ fn the_leader_and_the_follower_are_separate_motions() {
 }
 
 /// A single motion fitted to all cars explains more than a static ground, until the cars have motions of their own.
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_bare_ground_is_left_at_rest_by_the_cars_on_it() {
     for seed in [1, 2] {
@@ -300,6 +305,7 @@ fn unrelated_frames_give_a_valid_result() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_number_of_motions_can_be_given() {
     let scene = scene::generate(&SceneOptions {
@@ -351,7 +357,7 @@ fn pixels_without_texture_are_unknown() {
     };
     let frame = half(0.0);
     let result = segment(&frame, &frame, marked);
-    let unknown = |columns: std::ops::Range<usize>| {
+    let unknown = |columns: Range<usize>| {
         columns
             .clone()
             .flat_map(|x| (0..90).map(move |y| y * 120 + x))
@@ -386,6 +392,7 @@ fn calibration(quality: Quality) -> [(usize, usize); 5] {
     bins
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn more_confident_labels_are_more_often_right() {
     for quality in [Quality::Fast, Quality::Best] {
@@ -455,11 +462,10 @@ fn large_motions(seed: u64) -> SceneOptions {
     }
 }
 
-#[test]
-fn a_frame_before_improves_the_labels_of_occluded_pixels() {
+fn assert_improved(seeds: Range<u64>) {
     let mut with = Vec::new();
     let mut without = Vec::new();
-    for seed in 400..406 {
+    for seed in seeds {
         let options = large_motions(seed);
         let scene = scene::generate(&options).unwrap();
         with.push(right_where_hidden(&scene, Some(scene.before())));
@@ -468,12 +474,23 @@ fn a_frame_before_improves_the_labels_of_occluded_pixels() {
     assert!(mean(&with) > 0.96 && mean(&with) > mean(&without) + 0.01, "with {with:.3?}, without {without:.3?}");
 }
 
-/// Clouds and automatic exposure change the frame before as much as the second frame.
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
-fn a_frame_before_helps_as_much_when_the_brightness_changes() {
+fn a_frame_before_improves_the_labels_of_occluded_pixels() {
+    assert_improved(400..403);
+}
+
+#[test]
+#[ignore = "npm run soak"]
+fn a_frame_before_improves_the_labels_of_occluded_pixels_of_many_scenes() {
+    assert_improved(400..412);
+}
+
+/// Clouds and automatic exposure change the frame before as much as the second frame.
+fn assert_as_helpful(seeds: Range<u64>) {
     let mut with = Vec::new();
     let mut constant = Vec::new();
-    for seed in 400..406 {
+    for seed in seeds {
         let options = large_motions(seed);
         let overlap = |options: &SceneOptions| {
             let scene = scene::generate(options).unwrap();
@@ -487,7 +504,20 @@ fn a_frame_before_helps_as_much_when_the_brightness_changes() {
     assert!(mean(&with) > mean(&constant) - 0.02, "with a change {with:.3?}, without {constant:.3?}");
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_frame_before_helps_as_much_when_the_brightness_changes() {
+    assert_as_helpful(400..402);
+}
+
+#[test]
+#[ignore = "npm run soak"]
+fn a_frame_before_helps_as_much_when_the_brightness_of_many_scenes_changes() {
+    assert_as_helpful(400..412);
+}
+
 /// The frame before must not affect the motion of the background, because bare ground looks alike in all frames.
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn a_frame_before_leaves_a_bare_ground_at_rest() {
     for seed in [1, 2] {
@@ -532,6 +562,7 @@ fn mirrored<T>(pixels: &mut [T], width: usize, [columns, rows]: [bool; 2]) {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn mirrored_frames_give_the_mirrored_masks() {
     let scene = scene::generate(&SceneOptions { width: 203, height: 150, seed: 5, ..SceneOptions::default() }).unwrap();

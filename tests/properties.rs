@@ -1,4 +1,4 @@
-//! Properties of the algebra for random inputs.
+//! Properties of the algebra for random inputs; more of them with the environment variable PROPTEST_CASES.
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 #![cfg(not(target_arch = "wasm32"))]
 
@@ -44,7 +44,7 @@ fn sine(a: &[f64; 3], b: &[f64; 3]) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn the_veronese_map_is_homogeneous(n in 1usize..=10, v in vector(), factor in -1.5..1.5f64) {

@@ -80,82 +80,6 @@ fn warping_by_the_true_motions_restores_the_first_frame() {
 }
 
 #[test]
-fn the_residual_of_the_true_motions_is_the_noise() {
-    let mut options = SceneOptions { width: 160, height: 120, objects: 1, noise: 0.0, seed: 3, ..Default::default() };
-    options.background = Background::Static;
-    let clean = residuals(&scene::generate(&options).unwrap(), &[AffineMotion::STATIC; 2])[0].0;
-    options.noise = 4.0;
-    let scene = scene::generate(&options).unwrap();
-    let noisy = residuals(&scene, &[AffineMotion::STATIC; 2])[0].0;
-    let mean: f64 = scene.first().luminance().values().iter().map(|&v| f64::from(v)).sum::<f64>() / (160.0 * 120.0);
-    let expected = 4.0 * (2.0 * mean / 128.0).sqrt();
-    assert!(clean < 0.01, "a static background differs by {clean}");
-    assert!((noisy / expected - 1.0).abs() < 0.15, "{noisy} instead of {expected}");
-}
-
-#[test]
-fn speeds_and_backgrounds_match_the_options() {
-    for (speed, low, high) in [(Speed::SubPixel, 0.5, 1.5), (Speed::Medium, 1.5, 5.0), (Speed::Large, 5.0, 20.0)] {
-        for seed in 0..3 {
-            let options = SceneOptions { speed, background: Background::Static, seed, ..Default::default() };
-            let scene = scene::generate(&options).unwrap();
-            assert_eq!(scene.motions[0], AffineMotion::STATIC);
-            for (label, motion) in scene.motions.iter().enumerate().skip(1) {
-                let pixels: Vec<usize> =
-                    (0..scene.labels.len()).filter(|&p| usize::from(scene.labels[p]) == label).collect();
-                let mut mean = [0.0; 2];
-                for &p in &pixels {
-                    let flow = motion.flow((p % 320) as f64, (p / 320) as f64);
-                    mean = [mean[0] + flow[0] / pixels.len() as f64, mean[1] + flow[1] / pixels.len() as f64];
-                }
-                // An object has the given speed at its centre. The mean over an object cut by the frame may differ a little.
-                let speed = (mean[0] * mean[0] + mean[1] * mean[1]).sqrt();
-                assert!(speed > 0.7 * low && speed < 1.2 * high, "seed {seed}: {speed} px");
-            }
-        }
-    }
-    let moving = scene::generate(&SceneOptions::default()).unwrap();
-    assert_ne!(moving.motions[0], AffineMotion::STATIC);
-}
-
-#[test]
-fn the_robots_are_small_and_move_alike() {
-    let scene = scene::leader_follower(1).unwrap();
-    assert_eq!((scene.first().width(), scene.first().height(), scene.motions.len()), (200, 150, 3));
-    for label in 1..3 {
-        let count = scene.labels.iter().filter(|&&l| l == label).count();
-        assert!((600..1200).contains(&count), "robot {label} has {count} pixels");
-    }
-    let [_, leader, follower] = [scene.motions[0], scene.motions[1], scene.motions[2]];
-    assert!((leader.matrix[1] - follower.matrix[1]).abs() < 0.02);
-    assert_eq!(scene.motions[0], AffineMotion::STATIC);
-    assert!(residuals(&scene, &scene.motions).iter().all(|r| r.0 < 4.0));
-}
-
-#[test]
-fn a_bare_ground_is_nearly_even_and_its_cars_are_not() {
-    for seed in [4, 5] {
-        let scene = scene::bare_ground(seed).unwrap();
-        let (width, height) = (scene.first().width(), scene.first().height());
-        assert_eq!((width, height, scene.motions.len()), (384, 216, 3 + (seed % 2) as usize));
-        assert_eq!(scene.motions[0], AffineMotion::STATIC);
-        // Share of the pixels of a label with a step of more than twelve grey levels, ten standard deviations of the noise.
-        let luminance = scene.first().luminance();
-        let steep = |label: u8| {
-            let inner = |p: usize| (scene.labels[p], scene.labels[p + 2]) == (label, label);
-            let pixels: Vec<usize> = (0..width * height - 2).filter(|&p| p % width < width - 2 && inner(p)).collect();
-            let step = |p: usize| (luminance.values()[p + 2] - luminance.values()[p]).abs();
-            pixels.iter().filter(|&&p| step(p) > 12.0).count() as f64 / pixels.len() as f64
-        };
-        assert!(steep(0) < 0.02, "{}", steep(0));
-        for label in 1..scene.motions.len() as u8 {
-            assert!(steep(label) > 0.04, "car {label}: {}", steep(label));
-        }
-        assert!(residuals(&scene, &scene.motions).iter().all(|r| r.0 < 4.0));
-    }
-}
-
-#[test]
 fn occluded_pixels_are_those_hidden_or_outside() {
     let mut options =
         SceneOptions { speed: Speed::Large, background: Background::Static, seed: 5, ..Default::default() };
@@ -221,26 +145,19 @@ fn hash_of(scene: &Scene) -> u64 {
     hash(pixels.chain(scene.labels.iter().copied()).chain(occluded).chain(motions))
 }
 
+/// One scene of every kind: what a scene shows and claims changes only on purpose.
 #[test]
 fn the_same_seed_gives_the_same_bytes_on_every_machine() {
-    let options = SceneOptions { width: 96, height: 64, colour: true, seed: 99, ..SceneOptions::default() };
-    let scene = scene::generate(&options.with_drawn_camera()).unwrap();
-    assert_eq!(format!("{:016x}", hash_of(&scene)), "31adf922886e66fc");
-    assert_eq!(format!("{:016x}", hash_of(&scene::leader_follower(1).unwrap())), "f0155a546e06d78a");
-}
-
-#[test]
-fn the_slowest_objects_move_a_third_of_a_pixel() {
-    for seed in 1..4 {
-        let slow = SceneOptions { objects: 1, speed: Speed::Creeping, seed, ..SceneOptions::default() };
-        let scene = scene::generate(&SceneOptions { width: 120, height: 90, ..slow }).unwrap();
-        assert_eq!(scene.motions.len(), 2);
-        let (background, object) = (scene.motions[0], scene.motions[1]);
-        let own: Vec<usize> = (0..scene.labels.len()).filter(|&p| scene.labels[p] == 1).collect();
-        let centre = |of: &dyn Fn(usize) -> usize| own.iter().map(|&p| of(p) as f64).sum::<f64>() / own.len() as f64;
-        let (x, y) = (centre(&|p| p % 120), centre(&|p| p / 120));
-        let ([u, v], [a, b]) = (background.flow(x, y), object.flow(x, y));
-        let relative = ((u - a) * (u - a) + (v - b) * (v - b)).sqrt();
-        assert!((relative - 0.3).abs() < 0.05, "{relative}");
+    let small = SceneOptions { width: 96, height: 64, seed: 99, ..SceneOptions::default() };
+    let slow = SceneOptions { speed: Speed::Creeping, background: Background::Static, ..small };
+    let colour = SceneOptions { colour: true, ..small }.with_drawn_camera();
+    for (scene, expected) in [
+        (scene::generate(&colour), "31adf922886e66fc"),
+        (scene::generate(&slow), "e473519d7a17f54e"),
+        (scene::leader_follower(1), "f0155a546e06d78a"),
+        (scene::bare_ground(5), "63f098d37eb628ff"),
+        (scene::parallax(4), "11e0e8d8f0e01294"),
+    ] {
+        assert_eq!(format!("{:016x}", hash_of(&scene.unwrap())), expected);
     }
 }

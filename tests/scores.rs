@@ -2,6 +2,8 @@
 #![cfg(not(target_arch = "wasm32"))]
 #![allow(clippy::unwrap_used, reason = "test code may panic")]
 
+#[path = "../experiments/boundary.rs"]
+mod boundary;
 #[path = "../experiments/masks/scores.rs"]
 mod scores;
 
@@ -37,14 +39,6 @@ fn renumbered_labels_score_perfectly() {
     let all = [s.j_oracle, s.j_background, s.j_auto, s.boundary, s.all_boundaries];
     assert!(all.iter().all(|j| *j == Some(1.0)), "{s:?}");
     assert_eq!((s.truth_count, s.found_count), (3, 3));
-}
-
-#[test]
-fn one_label_finds_nothing() {
-    let s = scores(&truth(), &vec![0; WIDTH * HEIGHT], WIDTH);
-    assert_eq!((s.truth_count, s.found_count, s.j_background, s.boundary), (3, 1, Some(0.0), Some(0.0)));
-    let background = truth().iter().filter(|&&l| l == 0).count() as f64 / (WIDTH * HEIGHT) as f64;
-    assert!(close(s.miou, background / 3.0) && close(s.rand, 0.0) && close(s.accuracy, background), "{s:?}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use veronese::Frame;
 use veronese::codecs::{Picture, decode_image, encode_colour_png, encode_grey_png};
 use veronese::scene::{ClipSceneOptions, Event, generate_clip};
 
-use crate::scores::VOID;
+use super::scores::VOID;
 
 /// Seed of the first generated clip.
 const SEED: u64 = 50_000;

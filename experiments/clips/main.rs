@@ -1,6 +1,8 @@
 //! The clip benchmark: labels that persist through time, of generated and real clips, beside what OpenCV gives.
 //! `npm run bench:clips` runs it.
 
+#[path = "../boundary.rs"]
+mod boundary;
 mod cases;
 mod figures;
 mod linking;
@@ -12,6 +14,8 @@ mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
 mod scores;
+#[path = "../sealed.rs"]
+mod sealed;
 mod strips;
 
 use std::error::Error;
@@ -97,6 +101,9 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
+    if options.write_docs && sealed::opened(&fs::read_to_string(docs().join("clips.md"))?).is_none() {
+        return Err(sealed::changed("docs/clips.md", "experiments/clips").into());
+    }
     let mut cases = cases::all(&options.shared, options.quick)?;
     if !options.only.is_empty() {
         cases.retain(|case| options.only.iter().any(|part| case.name.contains(part)));
@@ -145,9 +152,13 @@ fn run(options: &Options) -> Result<(), Failure> {
     Ok(())
 }
 
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
+}
+
 /// The page and its pictures; pictures that it no longer shows go away.
 fn write_docs(page: &page::Page<'_>) -> Result<(), Failure> {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = docs();
     let images = docs.join("images");
     for entry in fs::read_dir(&images)? {
         let entry = entry?;
@@ -158,6 +169,6 @@ fn write_docs(page: &page::Page<'_>) -> Result<(), Failure> {
     for one in page.shown() {
         fs::write(images.join(format!("clips-{}.png", one.case.name)), &one.strip)?;
     }
-    fs::write(docs.join("clips.md"), page.text("images/clips-"))?;
+    fs::write(docs.join("clips.md"), sealed::sealed(&page.text("images/clips-")))?;
     Ok(())
 }

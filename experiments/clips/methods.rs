@@ -6,8 +6,8 @@ use std::time::Instant;
 use veronese::clip::{ClipOptions, ClipPart, ClipSegmenter, StreamSegmenter};
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
-use crate::cases::{Data, labels};
-use crate::linking::pair_by_pair;
+use super::cases::{Data, labels};
+use super::linking::pair_by_pair;
 
 /// In the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +107,7 @@ pub(crate) struct Found {
 }
 
 /// The clip segmenter's labels of every frame, an object the same number in all.
-fn clip_labels(mut segmenter: ClipSegmenter, frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
+pub(crate) fn clip_labels(mut segmenter: ClipSegmenter, frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
     for frame in frames {
         segmenter.push(frame.clone())?;
     }

@@ -132,7 +132,7 @@ impl Page<'_> {
         }
         text.push_str(
             "\nSwitches are per object and 30 frames; times are milliseconds per frame of native code on one core of a machine in use, with \
-             another clip running on the other core.\n\n",
+             other clips running on the other cores: only large differences mean something.\n\n",
         );
     }
 

@@ -3,10 +3,7 @@
 //! In the truth 0 is the background, [`VOID`] is not known and left out everywhere, every other number is an object. In what was found
 //! every number is a label, and [`VOID`] is none. The background label is the label with most pixels of the whole clip.
 
-#[path = "../boundary.rs"]
-mod boundary;
-
-use boundary::Grid;
+use super::boundary::Grid;
 
 /// "Not known" in the truth, "no label" in what was found.
 pub(crate) const VOID: u8 = 255;

@@ -4,7 +4,8 @@
 use veronese::Part;
 
 use crate::cases::{Case, Set};
-use crate::measure::{Measured, Variant};
+use crate::measure::Measured;
+use crate::outcome::Variant;
 use crate::summary::Summary;
 
 /// The variants of the pipeline, in the order of the table.

@@ -8,7 +8,7 @@ use veronese::codecs::{Picture, decode_image, encode_colour_png};
 use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
 use veronese::{AffineMotion, Frame};
 
-use crate::scores::VOID;
+use super::scores::VOID;
 
 /// Seeds of the generated scenes, far from those that anything was tuned on.
 const SERIES_SEED: u64 = 40_000;

@@ -2,10 +2,13 @@
 //! `npm run bench:masks` runs it.
 
 mod ablation;
+#[path = "../boundary.rs"]
+mod boundary;
 mod cases;
 mod honesty;
 mod junctions;
 mod measure;
+mod outcome;
 mod page;
 #[path = "../panels.rs"]
 mod panels;
@@ -13,6 +16,8 @@ mod panels;
 mod parallel;
 mod pictures;
 mod scores;
+#[path = "../sealed.rs"]
+mod sealed;
 mod sensitivity;
 mod stability;
 mod summary;
@@ -23,7 +28,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use cases::Case;
-use measure::Method;
+use outcome::Method;
 use parallel::in_parallel;
 
 const HELP: &str = "\
@@ -106,6 +111,11 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
 
 fn run(options: &Options) -> Result<(), Failure> {
     let here = fs::canonicalize(&options.shared).is_ok();
+    let page = fs::read_to_string(docs().join("masks.md"))?;
+    let before = match sealed::opened(&page) {
+        None if options.write_docs => return Err(sealed::changed("docs/masks.md", "experiments/masks").into()),
+        text => text.unwrap_or(&page),
+    };
     let mut cases = cases::all(&options.shared, options.quick).map_err(|error| error.to_string())?;
     if !options.only.is_empty() {
         let wanted = |case: &Case| options.only.iter().any(|part| case.name.contains(part) || case.set.name() == part);
@@ -128,19 +138,19 @@ fn run(options: &Options) -> Result<(), Failure> {
     match options.step.as_str() {
         "sensitivity" => {
             let measured = sensitivity::measure(&sensitivity::chosen(cases))?;
-            return write_apart(options, &sensitivity::json(&measured), &sensitivity::table(&measured));
+            return write_apart(options, before, &sensitivity::json(&measured), &sensitivity::table(&measured));
         }
         "stability" => {
             let compared = stability::measure(&cases)?;
-            return write_apart(options, &stability::json(&compared), &stability::text(&compared));
+            return write_apart(options, before, &stability::json(&compared), &stability::text(&compared));
         }
         "calibration" => {
             let measured = honesty::measure(&cases)?;
-            return write_apart(options, &honesty::json(&measured), &honesty::text(&measured));
+            return write_apart(options, before, &honesty::json(&measured), &honesty::text(&measured));
         }
         "junctions" => {
             let measured = junctions::measure(&cases)?;
-            return write_apart(options, &junctions::json(&measured), &junctions::text(&measured));
+            return write_apart(options, before, &junctions::json(&measured), &junctions::text(&measured));
         }
         _ => {}
     }
@@ -156,7 +166,6 @@ fn run(options: &Options) -> Result<(), Failure> {
     for one in &measured {
         fs::write(out.join(format!("{}.png", one.case.name)), &one.picture).map_err(cannot)?;
     }
-    let before = fs::read_to_string(docs().join("masks.md"))?;
     let page = page::Page { measured: &measured, worths: &worths, reasons: reasons()?, before };
     fs::write(out.join("masks.md"), page.text("")).map_err(cannot)?;
     if options.write_docs {
@@ -170,14 +179,14 @@ fn run(options: &Options) -> Result<(), Failure> {
 }
 
 /// Writes what a step of its own has measured.
-fn write_apart(options: &Options, json: &serde_json::Value, text: &str) -> Result<(), Failure> {
+fn write_apart(options: &Options, before: &str, json: &serde_json::Value, text: &str) -> Result<(), Failure> {
     let Options { step, out, write_docs, .. } = options;
     fs::write(out.join(format!("{step}.json")), serde_json::to_string_pretty(json)?)?;
     fs::write(out.join(format!("{step}.md")), text)?;
     if *write_docs {
-        let path = docs().join("masks.md");
-        let page = page::with_text(&fs::read_to_string(&path)?, step, text);
-        fs::write(path, page.ok_or(format!("docs/masks.md has no part for the {step}"))?)?;
+        let page = page::with_text(before, step, text);
+        let page = page.ok_or(format!("docs/masks.md has no part for the {step}"))?;
+        fs::write(docs().join("masks.md"), sealed::sealed(&page))?;
     }
     eprintln!("The results are in {}.", out.display());
     Ok(())
@@ -207,6 +216,6 @@ fn write_docs(page: &page::Page<'_>) -> Result<(), Failure> {
     for one in page.shown() {
         fs::write(images.join(format!("masks-{}.png", one.case.name)), &one.picture)?;
     }
-    fs::write(docs.join("masks.md"), page.text("images/masks-"))?;
+    fs::write(docs.join("masks.md"), sealed::sealed(&page.text("images/masks-")))?;
     Ok(())
 }

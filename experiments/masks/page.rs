@@ -7,7 +7,8 @@ use serde_json::{Map, Value};
 
 use crate::ablation::Worth;
 use crate::cases::Set;
-use crate::measure::{Measured, Method, Outcome};
+use crate::measure::Measured;
+use crate::outcome::{Method, Outcome};
 use crate::summary::Summary;
 
 /// How many of the best and of the worst cases are shown …
@@ -23,7 +24,7 @@ pub(crate) struct Page<'a> {
     /// Explanations of the results, by case name.
     pub(crate) reasons: Map<String, Value>,
     /// The page as it was, with the texts of the steps that are measured by themselves.
-    pub(crate) before: String,
+    pub(crate) before: &'a str,
 }
 
 const HEAD: &str = "\
@@ -35,8 +36,10 @@ This page measures the masks of `segment_pair` and compares them with a baseline
 npm run bench:masks -- --write-docs
 ```
 
-which measures every case again. The seeds are fixed, so all figures except the times are the same on every machine. The scores
-are the usual ones for motion segmentation; experiments/masks/scores.rs defines them and tests/scores.rs checks them:
+which measures every case again, and by options of their own for the sensitivity, the stability, the calibration and the neighbouring
+motions. Sections are not always measured at the same time: compare figures within one. What a change is worth, `npm run score` says. The
+seeds are fixed, so all figures except the times are the same on every machine. The scores are the usual ones for motion segmentation;
+experiments/masks/scores.rs defines them and tests/scores.rs checks them:
 
 - **mean IoU**: the mean over all true labels, each matched one to one with a found label;
 - **n right**: the share of cases with the right number of motions (labels below 0.2 % of the frame do not count);
@@ -129,8 +132,9 @@ impl Page<'_> {
         let own = [Set::Generated, Set::Colour, Set::Large];
         self.scene_rows(text, "**generated, grey and colour, all sizes**", &|one| own.contains(&one.case.set));
         text.push_str(
-            "\nTimes are milliseconds of native code on one core of a machine in use, with another case running on the \
-             other core. The baseline reports its own times.\n\n",
+            "\nTimes are milliseconds of native code on one core of a machine in use, with other cases running on the \
+             other cores. The baseline reports its own times. The size at which the motions of large frames are searched was chosen on large \
+             scenes like these.\n\n",
         );
     }
 
@@ -287,7 +291,7 @@ impl Page<'_> {
     /// What another step has measured, as it was.
     fn apart(&self, text: &mut String, title: &str, step: &str) {
         let [begins, ends] = markers(step);
-        let _ = writeln!(text, "## {title}\n\n{begins}\n{}\n{ends}\n", text_of(step, &self.before).unwrap_or_default());
+        let _ = writeln!(text, "## {title}\n\n{begins}\n{}\n{ends}\n", text_of(step, self.before).unwrap_or_default());
     }
 
     fn pictures(&self, text: &mut String, prefix: &str) {

@@ -3,10 +3,7 @@
 //! Pixels whose true label is [`VOID`] are left out everywhere; a found label [`VOID`] is "no label", which matches nothing. Truth 0
 //! is the background.
 
-#[path = "../boundary.rs"]
-mod boundary;
-
-use boundary::Grid;
+use super::boundary::Grid;
 
 /// "Not known" in the truth, "no label" in what was found.
 pub(crate) const VOID: u8 = 255;

@@ -7,7 +7,7 @@ use veronese::Tuned;
 
 use crate::Failure;
 use crate::cases::{Case, Set, a_third};
-use crate::measure::{Method, Outcome, Variant, of_variant};
+use crate::outcome::{Method, Outcome, Variant, of_variant};
 use crate::parallel::in_parallel;
 use crate::scores::Scores;
 

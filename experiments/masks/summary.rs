@@ -1,7 +1,7 @@
 //! Means over cases.
 
 use crate::cases::Case;
-use crate::measure::Outcome;
+use crate::outcome::Outcome;
 
 /// Means of the figures of some outcomes; NaN where no case has a figure.
 #[derive(Clone, Copy, Debug)]

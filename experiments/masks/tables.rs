@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 
 use crate::ablation::Worth;
 use crate::cases::Set;
-use crate::measure::{Measured, Method, Outcome};
+use crate::measure::Measured;
+use crate::outcome::{Method, Outcome};
 use crate::scores::Scores;
 use crate::summary::Summary;
 

@@ -3,8 +3,11 @@
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../../tests/support/protocol.rs"]
 mod protocol;
+#[path = "../../tests/synthetic/mod.rs"]
+mod synthetic;
 
 mod figure_1;
+mod further;
 mod pictures;
 mod plot;
 mod tables;
@@ -17,13 +20,19 @@ const HELP: &str = "\
 Repeats the paper's experiments with its method and with ours.
 
   --trials N   trials per noise level of Figure 1, 1 to 100000; default 1000
+  --table T    print a further table instead, with 50 trials by default: limit (the estimator beside the statistical limit),
+               configurations, numbers (of motions found), sizes (times), rank-rule, degrees (the linear step up to n = 10)
   --seed N     seed of the trials and of the generated scene, a whole number below 2^32; default 1
   --out DIR    output folder; default out/paper
 ";
 
+/// A further table, printed for a number of trials and a seed.
+type Table = fn(usize, u64) -> Result<(), Box<dyn Error>>;
+
 struct Options {
-    trials: usize,
+    trials: Option<usize>,
     seed: u64,
+    table: Option<Table>,
     out: PathBuf,
 }
 
@@ -43,12 +52,12 @@ fn stop(message: &str, code: i32) {
 
 /// The options; `None` if help was requested.
 fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options>, String> {
-    let mut options = Options { trials: 1000, seed: 1, out: PathBuf::from("out/paper") };
+    let mut options = Options { trials: None, seed: 1, table: None, out: PathBuf::from("out/paper") };
     while let Some(name) = arguments.next() {
         if name == "--help" || name == "-h" {
             return Ok(None);
         }
-        if !["--trials", "--seed", "--out"].contains(&name.as_str()) {
+        if !["--trials", "--seed", "--table", "--out"].contains(&name.as_str()) {
             return Err(format!("There is no option '{name}'."));
         }
         let value = arguments.next().ok_or(format!("{name} needs a value."))?;
@@ -57,8 +66,12 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             _ => Err(format!("{name} must be a whole number from {low} to {high}, not '{value}'.")),
         };
         match name.as_str() {
-            "--trials" => options.trials = number(1, 100_000)? as usize,
+            "--trials" => options.trials = Some(number(1, 100_000)? as usize),
             "--seed" => options.seed = number(0, u64::from(u32::MAX))?,
+            "--table" => {
+                let table = further::TABLES.into_iter().find(|(table, _)| *table == value);
+                options.table = Some(table.ok_or(format!("There is no table '{value}'."))?.1);
+            }
             _ => options.out = PathBuf::from(&value),
         }
     }
@@ -66,15 +79,19 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
 }
 
 fn run(options: &Options) -> Result<(), Box<dyn Error>> {
+    if let Some(table) = options.table {
+        return table(options.trials.unwrap_or(50), options.seed);
+    }
+    let trials = options.trials.unwrap_or(1000);
     let out = &options.out;
     let cannot = |error: std::io::Error| format!("{} cannot be written: {error}", out.display());
     fs::create_dir_all(out).map_err(cannot)?;
     for (name, file) in pictures::pictures(options.seed)? {
         fs::write(out.join(name), file).map_err(cannot)?;
     }
-    let cells = figure_1::measure(options.trials, options.seed);
+    let cells = figure_1::measure(trials, options.seed);
     fs::write(out.join("figure-1.csv"), tables::csv(&cells)).map_err(cannot)?;
-    fs::write(out.join("figure-1.md"), tables::markdown(&cells, options.trials, options.seed)).map_err(cannot)?;
+    fs::write(out.join("figure-1.md"), tables::markdown(&cells, trials, options.seed)).map_err(cannot)?;
     fs::write(out.join("figure-1.svg"), plot::svg(&cells)?).map_err(cannot)?;
     eprintln!("The results are in {}.", out.display());
     Ok(())

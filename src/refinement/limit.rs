@@ -11,7 +11,7 @@ use super::{Samples, Search};
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests of the public functions")]
 mod protocol;
 
-use protocol::{Protocol, Relation, SPECIAL};
+use protocol::{Protocol, Relation};
 
 const LONG: Stop = Stop { iterations: 100, gain: 1e-9, step: 1e-7 };
 
@@ -40,20 +40,5 @@ fn the_search_reaches_the_likelihood_of_the_truth() {
         Protocol { relation: Relation::Near(0.2), ..Protocol::new(2, 0.05) },
     ] {
         assert_eq!(losses(&protocol, 10), 0, "{protocol:?}");
-    }
-}
-
-#[test]
-#[ignore = "a table, for reading"]
-fn table_of_losses() {
-    let table = |protocol: &Protocol| println!("{} of 200 lost: {protocol:?}", losses(protocol, 200));
-    (2..=6).for_each(|n| table(&Protocol::new(n, 0.05)));
-    (2..=5).for_each(|n| table(&Protocol { outliers: 0.3, ..Protocol::new(n, 0.02) }));
-    (2..=5).for_each(|n| table(&Protocol { first_share: Some(0.05), ..Protocol::new(n, 0.05) }));
-    for distance in [0.2, 0.1] {
-        (2..=3).for_each(|n| table(&Protocol { relation: Relation::Near(distance), ..Protocol::new(n, 0.05) }));
-    }
-    for relation in SPECIAL {
-        (2..=4).for_each(|n| table(&Protocol { relation, ..Protocol::new(n, 0.05) }));
     }
 }

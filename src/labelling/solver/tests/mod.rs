@@ -193,9 +193,8 @@ fn forbidden_labels_and_odd_sizes_are_handled() {
 }
 
 /// Costs and weights as the pipeline has them, on a generated scene with the true motions: truncated squared residuals over
-/// the noise, weights that fall across image edges. Also the true labels.
-#[cfg(not(target_arch = "wasm32"))]
-fn scene_costs(seed: u64, width: usize, height: usize, objects: usize) -> (Grid, Vec<u8>) {
+/// the noise, weights that fall across image edges.
+fn scene_costs(seed: u64, width: usize, height: usize, objects: usize) -> Grid {
     use crate::scene;
     let options = scene::SceneOptions { width, height, objects, seed, ..scene::SceneOptions::default() };
     let scene = scene::generate(&options).unwrap();
@@ -219,44 +218,18 @@ fn scene_costs(seed: u64, width: usize, height: usize, objects: usize) -> (Grid,
             6.0 * (0.15 + 0.85 * libm::expf(-step.abs() / 10.0))
         })
     };
-    (Grid { costs, horizontal: weight(1, 0), vertical: weight(0, 1) }, scene.labels)
+    Grid { costs, horizontal: weight(1, 0), vertical: weight(0, 1) }
 }
 
-#[cfg(not(target_arch = "wasm32"))]
 #[test]
-#[ignore = "a measurement: run with --ignored --nocapture"]
-fn energies_and_times() {
-    let all = [
-        Some(Solver { levels: 1, iterations: 2 }),
-        Some(Solver::LIGHT),
-        Some(Solver::FAST),
-        Some(Solver { levels: 4, iterations: 5 }),
-        Some(Solver::BEST),
-        Some(Solver { levels: 1, iterations: 20 }),
-        Some(Solver { levels: 1, iterations: 100 }),
-        // α-expansion.
-        None,
-    ];
-    for (objects, seed) in [(1, 1), (3, 1), (3, 2), (3, 3), (7, 1)] {
-        let (grid, truth) = scene_costs(seed, 320, 240, objects);
+fn scenes_are_solved_to_a_fraction_of_a_per_cent() {
+    for seed in [1, 2] {
+        let grid = scene_costs(seed, 320, 240, 3);
         let problem = grid.problem();
-        let bound = messages::minimise(&problem, 1, 300).bound;
-        println!("{} labels, seed {seed}, bound {bound:.1}", grid.costs.len());
-        for solver in all {
-            let mut milliseconds = f64::INFINITY;
-            let mut found = Buffer::default();
-            for _ in 0..5 {
-                let start = std::time::Instant::now();
-                found = match solver {
-                    Some(solver) => minimise(&problem, solver, None),
-                    None => expansion::minimise(&problem, 4, None),
-                };
-                milliseconds = milliseconds.min(start.elapsed().as_secs_f64() * 1e3);
-            }
-            let excess = 100.0 * (problem.energy(&found) / bound - 1.0);
-            let wrong = found.iter().zip(&truth).filter(|(a, b)| a != b).count();
-            println!("  {solver:?}: {excess:+.3} % above the bound, {wrong} pixels wrong, {milliseconds:.1} ms");
-            assert!(excess < 5.0);
+        let bound = messages::minimise(&problem, 1, 100).bound;
+        for (solver, most) in [(Solver::LIGHT, 0.005), (Solver::FAST, 0.002), (Solver::BEST, 0.0005)] {
+            let excess = problem.energy(&minimise(&problem, solver, None)) / bound - 1.0;
+            assert!(excess < most, "seed {seed}, {solver:?}: {excess:.5} above the bound");
         }
     }
 }

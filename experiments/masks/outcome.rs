@@ -1,0 +1,98 @@
+//! What a method finds in one pair, in figures.
+
+use std::time::Instant;
+
+use veronese::{
+    AffineMotion, Part, Quality, Result, SegmentOptions, Segmentation, Tuned, UNLABELLED, segment_pair,
+    segment_pair_varied, segment_pair_without,
+};
+
+use super::cases::Data;
+use super::scores::{Scores, flow_error, scores};
+
+/// The methods compared, in the order of the tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Method {
+    Best,
+    Fast,
+    Baseline,
+}
+
+impl Method {
+    pub(crate) const ALL: [Method; 3] = [Method::Best, Method::Fast, Method::Baseline];
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Method::Best => "best",
+            Method::Fast => "fast",
+            Method::Baseline => "baseline",
+        }
+    }
+}
+
+/// What a method found in a case, in figures.
+#[derive(Clone, Debug)]
+pub(crate) struct Outcome {
+    pub(crate) method: Method,
+    /// Figures of the single motions.
+    pub(crate) single: Option<Scores>,
+    /// Figures of the groups; of the baseline, which has none, the same as of its labels.
+    pub(crate) grouped: Option<Scores>,
+    /// Median end point error of the flow that labels and motions imply, pixels.
+    pub(crate) flow_error: Option<f64>,
+    pub(crate) milliseconds: f64,
+}
+
+pub(crate) fn grouped(found: &Segmentation) -> Vec<u8> {
+    let group = |label: &u8| found.motions.get(usize::from(*label)).map_or(UNLABELLED, |motion| motion.group);
+    found.labels.iter().map(group).collect()
+}
+
+pub(crate) fn outcome(
+    method: Method,
+    data: &Data,
+    labels: &[u8],
+    groups: &[u8],
+    motions: &[AffineMotion],
+    milliseconds: f64,
+) -> Outcome {
+    let width = data.first.width();
+    let against = |labels: &[u8]| data.truth.as_deref().map(|truth| scores(truth, labels, width));
+    let flow_of = |label: u8, x: f64, y: f64| motions.get(usize::from(label)).map(|motion| motion.flow(x, y));
+    Outcome {
+        method,
+        single: against(labels),
+        grouped: against(groups),
+        flow_error: data.flow.as_ref().map(|flow| flow_error(flow, labels, width, flow_of)),
+        milliseconds,
+    }
+}
+
+/// The pipeline in one form of the ablation or of the sensitivity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Variant {
+    /// As it is.
+    Whole,
+    /// Without one part.
+    Without(Part),
+    /// With the frame before the first, where there is one.
+    ThreeFrames,
+    /// With a constant multiplied by a factor.
+    Varied(Tuned, f32),
+}
+
+/// What a form of the pipeline gives with the quality of a method.
+pub(crate) fn of_variant(variant: Variant, method: Method, data: &Data) -> Result<Outcome> {
+    let (first, second) = (&data.first, &data.second);
+    let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
+    let options = SegmentOptions { quality, ..SegmentOptions::default() };
+    let start = Instant::now();
+    let found = match variant {
+        Variant::Whole => segment_pair(first, second, None, &options, &mut |_| {})?,
+        Variant::ThreeFrames => segment_pair(first, second, data.before.as_ref(), &options, &mut |_| {})?,
+        Variant::Without(part) => segment_pair_without(part, first, second, None, &options)?,
+        Variant::Varied(constant, factor) => segment_pair_varied(constant, factor, first, second, &options)?,
+    };
+    let milliseconds = 1e3 * start.elapsed().as_secs_f64();
+    Ok(outcome(method, data, &found.labels, &grouped(&found), &[], milliseconds))
+}

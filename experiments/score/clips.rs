@@ -1,0 +1,13 @@
+//! Cases, methods and figures of the clip benchmark.
+#![allow(dead_code, reason = "the benchmark uses the rest")]
+
+use crate::boundary;
+
+#[path = "../clips/cases.rs"]
+pub(crate) mod cases;
+#[path = "../clips/linking.rs"]
+mod linking;
+#[path = "../clips/methods.rs"]
+pub(crate) mod methods;
+#[path = "../clips/scores.rs"]
+pub(crate) mod scores;
