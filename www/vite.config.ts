@@ -51,6 +51,32 @@ function preload(): Plugin {
   };
 }
 
+/** The page with the licences, and its style: only who asks for them loads them, so they are not kept for work without a network. */
+const LICENCES = /^licences\./;
+
+/** Makes that page, of the project's own licences and those of what it ships. */
+function licences(): Plugin {
+  const escaped = (text: string): string => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;');
+  const section = (name: string): string => {
+    const text = escaped(readFileSync(here(`../${name}`), 'utf8'));
+    const linked = text.replaceAll(/https?:\/\/[^\s"'<>)]*[^\s"'<>).,;]/g, '<a href="$&">$&</a>');
+    // The first line break in a <pre> does not count.
+    return `<h2>${name}</h2>\n<pre>\n${linked}</pre>\n`;
+  };
+  return {
+    name: 'licences',
+    apply: 'build',
+    generateBundle() {
+      const meta = '<meta charset="utf-8" /><meta name="viewport" content="width=device-width, initial-scale=1" />';
+      const links = '<link rel="icon" type="image/svg+xml" href="./icon.svg" /><link rel="stylesheet" href="./licences.css" />';
+      const body = ['THIRD-PARTY-NOTICES', 'LICENSE-MIT', 'LICENSE-APACHE'].map(section).join('');
+      const head = `${meta}<title>Licences – Veronese</title>${links}`;
+      const source = `<!doctype html>\n<html lang="en"><head>${head}</head><body><h1>Licences</h1>\n${body}</body></html>\n`;
+      this.emitFile({ type: 'asset', fileName: 'licences.html', source });
+    },
+  };
+}
+
 /** Writes the service worker with the list of all files and a version that is a hash of them. */
 function serviceWorker(): Plugin {
   return {
@@ -59,7 +85,7 @@ function serviceWorker(): Plugin {
     writeBundle({ dir }) {
       if (dir === undefined) return;
       const paths = readdirSync(dir, { recursive: true, withFileTypes: true })
-        .filter((entry) => entry.isFile() && entry.name !== 'service-worker.js')
+        .filter((entry) => entry.isFile() && entry.name !== 'service-worker.js' && !LICENCES.test(entry.name))
         .map((entry) => relative(dir, join(entry.parentPath, entry.name)).split(sep).join('/'))
         .sort();
       const hash = createHash('sha256');
@@ -74,7 +100,7 @@ function serviceWorker(): Plugin {
 export default defineConfig({
   // Relative URLs, so that the built page works in any folder of any host.
   base: './',
-  plugins: [policy(), withoutMeasurements(), preload(), serviceWorker()],
+  plugins: [policy(), withoutMeasurements(), preload(), licences(), serviceWorker()],
   worker: { format: 'es' },
   build: {
     target: 'es2023',

@@ -148,7 +148,7 @@ describe('a clip', () => {
     }
   });
 
-  test('--tolerance has polygons with fewer vertices', async (t) => {
+  test('polygons have few vertices, and with --tolerance fewer or all', async (t) => {
     const folder = temporaryFolder(t);
     const round = Uint8Array.from({ length: 60 * 60 }, (_, at) => Number(((at % 60) - 30) ** 2 + (Math.floor(at / 60) - 30) ** 2 < 700));
     clipFolder(folder.path('clip'), { frames: [round, round], width: 60, height: 60 });
@@ -156,7 +156,9 @@ describe('a clip', () => {
       await converted(folder.path('clip'), '--to', 'coco-polygon', ...args);
       return json(folder.path('clip'), 'coco-polygon.json').annotations[0].segmentation[0].length;
     };
-    assert.ok((await size('--tolerance', '1.5')) < (await size()) / 2);
+    const [exact, usual, half, rough] = [await size('--tolerance', '0'), await size(), await size('--tolerance', '0.5'), await size('--tolerance', '3')];
+    assert.equal(usual, half);
+    assert.ok(usual < exact / 3 && rough < usual, `${[exact, usual, rough]}`);
   });
 
   test('a folder of an earlier conversion is replaced, anything else is left alone', async (t) => {
@@ -339,7 +341,7 @@ test('a pair takes no format of many frames, and no option of theirs', async (t)
   for (const name of ['cvat-video', 'mots', 'mot', 'label-studio-video', 'masks']) {
     await refused(out, [out, '--to', name], 'invalid-input', /is for many frames/);
   }
-  for (const option of ['--background', '--from=1', '--until=0', '--shapes=box', '--video=a.mp4', '--frame-rate=5']) {
+  for (const option of ['--from=1', '--until=0', '--shapes=box', '--video=a.mp4', '--frame-rate=5']) {
     await refused(out, [out, '--to', 'coco', option], 'invalid-option', /is not for/);
   }
 });

@@ -46,7 +46,9 @@ describe('veronese convert', () => {
     const { version, folder, files } = await converted(out, '--to', 'coco,cvat,davis,veronese', '--image', 'a.png');
     assert.deepEqual({ version, folder, files }, { version: 1, folder: out, files: ['coco.json', 'cvat.xml', 'davis.png', 'veronese.json'] });
     assert.deepEqual(readdirSync(out).sort(), [...before, ...files].sort());
-    const given = [labels, result.width, result.height, { image: 'a.png', motions: result.motions }];
+    const objects = result.motions.map(({ label }) => label).filter((label) => label > 0);
+    assert.ok(objects.length > 0);
+    const given = [labels, result.width, result.height, { image: 'a.png', motions: result.motions, labels: objects }];
     const read = (name) => readFileSync(join(out, name), 'utf8');
     assert.deepEqual(JSON.parse(read('coco.json')), JSON.parse(JSON.stringify(encodeCoco(...given))));
     assert.equal(read('cvat.xml'), encodeCvatXml(...given));
@@ -54,6 +56,21 @@ describe('veronese convert', () => {
     const back = decodeVeronese(JSON.parse(read('veronese.json')));
     assert.deepEqual(back.labels, labels);
     assert.deepEqual(back.meta.motions.map(({ matrix }) => matrix), result.motions.map(({ matrix }) => matrix));
+  });
+
+  test('the background is an annotation only with --background', async (t) => {
+    const { out, result } = await segmented(t);
+    const found = async (...args) => {
+      await converted(out, '--to', 'coco,coco-polygon,yolo', ...args);
+      const read = (name) => readFileSync(join(out, name), 'utf8');
+      const ids = ['coco.json', 'coco-polygon.json'].map((name) => JSON.parse(read(name)).annotations.map(({ category_id }) => category_id - 1));
+      assert.deepEqual(ids[0], ids[1]);
+      assert.equal(read('yolo.txt').trim().split('\n').length, ids[0].length);
+      return ids[0];
+    };
+    const all = result.motions.map(({ label }) => label);
+    assert.deepEqual(await found(), all.filter((label) => label > 0));
+    assert.deepEqual(await found('--background'), all);
   });
 
   test('--grouped converts groups, also where labels.png shows them already', async (t) => {

@@ -14,14 +14,14 @@ const IMAGES = labelImages(300);
 const each = (check) => IMAGES.forEach(({ labels, width, height }, index) => check(labels, width, height, index));
 const mask = (labels, label) => labels.map((value) => Number(value === label));
 
-/** Even-odd filling at pixel centres: a ring's vertical edges toggle everything to their right. Exact for rings of cracks. */
+/** Even-odd filling at pixel centres: a ring's edges toggle everything to their right. */
 function filled(rings, width, height) {
   const pixels = new Uint8Array(width * height);
   for (const ring of rings) {
     for (let at = 0; at < ring.length; at += 2) {
       const [x0, y0] = [ring[at], ring[at + 1]];
       const [x1, y1] = [ring[(at + 2) % ring.length], ring[(at + 3) % ring.length]];
-      for (let y = Math.min(y0, y1); y < Math.max(y0, y1); y++) {
+      for (let y = Math.ceil(Math.min(y0, y1) - 0.5); y < Math.max(y0, y1) - 0.5; y++) {
         const crossing = x0 + ((y + 0.5 - y0) / (y1 - y0)) * (x1 - x0);
         for (let x = Math.max(0, Math.ceil(crossing - 0.5)); x < width; x++) pixels[y * width + x] ^= 1;
       }
@@ -59,19 +59,97 @@ describe('polygons without tolerance fill the same pixels', () => {
   });
 });
 
-test('with a tolerance a polygon has fewer vertices and stays within it', () => {
-  const [width, height] = [80, 80];
-  const labels = Uint8Array.from({ length: width * height }, (_, at) => {
-    const distance = Math.hypot((at % width) - 39.5, Math.floor(at / width) - 39.5);
-    return distance < 35 && distance > 12 ? 1 : 255;
+describe('polygons with a tolerance', () => {
+  const options = (tolerance) => ({ shape: 'polygon', tolerance });
+  const polygons = (labels, width, height, tolerance) =>
+    formats.encodeCoco(labels, width, height, {}, options(tolerance)).annotations.map(({ category_id, segmentation }) => ({ label: category_id - 1, rings: segmentation }));
+  const ring = (side, inner, outer) => Uint8Array.from({ length: side * side }, (_, at) => {
+    const distance = Math.hypot((at % side) - side / 2 + 0.5, Math.floor(at / side) - side / 2 + 0.5);
+    return distance < outer && distance > inner ? 1 : 255;
   });
-  const encoded = (tolerance) => formats.encodeCoco(labels, width, height, {}, { shape: 'polygon', tolerance }).annotations[0].segmentation;
-  const [exact] = encoded(0);
-  const [rough] = encoded(1);
-  assert.ok(rough.length < exact.length / 3, `${rough.length} of ${exact.length}`);
-  const wrong = filled([rough], width, height).reduce((sum, set, at) => sum + Number(set !== Number(labels[at] === 1)), 0);
-  // Nothing farther than the tolerance from the two circles can change.
-  assert.ok(wrong > 0 && wrong < 2 * Math.PI * (35 + 12), `${wrong} pixels`);
+  /** Random images with smooth borders and several masks, larger than the others: there are lines to draw. */
+  const smooth = Array.from({ length: 40 }, (_, seed) => {
+    const next = random(seed + 1);
+    const [width, height] = [60 + Math.floor(next() * 60), 60 + Math.floor(next() * 60)];
+    const seeds = Array.from({ length: 3 + Math.floor(next() * 6) }, () => ({ x: next() * width, y: next() * height, wave: 0.05 + next() / 4, label: Math.floor(next() * 5) }));
+    const labels = Uint8Array.from({ length: width * height }, (_, at) => {
+      const [x, y] = [at % width, Math.floor(at / width)];
+      const far = seeds.map((seed) => Math.hypot(x - seed.x, y - seed.y) * (1.2 + Math.sin((x + y) * seed.wave) * 0.2));
+      return seeds[far.indexOf(Math.min(...far))].label;
+    });
+    return { labels, width, height };
+  });
+
+  test('have few vertices, and nearly the same pixels', () => {
+    const labels = ring(200, 30, 90);
+    const [{ rings }] = polygons(labels, 200, 200, 0.5);
+    assert.ok(rings[0].length / 2 < 60, `${rings[0].length / 2} vertices`);
+    const pixels = filled(rings, 200, 200);
+    const both = pixels.reduce((sum, set, at) => sum + Number(set && labels[at] === 1), 0);
+    const either = pixels.reduce((sum, set, at) => sum + Number(set || labels[at] === 1), 0);
+    assert.ok(both / either > 0.985, `${both / either}`);
+  });
+
+  test('a tolerance next to nothing keeps every pixel, with fewer vertices', () => {
+    const count = (all) => all.reduce((sum, { rings }) => sum + rings.flat().length, 0);
+    for (const images of [IMAGES, smooth]) {
+      let [exact, thin] = [0, 0];
+      for (const { labels, width, height } of images) {
+        const found = polygons(labels, width, height, 1e-6);
+        for (const { label, rings } of found) assert.deepEqual(filled(rings, width, height), mask(labels, label));
+        exact += count(polygons(labels, width, height, 0));
+        thin += count(found);
+      }
+      if (images === smooth) assert.ok(thin < 0.5 * exact, `${thin} of ${exact}`);
+    }
+  });
+
+  for (const tolerance of [0.5, 1.5, 6, 300]) {
+    test(`${tolerance}: no gap, no overlap, no mask, part or hole lost`, () => {
+      for (const { labels, width, height } of [...IMAGES, ...smooth]) {
+        const there = labels.map((label) => (label === 255 ? 9 : label));
+        const sum = new Uint8Array(there.length);
+        const exact = polygons(there, width, height, 0);
+        const found = polygons(there, width, height, tolerance);
+        assert.deepEqual(found.map(({ rings }) => rings.length), exact.map(({ rings }) => rings.length));
+        for (const { rings } of found) filled(rings, width, height).forEach((set, at) => (sum[at] += set));
+        assert.deepEqual(sum, new Uint8Array(there.length).fill(1));
+        const loops = (tolerance) => formats.encodeWebAnnotation(there, width, height, {}, { tolerance }).map(({ target }) => target.selector.value.split('Z'));
+        for (const paths of loops(tolerance)) for (const path of paths.slice(0, -1)) assert.ok(path.split(/[ M]/).length >= 7, path);
+        assert.deepEqual(loops(tolerance).map((paths) => paths.length), loops(0).map((paths) => paths.length), 'as many outlines and holes');
+      }
+    });
+  }
+
+  test('a border of two masks has the same vertices on both sides', () => {
+    let shared = 0;
+    for (const { labels, width, height } of smooth) {
+      const edges = new Map();
+      for (const { rings } of polygons(labels, width, height, 0.5)) {
+        for (const ring of rings) {
+          for (let at = 0; at < ring.length; at += 2) {
+            const ends = [ring.slice(at, at + 2), at + 2 < ring.length ? ring.slice(at + 2, at + 4) : ring.slice(0, 2)].map(String).sort().join(' ');
+            edges.set(ends, (edges.get(ends) ?? 0) + 1);
+          }
+        }
+      }
+      // The image is full of masks: an edge that has one side only lies on the edge of the image.
+      for (const [ends, count] of edges) {
+        const [x0, y0, x1, y1] = ends.split(/[ ,]/).map(Number);
+        const outer = (x0 === x1 && (x0 === 0 || x0 === width)) || (y0 === y1 && (y0 === 0 || y0 === height));
+        assert.ok(outer || count % 2 === 0, `${ends}: ${count}`);
+        shared += Number(!outer);
+      }
+    }
+    assert.ok(shared > 1000, `${shared}`);
+  });
+
+  test('rectangles stay as they are, the corners of the image stay', () => {
+    const image = Object.values(drawn('111111111', '122211131', '122211111', '122211111', '111144111'));
+    const vertices = (tolerance) =>
+      formats.encodeWebAnnotation(...image, { labels: [2, 3, 4] }, { tolerance }).map(({ target }) => / d="M(.*)Z"/.exec(target.selector.value)[1].match(/\S+ \S+/g).sort());
+    assert.deepEqual(vertices(0.5), vertices(0));
+  });
 });
 
 test('masks with thousands of holes are outlined', () => {

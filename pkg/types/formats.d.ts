@@ -60,8 +60,9 @@ export interface ClipMeta extends FormatMeta {
 export interface FormatOptions<Shape extends string> {
   shape?: Shape;
   /**
-   * Distance in pixels by which polygons may deviate from the border, to have fewer vertices; default 0: exact. More than 4 million
-   * vertices in one document (20 million in one of many frames), which only masks of noise need, throw `invalid-input`.
+   * Distance in pixels, in x and in y, by which polygons may deviate from the border to have fewer vertices; default 0: exact. ½ pixel, to
+   * which pixels know the border, comes to any other. Masks have the same vertices along a common border. More than 4 million vertices
+   * in one document (20 million in one of many frames), which only masks of noise need, throw `invalid-input`.
    */
   tolerance?: number;
 }

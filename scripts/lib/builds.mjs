@@ -59,7 +59,9 @@ export async function buildPackage() {
 
 /** Builds the page with the parts of the package that it uses. */
 export async function buildPage() {
-  const inputs = ['www', 'scripts/lib/policy.mjs', 'pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm', 'package-lock.json'];
+  const built = ['pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm'];
+  const licences = ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'];
+  const inputs = ['www', 'scripts/lib/policy.mjs', ...built, ...licences, 'package-lock.json'];
   await step('the page', 'www/dist', ['www/dist/index.html'], inputs, [], () =>
     must('The page could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'www']),
   );

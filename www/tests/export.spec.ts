@@ -282,7 +282,21 @@ test('formats of annotation tools have the masks under their names', async ({ pa
 
   const polygons = (await json('COCO, polygons')) as { annotations: { segmentation: number[][] }[] };
   expect(polygons.annotations).toHaveLength(coco.annotations.length);
-  expect(polygons.annotations[1]!.segmentation[0]!.length).toBeGreaterThan(20);
+  for (const { segmentation } of polygons.annotations) {
+    expect(segmentation[0]!.length).toBeGreaterThan(20);
+    expect(segmentation.flat().length / 2).toBeLessThan(200);
+  }
+
+  // The background is an annotation only where it is asked for.
+  const background = page.getByLabel('Also the background');
+  const ids = async (): Promise<number[]> => ((await json('COCO, RLE')) as { categories: { id: number }[] }).categories.map(({ id }) => id - 1);
+  const objects = [...new Set(groups)].filter((group) => group > 0).sort((a, b) => a - b);
+  expect(await ids()).toEqual(objects);
+  await background.check();
+  expect(await ids()).toEqual([0, ...objects]);
+  await background.uncheck();
+  await page.getByLabel('File format').selectOption({ label: 'Overlay' });
+  await expect(background).toBeHidden();
 
   const cvat = (await savedAs(page, 'CVAT')).bytes.toString();
   const shape = /<mask label="White car"[^>]*rle="([^"]*)"[^>]*>/.exec(cvat)!;
@@ -306,7 +320,7 @@ test('formats of annotation tools have the masks under their names', async ({ pa
 
   const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
   const lines = new TextDecoder().decode(yolo['labels/first.txt']).trim().split('\n');
-  expect(lines.length).toBe(new Set(groups).size);
+  expect(lines.length).toBe(objects.length);
   for (const line of lines) expect(line).toMatch(/^\d+( (0|1|0?\.\d+|\d\.\d+(e-\d+)?)){6,}$/);
   expect(new TextDecoder().decode(yolo['data.yaml'])).toContain('White car');
 });

@@ -64,14 +64,14 @@ export const HELP = `veronese segments two video frames by motion: how many moti
                                          only of clip: ${formatsFor(false, true)}
                                          only of pair and clip: ${formatsFor(true, true)}
                                          only of batch and clip: ${formatsFor(false, false)}
-      --tolerance PIXELS     distance by which polygons may deviate from a mask's border (default: 0)
+      --tolerance PIXELS     distance by which polygons may deviate from a mask's border (default: 0.5); 0 follows its pixels
+      --background           convert the background, label 0, as well
       --out DIR              output folder (default: the input folder)
     of pair and batch:
       --grouped              groups instead of motions
     of pair:
       --image NAME           file name of the image that the masks belong to (default: first.png)
     of batch and clip, where images are named as the frames are:
-      --background           convert the background as well
       --from N, --until M    convert only frames N to M, both inclusive, counted from 0 (default: all)
     of clip:
       --shapes polygon|box   shapes in cvat-video (default: polygon)
@@ -184,7 +184,7 @@ const OPTIONS = {
   shapes: { type: 'string' },
   video: { type: 'string' },
   'frame-rate': { type: 'string' },
-  tolerance: { type: 'string', default: '0' },
+  tolerance: { type: 'string', default: '0.5' },
   list: { type: 'string' },
   every: { type: 'string', default: '1' },
   'with-before': { type: 'boolean', default: false },

@@ -44,11 +44,10 @@ function statusOf(path: string): Stats | undefined {
 
 /** Throws where an option or a format says nothing of this kind of folder. */
 function checkOptions(command: ConvertCommand, kind: Kind): void {
-  const { folder, to, grouped, image, background, range, shapes, video, frameRate } = command;
+  const { folder, to, grouped, image, range, shapes, video, frameRate } = command;
   const given: [name: string, given: boolean, kinds: readonly Kind[]][] = [
     ['grouped', grouped, ['pair', 'batch']],
     ['image', image !== undefined, ['pair']],
-    ['background', background, ['batch', 'clip']],
     ['from', range.from > 0, ['batch', 'clip']],
     ['until', range.until !== undefined, ['batch', 'clip']],
     ['shapes', shapes !== undefined, ['clip']],
@@ -69,10 +68,12 @@ function checkOptions(command: ConvertCommand, kind: Kind): void {
   }
 }
 
-async function convertPair({ folder, to, grouped, image, tolerance }: ConvertCommand, out: string, output: Output): Promise<{ files: string[] }> {
+async function convertPair(command: ConvertCommand, out: string, output: Output): Promise<{ files: string[] }> {
+  const { folder, to, grouped, image, background, tolerance } = command;
   const { labels, width, height, motions, ...pair } = await readPair(folder, grouped);
   const names = pair.grouped && { names: Object.fromEntries(motions.map(({ label }) => [label, `group-${label}`])) };
-  const masks: Masks = { labels, width, height, meta: { ...(image !== undefined && { image }), motions, ...names } };
+  const wanted = motions.map(({ label }) => label).filter((label) => label > 0 || background);
+  const masks: Masks = { labels, width, height, meta: { ...(image !== undefined && { image }), motions, labels: wanted, ...names } };
   const files: OutputFile[] = to.filter(isFormatName).flatMap((name) => FORMATS[name](masks, tolerance));
   await output.write(out, files, { beside: true });
   return { files: files.map(({ name }) => name) };

@@ -1,6 +1,6 @@
 // A COCO instances file. Polygons are filled ring by ring and united there: holes hang on their outline by a bridge.
 
-import type { ClipMeta, CocoDocument, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
+import type { ClipMeta, CocoDocument, CocoRle, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
 import { cocoRle } from './coco-rle.js';
 import { type Frame, gathered, type Gathering, idOf } from './frames.js';
 import { checkedOptions, imageOf, masksOf } from './input.js';
@@ -45,7 +45,9 @@ class Instances implements Gathering<CocoDocument> {
 
   add({ index, image, width, height, masks }: Frame): void {
     this.#images.push({ id: index + 1, file_name: image, width, height });
-    for (const mask of masks) {
+    const rle = this.#shape === 'rle';
+    const segmentations = rle ? masks.map((mask) => cocoRle(mask, width, height)) : this.#outlines.bridged({ masks, width, height });
+    for (const [at, mask] of masks.entries()) {
       this.#categories.set(mask.category, mask.name);
       const attributes = { ...(this.#tracked && { track_id: idOf(mask.label) }), ...(mask.motion && { matrix: mask.motion.matrix }) };
       this.#annotations.push({
@@ -55,7 +57,7 @@ class Instances implements Gathering<CocoDocument> {
         iscrowd: 0,
         area: mask.area,
         bbox: [mask.left, mask.top, mask.width, mask.height],
-        segmentation: this.#shape === 'rle' ? cocoRle(mask, width, height) : this.#outlines.bridged(mask),
+        segmentation: segmentations[at] as CocoRle | number[][],
         ...(Object.keys(attributes).length > 0 && { attributes }),
       });
     }

@@ -4,7 +4,7 @@ import type { ClipMeta, Encoded, FormatOptions, LabelFrames } from '../../types/
 import { cvatHead, cvatPoints } from './cvat-xml.js';
 import { gathered, type Gathering } from './frames.js';
 import { checkedOptions, type Mask } from './input.js';
-import { Outlines } from './outline.js';
+import { Outlines, type Ring } from './outline.js';
 import { escaped } from './xml.js';
 
 interface Track {
@@ -25,12 +25,13 @@ export function encodeCvatVideo<Frames extends LabelFrames>(
     const outlines = new Outlines(tolerance, 'clip');
     const tracks = new Map<number, Track>();
     return {
-      add({ index, masks }) {
-        for (const mask of masks) {
+      add({ index, masks, width, height }) {
+        const rings = shape === 'box' ? [] : outlines.singles({ masks, width, height });
+        for (const [at, mask] of masks.entries()) {
           const track: Track = tracks.get(mask.label) ?? { name: mask.name, shapes: [], frame: index, shape: '' };
           tracks.set(mask.label, track);
           leave(track, index, shape);
-          track.shape = shape === 'box' ? corners(mask) : `points="${cvatPoints(outlines.single(mask))}"`;
+          track.shape = shape === 'box' ? corners(mask) : `points="${cvatPoints(rings[at] as Ring)}"`;
           track.frame = index;
           track.shapes.push(element(shape, index, track.shape, false));
         }

@@ -45,9 +45,8 @@ class Images implements Gathering<string> {
     this.#count++;
     for (const name of classNames(masks)) this.#names.add(name);
     this.#elements.push(`  <image id="${index}" name="${escaped(image)}" width="${width}" height="${height}">`);
-    for (const mask of masks) {
-      for (const shape of this.#shape === 'mask' ? [maskElement(mask)] : polygonElements(mask, this.#outlines)) this.#elements.push(shape);
-    }
+    const elements = this.#shape === 'mask' ? masks.map(maskElement) : polygonElements(masks, this.#outlines.bridged({ masks, width, height }));
+    for (const element of elements) this.#elements.push(element);
     this.#elements.push('  </image>');
   }
 
@@ -81,16 +80,18 @@ function maskElement({ name, left, top, width, height, pixels }: Mask): string {
 }
 
 /** One polygon for each connected part, all of one group. */
-function polygonElements(mask: Mask, outlines: Outlines): string[] {
-  const parts = outlines.bridged(mask);
-  const group = parts.length > 1 ? ` group_id="${mask.label + 1}"` : '';
-  return parts.map((ring) => {
-    const rest = `source="auto" occluded="0" points="${cvatPoints(ring)}" z_order="0"${group}`;
-    return `    <polygon label="${escaped(mask.name)}" ${rest}></polygon>`;
+function polygonElements(masks: readonly Mask[], rings: readonly Ring[][]): string[] {
+  return masks.flatMap(({ label, name }, at) => {
+    const parts = rings[at] as Ring[];
+    const group = parts.length > 1 ? ` group_id="${label + 1}"` : '';
+    return parts.map((ring) => {
+      const rest = `source="auto" occluded="0" points="${cvatPoints(ring)}" z_order="0"${group}`;
+      return `    <polygon label="${escaped(name)}" ${rest}></polygon>`;
+    });
   });
 }
 
 /** The vertices of a polygon. */
 export function cvatPoints(ring: Ring): string {
-  return points(ring).map(([x, y]) => `${x}.00,${y}.00`).join(';');
+  return points(ring).map((point) => point.map((value) => value.toFixed(2)).join()).join(';');
 }

@@ -17,14 +17,15 @@ export function encodeLabelStudio(
 ): LabelStudioTask {
   const { shape, tolerance, fromName, toName, modelVersion } = checkedOptions(options, ['brush', 'polygon'], NAMES);
   const shared = { from_name: fromName, to_name: toName, original_width: width, original_height: height, image_rotation: 0 as const };
-  const outlines = new Outlines(tolerance);
-  const result = masksOf(labels, width, height, meta).flatMap((mask): LabelStudioResult[] => {
+  const masks = masksOf(labels, width, height, meta);
+  const polygons = shape === 'polygon' ? new Outlines(tolerance).bridged({ masks, width, height }) : [];
+  const result = masks.flatMap((mask, at): LabelStudioResult[] => {
     const id = `motion-${mask.label}`;
     if (shape === 'brush') {
       const value = { format: 'rle' as const, rle: packed(mask, width, height), brushlabels: [mask.name] };
       return [{ id, type: 'brushlabels', ...shared, value }];
     }
-    return outlines.bridged(mask).map((ring, part) => {
+    return (polygons[at] as Ring[]).map((ring, part) => {
       const value = { points: percentages(ring, width, height), closed: true as const, polygonlabels: [mask.name] };
       return { id: `${id}-${part}`, type: 'polygonlabels' as const, ...shared, value };
     });

@@ -3,7 +3,7 @@
 import type { FormatMeta, FormatOptions, LabelMeDocument, LabelMeShape } from '../../types/formats.js';
 import { base64 } from './base64.js';
 import { checkedOptions, imageOf, type Mask, masksOf } from './input.js';
-import { Outlines, points } from './outline.js';
+import { Outlines, points, type Ring } from './outline.js';
 import { png } from './png.js';
 
 /** The release whose files these are. */
@@ -18,11 +18,11 @@ export function encodeLabelMe(
 ): LabelMeDocument {
   const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
   const masks = masksOf(labels, width, height, meta);
-  const outlines = new Outlines(tolerance);
+  const shapes = shape === 'mask' ? masks.map(maskShape) : polygonShapes(masks, new Outlines(tolerance).bridged({ masks, width, height }));
   return {
     version: VERSION,
     flags: {},
-    shapes: masks.flatMap((mask) => (shape === 'mask' ? [maskShape(mask)] : polygonShapes(mask, outlines))),
+    shapes,
     imagePath: imageOf(meta),
     imageData: null,
     imageHeight: height,
@@ -36,14 +36,9 @@ function maskShape({ label, name, left, top, width, height, pixels }: Mask): Lab
   return { label: name, points: corners, group_id: label, description: '', shape_type: 'mask', flags: {}, mask };
 }
 
-function polygonShapes(mask: Mask, outlines: Outlines): LabelMeShape[] {
-  return outlines.bridged(mask).map((ring) => ({
-    label: mask.name,
-    points: points(ring),
-    group_id: mask.label,
-    description: '',
-    shape_type: 'polygon',
-    flags: {},
-    mask: null,
-  }));
+function polygonShapes(masks: readonly Mask[], parts: readonly Ring[][]): LabelMeShape[] {
+  return masks.flatMap(({ name, label }, at) => {
+    const shared = { label: name, group_id: label, description: '', shape_type: 'polygon' as const, flags: {}, mask: null };
+    return (parts[at] as Ring[]).map((ring) => ({ ...shared, points: points(ring) }));
+  });
 }

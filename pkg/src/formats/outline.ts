@@ -1,13 +1,15 @@
 // Outlines of masks along the cracks between pixels: vertices are corners of pixels, (0, 0) the top-left corner of the image's
-// first pixel. Filled by the even-odd rule they give the same pixels back. Pixels that touch at a corner only are apart.
+// first pixel. Filled by the even-odd rule they give the same pixels back. Pixels that touch at a corner only are apart. With a tolerance,
+// arcs.ts thins them.
 //
 // Time and memory are linear in the border and the box: a mask of noise has as many vertices as pixels, so they are numbers in typed
 // arrays.
 
 import { VeroneseError } from '../common/errors.js';
+import { Borders, type Masks, thinned } from './arcs.js';
 import type { Mask } from './input.js';
 
-/** x, y of one vertex after another, whole numbers; the last is joined to the first. */
+/** x, y of one vertex after another, multiples of ½; the last is joined to the first. */
 export type Ring = number[];
 
 /** Rings of unit steps in one list: the vertices of ring r are `from[r]` to `from[r + 1]`, exclusive. */
@@ -27,9 +29,6 @@ interface Hanging {
 /** Most vertices in the outlines of one document, of one image and of many. Only masks of noise have more, and files that no tool opens. */
 const MOST_VERTICES = { image: 4_000_000, clip: 20_000_000 };
 
-/** Recursion of Douglas and Peucker that is deeper than this splits rings so unevenly that its time is quadratic. */
-const DEEPEST = 64;
-
 const NONE = -1;
 
 /** The outlines of the masks of one document. Throws `invalid-input` where they have too many vertices together. */
@@ -38,57 +37,76 @@ export class Outlines {
   readonly #most: number;
   #left: number;
 
-  /** Outlines may leave the border by `tolerance` pixels to have fewer vertices; 0 is exact. */
+  /** Outlines may leave the border by `tolerance` pixels in x and in y to have fewer vertices; 0 is exact. */
   constructor(tolerance = 0, kind: keyof typeof MOST_VERTICES = 'image') {
     this.#tolerance = tolerance;
     this.#most = MOST_VERTICES[kind];
     this.#left = this.#most;
   }
 
-  /** Every border of the mask as a ring of its own, to be filled by the even-odd rule: outer ones clockwise, holes the other way. */
-  rings(mask: Mask): Ring[] {
-    const cracks = traced(mask);
-    return cracks.from.slice(0, -1).map((begin, ring) => {
-      const vertices = new Int32Array((cracks.from[ring + 1] as number) - begin);
-      for (let at = 0; at < vertices.length; at++) vertices[at] = begin + at;
-      return this.#ring(mask, cracks, shortened(cracks, vertices, undefined, this.#tolerance));
+  /** Of each mask every border as a ring of its own, to be filled by the even-odd rule: outer ones clockwise, holes the other way. */
+  rings(image: Masks): Ring[][] {
+    const borders = this.#bordersOf(image);
+    return image.masks.map((mask) => {
+      const cracks = traced(mask);
+      return cracks.from.slice(0, -1).map((begin, ring) => {
+        const way = new Int32Array((cracks.from[ring + 1] as number) - begin);
+        for (let at = 0; at < way.length; at++) way[at] = begin + at;
+        return this.#ring(mask, cracks, way, borders);
+      });
     });
   }
 
   /**
-   * One ring per connected part. A hole is reached over a bridge without width: a horizontal line that the ring takes there and back.
+   * Of each mask one ring per connected part. A hole is reached over a bridge without width: a horizontal line that the ring takes there
+   * and back.
    */
-  bridged(mask: Mask): Ring[] {
-    const cracks = traced(mask);
-    const { roots, hanging, fixed } = bridges(mask, cracks);
-    const walk = walker(cracks, hanging);
-    return roots.map((root) => this.#ring(mask, cracks, shortened(cracks, walk(root), fixed, this.#tolerance)));
+  bridged(image: Masks): Ring[][] {
+    const borders = this.#bordersOf(image);
+    const traces = image.masks.map((mask) => {
+      const cracks = traced(mask);
+      const { roots, hanging, ends } = bridges(mask, cracks);
+      // Before any mask is thinned: the masks on the other side have the ends of bridges as vertices, too.
+      for (const end of ends) borders?.addNode(mask.left + (cracks.x[end] as number), mask.top + (cracks.y[end] as number));
+      return { mask, cracks, roots, hanging };
+    });
+    return traces.map(({ mask, cracks, roots, hanging }) => {
+      const walk = walker(cracks, hanging);
+      return roots.map((root) => this.#ring(mask, cracks, walk(root), borders));
+    });
   }
 
-  /** All parts in a single ring: bridges between the parts, too, all from the first part's first vertex. */
-  single(mask: Mask): Ring {
-    const [ring = [], ...others] = this.bridged(mask);
-    const [x, y] = ring as [number, number];
-    this.#take(2 * others.length);
-    for (const other of others) {
-      ring.push(x, y);
-      for (const value of other) ring.push(value);
-      ring.push(other[0] as number, other[1] as number);
-    }
-    return ring;
+  /** Of each mask all parts in a single ring: bridges between the parts, too, all from the first part's first vertex. */
+  singles(image: Masks): Ring[] {
+    return this.bridged(image).map(([ring = [], ...others]) => {
+      const [x, y] = ring as [number, number];
+      this.#take(2 * others.length);
+      for (const other of others) {
+        ring.push(x, y);
+        for (const value of other) ring.push(value);
+        ring.push(other[0] as number, other[1] as number);
+      }
+      return ring;
+    });
   }
 
-  #ring({ left, top }: Mask, { x, y }: Cracks, vertices: Int32Array): Ring {
-    this.#take(vertices.length);
-    const ring: Ring = [];
-    for (const vertex of vertices) ring.push(left + (x[vertex] as number), top + (y[vertex] as number));
+  #bordersOf(image: Masks): Borders | undefined {
+    return this.#tolerance > 0 ? new Borders(image, this.#tolerance) : undefined;
+  }
+
+  #ring({ left, top }: Mask, { x, y }: Cracks, way: Int32Array, borders: Borders | undefined): Ring {
+    const isNode = borders && ((vertex: number) => borders.isNode(left + (x[vertex] as number), top + (y[vertex] as number)));
+    const corners: Ring = [];
+    for (const vertex of cornersOf(x, y, way, isNode)) corners.push(left + (x[vertex] as number), top + (y[vertex] as number));
+    const ring = borders ? thinned(corners, borders) : corners;
+    this.#take(ring.length / 2);
     return ring;
   }
 
   #take(vertices: number): void {
     this.#left -= vertices;
     if (this.#left >= 0) return;
-    const sentence = `the outlines have more than ${this.#most} vertices: take a larger tolerance or a format that holds masks`;
+    const sentence = `the outlines have more than ${this.#most} vertices: take a format that holds masks`;
     throw new VeroneseError('invalid-input', sentence);
   }
 }
@@ -144,7 +162,7 @@ function traced({ width, height, pixels }: Mask): Cracks {
 
 /**
  * Where each hole hangs: at the first vertex to the left of its top-left one that lies on a ring. That ring has a vertex above or
- * left of the hole's first, so there is no circle. Roots are the rings that are no holes; vertices at the ends of bridges are fixed.
+ * left of the hole's first, so there is no circle. Roots are the rings that are no holes; `ends` are the vertices at the ends of bridges.
  */
 function bridges({ width, height }: Mask, { x, y, from }: Cracks) {
   const vertexAt = new Int32Array((width + 1) * (height + 1)).fill(NONE);
@@ -152,7 +170,7 @@ function bridges({ width, height }: Mask, { x, y, from }: Cracks) {
   const roots: number[] = [];
   const first = new Map<number, number>();
   const hanging = { first, next: new Int32Array(from.length).fill(NONE), start: new Int32Array(from.length) } satisfies Hanging;
-  const fixed = new Uint8Array(x.length);
+  const ends: number[] = [];
   for (let ring = 0; ring + 1 < from.length; ring++) {
     const begin = from[ring] as number;
     const end = from[ring + 1] as number;
@@ -167,10 +185,9 @@ function bridges({ width, height }: Mask, { x, y, from }: Cracks) {
     hanging.start[ring] = top;
     hanging.next[ring] = first.get(anchor) ?? NONE;
     first.set(anchor, ring);
-    fixed[anchor] = 1;
-    fixed[top] = 1;
+    ends.push(anchor, top);
   }
-  return { roots, hanging, fixed };
+  return { roots, hanging, ends };
 }
 
 /** Twice the area inside: positive for an outer ring. */
@@ -236,57 +253,8 @@ function walker({ x, from }: Cracks, { first, next, start }: Hanging): (root: nu
   };
 }
 
-/** Only the vertices that matter: corners, and with a tolerance those that Douglas and Peucker keep, and all that are `fixed`. */
-function shortened({ x, y }: Cracks, ring: Int32Array, fixed: Uint8Array | undefined, tolerance: number): Int32Array {
-  const corners = cornersOf(x, y, ring);
-  const { length } = corners;
-  if (!(tolerance > 0) || length <= 4) return corners;
-  /** The corner between two others that is farthest from the line between them; none where all are nearer than `least`. */
-  const farthest = (from: number, to: number, least = -1): number => {
-    const [start, end] = [corners[from] as number, corners[to < length ? to : 0] as number];
-    const [startX, startY] = [x[start] as number, y[start] as number];
-    const [alongX, alongY] = [(x[end] as number) - startX, (y[end] as number) - startY];
-    const squared = alongX * alongX + alongY * alongY;
-    let [best, distance] = [NONE, least];
-    for (let at = from + 1; at < to; at++) {
-      const vertex = corners[at] as number;
-      const [offX, offY] = [(x[vertex] as number) - startX, (y[vertex] as number) - startY];
-      const share = squared === 0 ? 0 : Math.min(1, Math.max(0, (offX * alongX + offY * alongY) / squared));
-      const [awayX, awayY] = [offX - share * alongX, offY - share * alongY];
-      const away = awayX * awayX + awayY * awayY;
-      if (away > distance) [best, distance] = [at, away];
-    }
-    return best;
-  };
-  // The first corner, the one farthest from it and those in between that are farthest to either side always stay: a ring
-  // never becomes a line.
-  const keep = new Uint8Array(length);
-  if (fixed) for (let at = 0; at < length; at++) keep[at] = fixed[corners[at] as number] as number;
-  const opposite = farthest(0, length);
-  for (const at of [0, opposite, farthest(0, opposite), farthest(opposite, length)]) if (at !== NONE) keep[at] = 1;
-  let last = 0;
-  for (let at = 1; at <= length; at++) {
-    if (at < length && !keep[at]) continue;
-    thin(last, at);
-    last = at;
-  }
-  return corners.filter((_, at) => keep[at]);
-
-  function thin(first: number, end: number): void {
-    const spans: [from: number, to: number, depth: number][] = [[first, end, 0]];
-    for (let span = spans.pop(); span !== undefined; span = spans.pop()) {
-      const [from, to, depth] = span;
-      const at = farthest(from, to, tolerance * tolerance);
-      if (at === NONE) continue;
-      const split = depth < DEEPEST ? at : (from + to) >> 1;
-      keep[split] = 1;
-      spans.push([from, split, depth + 1], [split, to, depth + 1]);
-    }
-  }
-}
-
-/** The vertices at which a ring turns. */
-function cornersOf(x: Uint16Array, y: Uint16Array, ring: Int32Array): Int32Array {
+/** The vertices at which a ring turns, and its nodes. */
+function cornersOf(x: Uint16Array, y: Uint16Array, ring: Int32Array, isNode?: (vertex: number) => boolean): Int32Array {
   const direction = (from: number, to: number) => {
     const across = Math.sign((x[to] as number) - (x[from] as number));
     return 3 * across + Math.sign((y[to] as number) - (y[from] as number));
@@ -297,7 +265,7 @@ function cornersOf(x: Uint16Array, y: Uint16Array, ring: Int32Array): Int32Array
   for (let at = 0; at < ring.length; at++) {
     const vertex = ring[at] as number;
     const after = direction(vertex, ring[at + 1 < ring.length ? at + 1 : 0] as number);
-    if (before !== after) corners[count++] = vertex;
+    if (before !== after || isNode?.(vertex)) corners[count++] = vertex;
     before = after;
   }
   return corners.slice(0, count);

@@ -12,8 +12,9 @@ export function encodeWebAnnotation(
   options?: { tolerance?: number },
 ): WebAnnotation[] {
   const { tolerance } = checkedOptions(options, []);
-  const outlines = new Outlines(tolerance);
-  return masksOf(labels, width, height, meta).map((mask) => ({
+  const masks = masksOf(labels, width, height, meta);
+  const rings = new Outlines(tolerance).rings({ masks, width, height });
+  return masks.map((mask, at) => ({
     '@context': 'http://www.w3.org/ns/anno.jsonld',
     id: `#motion-${mask.label}`,
     type: 'Annotation',
@@ -22,7 +23,7 @@ export function encodeWebAnnotation(
       source: imageOf(meta),
       selector: {
         type: 'SvgSelector',
-        value: `<svg xmlns="http://www.w3.org/2000/svg"><path fill-rule="evenodd" d="${outlines.rings(mask).map(path).join('')}"/></svg>`,
+        value: `<svg xmlns="http://www.w3.org/2000/svg"><path fill-rule="evenodd" d="${(rings[at] as Ring[]).map(path).join('')}"/></svg>`,
       },
     },
   }));

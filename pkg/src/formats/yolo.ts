@@ -2,7 +2,7 @@
 
 import type { FormatMeta, YoloFiles } from '../../types/formats.js';
 import { invalidInput, invalidOption, isListOf, reading } from '../common/checks.js';
-import { checkedOptions, classNames, masksOf } from './input.js';
+import { checkedOptions, classNames, type Mask, masksOf } from './input.js';
 import { Outlines } from './outline.js';
 
 /** Enough for an error far below a thousandth of a pixel. */
@@ -18,11 +18,10 @@ export function encodeYolo(
   const { tolerance, classes } = checkedOptions(options, [], {}, ['classes']);
   const masks = masksOf(labels, width, height, meta);
   const names = reading(() => listed(classes)) ?? classNames(masks);
-  const outlines = new Outlines(tolerance);
   const [shareX, shareY] = [shares(width), shares(height)];
-  const lines = masks.map((mask) => {
-    const ring = outlines.single(mask);
-    return `${numberOf(mask.name, names)} ${ring.map((value, at) => (at % 2 === 0 ? shareX : shareY)[value]).join(' ')}\n`;
+  const lines = new Outlines(tolerance).singles({ masks, width, height }).map((ring, at) => {
+    const share = ring.map((value, at) => (at % 2 === 0 ? shareX : shareY)[2 * value]);
+    return `${numberOf((masks[at] as Mask).name, names)} ${share.join(' ')}\n`;
   });
   return { text: lines.join(''), names };
 }
@@ -39,7 +38,7 @@ function numberOf(name: string, classes: readonly string[]): number {
   return number;
 }
 
-/** What the whole numbers up to a side are of it, as text: once each and not for every vertex. */
+/** What half pixels up to a side are of it, as text: once each and not for every vertex. */
 function shares(side: number): string[] {
-  return Array.from({ length: side + 1 }, (_, value) => String(Number((value / side).toFixed(DECIMALS))));
+  return Array.from({ length: 2 * side + 1 }, (_, halves) => String(Number((halves / 2 / side).toFixed(DECIMALS))));
 }

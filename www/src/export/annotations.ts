@@ -1,16 +1,16 @@
 //! Formats of annotation tools. The encoders are the package's, loaded on first use.
 
 import type { FormatMeta } from 'veronese/formats';
-import type { Export, Format } from './format.js';
+import { type Export, type Format, TOLERANCE } from './format.js';
 import { zipped } from './zip.js';
 
 type Encoders = typeof import('veronese/formats');
 
-/** The arguments of the encoders. The largest mask, usually the background, is exported like any other. */
-function argumentsFor({ labels, segmentation: { width, height }, masks, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
+/** The arguments of the encoders. */
+function argumentsFor({ labels, segmentation: { width, height }, masks, annotated, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
   const names = Object.fromEntries(masks.map(({ id, name }) => [id, name]));
   const motions = masks.map(({ id, motions: [main], pixels, share }) => ({ ...main!, label: id, pixels, share }));
-  return [labels, width, height, { image, names, motions, labels: masks.map(({ id }) => id) }];
+  return [labels, width, height, { image, names, motions, labels: annotated }];
 }
 
 function entry(
@@ -40,7 +40,7 @@ export const ANNOTATIONS: readonly Format[] = [
     encodeCoco(...argumentsFor(exported), { shape: 'rle' }),
   ),
   entry('coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances as polygons.', ({ encodeCoco }, exported) =>
-    encodeCoco(...argumentsFor(exported), { shape: 'polygon' }),
+    encodeCoco(...argumentsFor(exported), { shape: 'polygon', tolerance: TOLERANCE }),
   ),
   entry('cvat', 'CVAT', 'annotations.xml', 'CVAT for images 1.1, with masks.', ({ encodeCvatXml }, exported) =>
     encodeCvatXml(...argumentsFor(exported), { shape: 'mask' }),
@@ -52,7 +52,7 @@ export const ANNOTATIONS: readonly Format[] = [
     encodeLabelMe(...argumentsFor(exported), { shape: 'mask' }),
   ),
   entry('yolo', 'YOLO segmentation', 'yolo.zip', 'A text file with one line per mask, and the class names.', ({ encodeYolo }, exported) => {
-    const { text, names } = encodeYolo(...argumentsFor(exported));
+    const { text, names } = encodeYolo(...argumentsFor(exported), { tolerance: TOLERANCE });
     const list = names.map((name, k) => `  ${k}: ${JSON.stringify(name)}\n`).join('');
     const bytes = (content: string): Uint8Array => new TextEncoder().encode(content);
     const stem = exported.image.replace(/\.[^.]*$/, '').replace(/[\\/:*?"<>|#]/g, '_');

@@ -4,6 +4,7 @@ import * as encoders from 'veronese/formats';
 import type { FormatMeta, MotFiles } from 'veronese/formats';
 import type { ClipExport, ClipFile, ClipFormat } from './clip-export.js';
 import { videoFormats } from './clip-video.js';
+import { TOLERANCE } from './format.js';
 import { pngFromLabels } from './png.js';
 
 type Files = Record<string, string | Uint8Array>;
@@ -69,7 +70,7 @@ const FORMATS: readonly ClipFormat[] = [
     id: 'cvat-video',
     title: 'CVAT, tracks',
     hint: 'CVAT for video 1.1: a track with polygons for each object.',
-    ...file('cvat-video.xml', async ({ clip, fromStart }) => await encoders.encodeCvatVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name }, { shape: 'polygon' })),
+    ...file('cvat-video.xml', async ({ clip, fromStart }) => await encoders.encodeCvatVideo(fromStart.frames(), { ...fromStart.meta, clip: clip.name }, { shape: 'polygon', tolerance: TOLERANCE })),
   },
   {
     id: 'cvat-mots',
@@ -117,7 +118,7 @@ const FORMATS: readonly ClipFormat[] = [
     hint: 'A text file for each frame with a line per object, and the names of the classes.',
     ...fileForEach(
       (_exported, stem) => `yolo/labels/${stem}.txt`,
-      (exported, frame) => encoders.encodeYolo(...given(exported, frame), { classes: classesOf(exported) }).text,
+      (exported, frame) => encoders.encodeYolo(...given(exported, frame), { classes: classesOf(exported), tolerance: TOLERANCE }).text,
       (exported) => ({ 'yolo/names.txt': lines(classesOf(exported)) }),
     ),
   },

@@ -8,6 +8,9 @@ import { UNLABELLED, type Mask, masksOf } from '../result/masks.js';
 import type { Look, Result } from '../state/state.js';
 import { atSize } from './full-size.js';
 
+/** Of polygons: the distance in pixels by which they may leave a mask's border, as of `veronese convert`. */
+export const TOLERANCE = 0.5;
+
 /** A result as it is exported. */
 export interface Export {
   readonly result: Result;
@@ -17,6 +20,8 @@ export interface Export {
   /** The number of each pixel's mask, {@link UNLABELLED} for none. */
   readonly labels: Uint8Array;
   readonly masks: readonly (Mask & { readonly name: string; readonly colour: Colour })[];
+  /** The numbers of the masks that become annotations: all, but the background only if it is asked for. */
+  readonly annotated: readonly number[];
   /** File name of the first frame. */
   readonly image: string;
 }
@@ -31,11 +36,12 @@ export interface Format {
   make(exported: Export): Promise<string | Uint8Array<ArrayBuffer> | Blob>;
 }
 
-export function exportOf(result: Result, look: Look): Export {
+export function exportOf(result: Result, look: Look, background = false): Export {
   const segmentation = atSize(result.segmentation, result.pair.first.full);
   const labels = look.kind === 'groups' ? groupLabels(segmentation) : segmentation.labels;
   const masks = masksOf(segmentation, look.kind)
     .filter(({ id }) => id !== UNLABELLED)
     .map((mask) => ({ ...mask, name: nameOf(look, mask.id), colour: colourOfMask(mask.id, look) }));
-  return { result, look, segmentation, labels, masks, image: result.pair.first.name };
+  const annotated = masks.map(({ id }) => id).filter((id) => id > 0 || background);
+  return { result, look, segmentation, labels, masks, annotated, image: result.pair.first.name };
 }

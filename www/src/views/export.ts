@@ -1,6 +1,7 @@
 //! Taking the result away: as files, to the clipboard, as something that makes it again.
 
 import { strings } from '../common/strings.js';
+import { ANNOTATIONS } from '../export/annotations.js';
 import { type Format, exportOf } from '../export/format.js';
 import { FORMATS, LABELS, MASKS, OVERLAY, RESULT } from '../export/formats.js';
 import { linkFor } from '../export/link.js';
@@ -39,7 +40,7 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
     try {
       const state = await session.correcting.settled();
       if (state.result === null) return;
-      const content = await format.make(exportOf(state.result, state.look));
+      const content = await format.make(exportOf(state.result, state.look, background.checked));
       save(content, format.type, format.file);
       // The report alone holds no masks.
       if (format !== RESULT && !isPending(state)) session.correcting.saved(state);
@@ -51,11 +52,16 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
 
   const select = find(root, 'select', HTMLSelectElement);
   const hint = find(root, '#format-hint', HTMLElement);
+  const background = find(root, '#with-background', HTMLInputElement);
   select.append(...FORMATS.map(({ id, title }) => new Option(title, id)));
   need.push(select);
   const chosen = (): Format => FORMATS[select.selectedIndex] ?? LABELS;
-  select.addEventListener('change', () => (hint.textContent = chosen().hint));
-  hint.textContent = chosen().hint;
+  const tell = (): void => {
+    hint.textContent = chosen().hint;
+    background.parentElement!.hidden = !ANNOTATIONS.includes(chosen());
+  };
+  select.addEventListener('change', tell);
+  tell();
   find(root, '.format-row', HTMLElement).append(button('Save', () => void download(chosen()), 'button small primary'));
 
   const copies = find(root, '.copies', HTMLElement);

@@ -1,0 +1,95 @@
+// THIRD-PARTY-NOTICES: the licences of what others wrote and Veronese ships, from the sources that Cargo and npm have downloaded.
+// cargo-about does the same for crates, but takes minutes to compile and knows no packages of npm.
+
+import { readdirSync, readFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+
+import { projectText, root } from './project.mjs';
+import { must } from './run.mjs';
+
+/** In the project, and in the npm package. */
+export const NOTICES = ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'];
+
+/** What a licence's own text has, and nothing else: the first that a component offers is taken. */
+const LICENCES = {
+  MIT: /Permission is hereby granted, free of charge/,
+  'BSD-3-Clause': /Redistribution and use in source and binary forms/,
+  'Apache-2.0': /Apache License\s+Version 2\.0/,
+  'Unicode-3.0': /UNICODE LICENSE V3/,
+  'MPL-2.0': /Mozilla Public License Version 2\.0/,
+};
+
+/** In every module, and in no list of packages: it comes with the compiler. */
+const STANDARD_LIBRARY = {
+  name: 'Rust standard library',
+  version: '(core, alloc and std, with compiler_builtins, dlmalloc and hashbrown)',
+  licence: 'MIT OR Apache-2.0',
+  source: 'https://github.com/rust-lang/rust',
+  texts: [
+    `Copyright (c) The Rust Project Contributors\n\n${/Permission is hereby granted[^]*/.exec(projectText('LICENSE-MIT'))[0].trim()}`,
+  ],
+};
+
+/** The text of the file. */
+export async function notices() {
+  const parts = [
+    ['In the WebAssembly modules', [STANDARD_LIBRARY, ...(await crates())]],
+    ["In the page's scripts", packages()],
+  ];
+  const components = parts.flatMap(([, all]) => all);
+  const byText = new Map();
+  for (const component of components) for (const text of component.texts) byText.set(text, [...(byText.get(text) ?? []), component]);
+  const title = ({ name, version }) => `${name} ${version}`;
+  return [
+    'Veronese is licensed under MIT OR Apache-2.0 (LICENSE-MIT, LICENSE-APACHE). It contains the following works of others.',
+    'Source code is where the addresses point to, in the version that is named. `npm run notices` writes this file.',
+    ...parts.flatMap(([place, all]) => [`\n${place}:\n`, ...all.map((one) => `- ${title(one)}: ${one.licence}, ${one.source}`)]),
+    ...[...byText].map(([text, all]) => `\n${'-'.repeat(80)}\n${all.map(title).join(', ')}\n\n${text}`),
+    '',
+  ].join('\n');
+}
+
+/** What is compiled into one of the modules: no macros, which run in the compiler, and nothing that only builds or tests need. */
+async function crates() {
+  const cargo = async (name, target, ...args) => {
+    const all = [name, '--locked', '--features', 'codecs', target, 'wasm32-unknown-unknown', ...args];
+    return (await must(`cargo ${name} failed.`, 'cargo', all, { output: 'collect' })).stdout;
+  };
+  const tree = await cargo('tree', '--target', '--edges', 'normal,no-proc-macro', '--prefix', 'none', '--format', '{p}');
+  const linked = new Set(tree.split('\n').map((line) => line.split(' ', 2).join(' ')));
+  return JSON.parse(await cargo('metadata', '--filter-platform', '--format-version', '1'))
+    .packages.filter(({ name, version, source }) => source !== null && linked.has(`${name} v${version}`))
+    .map((crate) => component(crate.name, crate.version, crate.license, crate.repository, dirname(crate.manifest_path)))
+    .sort((a, b) => (`${a.name} ${a.version}` < `${b.name} ${b.version}` ? -1 : 1));
+}
+
+/** What npm installs for those who use the package, and for the page: without types, which are not in a script. */
+function packages() {
+  const found = new Map();
+  const add = (manifest) => {
+    for (const name of Object.keys(manifest.dependencies ?? {})) {
+      if (name === 'veronese' || name.startsWith('@types/') || found.has(name)) continue;
+      const folder = join(root, 'node_modules', name);
+      const { version, license, repository, ...more } = JSON.parse(readFileSync(join(folder, 'package.json'), 'utf8'));
+      const source = (repository.url ?? repository).replace(/^git\+|\.git$/g, '');
+      found.set(name, component(name, version, license, source, folder));
+      add(more);
+    }
+  };
+  for (const place of ['pkg', 'www']) add(JSON.parse(projectText(`${place}/package.json`)));
+  return [...found.values()].sort((a, b) => (a.name < b.name ? -1 : 1));
+}
+
+/** With the texts of the licences that it is used under: one of each choice, and its own notices. */
+function component(name, version, licence, source, folder) {
+  const files = readdirSync(folder).filter((file) => /^(licen[sc]e|copying|copyright|notice)/i.test(file)).sort();
+  const plain = (text) => text.replaceAll('\r\n', '\n').replace(/[ \t]+$/gm, '').replace(/^\n+|\n+$/g, '');
+  const all = files.map((file) => ({ file, text: plain(readFileSync(join(folder, file), 'utf8')) }));
+  const texts = licence.split(' AND ').map((choice) => {
+    const taken = Object.keys(LICENCES).find((id) => choice.includes(id) && all.some(({ text }) => LICENCES[id].test(text)));
+    if (!taken) throw new Error(`${name} ${version} has no text of ${choice} in ${files.join(', ') || 'any file'}`);
+    return all.filter(({ text }) => LICENCES[taken].test(text)).toSorted((a, b) => a.text.length - b.text.length)[0].text;
+  });
+  const own = all.filter(({ file }) => /^notice/i.test(file)).map(({ text }) => text);
+  return { name, version, licence: licence.replaceAll('/', ' OR '), source, texts: [...texts, ...own] };
+}
