@@ -1,6 +1,5 @@
 // npm start: prepares, builds, segments the bundled pair and serves the page.
 
-import { rmSync } from 'node:fs';
 import { join, relative } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
@@ -60,7 +59,6 @@ function parse(args) {
 
 /** Segments the real pair with the command line tool, as a user would. */
 async function segmentSample() {
-  rmSync(OUT, { recursive: true, force: true });
   const frames = ['first.png', 'second.png'].map((name) => join(SAMPLE, name));
   const args = ['pkg/bin/veronese.js', 'pair', ...frames, '--out', OUT, '--overlay'].map((arg) => relativeToRoot(arg));
   console.log(`\nnode ${args.join(' ')}`);

@@ -64,8 +64,10 @@ describe('veronese batch', () => {
     const { milliseconds, ...expected } = JSON.parse(theirs['result.json']);
     assert.deepEqual(record, expected);
     assert.deepEqual(inputs.map(({ name }) => name), ['f3.png', 'f4.png']);
-    delete mine['result.json'];
-    delete theirs['result.json'];
+    for (const name of ['result.json', '.veronese']) {
+      delete mine[name];
+      delete theirs[name];
+    }
     assert.deepEqual(mine, theirs);
     assert.deepEqual(Object.keys(files).sort(), Object.keys(mine).sort());
   });
@@ -96,7 +98,7 @@ describe('veronese batch', () => {
     assert.deepEqual((await batch([frames, '--shard', '9/9'])).lines, [], 'more shards than pairs');
   });
 
-  test('skips what is finished, by content and settings, and mends what is damaged', async (t) => {
+  test('skips what is finished, by content and settings, and mends what is lost', async (t) => {
     const { frames, one, out } = clip(t, 5);
     const status = async (...args) => (await batch([frames, '--out', out, ...args])).lines.map(({ status }) => status).join(' ');
     assert.equal(await status(), 'done done done done');
@@ -107,9 +109,9 @@ describe('veronese batch', () => {
     writeFileSync(one(4), png(frame(7)));
     assert.equal(await status(), 'skipped skipped skipped done');
     writeFileSync(one(4), png(clipFrame(4)));
-    writeFileSync(join(out, '000000-f0', 'labels.png'), 'damaged');
+    rmSync(join(out, '000000-f0'), { recursive: true });
     rmSync(join(out, '000001-f1', 'mask-0.png'));
-    writeFileSync(join(out, '000002-f2', 'result.json'), '{"job"');
+    rmSync(join(out, '000002-f2', 'result.json'));
     assert.equal(await status(), 'done done done done');
     assert.deepEqual(tree(out), before);
     assert.equal(await status('--seed', '2'), 'done done done done');
@@ -122,12 +124,22 @@ describe('veronese batch', () => {
     assert.ok(existsSync(join(out, '000000-f0', 'mine.txt')), 'other files do');
   });
 
-  test('a pair is done again whatever was changed of it', async (t) => {
+  test('a pair is never taken for finished, nor overwritten, whatever was changed of it', async (t) => {
     const { frames, out } = clip(t, 2);
+    const place = (name) => join(out, '000000-f0', name);
     const status = async () => (await batch([frames, '--out', out, '--confidence'])).lines.map(({ status }) => status).join(' ');
     assert.equal(await status(), 'done');
     const before = tree(out);
-    const place = (name) => join(out, '000000-f0', name);
+    /** The change stays and is named; when the file is away, the pair is done again. */
+    const kept = async (name, title) => {
+      const changed = tree(out);
+      const { stderr } = await batch([frames, '--out', out, '--confidence'], { code: 1 });
+      assert.match(stderr, new RegExp(`^veronese: error: file-exists: [^\\n]*${name}' `), title);
+      assert.deepEqual(tree(out), changed, title);
+      rmSync(place(name));
+      assert.equal(await status(), 'done', title);
+      assert.deepEqual(tree(out), before, title);
+    };
     const report = before[join('000000-f0', 'result.json')];
     const edits = {
       'the number of motions': (record) => (record.count += 1),
@@ -142,8 +154,7 @@ describe('veronese batch', () => {
       const record = JSON.parse(report);
       edit(record);
       writeFileSync(place('result.json'), `${JSON.stringify(record)}\n`);
-      assert.equal(await status(), 'done', title);
-      assert.deepEqual(tree(out), before, title);
+      await kept('result.json', title);
     }
     const texts = {
       'another layout': JSON.stringify(JSON.parse(report), null, 1),
@@ -157,8 +168,7 @@ describe('veronese batch', () => {
     };
     for (const [title, text] of Object.entries(texts)) {
       writeFileSync(place('result.json'), text);
-      assert.equal(await status(), 'done', title);
-      assert.deepEqual(tree(out), before, title);
+      await kept('result.json', title);
     }
     for (const name of ['labels.png', 'mask-0.png', 'confidence.png']) {
       const whole = Buffer.from(before[join('000000-f0', name)], 'latin1');
@@ -166,8 +176,7 @@ describe('veronese batch', () => {
       flipped[whole.length >> 1] ^= 1;
       for (const bytes of [flipped, whole.subarray(0, -1), Buffer.alloc(0)]) {
         writeFileSync(place(name), bytes);
-        assert.equal(await status(), 'done', name);
-        assert.deepEqual(tree(out), before, name);
+        await kept(name, name);
       }
     }
     assert.equal(await status(), 'skipped');
@@ -358,6 +367,22 @@ describe('a batch that is stopped', { skip: process.platform === 'win32' }, () =
 });
 
 describe('frames', () => {
+  test('names that cannot stand in results are refused at once', { skip: process.platform === 'win32' }, async (t) => {
+    const { path, one, out } = clip(t, 2);
+    for (const [name, shown] of [['a\nb.png', 'a\\\\nb'], ['a\u007f.png', 'a\u007f'], ['a\\b.png', 'a'], ['...png', '\\.\\.\\.png']]) {
+      writeFileSync(path(name), readFileSync(one(0)));
+      for (const command of ['batch', 'clip']) {
+        const { code, stdout, stderr } = await veronese([command, path(name), one(1), '--out', out]);
+        assert.deepEqual([code, stdout], [1, '']);
+        assert.match(stderr, new RegExp(`^veronese: error: invalid-input: [^\\n]*${shown}[^\\n]* cannot name results[^\\n]*\\n$`));
+        assert.equal(existsSync(out), false);
+      }
+    }
+    const { code, stderr } = await veronese(['video', path('a\tb.mp4')]);
+    assert.equal(code, 1);
+    assert.match(stderr, /^veronese: error: invalid-input: /);
+  });
+
   test('numbers are sorted by value, the same in every language', () => {
     const sorted = ['a', 'a1', 'a1b', 'a2', 'a02', 'a10', 'a10b', 'a100', 'b', 'b/1', 'b/2/x', 'b/10/x', 'Z'].sort(byNumbers);
     assert.deepEqual([...sorted].reverse().sort(byNumbers), sorted);
@@ -471,8 +496,39 @@ describe('veronese video', () => {
     const { code, stdout, stderr } = await veronese(['video', file]);
     const count = lines(stdout).length;
     assert.ok(count >= 2 && count < 9, String(count));
-    // A file that ends early is to ffmpeg a short film or an error, as its version likes; nothing is made up either way.
-    if (code !== 0) assert.match(stderr, /^veronese: error: unreadable-video: /);
+    assert.equal(code, 1);
+    assert.match(stderr, /^veronese: error: unreadable-video: [^\n]*film\.mkv' is damaged, [^\n]*ended prematurely[^\n]*'--allow-damaged'[^\n]*\n$/);
+  });
+
+  test('takes damaged videos only when told to, wherever they are cut off', { skip }, async (t) => {
+    const { frames, out, path } = clip(t, 10);
+    const file = path('film.avi');
+    const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-i', join(frames, 'f%d.png'), '-c:v', 'rawvideo', '-pix_fmt', 'bgr24', file]);
+    assert.equal(status, 0, String(stderr));
+    const whole = readFileSync(file);
+    assert.equal((await veronese(['video', file, '--quality', 'fast'])).stderr, '', 'a whole one');
+    // Within a frame, and between two: nothing of that is in what ffmpeg says.
+    const end = whole.indexOf('00dc', whole.indexOf('movi')) + 4 * (8 + 64 * 48 * 3);
+    for (const [cut, reason] of [[end - 1000, 'Invalid'], [end, 'it should have \\d+ bytes and has \\d+']]) {
+      writeFileSync(file, whole.subarray(0, cut));
+      for (const args of [['video', file], ['clip', file, '--out', out]]) {
+        const refused = await veronese([...args, '--quality', 'fast']);
+        assert.equal(refused.code, 1);
+        assert.match(refused.stderr, new RegExp(`^veronese: error: unreadable-video: [^\n]*film\\.avi' is damaged[^\n]*${reason}[^\n]*--allow-damaged[^\n]*\n$`));
+        const allowed = await veronese([...args, '--quality', 'fast', '--allow-damaged']);
+        assert.equal(allowed.code, 0);
+        assert.match(allowed.stderr, new RegExp(`^veronese: warning: [^\n]*film\\.avi' is damaged[^\n]*${reason}[^\n]*\n$`), 'once');
+        assert.ok(lines(allowed.stdout).length >= 2);
+      }
+    }
+  });
+
+  test('says of a file without pictures that it has none', { skip }, async (t) => {
+    const file = temporaryFolder(t).path('sound.wav');
+    assert.equal(spawnSync('ffmpeg', ['-v', 'error', '-f', 'lavfi', '-i', 'sine=duration=0.1', file]).status, 0);
+    const { code, stderr } = await veronese(['video', file]);
+    assert.equal(code, 1);
+    assert.match(stderr, /^veronese: error: unreadable-video: [^\n]*sound\.wav' has no pictures: there is no video stream in it\n$/);
   });
 
   test('says what is missing where there is no ffmpeg', async (t) => {

@@ -78,7 +78,7 @@ describe('veronese clip --corrections', () => {
     await run([frames, '--out', out]);
     const state = join(out, '.clip', 'state');
     const [at, base] = [written(state), tree(out)];
-    assert.deepEqual(Object.keys(base).filter((name) => name.startsWith('.')), [join('.clip', 'state')]);
+    assert.deepEqual(Object.keys(base).filter((name) => name.startsWith('.')), ['.veronese', join('.clip', 'state')]);
     said('f3.png', await mask());
     await run([frames, '--corrections', corrections, '--out', out]);
     const first = tracksOf(out).settings.corrections;

@@ -10,7 +10,7 @@ import { decodeVeronese, encodeCocoVideo, encodeCvatVideo, encodeDavis } from 'v
 import { openClip } from '../build/cli/clip-folder.js';
 import { clipFolder, drawnClip, tracksOf } from './support/clip.mjs';
 import { frame, png } from './support/frames.mjs';
-import { temporaryFolder, veronese } from './support/program.mjs';
+import { entries, temporaryFolder, veronese } from './support/program.mjs';
 
 const IMAGES = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'cvat-points', 'label-studio', 'label-studio-polygon', 'labelme', 'labelme-polygon', 'yolo', 'davis', 'supervisely', 'web-annotation', 'veronese', 'masks'];
 const TRACKS = ['youtube-vis', 'cvat-video', 'cvat-mots', 'mots', 'mot', 'label-studio-video'];
@@ -55,7 +55,7 @@ describe('a clip', () => {
     assert.equal(answer.version, 1);
     assert.equal(answer.frames, frames.length);
     assert.deepEqual(answer.files.map((name) => name.replace(/\.\w+$|\/$/, '')), formats, 'in the order that was asked for');
-    assert.deepEqual(readdirSync(out).sort(), answer.files.map((name) => name.replace('/', '')).sort());
+    assert.deepEqual(entries(out), answer.files.map((name) => name.replace('/', '')).sort());
 
     const coco = json(out, 'coco.json');
     assert.deepEqual(coco.images.map(({ file_name }) => file_name), tracks.files);
@@ -140,7 +140,7 @@ describe('a clip', () => {
 
   test('frames of a video, which are no files, are called what their labels are', async (t) => {
     const folder = temporaryFolder(t);
-    for (const files of [undefined, [], Array(7).fill('a.mp4'), Array.from({ length: 7 }, (_, k) => `a.mp4#${k}`)]) {
+    for (const files of [undefined, [], Array(7).fill('a.mp4'), Array.from({ length: 7 }, (_, k) => `a.mp4#${k}`), ['A.jpg', ...Array.from({ length: 6 }, (_, k) => `${'a'.repeat(k + 1)}.jpg`)]]) {
       clipFolder(folder.path('clip'), { files });
       const images = [];
       for await (const { image } of await openClip(folder.path('clip'), { from: 5 }, false)) images.push(image);
@@ -168,13 +168,14 @@ describe('a clip', () => {
     await converted(clip, '--to', 'yolo');
     await converted(clip, '--to', 'yolo', '--from', '5');
     assert.deepEqual(readdirSync(join(clip, 'yolo', 'labels')), ['f005.txt', 'f006.txt']);
-    writeFileSync(join(clip, 'yolo', 'photo.jpg'), '');
-    await refused(clip, [clip, '--to', 'coco,yolo'], 'write-failed', /photo\.jpg' is not of an earlier conversion/);
+    writeFileSync(join(clip, 'yolo', 'labels', 'photo.txt'), 'mine');
+    await converted(clip, '--to', 'yolo', '--from', '6');
+    assert.deepEqual(readdirSync(join(clip, 'yolo', 'labels')), ['f006.txt', 'photo.txt']);
     mkdirSync(join(clip, 'mot'));
     await converted(clip, '--to', 'mot');
     mkdirSync(join(clip, 'coco.json'));
     await refused(clip, [clip, '--to', 'mot,coco'], 'write-failed', /coco\.json' is a folder/);
-    assert.deepEqual(readdirSync(clip).filter((name) => name.startsWith('.')), []);
+    assert.deepEqual(readdirSync(clip).filter((name) => name.startsWith('.')), ['.veronese']);
   });
 
   test('says what is wrong with the folder and writes nothing', async (t) => {
@@ -208,13 +209,16 @@ describe('a clip', () => {
     const [first, ...others] = good.objects;
     const withFirst = (change) => ({ objects: [{ ...first, ...change }, ...others] });
     const sighting = (change) => withFirst({ frames: [{ ...first.frames[0], ...change }] });
+    const sightedTwice = withFirst({ frames: [...first.frames, { ...first.frames[0], matrix: [0, 0, 9, 0, 0, 0] }] });
     const wrong = [
+      sightedTwice, { background: [good.background[0], good.background[0]] }, { frameRate: 1e-308 }, { frameRate: 1e308 },
       '[]', 'null', { version: 2 }, { width: 0 }, { width: 37.5 }, { height: '23' }, { height: 5000 }, { frames: [] }, { frames: 'f' }, { frames: [1] },
       { frames: good.frames.map(() => 'f') }, { frames: ['../a', ...good.frames.slice(1)] }, { frames: ['F001', ...good.frames.slice(1)] },
       { files: ['a'] }, { files: good.files.map(() => 'a/b') }, { objects: {} }, { objects: [null] }, { objects: [...others, ...others] },
       withFirst({ id: 0 }), withFirst({ id: 255 }), withFirst({ id: '1' }), withFirst({ name: 5 }), withFirst({ frames: null }), sighting({ frame: 7 }),
       sighting({ frame: -1 }), sighting({ pixels: 0 }), sighting({ pixels: 1e9 }), sighting({ matrix: [1] }), sighting({ matrix: [0, 0, 0, 0, 0, null] }),
       { background: 5 }, { background: [{ frame: 9, matrix: null }] }, { frameRate: 0 }, { frameRate: '25' }, { timestamps: 5 }, { timestamps: [0] },
+      { timestamps: [5, 4, 6, 7, 8, 9, 10] }, { timestamps: [-1, 0, 1, 2, 3, 4, 5] }, { timestamps: [0, 1, 2, 3, 4, 5, 1e308] },
     ];
     for (const change of wrong) {
       changed(change);
@@ -237,7 +241,9 @@ describe('a clip', () => {
     await fails('invalid-option', /'--until' must be a frame from 4/, 2, '--from', '4', '--until', '3');
     await fails('invalid-option', /'--shapes' must be 'polygon' or 'box'/, 2, '--shapes', 'mask');
     await fails('invalid-option', /'--tolerance' must be/, 2, '--tolerance=-1');
-    for (const value of ['0', 'x']) await fails('invalid-option', /'--frame-rate' must be/, 2, `--frame-rate=${value}`);
+    for (const value of ['0', 'x', '1e308', `1${'0'.repeat(308)}`, `0.${'0'.repeat(307)}1`]) {
+      await fails('invalid-option', /'--frame-rate' must be a number from 0\.000001 to 1000000, in digits, not/, 2, `--frame-rate=${value}`);
+    }
     await refused(clip, [join(clip, 'tracks.json'), '--to', 'coco', '--out', clip], 'file-not-found', /labels\.png/);
     await fails('invalid-option', /'--grouped' is not for/, 1, '--grouped');
     await fails('invalid-option', /'--image' is not for/, 1, '--image', 'a.png');

@@ -6,7 +6,7 @@ import { decode } from 'fast-png';
 import { groupLabels } from 'veronese';
 import { decodeVeronese, encodeCoco, encodeCvatXml, encodeDavis } from 'veronese/formats';
 import { pair, png } from './support/frames.mjs';
-import { temporaryFolder, veronese } from './support/program.mjs';
+import { entries, temporaryFolder, veronese } from './support/program.mjs';
 
 const EVERY =
   'coco,coco-polygon,youtube-vis,cvat,cvat-polygon,cvat-points,cvat-mots,label-studio,label-studio-polygon,labelme,labelme-polygon,yolo,davis,supervisely,web-annotation,veronese';
@@ -91,7 +91,7 @@ describe('veronese convert', () => {
     const { files } = await converted(out, '--to', `${EVERY},coco`, '--out', folder.path('all'));
     assert.equal(new Set(files).size, files.length);
     assert.equal(files.length, EVERY.split(',').length + 1, 'YOLO has two files');
-    assert.deepEqual(readdirSync(folder.path('all')).sort(), [...files].sort());
+    assert.deepEqual(entries(folder.path('all')), [...files].sort());
     for (const name of files.filter((name) => name.endsWith('.json'))) JSON.parse(readFileSync(folder.path('all', name), 'utf8'));
   });
 

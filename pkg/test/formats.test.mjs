@@ -298,6 +298,13 @@ describe('frames one after another', () => {
     assert.deepEqual(formats.encodeCocoVideo(labels, meta).categories, [{ id: 2, name: 'car' }]);
   });
 
+  test('an object is in a frame once', () => {
+    const twice = [1, 1].map((label) => ({ label, matrix: [0, 0, label, 0, 0, 0] }));
+    for (const name of MANY) {
+      assert.throws(() => formats[name]([{ ...labels[0], motions: twice }]), { code: 'invalid-input', message: 'motions has a label twice' }, name);
+    }
+  });
+
   test('numbers of objects are kept where they are tracked', () => {
     const ids = (tracked) => formats.encodeCocoVideo(labels, { labels: [0, 2], tracked }).annotations.map(({ id }) => id);
     assert.deepEqual([ids(false), ids(true)], [[1, 2], [255, 2]]);
@@ -314,6 +321,10 @@ describe('frames one after another', () => {
     assert.deepEqual(times({ frameRate: 2 }), [0, 0.5, 1, 1.5]);
     assert.deepEqual(times({ timestamps: [10, 10.5, 12] }), [10, 10.5, 12, 3]);
     assert.deepEqual(times({ timestamps: [10, 10.5, 12], frameRate: 4 }), [10, 10.5, 12, 2.25]);
+    for (const wrong of [{ timestamps: [10, 12, 11] }, { timestamps: [10, 11] }, { timestamps: [-1e308, 0, 1e308] }, { frameRate: 1e-308 }]) {
+      assert.throws(() => times(wrong), { code: 'invalid-input' }, JSON.stringify(wrong));
+    }
+    assert.match(formats.encodeMots(labels, { timestamps: [0, 0, 1e-300] }).seqinfo, /frameRate=25\n/);
   });
 });
 
@@ -385,6 +396,10 @@ describe('wrong input is refused', () => {
     for (const image of right) {
       const [, name] = Object.keys(unzipSync(encode(image)));
       assert.equal(name, `default/instances/${image.replace(/\.[^.]*$/, '')}.png`);
+    }
+    for (const other of ['a/F1.png', 'A/f1.bmp', 'a/f1']) {
+      const two = ['a/f1.png', other].map((image) => ({ ...drawn('01'), image }));
+      assert.throws(() => formats.encodeCvatMots(two), { code: 'invalid-input', message: /two frames have the name/ }, other);
     }
     const labels = unzipSync(encode('a.png', { 0: 'a\0b\nc', 1: 'd' }))['default/instances/labels.txt'];
     assert.equal(new TextDecoder().decode(labels), 'a b c\nd\n');

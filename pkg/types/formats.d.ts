@@ -48,7 +48,7 @@ export interface ClipMeta extends FormatMeta {
   clip?: string;
   /** Frames per second; default from `timestamps`, else 25 in formats that require a rate. */
   frameRate?: number;
-  /** Time of each frame in seconds; default from `frameRate`. */
+  /** Time of each frame in seconds, none below the one before it; default from `frameRate`. */
   timestamps?: readonly number[];
   /**
    * Whether labels are the numbers of objects, to be kept as ids; default false. Where ids begin at 1, label 0 becomes 255. Formats that

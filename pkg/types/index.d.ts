@@ -383,6 +383,7 @@ export type ErrorCode =
   | 'unreadable-file'
   | 'invalid-json'
   | 'write-failed'
+  | 'file-exists'
   | 'too-few-frames'
   | 'pairs-failed'
   | 'ffmpeg-missing';

@@ -2,6 +2,7 @@
 
 import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
+import { FRAME_RATES, LONGEST_SIDE } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { MOST_JOBS } from '../pool/segmenter.js';
 import { isFormatName } from './formats.js';
@@ -44,6 +45,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
 
   veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
+      --allow-damaged        take what can be decoded of a damaged video, with a warning; otherwise that is an error
 
   veronese clip FRAMES... | VIDEO --out DIR [options]
                                          follow what moves through a clip: objects keep their number; FRAMES as for batch, VIDEO as for video
@@ -58,6 +60,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --seed N               every seed gives the same masks; reports repeat it (default: 1)
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
+      --allow-damaged        as for video
 
   veronese convert DIR --to FORMATS      convert the output of pair, batch or clip in DIR for annotation tools; separate FORMATS by commas:
                                          ${FORMAT_NAMES}
@@ -118,7 +121,7 @@ export type Command =
       out?: string;
     } & PairSettings)
   | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
-  | ({ name: 'video'; file: string } & SequenceSettings)
+  | ({ name: 'video'; file: string; allowDamaged: boolean } & SequenceSettings)
   | {
       name: 'clip';
       frames: string[];
@@ -127,6 +130,8 @@ export type Command =
       options: ClipSettings;
       /** Folder of corrections. */
       corrections?: string;
+      /** Of a video. */
+      allowDamaged: boolean;
       overlay: boolean;
       out: string;
     }
@@ -192,6 +197,7 @@ const OPTIONS = {
   shard: { type: 'string', default: '1/1' },
   'look-ahead': { type: 'string' },
   corrections: { type: 'string' },
+  'allow-damaged': { type: 'boolean', default: false },
 } as const;
 
 const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
@@ -200,8 +206,8 @@ const OF_SEQUENCES = [...OF_PAIRS, 'every', 'with-before', 'jobs', 'shard'];
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: ['before', ...OF_PAIRS],
   batch: ['list', ...OF_SEQUENCES],
-  video: OF_SEQUENCES,
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay'],
+  video: ['allow-damaged', ...OF_SEQUENCES],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
   convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'out'],
   points: ['motions', 'method', 'seed'],
 };
@@ -239,12 +245,12 @@ export function parseCommand(args: string[]): Command {
       ...(values.image !== undefined && { image: values.image }),
       ...(values.shapes !== undefined && { shapes: choice('shapes', values.shapes, 'polygon', 'box') }),
       ...(values.video !== undefined && { video: values.video }),
-      ...(values['frame-rate'] !== undefined && { frameRate: rate(values['frame-rate']) }),
+      ...(values['frame-rate'] !== undefined && { frameRate: decimal('frame-rate', values['frame-rate'], FRAME_RATES.least, FRAME_RATES.most) }),
       ...(values.out !== undefined && { out: values.out }),
     };
   }
   if (name === 'clip') {
-    const { list, out, overlay, corrections, 'look-ahead': lookAhead } = values;
+    const { list, out, overlay, corrections, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
     checkFrames(name, files, list);
     if (out === undefined) throw usage("'clip' needs '--out DIR'");
     const options: ClipSettings = {
@@ -254,7 +260,7 @@ export function parseCommand(args: string[]): Command {
       markUnknown: values['mark-unknown'],
     };
     const given = { ...(list !== undefined && { list }), ...(corrections !== undefined && { corrections }) };
-    return { name, frames: files, ...given, every: every(values.every), options, overlay, out };
+    return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, out };
   }
   for (const name of ['overlay', 'confidence'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
@@ -284,7 +290,7 @@ export function parseCommand(args: string[]): Command {
   };
   if (name === 'video') {
     const [file] = exactly(1, files, "'video' takes one file");
-    return { name, file: file as string, ...sequence };
+    return { name, file: file as string, allowDamaged: values['allow-damaged'], ...sequence };
   }
   checkFrames('batch', files, values.list);
   return { name: 'batch', frames: files, ...(values.list !== undefined && { list: values.list }), ...sequence };
@@ -342,15 +348,10 @@ function range(from: string, until?: string): Range {
   return { from: first, until: last };
 }
 
-function decimal(name: string, text: string): number {
-  if (/^\d+(\.\d+)?$/.test(text) && Number.isFinite(Number(text))) return Number(text);
-  throw invalid(name, 'a number from 0', text);
-}
-
-function rate(text: string): number {
-  const value = decimal('frame-rate', text);
-  if (value > 0) return value;
-  throw invalid('frame-rate', 'a number above 0', text);
+function decimal(name: string, text: string, least = 0, most = LONGEST_SIDE): number {
+  const value = Number(text);
+  if (/^\d+(\.\d+)?$/.test(text) && value >= least && value <= most) return value;
+  throw invalid(name, `a number from ${least} to ${most}, in digits`, text);
 }
 
 function wrapped(words: readonly string[], width: number, lineBreak: string): string {

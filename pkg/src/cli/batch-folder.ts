@@ -2,7 +2,7 @@
 
 import { readdirSync } from 'node:fs';
 import { extname, join } from 'node:path';
-import { UNLABELLED } from '../common/checks.js';
+import { keyOf, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { readPair } from './pair-folder.js';
 import { CLASS, isFileName, lastOf, type Range, type Sequence, type SequenceFrame, sequenceName } from './sequence.js';
@@ -50,7 +50,7 @@ export function openBatch(folder: string, range: Range, background: boolean, gro
       const taken = new Set<string>();
       for (const pair of pairs) {
         const frame = await readFrame(join(folder, pair.name), pair.frame, grouped);
-        const stem = frame.stem.toLowerCase();
+        const stem = keyOf(frame.stem);
         if (taken.has(stem)) throw new VeroneseError('invalid-input', `two frames have the name '${frame.stem}'`);
         taken.add(stem);
         yield frame;

@@ -42,7 +42,7 @@ async function perform({ frames, settings, folder }: BatchTask): Promise<BatchRe
   for (const { name, bytes } of frames) inputs.push({ name, bytes: bytes ?? (await readInput(name)) });
   if (folder === undefined) return { done: true, report: (await segmentFiles(inputs, settings, false)).report, files: [] };
   const job = jobOf(inputs, settings);
-  const record = finished(folder, job);
+  const record = await finished(folder, job);
   if (record) return { done: false, report: record, files: [] };
   const { report, images } = await segmentFiles(inputs, settings, true);
   return { done: true, report, files: recordFiles(report, job, inputs, images) };

@@ -10,9 +10,9 @@ import { spawnWith } from '../pool/threads.js';
 import type { SequenceCommand } from './arguments.js';
 import type { BatchResult, BatchTask } from './batch-work.js';
 import { checkFolder } from './files.js';
-import { findFrames, type Frame } from './frames.js';
+import { findFrames, type Frame, readList } from './frames.js';
 import { jsonLine } from './pair.js';
-import { removeLeftovers, writePair } from './store.js';
+import { checkPairs, removeLeftovers, writePair } from './store.js';
 import { complain, print, ProgressBar, type Tally } from './terminal.js';
 import { videoFrames } from './video.js';
 
@@ -29,11 +29,17 @@ type Outcome = { pair: Pair; result: BatchResult } | { pair: Pair; error: Verone
 export async function batch(command: SequenceCommand): Promise<void> {
   const { out, shard, jobs } = command;
   if (out !== undefined) checkFolder(out);
-  const paths = command.name === 'batch' ? findFrames(command.frames, command.list) : undefined;
+  const paths = command.name === 'batch' ? findFrames(command.frames, await readList(command.list)) : undefined;
   if (paths) checkCount(Math.ceil(paths.length / command.every));
-  if (out !== undefined) removeLeftovers(out, (name) => ofShard(Number.parseInt(name, 10), shard));
+  if (out !== undefined) {
+    const used = paths?.filter((_, position) => position % command.every === 0);
+    const names = used && new Set(used.map((name, index) => nameOf(index, { name })));
+    const isMine = (name: string) => ofShard(Number.parseInt(name, 10), shard);
+    await checkPairs(out, (name) => isMine(name) && (names ? names.has(name) : isOfVideo(name, command.every)), command, paths ?? []);
+    removeLeftovers(out, isMine);
+  }
 
-  const frames = paths ? paths.map((name) => ({ name })) : videoFrames((command as { file: string }).file, command.every);
+  const frames = paths ? paths.map((name) => ({ name })) : videoFrames(command as SequenceCommand & { name: 'video' });
   const pairs = pairsOf(frames, paths ? command.every : 1, command);
   const worker = () => new Worker(new URL('./cli-batch-work.js', import.meta.url), { name: 'veronese' });
   const module = () => core.module();
@@ -75,7 +81,7 @@ async function perform(pool: WorkerPool<BatchTask, BatchResult>, pair: Pair, com
   try {
     const folder = out === undefined ? undefined : join(out, pair.name);
     const result = await pool.run({ frames: pair.frames.map(contentOf), settings: { options, grouped, overlay }, folder });
-    if (out !== undefined && result.done) writePair(out, pair.name, result.files);
+    if (out !== undefined && result.done) await writePair(out, pair.name, result.files);
     return { pair, result: { ...result, files: [] } };
   } catch (thrown) {
     return { pair, error: veroneseError(thrown) };
@@ -126,6 +132,12 @@ const LONGEST_STEM = 200;
 /** The pair's number, and its first frame for people who look for it. */
 function nameOf(index: number, { name, stem = basename(name, extname(name)) }: Frame): string {
   return `${String(index).padStart(6, '0')}-${stem.slice(0, LONGEST_STEM).replace(/[^\w.-]/g, '_')}`;
+}
+
+/** Whether a pair of every K-th frame of a video has this name. */
+function isOfVideo(name: string, every: number): boolean {
+  const [, index, frame] = /^(\d+)-frame-(\d+)$/.exec(name) ?? [];
+  return frame !== undefined && Number(frame) === Number(index) * every;
 }
 
 function namesOf({ frames: [first, second] }: Pair): { first: string | undefined; second: string | undefined } {

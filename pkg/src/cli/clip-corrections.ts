@@ -7,13 +7,15 @@ import { editsOf } from '../calls/clip/edits.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipFrames } from './clip-frames.js';
 import { readJson, readLabels } from './label-files.js';
-import { sha256 } from './store.js';
+import { sha256 } from './files.js';
 
 const EDITS = 'edits.json';
 
 export interface Corrections {
   corrections: ClipCorrection[];
   edits: ClipEdits;
+  /** The files of both. */
+  paths: string[];
   /** Hash of both. */
   sha256: string;
 }
@@ -39,7 +41,7 @@ export async function readCorrections(folder: string, frames: ClipFrames): Promi
   const edits = names.includes(EDITS) ? await readEdits(join(folder, EDITS)) : {};
   if (corrections.length === 0 && Object.keys(edits).length === 0) return undefined;
   const hashes = corrections.map(({ frame, labels }) => [frame, sha256(labels)]);
-  return { corrections, edits, sha256: sha256(JSON.stringify([hashes, edits])) };
+  return { corrections, edits, paths: names.map((name) => join(folder, name)), sha256: sha256(JSON.stringify([hashes, edits])) };
 }
 
 function namesIn(folder: string): string[] {

@@ -3,7 +3,7 @@
 import { join } from 'node:path';
 import type { ClipMeta, FormatMotion } from '../../types/formats.js';
 import type { Matrix } from '../../types/index.js';
-import { isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../common/checks.js';
+import { FRAME_RATES, isFrameRate, isListOf, isObject, isRising, isWhole, keyOf, LONGEST_SIDE, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { readJson, readLabels } from './label-files.js';
 import { CLASS, isFileName, lastOf, type Range, type Sequence, type SequenceFrame, sequenceName } from './sequence.js';
@@ -12,6 +12,9 @@ export const TRACKS = 'tracks.json';
 export const LABELS = 'labels';
 /** What another run can use again. Nothing is lost but time where it is missing. */
 export const HIDDEN = '.clip';
+
+/** Latest time of a frame, seconds. */
+const LATEST = 1e9;
 
 /** What is read of tracks.json. */
 interface Tracks {
@@ -103,18 +106,18 @@ function checkPixels(labels: Uint8Array, known: ReadonlyMap<number, Sighting>, p
   }
 }
 
-function tracksOf(value: unknown, path: string): Tracks {
+export function tracksOf(value: unknown, path: string): Tracks {
   const wrong = (what: string) => new VeroneseError('invalid-input', `'${path}' is not of 'veronese clip': ${what}`);
   if (!isObject(value)) throw wrong('it is no object');
   const { width, height, frames, objects, background = [], frameRate, timestamps } = value;
   if (value['version'] !== 1) throw wrong('its version is not 1');
   if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) throw wrong(`"width" and "height" must be from 1 to ${LONGEST_SIDE}`);
   if (!isListOf(frames, isFileName) || frames.length === 0) throw wrong('"frames" must be names of files');
-  if (new Set(frames.map((name) => name.toLowerCase())).size < frames.length) throw wrong('"frames" has a name twice');
+  if (new Set(frames.map(keyOf)).size < frames.length) throw wrong('"frames" has a name twice');
   const { files: named = [] } = value;
   if (!isListOf(named, isFileName) || ![0, frames.length].includes(named.length)) throw wrong('"files" must have a name for each frame');
   // Frames of a video are no files: they are called what their labels are.
-  const areFiles = new Set(named).size === frames.length && !named.some((name) => /#\d+$/.test(name));
+  const areFiles = new Set(named.map(keyOf)).size === frames.length && !named.some((name) => /#\d+$/.test(name));
   const files = areFiles ? named : frames.map((name) => `${name}.png`);
   const isFrame = (frame: unknown): frame is number => isWhole(frame, 0, frames.length - 1);
   const isMatrix = (matrix: unknown): matrix is Matrix | null =>
@@ -131,11 +134,17 @@ function tracksOf(value: unknown, path: string): Tracks {
   const isStill = (entry: unknown): entry is Tracks['background'][number] =>
     isObject(entry) && isFrame(entry['frame']) && isMatrix(entry['matrix'] ?? null);
   if (!isListOf(background, isStill)) throw wrong('"background" must have frames and matrices');
-  if (frameRate !== undefined && !(Number.isFinite(frameRate) && (frameRate as number) > 0)) throw wrong('"frameRate" must be a number above 0');
-  const isTime = (time: unknown): time is number => Number.isFinite(time);
-  if (timestamps !== undefined && !(isListOf(timestamps, isTime) && timestamps.length === frames.length)) {
-    throw wrong('"timestamps" must have a number for each frame');
+  for (const seen of [background, ...objects.map(({ frames }) => frames)]) {
+    if (new Set(seen.map(({ frame }) => frame)).size < seen.length) throw wrong('an object is in one frame twice');
   }
-  const times = { ...(frameRate !== undefined && { frameRate: frameRate as number }), ...(timestamps && { timestamps }) };
+  if (frameRate !== undefined && !isFrameRate(frameRate)) {
+    throw wrong(`"frameRate" must be a number from ${FRAME_RATES.least} to ${FRAME_RATES.most}`);
+  }
+  const isTimes = (times: unknown): times is number[] =>
+    isRising(times) && times.length === frames.length && (times[0] as number) >= 0 && (times.at(-1) as number) <= LATEST;
+  if (timestamps !== undefined && !isTimes(timestamps)) {
+    throw wrong('"timestamps" must have a number from 0 for each frame, none below the one before it');
+  }
+  const times = { ...(frameRate !== undefined && { frameRate }), ...(timestamps && { timestamps }) };
   return { width, height, frames, files, objects: [...objects].sort((a, b) => a.id - b.id), background, ...times };
 }

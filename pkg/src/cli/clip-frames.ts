@@ -2,14 +2,14 @@
 
 import { basename, extname } from 'node:path';
 import type { Picture } from '../../types/codecs.js';
+import { keyOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipCommand } from './arguments.js';
 import type { FrameFile } from './clip-store.js';
-import { readInput } from './files.js';
-import { findFrames, isVideo } from './frames.js';
+import { readInput, sha256 } from './files.js';
+import { findFrames, isVideo, readList } from './frames.js';
 import { decoded } from './pair.js';
-import { sha256 } from './store.js';
-import { videoFrames, VideoReader } from './video.js';
+import { type Video, videoFrames, VideoReader } from './video.js';
 
 /** A frame, and why it cannot be read if that is so. */
 interface Seen extends FrameFile {
@@ -20,6 +20,8 @@ interface Seen extends FrameFile {
 
 export class ClipFrames {
   readonly files: readonly Seen[];
+  /** The files that are read. */
+  readonly paths: readonly string[];
   /** Width and height of all frames, once one was read. */
   size: { width: number; height: number } | undefined;
   /** The first frame that could not be read. */
@@ -28,8 +30,9 @@ export class ClipFrames {
   readonly #close: () => Promise<void>;
   #first = '';
 
-  constructor(files: readonly Seen[], content: (index: number) => Promise<Uint8Array | undefined>, close = async () => {}) {
+  constructor(files: readonly Seen[], paths: readonly string[], content: (index: number) => Promise<Uint8Array | undefined>, close = async () => {}) {
     this.files = files;
+    this.paths = paths;
     this.#content = content;
     this.#close = close;
     if (files.length < 2) {
@@ -73,10 +76,10 @@ export class ClipFrames {
 }
 
 /** Throws where there are too few frames, or two of one name. */
-export async function clipFrames({ frames: names, list, every }: ClipCommand): Promise<ClipFrames> {
+export async function clipFrames({ frames: names, list, every, allowDamaged }: ClipCommand): Promise<ClipFrames> {
   const [name = ''] = names;
-  if (names.length === 1 && list === undefined && isVideo(name)) return framesOfVideo(name, every);
-  const paths = findFrames(names, list).filter((_, index) => index % every === 0);
+  if (names.length === 1 && list === undefined && isVideo(name)) return framesOfVideo({ file: name, every, allowDamaged });
+  const paths = findFrames(names, await readList(list)).filter((_, index) => index % every === 0);
   checkStems(paths);
   const files: Seen[] = [];
   for (const path of paths) {
@@ -87,16 +90,16 @@ export async function clipFrames({ frames: names, list, every }: ClipCommand): P
       files.push({ ...frame, sha256: undefined, failure: { thrown } });
     }
   }
-  return new ClipFrames(files, (index) => readInput(paths[index] as string));
+  return new ClipFrames(files, paths, (index) => readInput(paths[index] as string));
 }
 
 function checkStems(paths: readonly string[]): void {
   const stems = new Map<string, string>();
   for (const path of paths) {
     const stem = stemOf(path);
-    const other = stems.get(stem.toLowerCase());
+    const other = stems.get(keyOf(stem));
     if (other !== undefined) throw new VeroneseError('invalid-input', `'${other}' and '${path}' would both be written to '${stem}.png'`);
-    stems.set(stem.toLowerCase(), path);
+    stems.set(keyOf(stem), path);
   }
 }
 
@@ -105,15 +108,16 @@ function stemOf(path: string): string {
 }
 
 /** A video that breaks off has a last frame that cannot be read. */
-async function framesOfVideo(file: string, every: number): Promise<ClipFrames> {
+async function framesOfVideo(video: Video): Promise<ClipFrames> {
+  const { file, every } = video;
   const files: Seen[] = [];
   const seen = (number: number) => ({ name: `${basename(file)}#${number}`, stem: String(number).padStart(5, '0'), file: `${basename(file)}#${number}` });
   try {
-    for await (const { bytes } of videoFrames(file, every)) files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
+    for await (const { bytes } of videoFrames(video)) files.push({ ...seen(files.length * every), sha256: sha256(bytes as Uint8Array) });
   } catch (thrown) {
     if (files.length === 0) throw thrown;
     files.push({ ...seen(files.length * every), sha256: undefined, failure: { thrown } });
   }
-  const reader = new VideoReader(file, every);
-  return new ClipFrames(files, (index) => reader.read(index), () => reader.close());
+  const reader = new VideoReader({ ...video, quiet: true });
+  return new ClipFrames(files, [file], (index) => reader.read(index), () => reader.close());
 }

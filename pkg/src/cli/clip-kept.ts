@@ -1,37 +1,46 @@
 // What an unfinished clip has found out about its frames, and what a finished one knows of them: so that pairs are solved once. A file
 // begins with a hash of its content and of what that was made from, so a damaged one is as good as none.
 
-import { mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
+import { readdirSync, renameSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { HIDDEN } from './clip-folder.js';
 import type { FrameFile } from './clip-store.js';
-import { sha256, writeFile, writing } from './store.js';
+import { readWritten, sha256, writing } from './files.js';
+import { type Ledger, temporary } from './ledger.js';
 
 const STATE = 'state';
 const PAIRS = '.pairs';
+const OURS = /^state$|\.pairs$/;
 /** Length of the hash in front, bytes. */
 const HASH = 32;
 
 export class KeptClip {
+  readonly #ledger: Ledger;
   readonly #out: string;
   readonly #folder: string;
   /** For each frame a hash of the settings, of its content and of that of the frames before it. */
   readonly #keys: string[] = [];
 
   /** `settings`: what decides how pairs are solved. */
-  constructor(out: string, settings: object, frames: readonly FrameFile[]) {
+  constructor(ledger: Ledger, out: string, settings: object, frames: readonly FrameFile[]) {
+    this.#ledger = ledger;
     this.#out = out;
     this.#folder = join(out, HIDDEN);
     let key = sha256(JSON.stringify(settings));
     for (const frame of frames) this.#keys.push((key = sha256(key + frame.sha256)));
   }
 
+  /** Throws `file-exists` where files of another are in the places of these. */
+  check(): Promise<void> {
+    return writing(this.#out, () => this.#ledger.checkFolder(HIDDEN, OURS));
+  }
+
   pairs(index: number): Uint8Array | undefined {
     return this.#read(nameOf(index), this.#keys[index]);
   }
 
-  keepPairs(index: number, pairs: Uint8Array): void {
-    this.#write(nameOf(index), this.#keys[index], pairs);
+  keepPairs(index: number, pairs: Uint8Array): Promise<void> {
+    return this.#write(nameOf(index), this.#keys[index], pairs);
   }
 
   state(): Uint8Array | undefined {
@@ -39,18 +48,18 @@ export class KeptClip {
   }
 
   /** The pairs are no longer needed. */
-  keepState(state: Uint8Array): void {
-    this.#write(STATE, this.#keys.at(-1), state);
-    this.#remove((name) => name.endsWith(PAIRS));
+  async keepState(state: Uint8Array): Promise<void> {
+    await this.#write(STATE, this.#keys.at(-1), state);
+    await this.#remove(/\.pairs$/);
   }
 
-  clear(): void {
-    this.#remove((name) => name.endsWith(PAIRS) || name === STATE);
+  clear(): Promise<void> {
+    return this.#remove(OURS);
   }
 
   #read(name: string, key: string | undefined): Uint8Array | undefined {
     try {
-      const file = readFileSync(join(this.#folder, name));
+      const file = readWritten(join(this.#folder, name)) ?? Buffer.alloc(0);
       const content = new Uint8Array(file.subarray(HASH));
       return file.subarray(0, HASH).equals(hashOf(key, content)) ? content : undefined;
     } catch {
@@ -58,21 +67,27 @@ export class KeptClip {
     }
   }
 
-  #write(name: string, key: string | undefined, content: Uint8Array): void {
-    writing(this.#out, () => {
-      mkdirSync(this.#folder, { recursive: true });
-      writeFile(this.#folder, name, Buffer.concat([hashOf(key, content), content]));
+  #write(name: string, key: string | undefined, content: Uint8Array): Promise<void> {
+    return writing(this.#out, () => {
+      this.#ledger.claimFolder(HIDDEN, OURS);
+      const part = join(this.#folder, temporary(name));
+      try {
+        writeFileSync(part, Buffer.concat([hashOf(key, content), content]));
+        renameSync(part, join(this.#folder, name));
+      } finally {
+        rmSync(part, { force: true });
+      }
     });
   }
 
-  #remove(isOld: (name: string) => boolean): void {
+  #remove(isOld: RegExp): Promise<void> {
     let names: string[] = [];
     try {
       names = readdirSync(this.#folder);
     } catch {
       // There is no folder.
     }
-    writing(this.#out, () => names.filter(isOld).forEach((name) => rmSync(join(this.#folder, name), { force: true })));
+    return writing(this.#out, () => names.filter((name) => isOld.test(name)).forEach((name) => rmSync(join(this.#folder, name), { force: true })));
   }
 }
 

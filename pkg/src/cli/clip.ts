@@ -12,8 +12,9 @@ import { type ClipFrames, clipFrames } from './clip-frames.js';
 import { KeptClip } from './clip-kept.js';
 import { ClipStore, type Record } from './clip-store.js';
 import { checkFolder } from './files.js';
+import { Ledger } from './ledger.js';
 import { jsonLine } from './pair.js';
-import { print, ProgressBar } from './terminal.js';
+import { print, ProgressBar, warn } from './terminal.js';
 
 /** If a frame is bad, writes the labels of the frames before it and throws. */
 export async function clip(command: ClipCommand): Promise<void> {
@@ -25,12 +26,14 @@ export async function clip(command: ClipCommand): Promise<void> {
   try {
     const said = command.corrections === undefined ? undefined : await readCorrections(command.corrections, frames);
     const software = `veronese ${version}`;
-    const store = new ClipStore(out, { ...options, every, ...(said && { corrections: said.sha256 }), overlay: wanted, software });
-    const record = store.finished(frames.files);
+    const ledger = await Ledger.open(out);
+    const store = new ClipStore(ledger, out, { ...options, every, ...(said && { corrections: said.sha256 }), overlay: wanted, software });
+    const record = await store.finished(frames.files);
     if (record) return await report(record);
 
-    store.begin();
-    const kept = new KeptClip(out, { ...options, markUnknown: undefined, software }, frames.files);
+    const kept = new KeptClip(ledger, out, { ...options, markUnknown: undefined, software }, frames.files);
+    await kept.check();
+    await store.begin(frames.files, wanted, [...frames.paths, ...(said?.paths ?? [])]);
     const streams = options.lookAhead !== 'all' && !said;
     const onProgress = progress.listener;
     const segmented = streams
@@ -38,15 +41,15 @@ export async function clip(command: ClipCommand): Promise<void> {
       : await corrected(segmenter, frames, command, said, kept, onProgress);
     for await (const frame of segmented) {
       const { stem } = frames.files[frame.index] as { stem: string };
-      store.write(stem, await images(frames, frame, wanted));
+      await store.write(stem, await images(frames, frame, wanted));
       progress.clear();
       await print(jsonLine({ frame: frame.index, name: stem, objects: frame.objects.map(({ id }) => id) }));
     }
     if (frames.failure) throw frames.failure.thrown;
     const tracks = segmented.tracks();
-    if (streams) kept.clear();
-    store.end(frames.files, frames.size as { width: number; height: number }, tracks);
-    if (tracks.dropped > 0) warn(tracks.dropped);
+    if (streams) await kept.clear();
+    await store.end(frames.files, frames.size as { width: number; height: number }, tracks);
+    if (tracks.dropped > 0) warn(`${tracks.dropped} more objects were seen when all 254 numbers had been given; they count as background`);
     await print(lastLine(tracks.objects));
   } finally {
     progress.clear();
@@ -84,7 +87,7 @@ async function solved(
   await solving.next();
   const state = await solving.state();
   await solving.return();
-  if (state && !frames.failure) kept.keepState(state);
+  if (state && !frames.failure) await kept.keepState(state);
   return state;
 }
 
@@ -118,10 +121,6 @@ async function images(frames: ClipFrames, { index, labels }: ClipFrame, withOver
   if (!withOverlay) return files;
   const { data } = await frames.read(index);
   return { ...files, overlay: await encodeColourPng(width, height, overlay(data, labels)) };
-}
-
-function warn(dropped: number): void {
-  process.stderr.write(`veronese: warning: ${dropped} more objects were seen when all 254 numbers had been given; they count as background\n`);
 }
 
 /** Prints what the run that wrote the record printed. */

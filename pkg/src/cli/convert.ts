@@ -6,8 +6,10 @@ import { VeroneseError } from '../common/errors.js';
 import type { ConvertCommand } from './arguments.js';
 import { openBatch, pairFolders } from './batch-folder.js';
 import { LABELS, openClip, TRACKS } from './clip-folder.js';
-import { checkFolder, type Output, type OutputFile } from './files.js';
+import { checkFolder, type OutputFile } from './files.js';
 import { FORMATS, isFormatName, type Masks } from './formats.js';
+import { Ledger } from './ledger.js';
+import type { Output } from './output.js';
 import { readPair } from './pair-folder.js';
 import { SEQUENCE_FORMATS } from './sequence-formats.js';
 
@@ -75,13 +77,15 @@ async function convertPair(command: ConvertCommand, out: string, output: Output)
   const wanted = motions.map(({ label }) => label).filter((label) => label > 0 || background);
   const masks: Masks = { labels, width, height, meta: { ...(image !== undefined && { image }), motions, labels: wanted, ...names } };
   const files: OutputFile[] = to.filter(isFormatName).flatMap((name) => FORMATS[name](masks, tolerance));
-  await output.write(out, files, { beside: true });
+  await output.write(out, files);
   return { files: files.map(({ name }) => name) };
 }
 
 async function convertSequence(command: ConvertCommand, kind: 'batch' | 'clip', out: string, output: Output) {
   const { folder, to, range, background, grouped, frameRate, shapes = 'polygon', tolerance, video } = command;
   const sequence = kind === 'batch' ? openBatch(folder, range, background, grouped) : await openClip(folder, range, background, frameRate);
+  // Names that depend on frames are checked when they are written.
+  await (await Ledger.open(out)).check(to.flatMap((name) => SEQUENCE_FORMATS[name].files));
   const settings = { shapes, tolerance, ...(video !== undefined && { video }) };
   const files = await output.stage(out, async (write) => {
     for (const name of to) await SEQUENCE_FORMATS[name].convert(sequence, settings, write);

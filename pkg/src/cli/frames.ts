@@ -1,8 +1,12 @@
 // Which frames a batch is made of: folders, patterns, files and lists of them, in a stated order.
 
-import { lstatSync, readdirSync, readFileSync, statSync } from 'node:fs';
-import { join } from 'node:path';
+import { constants, lstatSync, openSync, readdirSync, statSync } from 'node:fs';
+import { readFile } from 'node:fs/promises';
+import { Socket } from 'node:net';
+import { basename, extname, join } from 'node:path';
+import { text } from 'node:stream/consumers';
 import { VeroneseError } from '../common/errors.js';
+import { isFileName } from './sequence.js';
 
 const IMAGE = /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i;
 const MAGIC = /[*?[\]]/;
@@ -20,11 +24,20 @@ export interface Frame {
 
 /**
  * The paths of all frames. What is named keeps its order; what is found in a folder or by a pattern is sorted by name, numbers
- * by their value (frame-9 before frame-10). Throws `file-not-found` or `unreadable-file`.
+ * by their value (frame-9 before frame-10). Throws `file-not-found`, `unreadable-file`, or `invalid-input` where a name cannot stand in
+ * the results.
  */
-export function findFrames(names: readonly string[], list?: string): string[] {
-  const listed = list === undefined ? [] : linesOf(list);
-  return [...names.flatMap(framesOf), ...listed];
+export function findFrames(names: readonly string[], listed: readonly string[] = []): string[] {
+  const paths = [...names.flatMap(framesOf), ...listed];
+  for (const path of paths) checkName(path);
+  return paths;
+}
+
+/** Throws `invalid-input` where results cannot be called by the name of a file. */
+export function checkName(path: string): void {
+  const name = basename(path);
+  if (isFileName(name) && isFileName(basename(name, extname(name)))) return;
+  throw new VeroneseError('invalid-input', `${JSON.stringify(path)} cannot name results: it has control characters, a backslash or only dots`);
 }
 
 /** Whether a name is that of a file which is not an image: a video, for commands that take both. */
@@ -46,15 +59,23 @@ function framesOf(name: string): string[] {
   return found.sort(byNumbers);
 }
 
-function linesOf(list: string): string[] {
+/** The lines of a file, or with `-` of standard input. None if there is no list. */
+export async function readList(list: string | undefined): Promise<string[]> {
+  if (list === undefined) return [];
   try {
-    const text = readFileSync(list === '-' ? 0 : list, 'utf8');
-    return text.split(/\r?\n/).filter((line) => line.trim() !== '');
+    return (await contentOf(list)).split(/\r?\n/).filter((line) => line.trim() !== '');
   } catch (thrown) {
     const { code, message } = thrown as NodeJS.ErrnoException;
     if (code === 'ENOENT') throw new VeroneseError('file-not-found', `there is no file '${list}'`);
     throw new VeroneseError('unreadable-file', `'${list}' cannot be read: ${message}`);
   }
+}
+
+/** A pipe is read as sockets are: a thread that waits for it would keep the process from ending when it is told to. */
+async function contentOf(list: string): Promise<string> {
+  if (list === '-') return text(process.stdin);
+  if (!statSync(list).isFIFO()) return readFile(list, 'utf8');
+  return text(new Socket({ fd: openSync(list, constants.O_RDONLY | constants.O_NONBLOCK), readable: true, writable: false }));
 }
 
 /** Files that match a pattern: `*` and `?` within a name, `[a-c]` one of some letters, `**` folders at any depth. */

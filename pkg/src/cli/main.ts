@@ -5,7 +5,10 @@ import { version } from '../calls/version.js';
 import { VeroneseError } from '../common/errors.js';
 import { type ClipCommand, type Command, filesOf, HELP, parseCommand, type SequenceCommand } from './arguments.js';
 import { batch } from './batch.js';
-import { checkFolder, Output, readInput } from './files.js';
+import { checkFolder, readInput } from './files.js';
+import { idsOf, Ledger } from './ledger.js';
+import { Output } from './output.js';
+import { isImageOfPair, possibleFiles } from './pair-folder.js';
 import { complain, print } from './terminal.js';
 import type { Outcome, Work } from './work.js';
 
@@ -39,11 +42,14 @@ async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, 
   if (command.name === 'version') return `veronese ${version}\n`;
   if (command.name === 'convert') return (await import('./convert.js')).convert(command, output);
   const folder = command.name === 'pair' ? command.out : undefined;
-  if (folder !== undefined) checkFolder(folder);
+  if (command.name === 'pair' && folder !== undefined) {
+    checkFolder(folder);
+    await (await Ledger.open(folder)).check(possibleFiles(command), idsOf(filesOf(command)));
+  }
   const contents: Uint8Array[] = [];
   for (const path of filesOf(command)) contents.push(await readInput(path));
   const { json, files } = await inThread({ command, contents });
-  if (folder !== undefined) await output.write(folder, files);
+  if (folder !== undefined) await output.write(folder, files, isImageOfPair);
   return json;
 }
 

@@ -6,6 +6,29 @@ import { groupLabels } from '../calls/labels.js';
 import { isListOf, isObject, isWhole, UNLABELLED } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { readJson, readLabels } from './label-files.js';
+import type { PairSettings } from './pair.js';
+
+/** Most motions of a pair, as in the core. */
+const MOST_MOTIONS = 10;
+
+export const RESULT = 'result.json';
+
+/** The files of a pair with masks of these labels, the report last. */
+export function filesOfPair(labels: readonly number[], { overlay, confidence }: { overlay: boolean; confidence: boolean }): string[] {
+  const masks = [...new Set(labels)].map((label) => `mask-${label}.png`);
+  return ['labels.png', ...masks, ...(confidence ? ['confidence.png'] : []), ...(overlay ? ['overlay.png'] : []), RESULT];
+}
+
+/** Names of all files that a pair may have: how many masks there are shows in the end. */
+export function possibleFiles({ options: { motions, confidence }, overlay }: Pick<PairSettings, 'options' | 'overlay'>): string[] {
+  const labels = Array.from({ length: motions === 'auto' ? MOST_MOTIONS : motions }, (_, label) => label);
+  return filesOfPair(labels, { overlay, confidence });
+}
+
+/** Files that another run on a pair may not make: they would be mistaken for its own. */
+export function isImageOfPair(path: string): boolean {
+  return /^(mask-\d+|overlay|confidence)\.png$/.test(path);
+}
 
 /** What is read of result.json. */
 interface Result {
@@ -30,7 +53,7 @@ export interface Pair {
 
 /** `grouped`: groups instead of motions, also where labels.png has motions. */
 export async function readPair(folder: string, grouped: boolean): Promise<Pair> {
-  const [picture, report] = [join(folder, 'labels.png'), join(folder, 'result.json')];
+  const [picture, report] = [join(folder, 'labels.png'), join(folder, RESULT)];
   const { labels, width, height } = await readLabels(picture);
   const result = resultOf(await readJson(report), report);
   if (width !== result.width || height !== result.height) {
@@ -48,7 +71,7 @@ export async function readPair(folder: string, grouped: boolean): Promise<Pair> 
   return { labels: shown, width, height, motions: groups, grouped: true, inputs };
 }
 
-function resultOf(value: unknown, path: string): Result {
+export function resultOf(value: unknown, path: string): Result {
   const whole = (value: unknown): boolean => Number.isSafeInteger(value) && (value as number) >= 0;
   const label = (value: unknown): boolean => isWhole(value, 0, UNLABELLED - 1);
   const numbers = (value: unknown, count: number): boolean => Array.isArray(value) && value.length === count && value.every(Number.isFinite);

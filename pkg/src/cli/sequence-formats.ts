@@ -4,7 +4,7 @@ import type { ClipMeta, FormatMeta, MotFiles } from '../../types/formats.js';
 import { maskOf } from '../calls/labels.js';
 import { encodeGreyPng } from '../entries/codecs.js';
 import * as formats from '../formats/index.js';
-import type { Content, Write } from './files.js';
+import type { Content, Write } from './output.js';
 import type { Sequence, SequenceFrame } from './sequence.js';
 
 export interface SequenceSettings {
@@ -20,26 +20,31 @@ type Convert = (sequence: Sequence, settings: SequenceSettings, write: Write) =>
 
 interface SequenceFormat {
   convert: Convert;
+  /** Those of its files that have the same name whatever the frames are called. */
+  files: readonly string[];
   /** Whether a label must be the same object in all frames. */
   tracks: boolean;
 }
 
-const images = (convert: Convert): SequenceFormat => ({ convert, tracks: false });
-const tracks = (convert: Convert): SequenceFormat => ({ convert, tracks: true });
+type Files = Pick<SequenceFormat, 'convert' | 'files'>;
+
+const images = (files: Files): SequenceFormat => ({ ...files, tracks: false });
+const tracks = (files: Files): SequenceFormat => ({ ...files, tracks: true });
 
 /** One file of all frames. */
-function whole(name: string, encode: (sequence: Sequence, settings: SequenceSettings) => Promise<Content | object>): Convert {
-  return async (sequence, settings, write) => {
+function whole(name: string, encode: (sequence: Sequence, settings: SequenceSettings) => Promise<Content | object>): Files {
+  const convert: Convert = async (sequence, settings, write) => {
     const document = await encode(sequence, settings);
     await write(name, typeof document === 'string' || document instanceof Uint8Array ? document : json(document));
   };
+  return { convert, files: [name] };
 }
 
 type Encode<T> = (all: readonly [Uint8Array, number, number, FormatMeta], settings: SequenceSettings, index: number) => T;
 
 /** One list in JSON, to which each frame adds. It is written as it comes: of a long clip it can be larger than the memory. */
-function list(name: string, encode: Encode<readonly object[]>): Convert {
-  return async (sequence, settings, write) => {
+function list(name: string, encode: Encode<readonly object[]>): Files {
+  const convert: Convert = async (sequence, settings, write) => {
     await write(name, lines());
     async function* lines(): AsyncGenerator<string, void, undefined> {
       let [index, before] = [0, '['];
@@ -53,17 +58,19 @@ function list(name: string, encode: Encode<readonly object[]>): Convert {
       yield before === '[' ? '[]\n' : ']\n';
     }
   };
+  return { convert, files: [name] };
 }
 
 /** A file for each frame. */
-function each(nameOf: (frame: SequenceFrame) => string, encode: Encode<Content | object>): Convert {
-  return async (sequence, settings, write) => {
+function each(nameOf: (frame: SequenceFrame) => string, encode: Encode<Content | object>): Files {
+  const convert: Convert = async (sequence, settings, write) => {
     let index = 0;
     for await (const frame of sequence) {
       const content = encode(given(sequence, frame), settings, index++);
       await write(nameOf(frame), typeof content === 'string' || content instanceof Uint8Array ? content : json(content));
     }
   };
+  return { convert, files: [] };
 }
 
 /** What encoders of videos take beside the frames. */
@@ -77,22 +84,26 @@ function given({ meta: { names, labels } }: Sequence, { labels: pixels, width, h
 }
 
 /** A folder as MOTChallenge's sequences are. */
-function motFolder(folder: string, encode: (sequence: Sequence) => Promise<MotFiles>): Convert {
-  return async (sequence, _, write) => {
+function motFolder(folder: string, encode: (sequence: Sequence) => Promise<MotFiles>): Files {
+  const files = ['gt/gt.txt', 'gt/labels.txt', 'seqinfo.ini'].map((name) => `${folder}/${name}`);
+  const convert: Convert = async (sequence, _, write) => {
     const { gt, seqinfo, names } = await encode(sequence);
-    await write(`${folder}/gt/gt.txt`, gt);
-    await write(`${folder}/gt/labels.txt`, lines(names));
-    await write(`${folder}/seqinfo.ini`, seqinfo);
+    for (const [k, content] of [gt, lines(names), seqinfo].entries()) await write(files[k] as string, content);
   };
+  return { convert, files };
 }
+
+const DAVIS_CLIPS = 'davis/ImageSets/2017/val.txt';
 
 async function davis(sequence: Sequence, _: SequenceSettings, write: Write): Promise<void> {
   const { clip } = sequence.meta;
   for await (const { labels, width, height, stem } of sequence) {
     await write(`davis/Annotations/480p/${clip}/${stem}.png`, formats.encodeDavis(labels, width, height));
   }
-  await write('davis/ImageSets/2017/val.txt', `${clip}\n`);
+  await write(DAVIS_CLIPS, `${clip}\n`);
 }
+
+const YOLO_NAMES = 'yolo/names.txt';
 
 /** The classes have the same numbers in all frames. */
 async function yolo(sequence: Sequence, { tolerance }: SequenceSettings, write: Write): Promise<void> {
@@ -102,7 +113,7 @@ async function yolo(sequence: Sequence, { tolerance }: SequenceSettings, write: 
     const { text } = formats.encodeYolo(...given(sequence, frame), { tolerance, classes });
     await write(`yolo/labels/${frame.stem}.txt`, text);
   }
-  await write('yolo/names.txt', lines(classes));
+  await write(YOLO_NAMES, lines(classes));
 }
 
 async function masks(sequence: Sequence, _: SequenceSettings, write: Write): Promise<void> {
@@ -144,8 +155,8 @@ export const SEQUENCE_FORMATS = {
   'labelme-polygon': images(
     each(({ stem }) => `labelme-polygon/${stem}.json`, (all, { tolerance }) => formats.encodeLabelMe(...all, { shape: 'polygon', tolerance })),
   ),
-  yolo: images(yolo),
-  davis: images(davis),
+  yolo: images({ convert: yolo, files: [YOLO_NAMES] }),
+  davis: images({ convert: davis, files: [DAVIS_CLIPS] }),
   supervisely: images(each(({ image }) => `supervisely/ann/${image}.json`, (all) => formats.encodeSupervisely(...all))),
   'web-annotation': images(
     list('web-annotation.json', (all, { tolerance }) =>
@@ -153,7 +164,7 @@ export const SEQUENCE_FORMATS = {
     ),
   ),
   veronese: images(each(({ stem }) => `veronese/${stem}.json`, (all) => formats.encodeVeronese(...all))),
-  masks: images(masks),
+  masks: images({ convert: masks, files: [] }),
 } satisfies Record<string, SequenceFormat>;
 
 export type SequenceFormatName = keyof typeof SEQUENCE_FORMATS;

@@ -1,11 +1,11 @@
 // Results of many pairs in one folder: a folder for each pair, which is there as a whole or not at all, and says what it was made of.
 
-import { createHash } from 'node:crypto';
-import { mkdirSync, readdirSync, readFileSync, renameSync, rmdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { hostname } from 'node:os';
+import { readdirSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { version } from '../calls/version.js';
-import { OURS, type OutputFile, writeFailed } from './files.js';
+import { makeFolder, type OutputFile, readWritten, sha256, writing } from './files.js';
+import { enter, HOST, idsOf, isUnchanged, Ledger, temporary } from './ledger.js';
+import { isImageOfPair, possibleFiles, RESULT } from './pair-folder.js';
 import { type InputFile, jsonLine, type PairSettings, type Report } from './pair.js';
 
 /** What a pair's result.json has besides the report; the report's times are left out, since they differ between two runs. */
@@ -17,10 +17,6 @@ export interface Record extends Omit<Report, 'milliseconds'> {
   job: string;
 }
 
-const RESULT = 'result.json';
-
-export const sha256 = (bytes: Uint8Array | string): string => createHash('sha256').update(bytes).digest('hex');
-
 /** The hash of contents and settings that a result is recognised by. */
 export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay }: PairSettings): string {
   const contents = inputs.map(({ bytes }) => sha256(bytes));
@@ -28,14 +24,14 @@ export function jobOf(inputs: readonly InputFile[], { options, grouped, overlay 
 }
 
 /** The record in a pair's folder if it is of this job and nothing of it or of its files has changed. */
-export function finished(folder: string, job: string): Record | undefined {
+export async function finished(folder: string, job: string): Promise<Record | undefined> {
   try {
-    const text = readFileSync(join(folder, RESULT), 'utf8');
+    const text = readWritten(join(folder, RESULT))?.toString() ?? '';
     const { job: _, ...content } = JSON.parse(text) as Record;
     const record = sealed(content, job);
     if (jsonLine(record) !== text) return undefined;
-    const whole = Object.entries(record.files).every(([name, hash]) => sha256(readFileSync(join(folder, name))) === hash);
-    return whole ? record : undefined;
+    for (const [name, hash] of Object.entries(record.files)) if (!(await isUnchanged(join(folder, name), hash))) return undefined;
+    return record;
   } catch {
     return undefined; // Not there, or not ours: to be done.
   }
@@ -56,59 +52,38 @@ export function recordFiles(report: Report, job: string, inputs: readonly InputF
   return [...images, { name: RESULT, bytes: Buffer.from(jsonLine(sealed(content, job))) }];
 }
 
-/** A mark of this machine, so that two of them may write into one shared folder. */
-const HOST = sha256(hostname()).slice(0, 8);
-
-/** What something is called while it is written. */
-export const temporary = (name: string): string => `.${name}.${HOST}-${process.pid}.part`;
-
-/** Writes a file, whole or not at all. Synchronous, so that no signal is handled in the middle. */
-export function writeFile(folder: string, name: string, content: Uint8Array | string): void {
-  const part = join(folder, temporary(name));
-  try {
-    writeFileSync(part, content);
-    renameSync(part, join(folder, name));
-  } catch (thrown) {
-    rmSync(part, { force: true });
-    throw thrown;
-  }
-}
-
-/** Throws `write-failed` where `write` throws. */
-export function writing(folder: string, write: () => void): void {
-  try {
-    write();
-  } catch (thrown) {
-    throw writeFailed(folder, thrown instanceof Error ? thrown.message : String(thrown));
-  }
-}
-
 /**
- * Writes a pair's folder. All of it happens between two turns of the event loop, so a signal comes before or after it; and since
- * the folder gets its name when it is complete, so does the end of the process.
+ * Writes a pair's folder. A new one gets its name when it is complete: it is there as a whole or not at all. Into one that is there,
+ * perhaps with other people's files, the files go one by one, the report last. Either happens between two turns of the event loop, so a
+ * signal comes before or after it.
  */
-export function writePair(out: string, name: string, files: readonly OutputFile[]): void {
-  const part = join(out, temporary(name));
-  const folder = join(out, name);
-  try {
-    rmSync(part, { recursive: true, force: true });
-    mkdirSync(part, { recursive: true });
-    for (const { name, bytes } of files) writeFileSync(join(part, name), bytes);
-    if (statSync(folder, { throwIfNoEntry: false })) replaceFiles(part, folder, files);
-    else renameSync(part, folder);
-  } catch (thrown) {
-    rmSync(part, { recursive: true, force: true });
-    throw writeFailed(folder, thrown instanceof Error ? thrown.message : String(thrown));
-  }
+export async function writePair(out: string, name: string, files: readonly OutputFile[]): Promise<void> {
+  const [part, folder] = [join(out, temporary(name)), join(out, name)];
+  const hashes = new Map(files.map(({ name, bytes }) => [name, sha256(bytes)]));
+  await writing(folder, async () => {
+    const there = statSync(folder, { throwIfNoEntry: false });
+    const replace = there && (await (await Ledger.open(folder)).replacing(hashes.keys(), isImageOfPair));
+    try {
+      rmSync(part, { recursive: true, force: true });
+      makeFolder(part);
+      for (const { name, bytes } of files) writeFileSync(join(part, name), bytes);
+      if (replace) return replace(part, hashes);
+      enter(part, hashes);
+      renameSync(part, folder);
+    } finally {
+      rmSync(part, { recursive: true, force: true });
+    }
+  });
 }
 
-/** Into a folder that is there, perhaps with other people's files: without a result while it is mixed. */
-function replaceFiles(part: string, folder: string, files: readonly OutputFile[]): void {
-  rmSync(join(folder, RESULT), { force: true });
-  const names = new Set(files.map(({ name }) => name));
-  for (const name of readdirSync(folder)) if (OURS.test(name) && !names.has(name)) rmSync(join(folder, name));
-  for (const { name } of files) renameSync(join(part, name), join(folder, name));
-  rmdirSync(part);
+/** Throws `file-exists` where the folder of a pair that is `mine` has a file of another in a place that may be needed. */
+export async function checkPairs(out: string, mine: (name: string) => boolean, settings: PairSettings, inputs: readonly string[]): Promise<void> {
+  if (!statSync(out, { throwIfNoEntry: false })) return;
+  const ids = idsOf(inputs);
+  for (const entry of readdirSync(out, { withFileTypes: true })) {
+    if (!mine(entry.name) || !entry.isDirectory()) continue;
+    await (await Ledger.open(join(out, entry.name))).check(possibleFiles(settings), ids);
+  }
 }
 
 /** Writing one pair takes milliseconds: whatever is older than this, milliseconds, was left, though its number be taken again. */

@@ -27,6 +27,11 @@ export function complain(thrown: unknown): void {
   }
 }
 
+/** As {@link complain}, of what does not end the work. */
+export function warn(sentence: string): void {
+  process.stderr.write(`veronese: warning: ${sentence}\n`);
+}
+
 export interface Tally {
   done: number;
   skipped: number;

@@ -1,10 +1,13 @@
 // Frames of a video, one after another, as the program ffmpeg decodes them.
 
-import { spawn, spawnSync } from 'node:child_process';
+import { execFile, spawn } from 'node:child_process';
 import { type Stats, statSync } from 'node:fs';
+import { open } from 'node:fs/promises';
 import { basename } from 'node:path';
+import { promisify } from 'node:util';
 import { VeroneseError } from '../common/errors.js';
-import type { Frame } from './frames.js';
+import { checkName, type Frame } from './frames.js';
+import { warn } from './terminal.js';
 
 /** Longest side of a frame that is read at all; larger ones than the core takes are its own error. */
 const LONGEST_SIDE = 32_768;
@@ -13,18 +16,29 @@ const KEPT = 4_000;
 /** How much of what was decoded last is kept to be read again, bytes. */
 const WINDOW = 256 * 1024 * 1024;
 
+export interface Video {
+  file: string;
+  /** Only every K-th frame is taken. */
+  every: number;
+  /** Whether frames count that come with complaints of the decoder. */
+  allowDamaged: boolean;
+  /** Whether these complaints have been passed on before. */
+  quiet?: boolean;
+}
+
 /**
- * Every `every`-th frame as a portable pixmap, named `clip.mp4#12` by its number from 0. ffmpeg decodes no faster than frames are
- * taken. Throws `ffmpeg-missing`, `file-not-found` or `unreadable-video`.
+ * Every K-th frame as a portable pixmap, named `clip.mp4#12` by its number from 0. ffmpeg decodes no faster than frames are taken.
+ * Throws `ffmpeg-missing`, `file-not-found` or `unreadable-video`, the last one after all frames if ffmpeg gave them but complained.
  */
-export async function* videoFrames(file: string, every: number): AsyncGenerator<Frame, void, undefined> {
+export async function* videoFrames({ file, every, allowDamaged, quiet }: Video): AsyncGenerator<Frame, void, undefined> {
+  checkName(file);
   const status = statusOf(file);
   if (!status) throw new VeroneseError('file-not-found', `there is no file '${file}'`);
   if (!status.isFile()) throw new VeroneseError('unreadable-file', `'${file}' is not a file`);
   const input = ['-nostdin', '-v', 'error', '-protocol_whitelist', 'file,pipe', '-i', `file:${file}`, '-map', '0:v:0'];
   const chosen = every === 1 ? [] : ['-vf', `select=not(mod(n\\,${every}))`];
   // Each frame that is in the file, and none twice, whatever its time says.
-  const exact = [...framesAsTheyAre(), '-an', '-sn'];
+  const exact = [...(await framesAsTheyAre()), '-an', '-sn'];
   const ffmpeg = spawn('ffmpeg', [...input, ...chosen, ...exact, '-f', 'image2pipe', '-c:v', 'ppm', 'pipe:1'], {
     stdio: ['ignore', 'pipe', 'pipe'],
   });
@@ -45,7 +59,12 @@ export async function* videoFrames(file: string, every: number): AsyncGenerator<
       number += every;
     }
     const problem = await ended;
-    if (problem) throw new VeroneseError('unreadable-video', `'${file}': ${lastLine(said) ?? problem}`);
+    if (problem) throw new VeroneseError('unreadable-video', `'${file}' ${reasonIn(said) ?? problem}`);
+    const damage = lastLine(said) ?? (await missingEnd(file, status.size));
+    if (damage === undefined || (allowDamaged && quiet)) return;
+    const sentence = `'${file}' is damaged, of ${number / every} frames that could be read some may be wrong: ${damage}`;
+    if (!allowDamaged) throw new VeroneseError('unreadable-video', `${sentence}; '--allow-damaged' takes them as they are`);
+    warn(sentence);
   } finally {
     process.off('exit', end);
     end();
@@ -57,8 +76,7 @@ export async function* videoFrames(file: string, every: number): AsyncGenerator<
  * kept, else from another run.
  */
 export class VideoReader {
-  readonly #file: string;
-  readonly #every: number;
+  readonly #video: Video;
   #run: AsyncGenerator<Frame, void, undefined> | undefined;
   /** Index of the frame that the run gives next. */
   #next = 0;
@@ -67,9 +85,8 @@ export class VideoReader {
   #queue: Promise<unknown> = Promise.resolve();
   #size = 0;
 
-  constructor(file: string, every: number) {
-    this.#file = file;
-    this.#every = every;
+  constructor(video: Video) {
+    this.#video = video;
   }
 
   /** The content of a frame, by its index among those that are taken; undefined after the last one. */
@@ -92,7 +109,7 @@ export class VideoReader {
     const kept = this.#kept.get(index);
     if (kept) return kept;
     if (index < this.#next) await this.#close();
-    this.#run ??= videoFrames(this.#file, this.#every);
+    this.#run ??= videoFrames(this.#video);
     for (;;) {
       const { value } = await this.#run.next();
       if (!value) {
@@ -132,15 +149,34 @@ function statusOf(file: string): Stats | undefined {
 }
 
 /** The option has had this name since 5.1; the older one went later. */
-function framesAsTheyAre(): string[] {
-  const { error, stdout } = spawnSync('ffmpeg', ['-version'], { encoding: 'utf8' });
-  if (error) {
+async function framesAsTheyAre(): Promise<string[]> {
+  const { stdout } = await promisify(execFile)('ffmpeg', ['-version']).catch((error: Error) => {
     const sentence = 'videos are read by the program ffmpeg, which cannot be started: install it (https://ffmpeg.org), or take the frames out otherwise and use batch';
     throw new VeroneseError('ffmpeg-missing', sentence, { cause: error });
-  }
+  });
   const [, major, minor] = (/^ffmpeg version n?(\d+)\.(\d+)/.exec(stdout) ?? []).map(Number);
   const old = major !== undefined && minor !== undefined && (major < 5 || (major === 5 && minor < 1));
   return old ? ['-vsync', 'passthrough'] : ['-fps_mode', 'passthrough'];
+}
+
+/** What ffmpeg says when it ends with an error, as the end of a sentence that begins with the file. */
+function reasonIn(said: string): string | undefined {
+  if (/matches no streams/.test(said)) return 'has no pictures: there is no video stream in it';
+  const line = lastLine(said);
+  return line && `cannot be read: ${line}`;
+}
+
+/** Of a file that says how long it is (RIFF, as AVI): what is missing. A cut between two frames is no error to ffmpeg. */
+async function missingEnd(file: string, size: number): Promise<string | undefined> {
+  const handle = await open(file);
+  try {
+    const { buffer } = await handle.read(Buffer.alloc(8), 0, 8, 0);
+    const length = buffer.toString('latin1', 0, 4) === 'RIFF' ? buffer.readUInt32LE(4) + 8 : 0;
+    // What was written to a pipe has no length, or the largest.
+    return length > size && length < 2 ** 32 ? `it should have ${length} bytes and has ${size}` : undefined;
+  } finally {
+    await handle.close();
+  }
 }
 
 function lastLine(text: string): string | undefined {

@@ -5,6 +5,9 @@ import { VeroneseError } from './errors.js';
 /** Longest side of a frame or a label image, pixels: what the core segments. */
 export const LONGEST_SIDE = 4096;
 
+/** Slowest and fastest rate of a clip's frames, per second. */
+export const FRAME_RATES = { least: 1e-6, most: 1e6 } as const;
+
 /** The label of pixels that have none. No group has this number either. */
 export const UNLABELLED = 255;
 
@@ -49,6 +52,21 @@ export function isWhole(value: unknown, from: number, to: number): value is numb
 /** Entry by entry: `every` leaves out what a sparse list does not have. */
 export function isListOf<T>(value: unknown, fits: (entry: unknown) => entry is T): value is T[] {
   return Array.isArray(value) && Array.from<unknown>(value).every(fits);
+}
+
+export function isFrameRate(value: unknown): value is number {
+  return typeof value === 'number' && value >= FRAME_RATES.least && value <= FRAME_RATES.most;
+}
+
+/** Numbers of which none is below the one before it. */
+export function isRising(value: unknown): value is number[] {
+  const isFinite = (entry: unknown): entry is number => Number.isFinite(entry);
+  return isListOf(value, isFinite) && value.every((entry, k) => k === 0 || entry >= (value[k - 1] as number));
+}
+
+/** Names with the same key are one file on some systems. */
+export function keyOf(name: string): string {
+  return name.normalize('NFC').toLowerCase();
 }
 
 export function isNumber(value: unknown): value is number {

@@ -2,6 +2,7 @@
 
 import { type Zippable, zipSync } from 'fflate';
 import type { ClipMeta, Encoded, LabelFrames } from '../../types/formats.js';
+import { keyOf } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { gathered, type Gathering, Numbering } from './frames.js';
 import { MotsIds } from './mots.js';
@@ -17,6 +18,7 @@ export function encodeCvatMots<Frames extends LabelFrames>(frames: Frames, meta?
     const ids = new MotsIds();
     // Where labels are no objects, each is a class of its own and its number is that of its track as well.
     const tracks = new Numbering();
+    const taken = new Set<string>();
     const files: Zippable = { [LABELS]: new Uint8Array() };
     return {
       add({ image, width, height, masks }) {
@@ -33,7 +35,8 @@ export function encodeCvatMots<Frames extends LabelFrames>(frames: Frames, meta?
         const name = image.replace(/\.[^./]*$/, '');
         checkPath(name);
         const path = `default/instances/${name}.png`;
-        if (Object.hasOwn(files, path)) throw new VeroneseError('invalid-input', `two frames have the name '${name}'`);
+        if (taken.has(keyOf(name))) throw new VeroneseError('invalid-input', `two frames have the name '${name}'`);
+        taken.add(keyOf(name));
         files[path] = [png(width, height, samples, { depth: 16 }), EPOCH];
       },
       finish() {

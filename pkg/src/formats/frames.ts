@@ -1,7 +1,7 @@
 // The frames of a clip, one after another: each is checked and encoded before the next is asked for, so that one is held at a time.
 
 import type { ClipMeta, Encoded, FormatMeta, LabelFrame, LabelFrames } from '../../types/formats.js';
-import { invalidInput, isListOf, isObject, reading, UNLABELLED, unreadable } from '../common/checks.js';
+import { invalidInput, isFrameRate, isObject, isRising, reading, UNLABELLED, unreadable } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import { checkedMeta, checkLabels, imageOf, isFinite, isText, type Mask, masksOf } from './input.js';
 
@@ -11,6 +11,8 @@ export interface Clip extends FormatMeta {
   tracked: boolean;
   /** Frames per second. */
   rate: number;
+  /** How many frames have a time, if any. */
+  times: number | undefined;
   /** The time of a frame in seconds. */
   time(index: number): number;
   /** Seconds to the end of the last of so many frames. */
@@ -102,6 +104,8 @@ function checkedFrame(given: unknown, extent: Extent | undefined, clip: Clip): F
   const { labels, width, height, image, motions } = given as unknown as LabelFrame;
   checkLabels(labels, width, height);
   if (!isText(image)) throw invalidInput("a frame's image must be text, the name of its file");
+  if (clip.times !== undefined && index >= clip.times) throw invalidInput('timestamps must have a number for each frame');
+  if (!isFinite(clip.duration(index + 1))) throw invalidInput('the times of the frames are too large');
   if (extent && (width !== extent.width || height !== extent.height)) {
     throw new VeroneseError('frame-size-mismatch', 'the frames must have one size');
   }
@@ -122,17 +126,18 @@ function checkedClip(meta: unknown): Clip {
     if (typeof clip !== 'string') throw invalidInput('clip must be text, a name');
     if (typeof tracked !== 'boolean') throw invalidInput('tracked must be true or false');
     if (frameRate !== undefined && !(isFinite(frameRate) && frameRate > 0)) throw invalidInput('frameRate must be a number above 0');
-    if (timestamps !== undefined && !isListOf(timestamps, isFinite)) throw invalidInput('timestamps must be a list of numbers');
+    if (timestamps !== undefined && !isRising(timestamps)) throw invalidInput('timestamps must be numbers, none below the one before it');
     const rate = frameRate ?? rateOf(timestamps ?? []) ?? USUAL_RATE;
     const time = (index: number) => timestamps?.[index] ?? index / rate;
-    return { ...known, name: clip, tracked, rate, time, duration: (length) => (timestamps ? time(length - 1) - time(0) + 1 / rate : length / rate) };
+    return { ...known, name: clip, tracked, rate, times: timestamps?.length || undefined, time, duration: (length) => (timestamps ? time(length - 1) - time(0) + 1 / rate : length / rate) };
   });
 }
 
 /** The mean number of frames per second. */
 function rateOf(timestamps: readonly number[]): number | undefined {
   const [first, last] = [timestamps[0], timestamps.at(-1)];
-  return first !== undefined && last !== undefined && last > first ? (timestamps.length - 1) / (last - first) : undefined;
+  const rate = (timestamps.length - 1) / ((last ?? 0) - (first ?? 0));
+  return isFrameRate(rate) ? rate : undefined;
 }
 
 /** A label as a number where 0 means none: no mask has 255. */

@@ -93,6 +93,7 @@ export function checkedMeta(meta: unknown, more: readonly string[] = []): Format
     if (motions !== undefined && !isListOf(motions, isMotion)) {
       throw invalidInput('motions must each have a label and a matrix of six numbers');
     }
+    if (motions !== undefined && new Set(motions.map(({ label }) => label)).size < motions.length) throw invalidInput('motions has a label twice');
     if (labels !== undefined && !isListOf(labels, isLabel)) throw invalidInput('labels must be a list of labels');
     return {
       ...(image !== undefined && { image }),

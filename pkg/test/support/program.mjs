@@ -1,7 +1,7 @@
 // Runs the program as a user does.
 
 import { spawn } from 'node:child_process';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -38,4 +38,9 @@ export function temporaryFolder(t) {
       return path;
     },
   };
+}
+
+/** What is in an output folder, beside the list of files that the program wrote. */
+export function entries(folder) {
+  return readdirSync(folder).filter((name) => name !== '.veronese').sort();
 }

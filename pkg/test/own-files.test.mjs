@@ -1,0 +1,354 @@
+// Output folders with files of others: no command replaces or deletes what it did not write.
+
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import { appendFileSync, cpSync, existsSync, linkSync, lstatSync, mkdirSync, readdirSync, readFileSync, readlinkSync, renameSync, rmSync, statSync, symlinkSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { describe, test } from 'node:test';
+import { clipFolder } from './support/clip.mjs';
+import { frame, png } from './support/frames.mjs';
+import { entries, temporaryFolder, veronese } from './support/program.mjs';
+
+const COUNT = 4;
+const skipWindows = process.platform === 'win32';
+
+/** A folder of frames f0.png, f1.png …, and a place for results. */
+function made(t, count = COUNT) {
+  const folder = temporaryFolder(t);
+  mkdirSync(folder.path('frames'));
+  for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(frame(k / 2)));
+  const one = (k) => folder.path('frames', `f${k}.png`);
+  const out = folder.path('out');
+  const commands = {
+    pair: ['pair', one(0), one(1), '--quality', 'fast', '--out', out],
+    batch: ['batch', folder.path('frames'), '--quality', 'fast', '--jobs', '1', '--out', out],
+    clip: ['clip', folder.path('frames'), '--quality', 'fast', '--out', out],
+  };
+  const place = (path, content) => {
+    mkdirSync(dirname(join(out, path)), { recursive: true });
+    writeFileSync(join(out, path), content);
+    return join(out, path);
+  };
+  return { ...folder, one, out, commands, place };
+}
+
+/** Every file and link below a folder, hidden ones too, with its content. */
+function tree(folder) {
+  const files = {};
+  for (const entry of readdirSync(folder, { recursive: true })) {
+    const path = join(folder, entry);
+    const status = lstatSync(path);
+    files[entry] = status.isSymbolicLink() ? `-> ${readlinkSync(path)}` : status.isDirectory() ? 'folder' : readFileSync(path, 'latin1');
+  }
+  return files;
+}
+
+async function done(args) {
+  const { code, stderr, stdout } = await veronese(args);
+  assert.equal(stderr, '');
+  assert.equal(code, 0);
+  return stdout;
+}
+
+/** The command names the file, prints no result, and leaves everything in the folder as it is. */
+async function refused(args, out, path, code = 'file-exists') {
+  const before = tree(out);
+  const answer = await veronese(args);
+  assert.equal(answer.code, 1, `${args.join(' ')}\n${answer.stdout}${answer.stderr}`);
+  assert.match(answer.stderr, new RegExp(`^veronese: error: ${code}: [^\\n]*\n$`));
+  assert.ok(answer.stderr.includes(`'${join(out, path)}'`), answer.stderr);
+  assert.equal(answer.stdout, '', 'before any work');
+  assert.deepEqual(tree(out), before);
+}
+
+/** Text that is a file's content as it was before version 0.1.0 had a list: what `pair`, `batch` and `clip` left. */
+function asBefore(out) {
+  for (const entry of readdirSync(out, { recursive: true })) if (entry.endsWith('.veronese')) rmSync(join(out, entry));
+}
+
+describe('files of others', () => {
+  const places = {
+    pair: ['labels.png', 'result.json', 'mask-0.png', 'mask-9.png'],
+    batch: ['000002-f2/labels.png', '000002-f2/result.json', '000000-f0/mask-1.png'],
+    clip: ['labels/f3.png', 'tracks.json', '.clip/state', '.clip/00001.pairs'],
+  };
+  for (const [command, paths] of Object.entries(places)) {
+    test(`${command} names them before any work`, async (t) => {
+      const { commands, out, place } = made(t);
+      for (const path of paths) {
+        place(path, '{"mine": true}');
+        place('mine.txt', 'mine');
+        await refused(commands[command], out, path);
+        rmSync(out, { recursive: true });
+      }
+      for (const path of ['overlay.png', '000001-f1/overlay.png', 'overlay/f2.png']) place(path, 'mine');
+      const [theirs] = { pair: ['overlay.png'], batch: ['000001-f1/overlay.png'], clip: ['overlay/f2.png'] }[command];
+      await refused([...commands[command], '--overlay'], out, theirs);
+      await done(commands[command]);
+      for (const path of ['overlay.png', '000001-f1/overlay.png', 'overlay/f2.png']) assert.equal(readFileSync(join(out, path), 'utf8'), 'mine', path);
+    });
+
+    test(`${command} leaves other files in the folder alone, and runs again`, async (t) => {
+      const { commands, out, place } = made(t);
+      const mine = ['mine.txt', 'mask-x.png', 'labels/notes.txt', 'labels/g.png', '.clip/mine', '000001-f1/mine.txt'];
+      for (const path of mine) place(path, 'mine');
+      await done(commands[command]);
+      await done([...commands[command], '--overlay']);
+      await done(commands[command]);
+      for (const path of mine) assert.equal(readFileSync(join(out, path), 'utf8'), 'mine', path);
+      assert.ok(!entries(out).some((name) => name.startsWith('overlay')), 'its own overlays go');
+    });
+
+    test(`${command} does not overwrite a file of its own that was edited since`, async (t) => {
+      const { commands, out } = made(t);
+      await done(commands[command]);
+      const path = { pair: 'labels.png', batch: '000001-f1/labels.png', clip: 'labels/f1.png' }[command];
+      appendFileSync(join(out, path), 'a stroke');
+      await refused([...commands[command], '--mark-unknown'], out, path);
+      await refused(commands[command], out, path);
+    });
+
+    test(`${command} takes the complete record of version 0.1.0 for one, in a copy too`, async (t) => {
+      const { commands, out, path, place } = made(t);
+      const args = [...commands[command], '--overlay'];
+      await done(args);
+      const before = entries(out);
+      asBefore(out);
+      cpSync(out, path('copy'), { recursive: true });
+      rmSync(out, { recursive: true });
+      renameSync(path('copy'), out);
+      await done([...commands[command], '--mark-unknown', '--motions', '2']);
+      assert.deepEqual(entries(out), before.filter((name) => !name.startsWith('overlay')));
+      // Of a record that is not complete nothing is known.
+      asBefore(out);
+      const record = { pair: 'result.json', batch: '000000-f0/result.json', clip: 'tracks.json' }[command];
+      const { settings, ...rest } = JSON.parse(readFileSync(join(out, record), 'utf8'));
+      place(record, JSON.stringify(rest));
+      const first = { pair: 'labels.png', batch: '000000-f0/labels.png', clip: '.clip/state' }[command];
+      await refused(args, out, first);
+    });
+
+    test(`${command} trusts no list that is damaged, and loses nothing in a copied folder`, async (t) => {
+      const { commands, out, path, place } = made(t);
+      await done(commands[command]);
+      cpSync(out, path('copy'), { recursive: true });
+      rmSync(out, { recursive: true });
+      renameSync(path('copy'), out);
+      await done([...commands[command], '--overlay']);
+      const at = command === 'batch' ? '000000-f0/' : '';
+      const [list, file] = [`${at}.veronese`, { clip: 'labels/f0.png' }[command] ?? `${at}labels.png`];
+      const text = readFileSync(join(out, list), 'utf8');
+      const name = file.slice(at.length);
+      place(list, text.replace(new RegExp(`^.*  ${name}$`, 'm'), `${'0'.repeat(64)}  ${name}`));
+      await refused(commands[command], out, file);
+      place(list, text.slice(0, text.indexOf(`  ${name}`)));
+      await refused(commands[command], out, command === 'clip' ? 'tracks.json' : file);
+      place(list, 'a list of mine');
+      await refused(commands[command], out, list);
+    });
+  }
+
+  test('a dataset that is laid out as a clip is', async (t) => {
+    const { commands, out, place, one } = made(t);
+    for (let k = 0; k < COUNT; k++) place(`labels/f${k}.png`, readFileSync(one(k)));
+    place('tracks.json', JSON.stringify({ version: 1, tracks: [{ id: 1, frames: ['f0', 'f1'] }] }));
+    await refused(commands.clip, out, 'tracks.json');
+    rmSync(join(out, 'tracks.json'));
+    await refused(commands.clip, out, 'labels/f0.png');
+  });
+
+  test('frames that are in the place of results', async (t) => {
+    const { commands, out, place, one } = made(t);
+    for (let k = 0; k < COUNT; k++) place(`overlay/f${k}.png`, readFileSync(one(k)));
+    await refused(['clip', join(out, 'overlay'), '--quality', 'fast', '--overlay', '--out', out], out, 'overlay/f0.png');
+    rmSync(out, { recursive: true });
+    // The program's own images, once they are frames, as well.
+    await done([...commands.clip, '--overlay']);
+    await refused(['clip', join(out, 'overlay'), '--quality', 'fast', '--overlay', '--out', out], out, 'overlay/f0.png');
+    rmSync(out, { recursive: true });
+    await done([...commands.pair, '--overlay']);
+    await refused(['pair', join(out, 'overlay.png'), join(out, 'overlay.png'), '--overlay', '--out', out], out, 'overlay.png');
+  });
+
+  test('corrections that are the labels themselves', async (t) => {
+    const { commands, out } = made(t);
+    await done(commands.clip);
+    await refused([...commands.clip, '--corrections', join(out, 'labels')], out, 'labels/f0.png');
+  });
+
+  test('links are no files of ours', { skip: skipWindows }, async (t) => {
+    const { commands, out, path, one } = made(t);
+    mkdirSync(out);
+    symlinkSync(one(2), join(out, 'labels.png'));
+    await refused(commands.pair, out, 'labels.png');
+    rmSync(out, { recursive: true });
+    mkdirSync(out);
+    symlinkSync(path('nowhere'), join(out, 'labels.png'));
+    await refused(commands.pair, out, 'labels.png');
+    // A second name of a file of ours keeps its content.
+    rmSync(out, { recursive: true });
+    await done(commands.pair);
+    linkSync(join(out, 'labels.png'), path('kept.png'));
+    const kept = readFileSync(path('kept.png'));
+    await done([...commands.pair, '--motions', '1']);
+    assert.deepEqual(readFileSync(path('kept.png')), kept);
+    assert.notDeepEqual(readFileSync(join(out, 'labels.png')), kept);
+    // Nor does a list lead elsewhere.
+    const outside = path('outside.png');
+    writeFileSync(outside, 'theirs');
+    appendFileSync(join(out, '.veronese'), `${createHash('sha256').update('theirs').digest('hex')}  ../outside.png\n`);
+    await done(commands.pair);
+    assert.equal(readFileSync(outside, 'utf8'), 'theirs');
+  });
+
+  test('a pipe in the place of a result keeps nobody waiting', { skip: spawnSync('mkfifo', ['--version']).status !== 0 && 'there is no mkfifo' }, async (t) => {
+    const { commands, out } = made(t);
+    for (const [command, pipes] of [
+      ['pair', ['result.json', 'labels.png', '.veronese']],
+      ['batch', ['000000-f0/result.json', '000000-f0/labels.png']],
+      ['clip', ['tracks.json', 'labels/f0.png', '.clip/state']],
+    ]) {
+      for (const pipe of pipes) {
+        mkdirSync(dirname(join(out, pipe)), { recursive: true });
+        assert.equal(spawnSync('mkfifo', [join(out, pipe)]).status, 0);
+        const { code, stderr } = await veronese(commands[command]);
+        assert.equal(code, 1, stderr);
+        assert.match(stderr, /^veronese: error: file-exists: /, pipe);
+        rmSync(out, { recursive: true });
+      }
+    }
+  });
+});
+
+describe('convert', () => {
+  const names = {
+    coco: 'coco.json',
+    'cvat-mots': 'cvat-mots.zip',
+    'label-studio': 'label-studio.json',
+    mot: 'mot/gt/gt.txt',
+    davis: 'davis/Annotations/480p/clip/f003.png',
+    yolo: 'yolo/labels/f003.txt',
+    labelme: 'labelme/f003.json',
+    supervisely: 'supervisely/ann/f003.jpg.json',
+    masks: 'masks/1/f003.png',
+  };
+
+  test('replaces files that it wrote, and no others', async (t) => {
+    const folder = temporaryFolder(t);
+    const clip = folder.path('clip');
+    clipFolder(clip);
+    for (const [format, name] of Object.entries(names)) {
+      const args = ['convert', clip, '--to', `veronese,${format}`];
+      const place = join(clip, name);
+      mkdirSync(dirname(place), { recursive: true });
+      writeFileSync(place, 'mine');
+      await refused(args, clip, name);
+      rmSync(place);
+      writeFileSync(join(dirname(place), 'mine.txt'), 'mine');
+      await done(args);
+      await done([...args, '--from', '3', '--until', '3']);
+      assert.equal(readFileSync(join(dirname(place), 'mine.txt'), 'utf8'), 'mine');
+      assert.deepEqual(entries(join(clip, 'veronese')), ['f003.json'], 'what an earlier run wrote is gone');
+      appendFileSync(place, ' ');
+      await refused(args, clip, name);
+      rmSync(place);
+    }
+  });
+
+  test('of a pair, whose files stay known', async (t) => {
+    const { commands, out, place } = made(t);
+    await done(commands.pair);
+    asBefore(out);
+    place('yolo-names.txt', 'mine');
+    await refused(['convert', out, '--to', 'coco,yolo'], out, 'yolo-names.txt');
+    await done(['convert', out, '--to', 'coco']);
+    await done(['convert', out, '--to', 'coco', '--image', 'a.png']);
+    await done([...commands.pair, '--motions', '1']);
+    await done(['convert', out, '--to', 'coco']);
+    place('coco.json', '{}');
+    await refused(['convert', out, '--to', 'coco'], out, 'coco.json');
+  });
+});
+
+describe('interrupted runs', { skip: skipWindows }, () => {
+  /** Ends the program as its n-th file or folder gets its name: before that, or after. */
+  const killed = (folder, n, when) => ({
+    NODE_OPTIONS: `--require "${folder.file(`preload-${n}-${when}.cjs`, `
+      const fs = require('fs'), { renameSync } = fs;
+      let count = 0;
+      fs.renameSync = (from, to) => {
+        const now = ++count === ${n};
+        if (now && '${when}' === 'before') process.kill(process.pid, 'SIGKILL');
+        renameSync(from, to);
+        if (now) process.kill(process.pid, 'SIGKILL');
+      };
+      require('module').syncBuiltinESMExports();`)}"`,
+  });
+
+  test('know what they wrote, wherever they end', async (t) => {
+    const folder = made(t);
+    const { commands, out, path } = folder;
+    clipFolder(path('drawn'));
+    const cases = { ...commands, convert: ['convert', path('drawn'), '--to', 'labelme,coco', '--out', out] };
+    for (const [command, args] of Object.entries(cases)) {
+      const other = command === 'convert' ? [...args, '--from', '2'] : [...args, '--motions', '2'];
+      for (const first of [undefined, other]) {
+        for (const [n, when] of [[1, 'before'], [1, 'after'], [2, 'before'], [3, 'after'], [4, 'before'], [5, 'after']]) {
+          if (first) await done(first);
+          const { signal } = await veronese(args, { env: killed(folder, n, when) });
+          assert.ok(signal === 'SIGKILL' || n > 3, `${command} ${n} ${when}`);
+          const again = await veronese(args);
+          assert.deepEqual([again.code, again.stderr], [0, ''], `${command} ${n} ${when} ${Boolean(first)}`);
+          rmSync(out, { recursive: true });
+        }
+      }
+    }
+  });
+
+  test('of a clip leave files of others alone, and name a new one in their way', async (t) => {
+    const { commands, out, place } = made(t, 12);
+    const args = [...commands.clip, '--look-ahead', '0'];
+    const { signal } = await veronese(args, { onStart: (child) => child.stdout.once('data', () => child.kill('SIGKILL')) });
+    assert.equal(signal, 'SIGKILL');
+    assert.ok(existsSync(join(out, 'labels', 'f0.png')) && !existsSync(join(out, 'tracks.json')));
+    place('labels/f11.png', 'mine');
+    await refused(args, out, 'labels/f11.png');
+    rmSync(join(out, 'labels', 'f11.png'));
+    await done(args);
+  });
+});
+
+describe('at once', () => {
+  test('two batches into one folder both end well', async (t) => {
+    const { commands, out } = made(t, 8);
+    const runs = await Promise.all([veronese(commands.batch), veronese(commands.batch)]);
+    for (const { code, stderr } of runs) assert.deepEqual([code, stderr], [0, '']);
+    await done(commands.batch);
+    assert.equal(entries(out).length, 7);
+  });
+
+  test('a file that comes into the way while a clip is worked on stays', { skip: skipWindows }, async (t) => {
+    const { commands, out, place } = made(t, 12);
+    const { code, stderr } = await veronese([...commands.clip, '--look-ahead', '0'], { onStart: (child) => child.stdout.once('data', () => place('tracks.json', 'mine')) });
+    assert.equal(code, 1);
+    assert.match(stderr, /^veronese: error: file-exists: [^\n]*tracks\.json' /);
+    assert.equal(readFileSync(join(out, 'tracks.json'), 'utf8'), 'mine');
+  });
+});
+
+test('a folder of many files is looked through in seconds', async (t) => {
+  const folder = temporaryFolder(t);
+  const clip = folder.path('clip');
+  const frames = Array.from({ length: 3000 }, () => new Uint8Array(64).fill(1, 9, 12));
+  clipFolder(clip, { frames, width: 8, height: 8 });
+  const seconds = async () => {
+    const run = await veronese(['convert', clip, '--to', 'labelme']);
+    assert.equal(run.code, 0, run.stderr);
+    return run.seconds;
+  };
+  const first = await seconds();
+  const again = await seconds();
+  assert.ok(again < 2 * first + 5, `${first} s, then ${again} s`);
+  assert.equal(statSync(join(clip, '.veronese')).size < 1e6, true, 'the list does not grow with each run');
+});
