@@ -7,6 +7,8 @@ import type { Perform } from '../tasks.js';
 export interface Place {
   perform: Perform;
   release: () => void;
+  /** Says whether the clip waits for its reader, if others may wait for the place. */
+  pause?: (paused: boolean) => void;
 }
 
 /** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
@@ -42,6 +44,16 @@ export class PlacedClip {
     if (result === null) throw new VeroneseError('internal', 'the clip was lost when another call failed');
     if (step.call === 'finishClip') this.#open = false;
     return result as T;
+  }
+
+  /** The frames as they come; whoever else wants the place learns when nobody asks for the next one. */
+  async *paced<T>(frames: AsyncIterable<T>): AsyncGenerator<T, void, undefined> {
+    const { pause } = this.#place;
+    for await (const frame of frames) {
+      pause?.(true);
+      yield frame;
+      pause?.(false);
+    }
   }
 
   /** Frees what the clip holds. Not awaited: if it fails, the clip is gone already. */
