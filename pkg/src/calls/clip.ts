@@ -13,39 +13,38 @@ import { segmentedTwice } from './clip/whole.js';
 /** `reserve` finds a place for the clip. Arguments are checked when the first frame is requested, as generators do. */
 export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>): Clip {
   const told: Told = { tracks: new Tracks() };
-  const kept: Kept = {};
   const rest = { tracks: () => told.tracks.value(), state: async () => told.state?.slice() };
-  const clip = Object.assign(segmented(frames, options, reserve, told, kept), rest);
-  dropped.register(clip, kept);
+  const clip = Object.assign(segmented(frames, options, reserve, told), rest);
+  dropped.register(clip, told);
   return clip;
 }
 
-interface Kept {
-  clip?: PlacedClip;
-}
-
 /** Ends clips whose iterators were dropped before their end. */
-const dropped = new FinalizationRegistry<Kept>(({ clip }) => clip?.end());
+const dropped = new FinalizationRegistry<Told>(({ clip }) => clip?.end());
 
 async function* segmented(
   frames: ClipSource,
   options: ClipOptions | undefined,
   reserve: (signal?: AbortSignal) => Promise<Place>,
   told: Told,
-  kept: Kept,
 ): AsyncGenerator<ClipFrame, void, undefined> {
   const task = reading(() => asked(frames, options));
   const { signal } = task;
   if (signal?.aborted) throw cancelled(signal);
-  const clip = new PlacedClip(await reserve(signal), signal);
-  kept.clip = clip;
+  const place = await reserve(signal);
+  const clip = new PlacedClip(place, signal);
+  told.clip = clip;
   try {
     const whole = 'read' in task.source;
     await clip.begin(whole, task.settings);
     const taken = new Frames(signal);
-    yield* clip.paced(whole ? segmentedTwice(clip, taken, task, told) : streamed(clip, taken, task, told.tracks));
+    for await (const frame of whole ? segmentedTwice(clip, taken, task, told) : streamed(clip, taken, task, told.tracks)) {
+      place.pause?.(true);
+      yield frame;
+      place.pause?.(false);
+    }
   } finally {
-    delete kept.clip;
+    delete told.clip;
     clip.end();
   }
 }

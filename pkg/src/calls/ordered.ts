@@ -91,17 +91,6 @@ export async function* inOrder<Input, Answer>(
   }
 }
 
-/** What a promise gives, unless the signal says stop before; its reason is thrown as `stop` makes it. */
-export async function unlessAborted<T>(promised: T | Promise<T>, { signal, stop }: Pick<OrderOptions, 'signal' | 'stop'>): Promise<T> {
-  const aborted = whenAborted(signal);
-  const stopped = aborted.promise?.then(() => Promise.reject(stop()));
-  try {
-    return await (stopped ? Promise.race([promised, stopped]) : promised);
-  } finally {
-    aborted.release();
-  }
-}
-
 /** The protocol of `for await`, whose errors are ours to tell. */
 function iteratorOf<T>(source: Iterable<T | Promise<T>> | AsyncIterable<T>): AsyncIterator<T> | Iterator<T | Promise<T>> {
   const { [Symbol.asyncIterator]: asynchronous, [Symbol.iterator]: synchronous } = source as AsyncIterable<T> & Iterable<T | Promise<T>>;
@@ -132,7 +121,6 @@ function whenAborted(signal: AbortSignal | undefined): { promise: Promise<void> 
   let release: () => void = () => undefined;
   const promise = new Promise<void>((resolve) => {
     const listener = () => resolve();
-    if (signal.aborted) listener();
     signal.addEventListener('abort', listener);
     release = () => signal.removeEventListener('abort', listener);
   });

@@ -28,7 +28,7 @@ export interface Claim<Task, Result> {
 interface Claiming {
   /** Why its worker has ended. */
   lost?: VeroneseError;
-  paused: boolean;
+  paused?: boolean;
 }
 
 /** Who waits for a worker is refused when all claims have been paused for this long, milliseconds. */
@@ -107,20 +107,16 @@ export class WorkerPool<Task, Result> {
     return new Promise((resolve, reject) => {
       const onAbort = () => {
         this.#claimants.splice(this.#claimants.indexOf(claimant), 1);
-        this.#watch();
         reject(cancelled(signal));
       };
       const claimant: Claimant = {
         give: (claim) => {
           signal?.removeEventListener('abort', onAbort);
-          resolve({
-            run: (task, options) => this.#run(task, options, claim),
-            release: () => this.#release(claim),
-            pause: (paused) => {
-              claim.paused = paused;
-              this.#watch();
-            },
-          });
+          const pause = (paused: boolean) => {
+            claim.paused = paused;
+            this.#watch();
+          };
+          resolve({ run: (task, options) => this.#run(task, options, claim), release: () => this.#release(claim), pause });
         },
         reject: (reason) => {
           signal?.removeEventListener('abort', onAbort);
@@ -140,7 +136,7 @@ export class WorkerPool<Task, Result> {
     for (const lane of free) {
       const claimant = this.#claimants.shift();
       if (!claimant) break;
-      lane.claim = { paused: false };
+      lane.claim = {};
       claimant.give(lane.claim);
     }
     this.#watch();
@@ -148,14 +144,10 @@ export class WorkerPool<Task, Result> {
 
   /** Claimants may be what all paused claims wait for: a clip in the loop of another. */
   #watch(): void {
-    if (this.#claimants.length === 0 || !this.#lanes.every(({ claim }) => claim?.paused)) {
-      clearTimeout(this.#patience);
-      this.#patience = undefined;
-      return;
-    }
-    this.#patience ??= setTimeout(() => {
-      this.#patience = undefined;
-      for (const claimant of this.#claimants.splice(0)) claimant.reject(busy());
+    clearTimeout(this.#patience);
+    if (this.#claimants.length === 0 || !this.#lanes.every(({ claim }) => claim?.paused)) return;
+    this.#patience = setTimeout(() => {
+      for (const { reject } of this.#claimants.splice(0)) reject(new VeroneseError('worker-busy', BUSY));
     }, PATIENCE);
   }
 
@@ -302,10 +294,7 @@ export class WorkerPool<Task, Result> {
   }
 }
 
-function busy(): VeroneseError {
-  const sentence = 'the clip needs a worker, and every worker keeps another clip whose next frame nobody asks for';
-  return new VeroneseError('worker-busy', `${sentence}: end that one first, or take a SegmenterPool with more jobs`);
-}
+const BUSY = 'every worker keeps a clip that nobody reads on; a SegmenterPool may have more workers';
 
 function isBusy({ job }: { job: { givesWay: boolean } | undefined }): boolean {
   return job?.givesWay === false;

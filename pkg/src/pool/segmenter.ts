@@ -80,8 +80,8 @@ export function segmenters(host: Host) {
 
     segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
       return clipOf(frames, options, async (signal) => {
-        const { run, ...rest } = await this.#pool.claim(signal);
-        return { perform: run, ...rest };
+        const claim = await this.#pool.claim(signal);
+        return { ...claim, perform: claim.run };
       });
     }
 

@@ -2,6 +2,7 @@
 
 import { cancelled, VeroneseError } from '../../common/errors.js';
 import type { ClipStep, ClipTask, Settings } from '../messages.js';
+import { inOrder } from '../ordered.js';
 import type { Perform } from '../tasks.js';
 
 export interface Place {
@@ -46,14 +47,11 @@ export class PlacedClip {
     return result as T;
   }
 
-  /** The frames as they come; whoever else wants the place learns when nobody asks for the next one. */
-  async *paced<T>(frames: AsyncIterable<T>): AsyncGenerator<T, void, undefined> {
-    const { pause } = this.#place;
-    for await (const frame of frames) {
-      pause?.(true);
-      yield frame;
-      pause?.(false);
-    }
+  /** What the caller's code gives, unless the signal is aborted first. */
+  async wait<T>(promised: T | Promise<T>): Promise<T | undefined> {
+    const order = { room: 1, signal: this.#signal, stop: () => cancelled(this.#signal) };
+    for await (const value of inOrder([promised], async (value) => value, order)) return value;
+    return undefined;
   }
 
   /** Frees what the clip holds. Not awaited: if it fails, the clip is gone already. */

@@ -2,9 +2,8 @@
 
 import type { ClipFrame } from '../../../types/index.js';
 import { checkedBytes } from '../../common/checks.js';
-import { cancelled, VeroneseError } from '../../common/errors.js';
+import { VeroneseError } from '../../common/errors.js';
 import type { ClipSummary } from '../messages.js';
-import { unlessAborted } from '../ordered.js';
 import { taken } from '../taking.js';
 import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
@@ -37,18 +36,16 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: As
 /** Solves the pairs that are not known. */
 async function solved(clip: PlacedClip, frames: Frames, task: Asked): Promise<ClipSummary> {
   const { read, length: of } = task.source as Whole;
-  const { signal } = task;
-  const answer = <T>(promised: T | Promise<T>) => unlessAborted(promised, { signal, stop: () => cancelled(signal) });
   let index = 0;
   for await (const frame of frames.each(reads(read, upTo(of)))) {
     if (index === 0) checkSizes(task, frame);
     task.onProgress?.({ frame: index, of, stage: 'pairs' });
-    const known = await answer(task.knownPairs?.(index));
+    const known = await clip.wait(task.knownPairs?.(index));
     const bytes = known === undefined ? undefined : (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
     const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(bytes && { known: bytes }) });
     frames.ahead();
     const pairs = await step;
-    if (pairs) await answer(task.onPairs?.(index, pairs));
+    if (pairs) await clip.wait(task.onPairs?.(index, pairs));
     index += 1;
   }
   return clip.step({ call: 'concludeClip' });
