@@ -23,7 +23,7 @@ mod tests {
 
     #[test]
     fn every_bit_the_order_and_the_length_count() {
-        let bytes: Vec<u8> = (0..43).map(|k| 7 * k).collect();
+        let bytes: Vec<u8> = (0..43).map(|k| 5 * k).collect();
         let mut others = vec![
             bytes[..42].to_vec(),
             [&bytes[..], &[0]].concat(),

@@ -113,7 +113,8 @@ describe('veronese clip --corrections', () => {
     const args = [frames, '--out', out];
     await run(args);
     const base = tree(out);
-    const files = Array.from({ length: COUNT }, (_, k) => ({ sha256: createHash('sha256').update(readFileSync(join(frames, `f${k}.png`))).digest('hex') }));
+    const hashes = tree(frames);
+    const files = Array.from({ length: COUNT }, (_, k) => ({ sha256: hashes[`f${k}.png`] }));
     const { options } = parseCommand(['clip', '--quality', 'fast', ...args]);
     const kept = new KeptClip(out, { ...options, markUnknown: undefined, software: `veronese ${version}` }, files);
     const old = (bytes, mark) => new TextEncoder().encode(mark).reduce((all, byte, at) => all.with(at, byte), bytes);

@@ -425,7 +425,10 @@ describe('Segmenter.segmentClip', () => {
     await freed((...args) => made.segmentClip(...args));
     assert.equal((await all(made.segmentClip(frames(3), FAST))).length, 3);
     const calls = [];
-    const perform = async ({ call }) => void calls.push(call) ?? { index: 0, objects: [], background: null };
+    const perform = async ({ call }) => {
+      calls.push(call);
+      return { index: 0, objects: [], background: null };
+    };
     await freed((...args) => clipOf(...args, async () => ({ perform, release: () => calls.push('release') })));
     assert.deepEqual(calls, ['beginClip', 'pushClip', 'endClip', 'release']);
   });

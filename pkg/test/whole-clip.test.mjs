@@ -56,6 +56,9 @@ async function outcome(segment, source, options) {
   return { frames: await all(clip), tracks: clip.tracks(), state: await clip.state(), stages };
 }
 
+/** Bytes with another mark. */
+const marked = (bytes, mark) => new Uint8Array([...new TextEncoder().encode(mark), ...bytes.slice(mark.length)]);
+
 /** So many places in some bytes. */
 const places = ({ length }, count) => Array.from({ length: count }, (_, k) => Math.floor((k * length) / count));
 
@@ -157,17 +160,17 @@ for (const [way, make] of Object.entries(WAYS)) {
       const transparent = list.map(({ data, ...size }) => ({ data: data.map((value, at) => (at % 4 === 3 ? 7 : value)), ...size }));
       assert.deepEqual((await outcome(segment, transparent, { state: whole.state })).frames, whole.frames, 'alpha is ignored');
       const other = list.with(3, altered(3));
-      const read = await until(segment(other, { state: whole.state }));
-      assert.deepEqual([read.given, read.error.code], [[0, 1, 2], 'invalid-option']);
-      assert.match(read.error.message, /'state': frame 3 is not the one that was segmented/);
+      const found = await until(segment(other, { state: whole.state }));
+      assert.deepEqual([found.given, found.error.code], [[0, 1, 2], 'invalid-option']);
+      assert.match(found.error.message, /'state': frame 3 is not the one that was segmented/);
       const corrections = [{ frame: 2, labels: mask(9, 0) }];
       const reached = await until(segment(other, { state: whole.state, corrections }));
-      assert.deepEqual([reached.given, reached.error.message], [[], read.error.message]);
+      assert.deepEqual([reached.given, reached.error.message], [[], found.error.message]);
       const stranger = await until(segment([...list].reverse(), { state: whole.state }));
       assert.deepEqual([stranger.given, stranger.error.code], [[], 'invalid-option']);
       const source = readable();
-      const changing = { length: COUNT, read: (index) => (source.read(index), source.asked.length > COUNT && index === 4 ? altered(4) : list[index]) };
-      const twice = await until(segment(changing, FAST));
+      const read = (index) => (source.read(index) && source.asked.length > COUNT && index === 4 ? altered(4) : list[index]);
+      const twice = await until(segment({ length: COUNT, read }, FAST));
       assert.deepEqual([twice.given, twice.error.code], [[0, 1, 2, 3], 'invalid-input']);
       assert.match(twice.error.message, /^frame 4 is not the one that was segmented$/);
     });
@@ -267,7 +270,7 @@ for (const [way, make] of Object.entries(WAYS)) {
         [{ state: whole.state, frames: list.slice(1) }, /'state': it is of a clip of 7 frames, not 6/],
         [{ state: damaged }, /'state': it is damaged/],
         [{ state: new Uint8Array(50) }, /'state': these bytes are not of this version: segment the clip again/],
-        [{ state: new TextEncoder().encode('VERCLIP2').reduce((state, byte, at) => state.with(at, byte), whole.state) }, /'state': these bytes are not of this version/],
+        [{ state: marked(whole.state, 'VERCLIP2') }, /'state': these bytes are not of this version/],
         [{ changesOnly: 1 }, /'changesOnly': must be true or false/],
         [{ onPairs: 1 }, /'onPairs': must be a function/],
         [{ knownPairs: {} }, /'knownPairs': must be a function/],
@@ -355,8 +358,11 @@ describe('clips', () => {
   test('a state that is damaged anywhere is refused', async () => {
     const { state } = whole;
     const flipped = places(state, 400).map((at) => state.with(at, state[at] ^ (1 << at % 8)));
-    const cut = places(state, 60).flatMap((at) => [state.slice(0, at), state.slice(at + 1), new Uint8Array([...state.slice(0, at), ...state.slice(at + 1)])]);
-    const extended = [1, 8, 1000].flatMap((more) => [new Uint8Array([...state, ...new Uint8Array(more)]), new Uint8Array([...state, ...state.slice(-more)])]);
+    const cut = places(state, 60).flatMap((at) => {
+      const [before, after] = [state.slice(0, at), state.slice(at + 1)];
+      return [before, after, new Uint8Array([...before, ...after])];
+    });
+    const extended = [1, 8, 1000].flatMap((more) => [new Uint8Array(more), state.slice(-more)].map((rest) => new Uint8Array([...state, ...rest])));
     for (const damaged of [...flipped, ...cut, ...extended]) {
       const { given, error } = await until(segmentClip(list, { state: damaged }));
       assert.deepEqual([given, error.code], [[], 'invalid-option'], error.message);
@@ -387,15 +393,16 @@ describe('clips', () => {
       await pairsOf(list, { motions: 2 }),
       await pairsOf(list, { lookAhead: 1 }),
       own.slice(1),
-      own.map(() => new TextEncoder().encode('VERPAIR2')),
+      own.map((bytes) => marked(bytes, 'VERPAIR2')),
     ];
     for (const [round, known] of [...damages, ...foreign].entries()) {
       const solved = [];
-      const { frames, state } = await outcome(segmentClip, few, { knownPairs: (index) => known[index], onPairs: (index) => void solved.push(index) });
+      const options = { knownPairs: (index) => known[index], onPairs: (index) => void solved.push(index) };
+      const { frames, state } = await outcome(segmentClip, few, options);
       assert.deepEqual([solved, frames, state], [[0, 1, 2], found.frames, found.state], `round ${round}`);
     }
-    const marked = await outcome(segmentClip, few, { markUnknown: true, knownPairs: (index) => own[index], onPairs: () => assert.fail('all are known') });
-    assert.deepEqual(marked.frames, (await outcome(segmentClip, few, { markUnknown: true })).frames);
+    const options = { markUnknown: true, knownPairs: (index) => own[index], onPairs: () => assert.fail('all are known') };
+    assert.deepEqual((await outcome(segmentClip, few, options)).frames, (await outcome(segmentClip, few, { markUnknown: true })).frames);
   });
 
   test('a worker that dies between two labels ends the clip; the segmenter goes on', async (t) => {
