@@ -23,14 +23,14 @@ pub(super) struct Format {
 }
 
 impl Format {
-    pub(super) fn to_bytes(&self, value: &impl Saved) -> Vec<u8> {
+    pub(super) fn written(&self, value: &impl Saved) -> Vec<u8> {
         let mut bytes = self.mark.as_bytes().to_vec();
         value.write(&mut bytes);
         hash(0, &bytes).write(&mut bytes);
         bytes
     }
 
-    pub(super) fn from_bytes<T: Saved>(&self, bytes: &[u8]) -> Result<T> {
+    pub(super) fn read<T: Saved>(&self, bytes: &[u8]) -> Result<T> {
         let mut rest = self.content(bytes)?;
         T::read(&mut rest).filter(|_| rest.is_empty()).ok_or_else(|| self.damaged())
     }

@@ -65,7 +65,7 @@ const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP3 ", env!("CA
 impl FramePairs {
     /// The bytes of these pairs, for [`from_bytes`](Self::from_bytes) of the same version.
     pub fn to_bytes(&self) -> Vec<u8> {
-        PAIRS.to_bytes(self)
+        PAIRS.written(self)
     }
 
     /// Pairs from their bytes.
@@ -73,7 +73,7 @@ impl FramePairs {
     /// # Errors
     /// [`Error::InvalidOption`] for bytes of another version and damaged ones.
     pub fn from_bytes(bytes: &[u8]) -> Result<FramePairs> {
-        PAIRS.from_bytes(bytes)
+        PAIRS.read(bytes)
     }
 }
 
@@ -396,7 +396,7 @@ impl SegmentedClip {
 
     /// The bytes of this clip, for [`from_bytes`](Self::from_bytes) of the same version.
     pub fn to_bytes(&self) -> Vec<u8> {
-        CLIP.to_bytes(self)
+        CLIP.written(self)
     }
 
     /// A clip from its bytes.
@@ -404,7 +404,7 @@ impl SegmentedClip {
     /// # Errors
     /// [`Error::InvalidOption`] for bytes of another version and damaged ones.
     pub fn from_bytes(bytes: &[u8]) -> Result<SegmentedClip> {
-        let clip: SegmentedClip = CLIP.from_bytes(bytes)?;
+        let clip: SegmentedClip = CLIP.read(bytes)?;
         if clip.is_valid() { Ok(clip) } else { Err(CLIP.damaged()) }
     }
 
