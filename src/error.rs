@@ -75,6 +75,12 @@ pub enum Error {
         /// What is wrong, and which values are valid.
         reason: String,
     },
+    /// A frame of a clip is read again and has other pixels.
+    #[error("frame {index} is not the one that was segmented")]
+    OtherFrame {
+        /// Index of the frame, from 0.
+        index: usize,
+    },
     /// A file is not an image in a supported format, or is damaged.
     #[error("the image cannot be read: {reason}")]
     UnreadableImage {
@@ -103,6 +109,7 @@ impl Error {
             Error::TooFewMeasurements { .. } => "too-few-measurements",
             Error::NotFinite { .. } => "not-finite",
             Error::InvalidOption { .. } => "invalid-option",
+            Error::OtherFrame { .. } => "invalid-input",
             Error::UnreadableImage { .. } => "unreadable-image",
         }
     }

@@ -128,6 +128,7 @@ mod estimation;
 mod exponential;
 pub mod factorisation;
 mod frame;
+mod hash;
 mod labelling;
 mod lanes;
 pub mod linear;

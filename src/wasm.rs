@@ -133,14 +133,12 @@ fn seed(value: &JsValue) -> Result<u64, Failure> {
     }
 }
 
-fn choice<T: Copy>(name: &str, value: &JsValue, choices: &[(&str, T)]) -> Result<T, Failure> {
+fn choice<T: Copy>(name: &str, value: &JsValue, choices: [(&str, T); 2]) -> Result<T, Failure> {
     let given = value.as_string();
+    let [(one, _), (other, _)] = choices;
     match choices.iter().find(|(word, _)| given.as_deref() == Some(*word)) {
         Some(&(_, choice)) => Ok(choice),
-        None => {
-            let words: Vec<String> = choices.iter().map(|(word, _)| format!("'{word}'")).collect();
-            Err(invalid(name, &words.join(" or "), value))
-        }
+        None => Err(invalid(name, &format!("'{one}' or '{other}'"), value)),
     }
 }
 

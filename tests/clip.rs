@@ -7,7 +7,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 use veronese::clip::{
     ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, StreamSegmenter,
 };
-use veronese::{Error, Frame, Quality, Random, SegmentOptions};
+use veronese::{Error, Frame, MotionCount, Quality, Random, SegmentOptions};
 
 const SIZE: [usize; 2] = [160, 120];
 
@@ -388,12 +388,22 @@ fn a_new_number_of_an_object_lasts() {
 fn objects_can_be_merged_and_removed() {
     let (frames, truths) = moving_and_resting();
     let mut clip = whole(&frames, options(Quality::Fast, None));
+    let resting: Vec<u8> = truths[5].iter().map(|&t| if t == 2 { 30 } else { 255 }).collect();
+    correct(&mut clip, &frames, 5, &resting);
     let moving = one_number(&frames_of(&clip, &frames), &truths, 1, 0..12);
-    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), ((0..12).collect(), vec![]));
-    clip.renumber(moving, 30).unwrap();
-    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (vec![], (0..12).collect()));
-    assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 30);
-    clip.renumber(30, 0).unwrap();
+    let all: Vec<usize> = (0..12).collect();
+    let with_resting = clip.frames_with(30);
+    assert!(clip.frames_with(moving) == all && with_resting.contains(&5));
+    for (object, number) in [(moving, 31), (31, moving), (31, 0), (31, 32)] {
+        assert_eq!(clip.renumber(object, number).unwrap(), [], "no object has the number 31 or 32");
+    }
+    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (all.clone(), with_resting));
+    assert_eq!(clip.renumber(moving, 30).unwrap(), all);
+    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (vec![], all.clone()));
+    let merged = frames_of(&clip, &frames);
+    assert!(merged.iter().all(|frame| frame.objects.iter().map(|object| object.id).eq([30])));
+    assert!(merged[5].labels.iter().zip(&truths[5]).all(|(&label, &thing)| thing != 2 || label == 30));
+    assert_eq!(clip.renumber(30, 0).unwrap(), all);
     assert!(
         frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label != moving && label != 30))
     );
@@ -410,18 +420,37 @@ fn a_saved_clip_is_the_same_and_a_damaged_one_is_refused() {
     for (one, other) in frames_of(&clip, &frames).iter().zip(frames_of(&again, &frames)) {
         assert_eq!((&one.labels, &one.objects), (&other.labels, &other.objects));
     }
-    for damaged in [&bytes[..bytes.len() - 1], &bytes[1..], &[][..]] {
-        assert!(matches!(SegmentedClip::from_bytes(damaged), Err(Error::InvalidOption { name: "state", .. })));
+    let refused = |bytes: &[u8]| {
+        assert!(matches!(SegmentedClip::from_bytes(bytes), Err(Error::InvalidOption { name: "state", .. })));
+    };
+    damaged(&bytes).iter().for_each(|damaged| refused(damaged));
+    let old = [b"VERCLIP2", &bytes[MARK..bytes.len() - 8]].concat();
+    assert!(SegmentedClip::from_bytes(&old).unwrap_err().to_string().contains("not of this version"));
+}
+
+/// Length of the mark before what is kept.
+const MARK: usize = concat!("VERCLIP3 ", env!("CARGO_PKG_VERSION"), "\n").len();
+
+/// Bytes with one bit changed, cut off, left out, added.
+fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {
+    let mut all = vec![bytes[1..].to_vec(), Vec::new(), [bytes, &[0]].concat(), [bytes, bytes].concat()];
+    for place in (0..bytes.len()).step_by(bytes.len() / 200 + 1) {
+        let mut flipped = bytes.to_vec();
+        flipped[place] ^= 1 << (place % 8);
+        all.extend([flipped, bytes[..place].to_vec(), [&bytes[..place], &bytes[place + 1..]].concat()]);
     }
-    // No byte can be changed so that anything breaks later.
-    for place in (0..bytes.len()).step_by(97) {
-        let mut damaged = bytes.clone();
-        damaged[place] ^= 0x5a;
-        if let Ok(clip) = SegmentedClip::from_bytes(&damaged) {
-            let _ = clip.frame(0, &frames[0]);
-            let _ = clip.frame(5, &frames[5]);
-        }
-    }
+    all
+}
+
+#[test]
+fn a_clip_knows_its_frames() {
+    let (frames, _) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let mut correction = clip.correct(3, &[1; 160 * 120]).unwrap();
+    assert!(matches!(clip.frame(3, &frames[4]), Err(Error::OtherFrame { index: 3 })));
+    assert!(matches!(correction.take(&mut clip, &frames[4]), Err(Error::OtherFrame { index: 3 })));
+    correction.take(&mut clip, &frames[3]).unwrap();
+    clip.frame(3, &frames[3]).unwrap();
 }
 
 #[test]
@@ -444,8 +473,40 @@ fn a_clip_goes_on_from_known_pairs_to_the_same_labels() {
         }
         assert!(straight == segmenter.conclude().to_bytes());
     }
-    let pairs = ClipSegmenter::new(options(Quality::Fast, None)).unwrap().push(frames[0].clone()).unwrap();
-    assert!(FramePairs::from_bytes(&pairs.to_bytes()[..4]).is_err());
+}
+
+#[test]
+fn pairs_are_known_for_their_frames_and_options_alone() {
+    let (frames, _) = moving_and_resting();
+    let pairs_of = |options: ClipOptions, frames: &[Frame]| -> Vec<FramePairs> {
+        let mut segmenter = ClipSegmenter::new(options).unwrap();
+        frames.iter().map(|frame| segmenter.push(frame.clone()).unwrap()).collect()
+    };
+    let own = options(Quality::Fast, None);
+    let known = pairs_of(own, &frames[..3]);
+    let bytes = known[1].to_bytes();
+    assert_eq!(FramePairs::from_bytes(&bytes).unwrap().to_bytes(), bytes);
+    for damaged in damaged(&bytes) {
+        assert!(matches!(FramePairs::from_bytes(&damaged), Err(Error::InvalidOption { name: "pairs", .. })));
+    }
+    let takes = |pairs: &FramePairs| {
+        let mut segmenter = ClipSegmenter::new(own).unwrap();
+        segmenter.push(frames[0].clone()).unwrap();
+        match segmenter.push_known(frames[1].clone(), pairs) {
+            Err(Error::InvalidOption { name: "pairs", .. }) => {
+                segmenter.push(frames[1].clone()).unwrap();
+                false
+            }
+            pushed => pushed.is_ok(),
+        }
+    };
+    let two = SegmentOptions { motions: MotionCount::Given(2), ..own.pair };
+    let marked = SegmentOptions { mark_unknown: true, ..own.pair };
+    assert!(takes(&known[1]) && takes(&pairs_of(ClipOptions { pair: marked, ..own }, &frames[..2])[1]));
+    assert!(!takes(&known[0]) && !takes(&known[2]) && !takes(&pairs_of(own, &frames[1..4])[1]));
+    for other in [options(Quality::Fast, Some(1)), options(Quality::Best, None), ClipOptions { pair: two, ..own }] {
+        assert!(!takes(&pairs_of(other, &frames[..2])[1]));
+    }
 }
 
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]

@@ -8,8 +8,10 @@ import { join } from 'node:path';
 import { describe, test } from 'node:test';
 import { deflateSync } from 'node:zlib';
 import { decode } from 'fast-png';
-import { davisPalette, segmentClip } from 'veronese';
+import { davisPalette, segmentClip, version } from 'veronese';
 import { encodeIndexedPng, encodeGreyPng, encodeColourPng } from 'veronese/codecs';
+import { parseCommand } from '../build/cli/arguments.js';
+import { KeptClip } from '../build/cli/clip-kept.js';
 import { ProgressBar } from '../build/cli/terminal.js';
 import { frame, png } from './support/frames.mjs';
 import { temporaryFolder, veronese } from './support/program.mjs';
@@ -59,14 +61,16 @@ const written = (path) => statSync(path, { bigint: true }).mtimeNs;
 describe('veronese clip --corrections', () => {
   test('corrects frames and objects as the call does', async (t) => {
     const { frames, corrections, said, out } = clip(t);
-    said('f3.png', await mask());
-    const edits = { merge: [[12, 9]], names: { 12: 'square' } };
+    // Half of it is another object at first.
+    const labels = LABELS.map((label, p) => (label > 0 && p % SIZE.width < 45 ? 1 : label));
+    said('f3.png', await mask(labels));
+    const edits = { merge: [[9, 1]], names: { 9: 'square' } };
     said('edits.json', JSON.stringify(edits));
     said('notes.txt', 'no correction');
     const { lines } = await run([frames, '--corrections', corrections, '--out', out]);
-    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', corrections: [{ frame: 3, labels: LABELS }], edits });
+    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', corrections: [{ frame: 3, labels }], edits });
     for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, index), labels);
-    assert.deepEqual(lines.map(({ objects }) => objects), [...Array(COUNT).fill([12]), 1]);
+    assert.deepEqual(lines.map(({ objects }) => objects), [...Array(COUNT).fill([9]), 1]);
     const { objects, settings } = tracksOf(out);
     assert.deepEqual(objects, JSON.parse(JSON.stringify(direct.tracks().objects)));
     assert.equal(objects[0].name, 'square');
@@ -102,6 +106,26 @@ describe('veronese clip --corrections', () => {
       await run([frames, '--out', out]);
       assert.deepEqual(tree(out), base);
     }
+  });
+
+  test('what another version has kept counts as unknown', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    const args = [frames, '--out', out];
+    await run(args);
+    const base = tree(out);
+    const hashes = tree(frames);
+    const files = Array.from({ length: COUNT }, (_, k) => ({ sha256: hashes[`f${k}.png`] }));
+    const { options } = parseCommand(['clip', '--quality', 'fast', ...args]);
+    const kept = new KeptClip(out, { ...options, markUnknown: undefined, software: `veronese ${version}` }, files);
+    const old = (bytes, mark) => new TextEncoder().encode(mark).reduce((all, byte, at) => all.with(at, byte), bytes);
+    kept.keepState(old(kept.state(), 'VERCLIP2'));
+    assert.notDeepEqual(tree(out), base);
+    said('edits.json', '{"delete": [1]}');
+    const { lines } = await run([...args, '--corrections', corrections]);
+    assert.deepEqual(lines.at(-1), { done: true, objects: 0 });
+    rmSync(join(corrections, 'edits.json'));
+    await run(args);
+    assert.deepEqual(tree(out), base);
   });
 
   test('takes masks of other programs', async (t) => {

@@ -3,6 +3,8 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { setImmediate, setTimeout } from 'node:timers/promises';
+import { setFlagsFromString } from 'node:v8';
+import { runInNewContext } from 'node:vm';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, segmentPair, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { clipOf } from '../build/calls/clip.js';
@@ -377,6 +379,58 @@ describe('Segmenter.segmentClip', () => {
     assert.equal((await all(first)).length, 2);
     assert.equal((await answer).value.index, 0);
     assert.equal((await all(second)).length, 2);
+  });
+
+  test('a clip in the loop of another is refused where it would wait for ever; a pool has room for it', async (t) => {
+    const { segmenter: made } = segmenter(t);
+    const outer = [];
+    for await (const { index } of made.segmentClip(frames(3), FAST)) {
+      outer.push(index);
+      if (index > 0) continue;
+      const { given, error } = await until(made.segmentClip(frames(3), FAST));
+      assert.deepEqual([given, error.code], [[], 'worker-busy']);
+      assert.match(error.message, /SegmenterPool/);
+    }
+    assert.deepEqual(outer, [0, 1, 2]);
+    const pool = new SegmenterPool({ jobs: 2 });
+    t.after(() => pool.close());
+    for await (const _ of pool.segmentClip(frames(3), FAST)) assert.equal((await all(pool.segmentClip(frames(3), FAST))).length, 3);
+  });
+
+  test('a clip that waits for its source is waited for', async (t) => {
+    const { segmenter: made } = segmenter(t);
+    const slow = async function* () {
+      for (const one of frames(2)) {
+        await setTimeout(2500);
+        yield one;
+      }
+    };
+    const clips = [made.segmentClip(slow(), FAST), made.segmentClip(frames(3), FAST)];
+    assert.deepEqual((await Promise.all(clips.map(all))).map(({ length }) => length), [2, 3]);
+  });
+
+  test('a clip that was dropped after a frame gives its worker back, and its memory', async (t) => {
+    setFlagsFromString('--expose-gc');
+    const collect = runInNewContext('gc');
+    const freed = async (segment) => {
+      // The caller keeps nothing of the clip.
+      const drop = async () => void (await segment(frames(3), FAST).next());
+      await drop();
+      for (let k = 0; k < 20; k++) {
+        collect();
+        await setTimeout(10);
+      }
+    };
+    const { segmenter: made } = segmenter(t);
+    await freed((...args) => made.segmentClip(...args));
+    assert.equal((await all(made.segmentClip(frames(3), FAST))).length, 3);
+    const calls = [];
+    const perform = async ({ call }) => {
+      calls.push(call);
+      return { index: 0, objects: [], background: null };
+    };
+    await freed((...args) => clipOf(...args, async () => ({ perform, release: () => calls.push('release') })));
+    assert.deepEqual(calls, ['beginClip', 'pushClip', 'endClip', 'release']);
   });
 
   test('clips of a pool run side by side, and pairs go to the other workers', async (t) => {

@@ -56,6 +56,12 @@ async function outcome(segment, source, options) {
   return { frames: await all(clip), tracks: clip.tracks(), state: await clip.state(), stages };
 }
 
+/** Bytes with another mark. */
+const marked = (bytes, mark) => new Uint8Array([...new TextEncoder().encode(mark), ...bytes.slice(mark.length)]);
+
+/** So many places in some bytes. */
+const places = ({ length }, count) => Array.from({ length: count }, (_, k) => Math.floor((k * length) / count));
+
 const idsOf = (frames) => frames.map(({ objects }) => objects.map(({ id }) => id));
 
 const whole = await outcome(segmentClip, readable());
@@ -93,12 +99,20 @@ for (const [way, make] of Object.entries(WAYS)) {
     });
 
     test('edits merge, remove and name', async (t) => {
+      // One half of the square is an object of its own.
+      const corrections = [{ frame: 3, labels: mask(9, 0).map((label, p) => (label > 0 && p % SIZE.width < 45 ? 1 : label)) }];
+      const halves = await outcome(make(t), readable(), { corrections });
+      assert.deepEqual(idsOf(halves.frames)[3], [1, 9]);
       const edits = { merge: [[9, 1]], names: { 9: 'square', 30: 'nobody' } };
-      const merged = await outcome(make(t), readable(), { edits });
-      assert.deepEqual(idsOf(merged.frames), ALL.map(() => [9]));
-      const labels = whole.frames.map(({ labels }) => labels.map((label) => 9 * label));
+      const merged = await outcome(make(t), readable(), { corrections, edits });
+      const labels = halves.frames.map(({ labels }) => labels.map((label) => (label > 0 ? 9 : 0)));
       assert.deepEqual(merged.frames.map(({ labels }) => labels), labels);
       assert.deepEqual(merged.tracks.objects.map(({ id, name }) => [id, name]), [[9, 'square']]);
+      // Numbers that no object has change nothing.
+      for (const merge of [[[9, 1]], [[9, 8]], [[1, 9]]]) {
+        const { frames, tracks } = await outcome(make(t), readable(), { edits: { merge, names: { 9: 'nobody' } } });
+        assert.deepEqual([frames, tracks], [whole.frames, whole.tracks]);
+      }
       for (const name of ['delete', 'background']) {
         const { frames, tracks } = await outcome(make(t), readable(), { edits: { [name]: [1, 77] } });
         assert.deepEqual([idsOf(frames), tracks.objects], [ALL.map(() => []), []]);
@@ -117,8 +131,8 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual({ ...later, stages: 0 }, { ...corrected, stages: 0 });
       assert.deepEqual(later.stages.pairs, []);
       // It keeps corrections until they are taken back, and edits.
-      const kept = await outcome(segment, list, { state: later.state, edits: { merge: [[4, 9]] } });
-      assert.deepEqual(idsOf(kept.frames), ALL.map(() => [4]));
+      const kept = await outcome(segment, list, { state: later.state, edits: { delete: [9] } });
+      assert.deepEqual(idsOf((await outcome(segment, list, { state: kept.state })).frames), ALL.map(() => []));
       const back = await outcome(segment, list, { state: later.state, corrections: [{ frame: 3, labels: mask(255, 255) }] });
       assert.deepEqual(idsOf(back.frames), idsOf(whole.frames));
     });
@@ -128,7 +142,7 @@ for (const [way, make] of Object.entries(WAYS)) {
       const changes = async (options) => (await outcome(segment, readable(), { state: whole.state, changesOnly: true, ...options })).frames;
       const frames = await changes({ corrections: [{ frame: 3, labels: mask(9, 0) }] });
       assert.deepEqual(frames, ALL.map((index) => corrected.frames[index]));
-      assert.deepEqual(await changes({ edits: { delete: [2] } }), []);
+      for (const edits of [{ delete: [2] }, { merge: [[2, 1]] }]) assert.deepEqual(await changes({ edits }), []);
       assert.deepEqual((await changes({ edits: { delete: [1] } })).map(({ index }) => index), ALL);
       assert.deepEqual(await changes({}), []);
       // What was found anyway changes little.
@@ -138,6 +152,27 @@ for (const [way, make] of Object.entries(WAYS)) {
       const given = new Map(few.map((one) => [one.index, one]));
       const { frames: every } = await outcome(segment, list, { state: whole.state, corrections });
       for (const one of every) assert.deepEqual(one, given.get(one.index) ?? whole.frames[one.index]);
+    });
+
+    test('frames must be those of the state, and the same whenever they are read', async (t) => {
+      const segment = make(t);
+      const altered = (index) => ({ ...list[index], data: list[index].data.map((value, at) => (at === 4000 ? value ^ 1 : value)) });
+      const transparent = list.map(({ data, ...size }) => ({ data: data.map((value, at) => (at % 4 === 3 ? 7 : value)), ...size }));
+      assert.deepEqual((await outcome(segment, transparent, { state: whole.state })).frames, whole.frames, 'alpha is ignored');
+      const other = list.with(3, altered(3));
+      const found = await until(segment(other, { state: whole.state }));
+      assert.deepEqual([found.given, found.error.code], [[0, 1, 2], 'invalid-option']);
+      assert.match(found.error.message, /'state': frame 3 is not the one that was segmented/);
+      const corrections = [{ frame: 2, labels: mask(9, 0) }];
+      const reached = await until(segment(other, { state: whole.state, corrections }));
+      assert.deepEqual([reached.given, reached.error.message], [[], found.error.message]);
+      const stranger = await until(segment([...list].reverse(), { state: whole.state }));
+      assert.deepEqual([stranger.given, stranger.error.code], [[], 'invalid-option']);
+      const source = readable();
+      const read = (index) => (source.read(index) && source.asked.length > COUNT && index === 4 ? altered(4) : list[index]);
+      const twice = await until(segment({ length: COUNT, read }, FAST));
+      assert.deepEqual([twice.given, twice.error.code], [[0, 1, 2, 3], 'invalid-input']);
+      assert.match(twice.error.message, /^frame 4 is not the one that was segmented$/);
     });
 
     test('an interrupted run goes on with the pairs that are known', async (t) => {
@@ -192,6 +227,21 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual((await outcome(segment, list.slice(0, 2), { lookAhead: 'all' })).frames.length, 2);
     });
 
+    test('is cancelled while it waits for the caller to keep or find pairs', async (t) => {
+      const segment = make(t);
+      for (const name of ['onPairs', 'knownPairs']) {
+        const controller = new AbortController();
+        const waiting = (index) => {
+          if (index < 2) return undefined;
+          setTimeout(() => controller.abort(), 10);
+          return new Promise(() => {});
+        };
+        const ended = await until(segment(readable(), { ...FAST, [name]: waiting, signal: controller.signal }));
+        assert.deepEqual([ended.given, ended.error.code], [[], 'cancelled'], name);
+        assert.deepEqual(await all(segment(readable(), FAST)), whole.frames, 'its worker is free');
+      }
+    });
+
     test('refuses corrections, edits and states before any pair is solved', async (t) => {
       const segment = make(t);
       const said = (frame, labels = mask(1, 255)) => ({ corrections: [{ frame: 0, labels: mask(1, 255) }, { frame, labels }] });
@@ -219,7 +269,8 @@ for (const [way, make] of Object.entries(WAYS)) {
         [{ edits: { names: { 1: 5 } } }, /'names' must have a text for object 1/],
         [{ state: whole.state, frames: list.slice(1) }, /'state': it is of a clip of 7 frames, not 6/],
         [{ state: damaged }, /'state': it is damaged/],
-        [{ state: new Uint8Array(50) }, /'state': these bytes are not of this version/],
+        [{ state: new Uint8Array(50) }, /'state': these bytes are not of this version: segment the clip again/],
+        [{ state: marked(whole.state, 'VERCLIP2') }, /'state': these bytes are not of this version/],
         [{ changesOnly: 1 }, /'changesOnly': must be true or false/],
         [{ onPairs: 1 }, /'onPairs': must be a function/],
         [{ knownPairs: {} }, /'knownPairs': must be a function/],
@@ -304,14 +355,54 @@ describe('clips', () => {
     }
   });
 
-  test('a state is bytes of any kind: damaged ones never end the module', async () => {
-    for (let at = 8; at < whole.state.length; at += 311) {
-      const state = whole.state.slice();
-      state[at] ^= 255;
-      const clip = all(segmentClip(list, { state, corrections: [{ frame: 3, labels: mask(9, 0) }] }));
-      const ended = await clip.then((frames) => frames.length, ({ code }) => code);
-      assert.ok([COUNT, 'invalid-option', 'frame-size-mismatch'].includes(ended), `byte ${at}: ${ended}`);
+  test('a state that is damaged anywhere is refused', async () => {
+    const { state } = whole;
+    const flipped = places(state, 400).map((at) => state.with(at, state[at] ^ (1 << at % 8)));
+    const cut = places(state, 60).flatMap((at) => {
+      const [before, after] = [state.slice(0, at), state.slice(at + 1)];
+      return [before, after, new Uint8Array([...before, ...after])];
+    });
+    const extended = [1, 8, 1000].flatMap((more) => [new Uint8Array(more), state.slice(-more)].map((rest) => new Uint8Array([...state, ...rest])));
+    for (const damaged of [...flipped, ...cut, ...extended]) {
+      const { given, error } = await until(segmentClip(list, { state: damaged }));
+      assert.deepEqual([given, error.code], [[], 'invalid-option'], error.message);
     }
+  });
+
+  test('pairs that are damaged anywhere, and those of other frames or options, are solved again', async () => {
+    const pairsOf = async (frames, options) => {
+      const pairs = [];
+      await all(segmentClip(frames, { ...FAST, ...options, onPairs: (_, bytes) => void pairs.push(bytes) }));
+      return pairs;
+    };
+    const own = await pairsOf(list);
+    const few = { length: 3, read: (index) => list[index] };
+    const found = await outcome(segmentClip, few);
+    const ROUNDS = 24;
+    const damages = Array.from({ length: ROUNDS }, (_, round) =>
+      own.slice(0, 3).map((bytes, index) => {
+        const at = Math.floor((bytes.length * (round + index / 3)) / ROUNDS);
+        if (round % 4 === 0) return bytes.slice(0, at);
+        if (round % 4 === 1) return new Uint8Array([...bytes, ...bytes.slice(at)]);
+        return bytes.with(at, bytes[at] ^ (1 << round % 8));
+      }),
+    );
+    const foreign = [
+      await pairsOf(ALL.map((index) => frame(index / 3 + 1, SIZE))),
+      await pairsOf(list, { quality: 'best' }),
+      await pairsOf(list, { motions: 2 }),
+      await pairsOf(list, { lookAhead: 1 }),
+      own.slice(1),
+      own.map((bytes) => marked(bytes, 'VERPAIR2')),
+    ];
+    for (const [round, known] of [...damages, ...foreign].entries()) {
+      const solved = [];
+      const options = { knownPairs: (index) => known[index], onPairs: (index) => void solved.push(index) };
+      const { frames, state } = await outcome(segmentClip, few, options);
+      assert.deepEqual([solved, frames, state], [[0, 1, 2], found.frames, found.state], `round ${round}`);
+    }
+    const options = { markUnknown: true, knownPairs: (index) => own[index], onPairs: () => assert.fail('all are known') };
+    assert.deepEqual((await outcome(segmentClip, few, options)).frames, (await outcome(segmentClip, few, { markUnknown: true })).frames);
   });
 
   test('a worker that dies between two labels ends the clip; the segmenter goes on', async (t) => {

@@ -229,7 +229,7 @@ export interface ClipCorrection {
   labels: Uint8Array;
 }
 
-/** What becomes of whole objects. Numbers that no object has change nothing. */
+/** What becomes of whole objects. Numbers that no object has change nothing; a list that begins with one merges nothing. */
 export interface ClipEdits {
   /** Lists of objects that are one; the first number is kept. */
   merge?: readonly (readonly number[])[] | undefined;
@@ -261,7 +261,8 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'before
   /**
    * What {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
    * `motions`, `quality`, `seed` and `lookAhead` are those of the state. A correction replaces an earlier one of its frame (one that says
-   * nothing takes it back); corrections refer to the numbers before any edit, and edits stay.
+   * nothing takes it back); corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
+   * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
    */
   state?: Uint8Array | undefined;
   /** Returns only the frames that `corrections` and `edits` change. Default: false. */
@@ -272,8 +273,8 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'before
    */
   onPairs?: ((index: number, pairs: Uint8Array) => void | Promise<void>) | undefined;
   /**
-   * Gives what `onPairs` was called with, if it is known: for the same options, the same frame and the same frames before it. Bytes that
-   * are damaged or of another version of this package count as unknown.
+   * Gives what `onPairs` was called with, if it is known. Bytes that are damaged, of another version of this package, or of other options,
+   * another frame or other frames before it count as unknown.
    */
   knownPairs?: ((index: number) => Uint8Array | undefined | Promise<Uint8Array | undefined>) | undefined;
   /** `true`: frames are transferred; those of a whole clip only when they are read for their labels. See {@link CallOptions}. */
@@ -331,7 +332,10 @@ export interface ClipTracks {
   dropped: number;
 }
 
-/** The frames of a clip, in order, as they are finished. Leaving the loop frees what the clip holds. */
+/**
+ * The frames of a clip, in order, as they are finished. Leaving the loop or calling `return()` frees what the clip holds, some megabytes
+ * and its worker. An iterator that is dropped before its end does so when it is collected as garbage; its source is not closed then.
+ */
 export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
   /** The objects of the frames returned so far: complete after the last frame, whose objects have no matrix. */
   tracks(): ClipTracks;
@@ -373,6 +377,7 @@ export type ErrorCode =
   // the environment
   | 'wasm-load-failed'
   | 'worker-failed'
+  | 'worker-busy'
   | 'cancelled'
   | 'internal'
   // the custom element and the command line

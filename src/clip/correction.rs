@@ -162,7 +162,8 @@ impl ClipCorrection {
     /// Takes the frame that is [`wanted`](Self::wanted).
     ///
     /// # Errors
-    /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch); the correction can continue with the right frame.
+    /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch), [`Error::OtherFrame`](crate::Error::OtherFrame); the correction can
+    /// continue with the right frame.
     pub fn take(&mut self, clip: &mut SegmentedClip, frame: &Frame) -> Result<()> {
         let Some(index) = self.wanted() else { return Ok(()) };
         clip.check(index, frame)?;

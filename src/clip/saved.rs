@@ -1,7 +1,8 @@
-//! What is kept of a clip, as bytes: a mark with the version of the format, then all values in the order of their fields. Numbers are
-//! little-endian.
+//! What is kept of a clip, as bytes: a mark with the version of the format and of the crate, then all values in the order of their fields,
+//! then a hash of all that. Numbers are little-endian.
 
 use crate::error::{Error, Result};
+use crate::hash::hash;
 use crate::motion::AffineMotion;
 use crate::pair::solution::Prior;
 
@@ -13,18 +14,44 @@ pub(super) trait Saved: Sized {
     fn read(bytes: &mut &[u8]) -> Option<Self>;
 }
 
-/// A mark and a value.
-pub(super) fn to_bytes(mark: &[u8; 8], value: &impl Saved) -> Vec<u8> {
-    let mut bytes = mark.to_vec();
-    value.write(&mut bytes);
-    bytes
+/// What bytes are of.
+pub(super) struct Format {
+    /// What to call them in errors.
+    pub(super) name: &'static str,
+    /// Their beginning, which no other version has.
+    pub(super) mark: &'static str,
 }
 
-/// The value after a mark.
-pub(super) fn from_bytes<T: Saved>(mark: &[u8; 8], bytes: &[u8]) -> Result<T> {
-    let invalid = |reason: &str| Error::InvalidOption { name: "state", reason: reason.into() };
-    let mut rest = bytes.strip_prefix(mark).ok_or_else(|| invalid("these bytes are not of this version"))?;
-    T::read(&mut rest).filter(|_| rest.is_empty()).ok_or_else(|| invalid("it is damaged"))
+impl Format {
+    pub(super) fn written(&self, value: &impl Saved) -> Vec<u8> {
+        let mut bytes = self.mark.as_bytes().to_vec();
+        value.write(&mut bytes);
+        hash(0, &bytes).write(&mut bytes);
+        bytes
+    }
+
+    pub(super) fn read<T: Saved>(&self, bytes: &[u8]) -> Result<T> {
+        let mut rest = self.content(bytes)?;
+        T::read(&mut rest).filter(|_| rest.is_empty()).ok_or_else(|| self.damaged())
+    }
+
+    /// The bytes of the value, as they were written.
+    #[inline(never)]
+    fn content<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8]> {
+        if !bytes.starts_with(self.mark.as_bytes()) {
+            return Err(self.invalid("these bytes are not of this version: segment the clip again"));
+        }
+        let whole = bytes.split_last_chunk().filter(|(content, sum)| hash(0, content) == u64::from_le_bytes(**sum));
+        whole.and_then(|(content, _)| content.get(self.mark.len()..)).ok_or_else(|| self.damaged())
+    }
+
+    pub(super) fn damaged(&self) -> Error {
+        self.invalid("it is damaged")
+    }
+
+    fn invalid(&self, reason: &str) -> Error {
+        Error::InvalidOption { name: self.name, reason: reason.into() }
+    }
 }
 
 /// Implements [`Saved`] for a struct whose fields are all saved.
@@ -80,26 +107,39 @@ impl Saved for usize {
     }
 }
 
-impl Saved for f64 {
+impl Saved for u64 {
     fn write(&self, bytes: &mut Vec<u8>) {
         bytes.extend_from_slice(&self.to_le_bytes());
     }
 
-    fn read(bytes: &mut &[u8]) -> Option<f64> {
+    fn read(bytes: &mut &[u8]) -> Option<u64> {
         let (number, rest) = bytes.split_first_chunk()?;
         *bytes = rest;
-        Some(f64::from_le_bytes(*number))
+        Some(u64::from_le_bytes(*number))
     }
 }
 
-impl<T: Saved, const N: usize> Saved for [T; N] {
+impl Saved for f64 {
+    fn write(&self, bytes: &mut Vec<u8>) {
+        self.to_bits().write(bytes);
+    }
+
+    fn read(bytes: &mut &[u8]) -> Option<f64> {
+        u64::read(bytes).map(f64::from_bits)
+    }
+}
+
+impl<T: Saved + Copy + Default, const N: usize> Saved for [T; N] {
     fn write(&self, bytes: &mut Vec<u8>) {
         self.iter().for_each(|value| value.write(bytes));
     }
 
     fn read(bytes: &mut &[u8]) -> Option<[T; N]> {
-        let values: Option<Vec<T>> = (0..N).map(|_| T::read(bytes)).collect();
-        values?.try_into().ok()
+        let mut values = [T::default(); N];
+        for value in &mut values {
+            *value = T::read(bytes)?;
+        }
+        Some(values)
     }
 }
 
@@ -111,8 +151,12 @@ impl<T: Saved> Saved for Vec<T> {
     }
 
     fn read(bytes: &mut &[u8]) -> Option<Vec<T>> {
-        // Nothing is allocated in advance: the number may be damaged.
-        (0..usize::read(bytes)?).map(|_| T::read(bytes)).collect()
+        // Nothing is allocated in advance: the number may be wrong.
+        let mut values = Vec::new();
+        for _ in 0..usize::read(bytes)? {
+            values.push(T::read(bytes)?);
+        }
+        Some(values)
     }
 }
 

@@ -2,17 +2,18 @@
 
 use super::correction::ClipCorrection;
 use super::description::WorkingFrame;
-use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs};
+use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs, Pairs};
 use super::grouping::Census;
 use super::identity::Parting;
 use super::parting::divide;
 use super::runs::Runs;
-use super::saved::{from_bytes, saved, to_bytes};
+use super::saved::{Format, saved};
 use super::tracker::{ClipPart, Tracked, Tracker};
 use super::{ClipFrame, ClipOptions};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
-use crate::options::{Quality, SegmentOptions};
+use crate::hash::hash;
+use crate::options::{MotionCount, Quality, SegmentOptions};
 use crate::pair::settings::Settings;
 use crate::workspace::{self, Buffer};
 
@@ -40,30 +41,39 @@ use crate::workspace::{self, Buffer};
 pub struct ClipSegmenter {
     tracker: Tracker,
     frames: Vec<FrameState>,
+    /// Of every frame so far.
+    hashes: Vec<u64>,
+    /// Of what the pairs of the newest frame follow from: the options and all frames so far.
+    history: u64,
 }
 
 /// What the pairs of a frame have told: nearly all the work of [`ClipSegmenter::push`].
 ///
 /// A clip that was interrupted goes on from there: [`ClipSegmenter::push_known`] does not solve the frame's pairs again.
 #[derive(Clone, Debug)]
-pub struct FramePairs(KeptPairs);
+pub struct FramePairs {
+    history: u64,
+    pairs: KeptPairs,
+}
 
-/// Marks the bytes of [`FramePairs`] and of a [`SegmentedClip`], with the version of their format.
-const PAIRS_FORMAT: &[u8; 8] = b"VERPAIR2";
-const CLIP_FORMAT: &[u8; 8] = b"VERCLIP2";
+saved!(FramePairs { history, pairs });
+
+/// The bytes of [`FramePairs`] and of a [`SegmentedClip`].
+const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR3 ", env!("CARGO_PKG_VERSION"), "\n") };
+const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP3 ", env!("CARGO_PKG_VERSION"), "\n") };
 
 impl FramePairs {
     /// The bytes of these pairs, for [`from_bytes`](Self::from_bytes) of the same version.
     pub fn to_bytes(&self) -> Vec<u8> {
-        to_bytes(PAIRS_FORMAT, &self.0)
+        PAIRS.written(self)
     }
 
     /// Pairs from their bytes.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for other bytes.
+    /// [`Error::InvalidOption`] for bytes of another version and damaged ones.
     pub fn from_bytes(bytes: &[u8]) -> Result<FramePairs> {
-        from_bytes(PAIRS_FORMAT, bytes).map(FramePairs)
+        PAIRS.read(bytes)
     }
 }
 
@@ -73,7 +83,7 @@ impl ClipSegmenter {
     /// # Errors
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
-        Ok(ClipSegmenter { tracker: Tracker::new(options, false, None)?, frames: Vec::new() })
+        ClipSegmenter::with(Tracker::new(options, false, None)?)
     }
 
     /// [`new`](Self::new) without one part, for ablation studies.
@@ -83,7 +93,16 @@ impl ClipSegmenter {
     #[cfg(feature = "ablation")]
     #[doc(hidden)]
     pub fn without(part: ClipPart, options: ClipOptions) -> Result<ClipSegmenter> {
-        Ok(ClipSegmenter { tracker: Tracker::new(options, false, Some(part))?, frames: Vec::new() })
+        ClipSegmenter::with(Tracker::new(options, false, Some(part))?)
+    }
+
+    fn with(tracker: Tracker) -> Result<ClipSegmenter> {
+        // What decides how pairs are solved.
+        let ClipOptions { pair: SegmentOptions { motions, quality, .. }, look_ahead } = *tracker.options();
+        let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
+        let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
+        let history = hash(0, &[motions, u8::from(quality == Quality::Best), look_ahead]);
+        Ok(ClipSegmenter { tracker, frames: Vec::new(), hashes: Vec::new(), history })
     }
 
     /// Takes the next frame. What it returns need not be kept.
@@ -91,25 +110,34 @@ impl ClipSegmenter {
     /// # Errors
     /// [`Error::FrameSizeMismatch`]; the clip may go on with another frame.
     pub fn push(&mut self, frame: Frame) -> Result<FramePairs> {
-        let (tracked, pairs) = self.tracker.push(frame, None)?;
-        self.frames.extend(tracked.map(FrameState::new));
-        Ok(FramePairs(pairs.kept()))
+        let pairs = self.take(frame, None)?;
+        Ok(FramePairs { history: self.history, pairs: pairs.kept() })
     }
 
-    /// Takes the next frame, whose pairs were solved before by [`push`](Self::push): with the same options, of the same frames up to this
-    /// one.
+    /// Takes the next frame, whose pairs were solved before by [`push`](Self::push).
     ///
     /// # Errors
-    /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs of frames of another size.
-    pub fn push_known(&mut self, frame: Frame, FramePairs(pairs): &FramePairs) -> Result<()> {
+    /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs that were not solved with these options, of this frame and
+    /// all those before it; the frame can be pushed then.
+    pub fn push_known(&mut self, frame: Frame, pairs: &FramePairs) -> Result<()> {
+        self.take(frame, Some(pairs)).map(|_| ())
+    }
+
+    fn take(&mut self, frame: Frame, known: Option<&FramePairs>) -> Result<Pairs> {
         let size = [frame.width(), frame.height()];
+        let own = frame.hash();
+        let history = hash(self.history, &own.to_le_bytes());
         let working = self.tracker.options().settings(size).working_size(size);
-        if !pairs.is_valid(working[0] * working[1]) {
-            return Err(invalid("pairs", "they are of frames of another size"));
+        let is_of_these =
+            |known: &FramePairs| known.history == history && known.pairs.is_valid(working[0] * working[1]);
+        if !known.is_none_or(is_of_these) {
+            return Err(invalid("pairs", "they are of other frames or options"));
         }
-        let (tracked, _) = self.tracker.push(frame, Some(pairs.pairs(working)))?;
+        let (tracked, pairs) = self.tracker.push(frame, known.map(|known| known.pairs.pairs(working)))?;
         self.frames.extend(tracked.map(FrameState::new));
-        Ok(())
+        self.hashes.push(own);
+        self.history = history;
+        Ok(pairs)
     }
 
     /// The clip of the frames so far.
@@ -130,7 +158,8 @@ impl ClipSegmenter {
         let numbers = (0..=u8::MAX).collect();
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
         let stream = look_ahead.is_some();
-        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, frames: self.frames }
+        let ClipSegmenter { hashes, frames, .. } = self;
+        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, hashes, frames }
     }
 
     /// Divides what was one object before it was two.
@@ -175,10 +204,12 @@ pub struct SegmentedClip {
     dropped: usize,
     /// The number that each object is given, itself unless it was merged or removed.
     numbers: Vec<u8>,
+    /// Of every frame as it was segmented.
+    hashes: Vec<u64>,
     pub(super) frames: Vec<FrameState>,
 }
 
-saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, frames });
+saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, hashes, frames });
 
 /// A frame of a segmented clip, working size.
 #[derive(Clone, Debug)]
@@ -301,7 +332,7 @@ impl SegmentedClip {
     /// The labels and objects of a frame, which must be the one that was segmented.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), [`Error::FrameSizeMismatch`].
+    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), [`Error::FrameSizeMismatch`], [`Error::OtherFrame`].
     pub fn frame(&self, index: usize, frame: &Frame) -> Result<ClipFrame> {
         self.check(index, frame)?;
         let _call = workspace::begin(self.size);
@@ -344,40 +375,48 @@ impl SegmentedClip {
     }
 
     /// Gives every pixel of an object another number for the whole clip: that of another object to merge them, 0 to make it background.
+    /// Numbers that no object has change nothing. Returns the indices of the frames that change.
     ///
     /// # Errors
     /// [`Error::InvalidOption`] if either is 255, or `object` 0.
-    pub fn renumber(&mut self, object: u8, number: u8) -> Result<()> {
+    pub fn renumber(&mut self, object: u8, number: u8) -> Result<Vec<usize>> {
         if object == 0 || object == NOTHING_SAID || number == NOTHING_SAID {
             let reason =
                 format!("object {object} cannot get the number {number}: objects are 1 to 254, the background is 0");
             return Err(Error::InvalidOption { name: "objects", reason });
         }
         let number = self.numbers[usize::from(number)];
+        if number != 0 && self.frames_with(number).is_empty() {
+            return Ok(Vec::new());
+        }
+        let changed = self.frames_with(object);
         self.numbers.iter_mut().filter(|given| **given == object).for_each(|given| *given = number);
-        Ok(())
+        Ok(changed)
     }
 
     /// The bytes of this clip, for [`from_bytes`](Self::from_bytes) of the same version.
     pub fn to_bytes(&self) -> Vec<u8> {
-        to_bytes(CLIP_FORMAT, self)
+        CLIP.written(self)
     }
 
     /// A clip from its bytes.
     ///
     /// # Errors
-    /// [`Error::InvalidOption`] for other bytes.
+    /// [`Error::InvalidOption`] for bytes of another version and damaged ones.
     pub fn from_bytes(bytes: &[u8]) -> Result<SegmentedClip> {
-        let clip: SegmentedClip = from_bytes(CLIP_FORMAT, bytes)?;
-        if clip.is_valid() { Ok(clip) } else { Err(invalid("state", "it is damaged")) }
+        let clip: SegmentedClip = CLIP.read(bytes)?;
+        if clip.is_valid() { Ok(clip) } else { Err(CLIP.damaged()) }
     }
 
     fn is_valid(&self) -> bool {
         let [width, height] = self.size;
-        if self.frames.is_empty() {
-            return self.size == [0, 0] && self.numbers.len() == 256;
+        if self.numbers.len() != 256 || self.hashes.len() != self.frames.len() {
+            return false;
         }
-        if ![width, height].iter().all(|side| (MIN_SIDE..=MAX_SIDE).contains(side)) || self.numbers.len() != 256 {
+        if self.frames.is_empty() {
+            return self.size == [0, 0];
+        }
+        if ![width, height].iter().all(|side| (MIN_SIDE..=MAX_SIDE).contains(side)) {
             return false;
         }
         let [w, h] = self.working_size();
@@ -393,7 +432,10 @@ impl SegmentedClip {
     pub(super) fn check(&self, index: usize, frame: &Frame) -> Result<()> {
         self.check_index(index)?;
         let (first, second) = ((self.size[0], self.size[1]), (frame.width(), frame.height()));
-        if first == second { Ok(()) } else { Err(Error::FrameSizeMismatch { first, second }) }
+        if first != second {
+            return Err(Error::FrameSizeMismatch { first, second });
+        }
+        if frame.hash() == self.hashes[index] { Ok(()) } else { Err(Error::OtherFrame { index }) }
     }
 
     pub(super) fn settings(&self) -> Settings {

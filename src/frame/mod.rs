@@ -16,6 +16,7 @@ pub use plane::Plane;
 use std::borrow::Cow;
 
 use crate::error::{Error, Result};
+use crate::hash::hash;
 use crate::workspace::Buffer;
 
 /// Smallest side of a frame, pixels.
@@ -23,20 +24,12 @@ pub const MIN_SIDE: usize = 16;
 /// Largest side of a frame, pixels.
 pub const MAX_SIDE: usize = 4096;
 
-/// One video frame: its luminance, 0…255, and its colours.
-#[derive(Clone, Debug)]
+/// One video frame: its luminance, 0…255, and its colours. Frames are equal if their pixels are; alpha is ignored.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     luminance: Plane,
-    /// Red, green, blue and alpha of every pixel, row by row.
+    /// Red, green, blue and 255 of every pixel, row by row.
     rgba: Buffer<u8>,
-}
-
-/// Frames are equal if their pixels are; alpha is ignored.
-impl PartialEq for Frame {
-    fn eq(&self, other: &Frame) -> bool {
-        let mut colours = self.colours().iter().zip(other.colours());
-        self.luminance == other.luminance && colours.all(|(a, b)| a[..3] == b[..3])
-    }
 }
 
 impl Frame {
@@ -55,10 +48,13 @@ impl Frame {
         if rgba.len() != needed {
             return Err(Error::PixelCountMismatch { width, height, needed, found: rgba.len() });
         }
-        let rgba = Buffer::from(rgba.into_owned());
+        let mut rgba = Buffer::from(rgba.into_owned());
         let luminance = rgba
-            .chunks_exact(4)
-            .map(|p| 0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2]))
+            .chunks_exact_mut(4)
+            .map(|p| {
+                p[3] = u8::MAX;
+                0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2])
+            })
             .collect();
         Ok(Frame { luminance: Plane::from_buffer(width, height, luminance), rgba })
     }
@@ -73,9 +69,14 @@ impl Frame {
         self.luminance.height()
     }
 
-    /// Red, green, blue and alpha of every pixel, row by row.
+    /// Red, green, blue and 255 of every pixel, row by row.
     pub(crate) fn colours(&self) -> &[[u8; 4]] {
         self.rgba.as_chunks().0
+    }
+
+    /// A hash of the size and the pixels; equal frames have the same.
+    pub(crate) fn hash(&self) -> u64 {
+        hash(self.width() as u64, &self.rgba)
     }
 
     /// Luminance in grey levels, 0…255.
@@ -91,7 +92,9 @@ mod tests {
     #[test]
     fn alpha_makes_no_difference_and_colour_does() {
         let frame = |pixel: [u8; 4]| Frame::from_rgba(MIN_SIDE, MIN_SIDE, pixel.repeat(MIN_SIDE * MIN_SIDE)).unwrap();
-        assert_eq!(frame([10, 20, 30, 255]), frame([10, 20, 30, 0]));
-        assert_ne!(frame([10, 20, 30, 255]), frame([10, 20, 31, 255]));
+        let [one, same, other] = [[10, 20, 30, 255], [10, 20, 30, 0], [10, 20, 31, 255]].map(frame);
+        assert_eq!((&one, one.colours(), one.hash()), (&same, same.colours(), same.hash()));
+        assert_ne!(one, other);
+        assert_ne!(one.hash(), other.hash());
     }
 }

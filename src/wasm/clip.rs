@@ -11,9 +11,9 @@ use std::cell::RefCell;
 use js_sys::Uint8Array;
 use wasm_bindgen::prelude::*;
 
-use super::frames::{flag, frame_from_pixels, quality};
+use super::frames::{frame_from_pixels, pair_option};
 use super::plain::{Record, list, numbers};
-use super::{Failure, entries, invalid, motions, seed, unknown};
+use super::{Failure, entries, invalid};
 use crate::clip::{
     ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip,
     StreamSegmenter,
@@ -29,7 +29,12 @@ thread_local! {
 enum Clip {
     Stream(StreamSegmenter),
     Pairs(ClipSegmenter),
-    Segmented(SegmentedClip, Option<ClipCorrection>),
+    Segmented {
+        clip: SegmentedClip,
+        correction: Option<ClipCorrection>,
+        /// Whether it came as bytes.
+        restored: bool,
+    },
 }
 
 /// Begins a clip. `clip` is a number that no other clip has had. Options: `motions`, `quality`, `markUnknown`, `seed` and `lookAhead`
@@ -51,19 +56,22 @@ pub fn begin_clip(clip: u32, whole: bool, options: &JsValue) -> Result<(), JsVal
 
 /// Adds a frame, `{ data, width, height }`. A stream returns a frame that has waited long enough as `{ index, labels, objects,
 /// background }`, or `undefined` if there is none. A whole clip returns what the frame's pairs have told as bytes, or `undefined` if these
-/// bytes were `known`; bytes that are damaged or of another version count as unknown.
+/// bytes were `known`; bytes that are damaged, or of another version, other options or other frames count as unknown.
 ///
 /// # Errors
 /// A `VeroneseError` of code `frame-size-mismatch`, or `invalid-input` for a malformed frame. The clip can continue with another frame.
 #[wasm_bindgen(js_name = pushClip)]
 pub fn push_clip(clip: u32, frame: &JsValue, known: Option<Vec<u8>>) -> Result<JsValue, JsValue> {
-    let frame = frame_from_pixels("the frame", frame)?;
-    step(clip, |clip| match clip {
-        Clip::Stream(stream) => {
-            Some(stream.push(frame).map(|frame| frame.map_or(JsValue::UNDEFINED, |frame| clip_frame(&frame))))
+    let mut given = Some((frame_from_pixels("the frame", frame)?, known));
+    step(clip, &mut |clip| {
+        let (frame, known) = given.take()?;
+        match clip {
+            Clip::Stream(stream) => {
+                Some(stream.push(frame).map(|frame| frame.map_or(JsValue::UNDEFINED, |frame| clip_frame(&frame))))
+            }
+            Clip::Pairs(segmenter) => Some(push_pairs(segmenter, frame, known)),
+            Clip::Segmented { .. } => None,
         }
-        Clip::Pairs(segmenter) => Some(push_pairs(segmenter, frame, known)),
-        Clip::Segmented(..) => None,
     })
 }
 
@@ -93,7 +101,7 @@ pub fn finish_clip(clip: u32) -> JsValue {
 #[wasm_bindgen(js_name = concludeClip)]
 pub fn conclude_clip(clip: u32) -> JsValue {
     match take(clip) {
-        Some(Clip::Pairs(segmenter)) => keep_segmented(clip, segmenter.conclude()),
+        Some(Clip::Pairs(segmenter)) => keep_segmented(clip, segmenter.conclude(), false),
         _ => JsValue::NULL,
     }
 }
@@ -107,23 +115,24 @@ pub fn restore_clip(clip: u32, state: &[u8], mark_unknown: bool) -> Result<JsVal
     let mut segmented = SegmentedClip::from_bytes(state).map_err(Failure::from)?;
     segmented.mark_unknown(mark_unknown);
     end_clip(clip);
-    Ok(keep_segmented(clip, segmented))
+    Ok(keep_segmented(clip, segmented, true))
 }
 
 /// The bytes of a concluded clip, for [`restore_clip`].
 #[wasm_bindgen(js_name = saveClip)]
 pub fn save_clip(clip: u32) -> Result<JsValue, JsValue> {
-    segmented(clip, |clip, _| Ok(bytes(&clip.to_bytes())))
+    segmented(clip, &mut |clip, _| Ok(bytes(&clip.to_bytes())))
 }
 
 /// A frame of a concluded clip, as [`push_clip`] of a stream returns it.
 ///
 /// # Errors
-/// A `VeroneseError` of code `invalid-option`, `frame-size-mismatch` or `invalid-input`.
+/// A `VeroneseError` of code `invalid-option`, `frame-size-mismatch` or `invalid-input`. A frame that is not the one that was segmented is
+/// `invalid-input`, of a restored clip `invalid-option`.
 #[wasm_bindgen(js_name = clipFrame)]
 pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue, JsValue> {
     let frame = frame_from_pixels("the frame", frame)?;
-    segmented(clip, |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
+    segmented(clip, &mut |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
 }
 
 /// Begins a correction of a concluded clip: what is certain of every pixel of a frame, 255 for nothing. It first wants that frame.
@@ -132,7 +141,7 @@ pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue
 /// A `VeroneseError` of code `invalid-option`.
 #[wasm_bindgen(js_name = correctClip)]
 pub fn correct_clip(clip: u32, index: usize, labels: &[u8]) -> Result<JsValue, JsValue> {
-    segmented(clip, |clip, correction| {
+    segmented(clip, &mut |clip, correction| {
         *correction = Some(clip.correct(index, labels)?);
         Ok(JsValue::UNDEFINED)
     })
@@ -141,11 +150,11 @@ pub fn correct_clip(clip: u32, index: usize, labels: &[u8]) -> Result<JsValue, J
 /// Takes the frame that the correction wants. Returns the index of the next one, or at the end the list of those that have changed.
 ///
 /// # Errors
-/// A `VeroneseError` of code `frame-size-mismatch` or `invalid-input`.
+/// As [`frame_of_clip`].
 #[wasm_bindgen(js_name = takeCorrection)]
 pub fn take_correction(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
     let frame = frame_from_pixels("the frame", frame)?;
-    segmented(clip, |clip, correction| {
+    segmented(clip, &mut |clip, correction| {
         let Some(under_way) = correction else { return Ok(JsValue::NULL) };
         under_way.take(clip, &frame)?;
         Ok(match under_way.wanted() {
@@ -155,17 +164,14 @@ pub fn take_correction(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
     })
 }
 
-/// Gives an object another number, 0 to make it background. Returns the indices of the frames where it was.
+/// Gives an object another number, 0 to make it background; numbers that no object has change nothing. Returns the indices of the frames
+/// that change.
 ///
 /// # Errors
 /// A `VeroneseError` of code `invalid-option`.
 #[wasm_bindgen(js_name = renumberClip)]
 pub fn renumber_clip(clip: u32, object: u8, number: u8) -> Result<JsValue, JsValue> {
-    segmented(clip, |clip, _| {
-        let seen = clip.frames_with(object);
-        clip.renumber(object, number)?;
-        Ok(indices(&seen))
-    })
+    segmented(clip, &mut |clip, _| clip.renumber(object, number).map(|changed| indices(&changed)))
 }
 
 /// Ends a clip and frees its memory. Does nothing if there is no such clip.
@@ -178,7 +184,7 @@ fn keep(number: u32, clip: Clip) {
     CLIPS.with_borrow_mut(|clips| clips.push((number, clip)));
 }
 
-fn keep_segmented(number: u32, clip: SegmentedClip) -> JsValue {
+fn keep_segmented(number: u32, clip: SegmentedClip, restored: bool) -> JsValue {
     let [width, height] = clip.size();
     let described = Record::new()
         .count("length", clip.len())
@@ -186,7 +192,7 @@ fn keep_segmented(number: u32, clip: SegmentedClip) -> JsValue {
         .count("height", height)
         .count("dropped", clip.dropped())
         .into_value();
-    keep(number, Clip::Segmented(clip, None));
+    keep(number, Clip::Segmented { clip, correction: None, restored });
     described
 }
 
@@ -197,8 +203,8 @@ fn take(clip: u32) -> Option<Clip> {
     })
 }
 
-/// What `work` makes of a clip, or `null`.
-fn step(clip: u32, work: impl FnOnce(&mut Clip) -> Option<Result<JsValue, Error>>) -> Result<JsValue, JsValue> {
+/// What `work` makes of a clip, or `null`. Not generic: each call would have a copy of its own.
+fn step(clip: u32, work: &mut dyn FnMut(&mut Clip) -> Option<Result<JsValue, Error>>) -> Result<JsValue, JsValue> {
     let done = CLIPS.with_borrow_mut(|clips| {
         let (_, clip) = clips.iter_mut().find(|(number, _)| *number == clip)?;
         work(clip)
@@ -206,13 +212,16 @@ fn step(clip: u32, work: impl FnOnce(&mut Clip) -> Option<Result<JsValue, Error>
     Ok(done.transpose().map_err(Failure::from)?.unwrap_or(JsValue::NULL))
 }
 
-/// [`step`] for a clip that is concluded.
+/// [`step`] for a clip that is concluded. Frames that are not those of a state are the state's fault.
 fn segmented(
     clip: u32,
-    work: impl FnOnce(&mut SegmentedClip, &mut Option<ClipCorrection>) -> Result<JsValue, Error>,
+    work: &mut dyn FnMut(&mut SegmentedClip, &mut Option<ClipCorrection>) -> Result<JsValue, Error>,
 ) -> Result<JsValue, JsValue> {
-    step(clip, |clip| match clip {
-        Clip::Segmented(clip, correction) => Some(work(clip, correction)),
+    step(clip, &mut |clip| match clip {
+        Clip::Segmented { clip, correction, restored } => Some(work(clip, correction).map_err(|error| match error {
+            Error::OtherFrame { .. } if *restored => Error::InvalidOption { name: "state", reason: error.to_string() },
+            error => error,
+        })),
         _ => None,
     })
 }
@@ -229,12 +238,8 @@ fn clip_options(value: &JsValue) -> Result<ClipOptions, Failure> {
     let mut options = ClipOptions::default();
     for (name, value) in entries(value)? {
         match name.as_str() {
-            "motions" => options.pair.motions = motions(&value)?,
-            "quality" => options.pair.quality = quality(&value)?,
-            "markUnknown" => options.pair.mark_unknown = flag("markUnknown", &value)?,
-            "seed" => options.pair.seed = seed(&value)?,
             "lookAhead" => options.look_ahead = look_ahead(&value)?,
-            _ => return Err(unknown(&name, "motions, quality, markUnknown, seed, lookAhead")),
+            _ => pair_option(&mut options.pair, &name, &value, "motions, quality, markUnknown, seed, lookAhead")?,
         }
     }
     Ok(options)

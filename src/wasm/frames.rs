@@ -204,22 +204,36 @@ fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
     let mut options = SegmentOptions::default();
     for (name, value) in entries(value)? {
         match name.as_str() {
-            "motions" => options.motions = motions(&value)?,
-            "quality" => options.quality = quality(&value)?,
-            "markUnknown" => options.mark_unknown = flag("markUnknown", &value)?,
             "confidence" => options.confidence = flag("confidence", &value)?,
-            "seed" => options.seed = seed(&value)?,
-            _ => return Err(unknown(&name, "motions, quality, markUnknown, confidence, seed")),
+            _ => pair_option(&mut options, &name, &value, "motions, quality, markUnknown, confidence, seed")?,
         }
     }
     Ok(options)
 }
 
-pub(super) fn quality(value: &JsValue) -> Result<Quality, Failure> {
-    choice("quality", value, &[("fast", Quality::Fast), ("best", Quality::Best)])
+/// Sets an option that calls on pairs and on clips have. `known`: all options of the call.
+#[inline(never)]
+pub(super) fn pair_option(
+    options: &mut SegmentOptions,
+    name: &str,
+    value: &JsValue,
+    known: &str,
+) -> Result<(), Failure> {
+    match name {
+        "motions" => options.motions = motions(value)?,
+        "quality" => options.quality = quality(value)?,
+        "markUnknown" => options.mark_unknown = flag("markUnknown", value)?,
+        "seed" => options.seed = seed(value)?,
+        _ => return Err(unknown(name, known)),
+    }
+    Ok(())
 }
 
-pub(super) fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
+fn quality(value: &JsValue) -> Result<Quality, Failure> {
+    choice("quality", value, [("fast", Quality::Fast), ("best", Quality::Best)])
+}
+
+fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
     value.as_bool().ok_or_else(|| invalid(name, "true or false", value))
 }
 

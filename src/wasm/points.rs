@@ -59,7 +59,7 @@ fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
     for (name, value) in entries(value)? {
         match name.as_str() {
             "motions" => options.motions = motions(&value)?,
-            "method" => options.method = choice("method", &value, &[("paper", Method::Paper), ("best", Method::Best)])?,
+            "method" => options.method = choice("method", &value, [("paper", Method::Paper), ("best", Method::Best)])?,
             "seed" => options.seed = seed(&value)?,
             _ => return Err(unknown(&name, "motions, method, seed")),
         }

@@ -199,6 +199,31 @@ test('a project is saved as a file and opened in another browser, with its frame
   await isContinued(page, files);
 });
 
+test('masks of another version stay; they can be corrected when the clip has been segmented again', async ({ page }) => {
+  const files = await clipFrames(6);
+  await correctedClip(page, files);
+  const project = await savedProject(page);
+  const unpacked = gunzipSync(project.buffer).toString('latin1');
+  expect(unpacked).toContain('VERCLIP3');
+  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replace('VERCLIP3', 'VERCLIP2'), 'latin1')) };
+  await upload(page, [old]);
+  await isContinued(page, files);
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Box' }).click();
+  await expect(page.locator('#notice-code')).toHaveText('other-state');
+  await expect(page.locator('#notice-sentence')).toContainText('They stay and can be exported. To correct them, segment the clip again.');
+  await page.locator('#notice-close').click();
+  const found = await clipInNode(files, { quality: 'fast', edits: { delete: [1] } });
+  expect(differences(await numbersOnCanvas(page), found[5]!)).toBe(0);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
+  await page.getByRole('button', { name: 'Segment the clip again' }).click();
+  await phase(page, 'done');
+  await expect(page.locator('#clip-status')).not.toHaveText(/^Continued/);
+  await page.locator('#objects > li').nth(2).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Box' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+});
+
 test('strokes and names of a pair are there after a reload', async ({ page }) => {
   const pair = [await square('one.png', 200, 140, 0, 0), await square('two.png', 200, 140, 4, 1)];
   await open(page, 'groups');

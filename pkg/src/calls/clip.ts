@@ -14,8 +14,13 @@ import { segmentedTwice } from './clip/whole.js';
 export function clipOf(frames: ClipSource, options: ClipOptions | undefined, reserve: (signal?: AbortSignal) => Promise<Place>): Clip {
   const told: Told = { tracks: new Tracks() };
   const rest = { tracks: () => told.tracks.value(), state: async () => told.state?.slice() };
-  return Object.assign(segmented(frames, options, reserve, told), rest);
+  const clip = Object.assign(segmented(frames, options, reserve, told), rest);
+  dropped.register(clip, told);
+  return clip;
 }
+
+/** Ends clips whose iterators were dropped before their end. */
+const dropped = new FinalizationRegistry<Told>(({ clip }) => clip?.end());
 
 async function* segmented(
   frames: ClipSource,
@@ -26,13 +31,20 @@ async function* segmented(
   const task = reading(() => asked(frames, options));
   const { signal } = task;
   if (signal?.aborted) throw cancelled(signal);
-  const clip = new PlacedClip(await reserve(signal), signal);
+  const place = await reserve(signal);
+  const clip = new PlacedClip(place, signal);
+  told.clip = clip;
   try {
     const whole = 'read' in task.source;
     await clip.begin(whole, task.settings);
     const taken = new Frames(signal);
-    yield* whole ? segmentedTwice(clip, taken, task, told) : streamed(clip, taken, task, told.tracks);
+    for await (const frame of whole ? segmentedTwice(clip, taken, task, told) : streamed(clip, taken, task, told.tracks)) {
+      place.pause?.(true);
+      yield frame;
+      place.pause?.(false);
+    }
   } finally {
+    delete told.clip;
     clip.end();
   }
 }

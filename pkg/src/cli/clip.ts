@@ -3,6 +3,7 @@
 import type { Clip, ClipFrame, ClipProgress, Segmenter as SegmenterType } from '../../types/index.js';
 import { overlay } from '../calls/labels.js';
 import { version } from '../calls/version.js';
+import { VeroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
 import { encodeColourPng, encodeIndexedPng } from '../entries/codecs.js';
 import { Segmenter } from '../entries/node.js';
@@ -67,11 +68,23 @@ async function corrected(
   kept: KeptClip,
   onProgress: (progress: ClipProgress) => void,
 ): Promise<Clip> {
-  const state = kept.state() ?? (await solved(segmenter, frames, options, kept, onProgress));
+  const state = (await known(segmenter, frames, kept)) ?? (await solved(segmenter, frames, options, kept, onProgress));
   const length = frames.failure?.index ?? frames.length;
   const corrections = said?.corrections.filter(({ frame }) => frame < length);
   const { markUnknown } = options;
   return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, corrections, edits: said?.edits, onProgress });
+}
+
+/** The state that is kept, if this version can use it: asked for no changes, it is read and nothing else. */
+async function known(segmenter: SegmenterType, { length, read }: ClipFrames, kept: KeptClip): Promise<Uint8Array | undefined> {
+  const state = kept.state();
+  try {
+    if (state) await segmenter.segmentClip({ length, read }, { state, changesOnly: true }).next();
+    return state;
+  } catch (thrown) {
+    if (thrown instanceof VeroneseError && thrown.code === 'invalid-option') return undefined;
+    throw thrown;
+  }
 }
 
 async function solved(

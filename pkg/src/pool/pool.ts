@@ -20,13 +20,19 @@ export interface Claim<Task, Result> {
   /** Rejects if the worker has ended since. */
   run: (task: Task, options?: CallOptions) => Promise<Result>;
   release: () => void;
+  /** Says whether it waits for the caller's code, which may itself wait for a worker. */
+  pause: (paused: boolean) => void;
 }
 
 /** A {@link Claim} inside the pool. */
 interface Claiming {
   /** Why its worker has ended. */
   lost?: VeroneseError;
+  paused?: boolean;
 }
+
+/** Who waits for a worker is refused when all claims have been paused for this long, milliseconds. */
+const PATIENCE = 2000;
 
 interface Claimant {
   give: (claim: Claiming) => void;
@@ -70,6 +76,8 @@ export class WorkerPool<Task, Result> {
   readonly #waiting: Job<Task, Result>[] = [];
   readonly #claimants: Claimant[] = [];
   readonly #lanes: Lane<Task, Result>[];
+  /** Runs while claims are wanted and all are paused. */
+  #patience: ReturnType<typeof setTimeout> | undefined;
 
   /** `supply`: which module a task needs. */
   constructor(spawn: Spawn<Task, Result>, supply: (task: Task) => Module, size: number) {
@@ -104,7 +112,11 @@ export class WorkerPool<Task, Result> {
       const claimant: Claimant = {
         give: (claim) => {
           signal?.removeEventListener('abort', onAbort);
-          resolve({ run: (task, options) => this.#run(task, options, claim), release: () => this.#release(claim) });
+          const pause = (paused: boolean) => {
+            claim.paused = paused;
+            this.#watch();
+          };
+          resolve({ run: (task, options) => this.#run(task, options, claim), release: () => this.#release(claim), pause });
         },
         reject: (reason) => {
           signal?.removeEventListener('abort', onAbort);
@@ -123,10 +135,20 @@ export class WorkerPool<Task, Result> {
     free.sort((one, other) => Number(isBusy(one)) - Number(isBusy(other)) || Number(!one.thread) - Number(!other.thread));
     for (const lane of free) {
       const claimant = this.#claimants.shift();
-      if (!claimant) return;
+      if (!claimant) break;
       lane.claim = {};
       claimant.give(lane.claim);
     }
+    this.#watch();
+  }
+
+  /** Claimants may be what all paused claims wait for: a clip in the loop of another. */
+  #watch(): void {
+    clearTimeout(this.#patience);
+    if (this.#claimants.length === 0 || !this.#lanes.every(({ claim }) => claim?.paused)) return;
+    this.#patience = setTimeout(() => {
+      for (const { reject } of this.#claimants.splice(0)) reject(new VeroneseError('worker-busy', BUSY));
+    }, PATIENCE);
   }
 
   #release(claim: Claiming): void {
@@ -157,6 +179,7 @@ export class WorkerPool<Task, Result> {
     }
     for (const job of jobs) this.#settle(job, () => job.reject(cancelled(job.signal)));
     for (const claimant of claimants) claimant.reject(cancelled());
+    this.#watch();
   }
 
   #cancel(job: Job<Task, Result>, reason: unknown = cancelled(job.signal)): void {
@@ -270,6 +293,8 @@ export class WorkerPool<Task, Result> {
     this.#next();
   }
 }
+
+const BUSY = 'every worker keeps a clip that nobody reads on; a SegmenterPool may have more workers';
 
 function isBusy({ job }: { job: { givesWay: boolean } | undefined }): boolean {
   return job?.givesWay === false;

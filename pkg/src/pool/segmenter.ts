@@ -81,7 +81,7 @@ export function segmenters(host: Host) {
     segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
       return clipOf(frames, options, async (signal) => {
         const claim = await this.#pool.claim(signal);
-        return { perform: claim.run, release: claim.release };
+        return { ...claim, perform: claim.run };
       });
     }
 

@@ -266,6 +266,9 @@ export const strings = {
     nothingElse: 'There is no other mask that these pixels could belong to.',
     nothingTicked: 'Tick an object in the list first.',
     notReady: 'Segment the clip first.',
+    otherState:
+      'These masks were made by another version of this page, or in a browser that reads the frames differently. ' +
+      'They stay and can be exported. To correct them, segment the clip again.',
     onePiece: 'The object is in one piece in this frame. Choose “New object” and paint the part that is another.',
     tooMany: 'There are 254 objects, and there cannot be more.',
     notPainted: 'The brush cannot make pixels unlabelled. Select another mask, or use the eraser.',

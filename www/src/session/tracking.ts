@@ -3,6 +3,7 @@
 
 import { type ClipFrame, type ClipOptions, Segmenter } from 'veronese';
 import type { Clip } from '../clips/clip.js';
+import { PageError, codeOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { smallerPieces } from '../correction/pieces.js';
 import { packed, unpacked } from '../correction/runs.js';
@@ -347,7 +348,7 @@ export class Tracking {
     } catch (error) {
       if (signal.aborted) return;
       set({ run: { phase: 'failed' } });
-      this.#hooks.failed(error);
+      this.#hooks.failed(codeOf(error) === 'invalid-option' ? new PageError('other-state', strings.notices.otherState) : error);
     } finally {
       if (this.#current === own) this.#current = null;
     }

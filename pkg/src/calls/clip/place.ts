@@ -2,11 +2,14 @@
 
 import { cancelled, VeroneseError } from '../../common/errors.js';
 import type { ClipStep, ClipTask, Settings } from '../messages.js';
+import { inOrder } from '../ordered.js';
 import type { Perform } from '../tasks.js';
 
 export interface Place {
   perform: Perform;
   release: () => void;
+  /** Says whether the clip waits for its reader, if others may wait for the place. */
+  pause?: (paused: boolean) => void;
 }
 
 /** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
@@ -42,6 +45,13 @@ export class PlacedClip {
     if (result === null) throw new VeroneseError('internal', 'the clip was lost when another call failed');
     if (step.call === 'finishClip') this.#open = false;
     return result as T;
+  }
+
+  /** What the caller's code gives, unless the signal is aborted first. */
+  async wait<T>(promised: T | Promise<T>): Promise<T | undefined> {
+    const order = { room: 1, signal: this.#signal, stop: () => cancelled(this.#signal) };
+    for await (const value of inOrder([promised], async (value) => value, order)) return value;
+    return undefined;
   }
 
   /** Frees what the clip holds. Not awaited: if it fails, the clip is gone already. */

@@ -1,11 +1,13 @@
 // The tracks of a clip's objects, collected frame by frame.
 
 import type { ClipFrame, ClipTrack, ClipTracks } from '../../../types/index.js';
+import type { PlacedClip } from './place.js';
 
-/** What a clip has told besides its frames. */
+/** What a clip has told besides its frames, and where it is kept until it ends. */
 export interface Told {
   tracks: Tracks;
   state?: Uint8Array;
+  clip?: PlacedClip;
 }
 
 export class Tracks {

@@ -40,12 +40,12 @@ async function solved(clip: PlacedClip, frames: Frames, task: Asked): Promise<Cl
   for await (const frame of frames.each(reads(read, upTo(of)))) {
     if (index === 0) checkSizes(task, frame);
     task.onProgress?.({ frame: index, of, stage: 'pairs' });
-    const known = await task.knownPairs?.(index);
+    const known = await clip.wait(task.knownPairs?.(index));
     const bytes = known === undefined ? undefined : (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
     const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(bytes && { known: bytes }) });
     frames.ahead();
     const pairs = await step;
-    if (pairs) await task.onPairs?.(index, pairs);
+    if (pairs) await clip.wait(task.onPairs?.(index, pairs));
     index += 1;
   }
   return clip.step({ call: 'concludeClip' });
