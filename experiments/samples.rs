@@ -1,4 +1,5 @@
-//! Writes the generated sample pairs of the page, and the thumbnails of all: `cargo run --release --features codecs --example samples`.
+//! Writes the generated sample pair of the page, and the thumbnails of all: `cargo run --release --features codecs --example samples`.
+//! How the frames of cars were made stands in the LICENCE.md beside them.
 
 use std::error::Error;
 use std::fs;
@@ -7,7 +8,7 @@ use std::path::Path;
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use veronese::codecs::{decode_image, encode_colour_png};
-use veronese::scene::{Scene, leader_follower, parallax};
+use veronese::scene::{Scene, parallax};
 
 const FOLDER: &str = "www/public/samples";
 /// Twice the size on the page, for screens with small pixels.
@@ -15,17 +16,18 @@ const THUMBNAIL: (usize, usize) = (108, 72);
 const JPEG_QUALITY: u8 = 75;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    write("leader-follower", &leader_follower(1)?)?;
     write("parallax", &parallax(4)?)?;
-    for name in ["intel-two-cars", "leader-follower", "parallax"] {
-        write_thumbnail(&Path::new(FOLDER).join(name))?;
+    for (name, frame) in
+        [("passing-cars", "frames/22.webp"), ("intel-two-cars", "first.png"), ("parallax", "first.png")]
+    {
+        write_thumbnail(&Path::new(FOLDER).join(name), frame)?;
     }
     Ok(())
 }
 
-/// The middle of the first frame in the shape of a thumbnail, scaled down by means over boxes of pixels.
-fn write_thumbnail(folder: &Path) -> Result<(), Box<dyn Error>> {
-    let picture = decode_image(&fs::read(folder.join("first.png"))?)?;
+/// The middle of a frame in the shape of a thumbnail, scaled down by means over boxes of pixels.
+fn write_thumbnail(folder: &Path, frame: &str) -> Result<(), Box<dyn Error>> {
+    let picture = decode_image(&fs::read(folder.join(frame))?)?;
     let (across, down) = THUMBNAIL;
     let scale = (picture.width as f64 / across as f64).min(picture.height as f64 / down as f64);
     let left = (picture.width as f64 - scale * across as f64) / 2.0;

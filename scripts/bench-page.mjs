@@ -42,7 +42,7 @@ await command(async (args) => {
   try {
     console.log(`Making a video of ${frames} frames …`);
     const maker = await browser.newPage();
-    await maker.goto(address);
+    await maker.goto(`${address}#sample=intel-two-cars`);
     await writeLongClip(maker, VIDEO, frames, size);
     await maker.close();
     const measured = await segmented(browser, address, quality);
@@ -78,7 +78,7 @@ function options(args) {
 async function segmented(browser, address, quality) {
   const page = await browser.newPage();
   page.setDefaultTimeout(0);
-  await page.goto(`${address}#quality=${quality}&masks=groups`);
+  await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups`);
   await reached(page, '#run', 'done');
   const session = await browser.newBrowserCDPSession();
   await page.locator('#open-pair').setInputFiles(VIDEO);

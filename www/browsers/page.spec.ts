@@ -1,5 +1,5 @@
-//! The page in Chromium, Firefox and WebKit: start-up, a pair, a clip, an export and a project. In each the masks have the bits that the
-//! package gives in Node, and so the same in all.
+//! The page in Chromium, Firefox and WebKit: start-up, the sample clip, a pair, a clip, an export and a project. In each the masks have
+//! the bits that the package gives in Node, and so the same in all.
 
 import { mkdir, mkdtemp, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
@@ -11,7 +11,7 @@ import { Key } from 'selenium-webdriver';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { type Upload, clipFrames, clipInNode, differences, labelsOfColours, sample, screen, segmentedInNode, square } from '../tests/support.js';
+import { type Upload, clipFrames, clipInNode, differences, labelsOfColours, sample, sampleClip, screen, segmentedInNode, square } from '../tests/support.js';
 import { BROWSERS, Driven } from './driven.js';
 
 /** Gives files to the page as a person does, by the picker. */
@@ -26,7 +26,7 @@ async function masks(browser: Driven): Promise<Uint8Array> {
 }
 
 for (const found of BROWSERS) {
-  test(`the page in ${found.name}: a sample, a pair, a clip, an export and a project`, async ({ baseURL }) => {
+  test(`the page in ${found.name}: the samples, a pair, a clip, an export and a project`, async ({ baseURL }) => {
     test.skip(found.problem !== undefined, found.problem);
     const folder = await mkdtemp(join(tmpdir(), 'veronese-frames-'));
     const browser = await Driven.open(found);
@@ -34,12 +34,26 @@ for (const found of BROWSERS) {
     const find = browser.find.bind(browser);
     try {
       await browser.driver.manage().window().setRect({ width: 1280, height: 860 });
-      await browser.driver.get(`${baseURL}#quality=fast&masks=motions`);
+      await browser.driver.get(`${baseURL}#sample=intel-two-cars&quality=fast&masks=motions`);
       await done();
       const start = (await segmentedInNode(await sample('first'), await sample('second'))).labels;
       expect(differences(await masks(browser), start)).toBe(0);
       expect(new Set(start).size).toBeGreaterThan(2);
       await screenshot(browser, `browser-${found.name}-start`);
+
+      // The sample clip: every browser decodes its frames to the same pixels.
+      await find('#samples .sample').click();
+      await browser.untilText('#clip-name', '51 frames');
+      await browser.untilAttribute('#clip-run', 'data-phase', 'done');
+      await find('#track').sendKeys(Key.HOME);
+      const shipped = await sampleClip();
+      const cars = await clipInNode(shipped);
+      for (const [index, { buffer }] of shipped.entries()) {
+        if (index > 0) await find('#track').sendKeys(Key.ARROW_RIGHT);
+        await browser.untilText('#caption', `Frame ${index}`);
+        expect(differences(await browser.pixelsOf('#frame'), (await decodeImage(buffer)).data)).toBe(0);
+        expect(differences(await masks(browser), cars[index]!)).toBe(0);
+      }
 
       const pair = [await square('one.png', 240, 160, 0, 0), await square('two.png', 240, 160, 5, 3)] as const;
       await upload(browser, folder, pair);

@@ -25,13 +25,13 @@ const saved = find('#saved', HTMLDialogElement);
 
 // Sources: frames that come with the page, and files.
 
-const frames = (sample: string, names: readonly string[]): string[] => names.map((name) => `samples/${sample}/${name}.png`);
+// From where both cars are in the picture.
+const clip = Array.from({ length: 33 }, (_, k) => `samples/passing-cars/frames/${16 + k}.webp`);
+const pair = (sample: string): string[] => ['first', 'second'].map((name) => `samples/${sample}/${name}.png`);
 const SOURCES: readonly { title: string; frames: readonly string[] }[] = [
-  // Three frames, there and back twice.
-  { title: 'Two cars, clip', frames: frames('intel-two-cars', ['first', 'second', 'third', 'second', 'first', 'second', 'third', 'second', 'first']) },
-  { title: 'Two cars, pair', frames: frames('intel-two-cars', ['first', 'second']) },
-  { title: 'Leader and follower, pair', frames: frames('leader-follower', ['first', 'second']) },
-  { title: 'Parallax, pair', frames: frames('parallax', ['first', 'second']) },
+  { title: 'Passing cars, clip', frames: clip },
+  { title: 'Two cars, pair', frames: pair('intel-two-cars') },
+  { title: 'Parallax, pair', frames: pair('parallax') },
 ];
 
 /** Two frames are a pair, more are a clip, and a video is one too. */

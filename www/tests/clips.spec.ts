@@ -5,7 +5,7 @@ import { type Page } from '@playwright/test';
 import { BufferTarget, EncodedPacket, EncodedVideoPacketSource, Mp4OutputFormat, Output } from 'mediabunny';
 
 import { BIT, BITS, WIDTH, video } from './video.js';
-import { type Upload, done, expect, open, pixelsOf, square, test, upload, openAdvanced } from './support.js';
+import { PAIR, type Upload, done, expect, open, pixelsOf, square, test, upload, openAdvanced } from './support.js';
 
 /** The number in the frame on screen. */
 async function numberShown(page: Page): Promise<number> {
@@ -84,7 +84,7 @@ test('an MP4 video gives exactly the requested frames', async ({ page }) => {
 
 test('frames are marked approximate without WebCodecs', async ({ page, context }) => {
   const maker = await context.newPage();
-  await maker.goto('./');
+  await maker.goto(PAIR);
   const file = await video(maker, 30, 'webm', 'vp8');
   await maker.close();
   await page.addInitScript(() => Reflect.deleteProperty(globalThis, 'VideoDecoder'));

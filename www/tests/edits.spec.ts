@@ -7,7 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
+import { PAIR, type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
 
 type Place = readonly [number, number];
 
@@ -427,7 +427,7 @@ test('a stroke without effect is rejected with a message', async ({ page }) => {
 });
 
 test('the status describes the last action', async ({ page }) => {
-  await page.goto('./');
+  await page.goto(PAIR);
   await done(page);
   const status = page.locator('#status');
   const rows = page.locator('#motions > li');

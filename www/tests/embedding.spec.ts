@@ -6,14 +6,14 @@ import { type Page } from '@playwright/test';
 import { davisPalette, groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { axe, clipFrames, clipInNode, differences, expect, sample, segmentedInNode, test } from './support.js';
+import { sampleClip, axe, clipFrames, clipInNode, differences, expect, sample, segmentedInNode, test } from './support.js';
 import { video } from './video.js';
 
 /** Opens the host page with its clip or, by name, another of its sources. */
-async function openHost(page: Page, source = 'Two cars, clip'): Promise<void> {
+async function openHost(page: Page, source = 'Passing cars, clip'): Promise<void> {
   await page.goto('./embed.html');
-  if (source !== 'Two cars, clip') await page.getByLabel('Source').selectOption(source);
-  await expect(page.locator('#host-status')).toHaveText(source.endsWith('clip') ? /objects? in 9 frames\.$/ : /objects? in two frames\.$/, { timeout: 40_000 });
+  if (source !== 'Passing cars, clip') await page.getByLabel('Source').selectOption(source);
+  await expect(page.locator('#host-status')).toHaveText(source.endsWith('clip') ? /objects? in 33 frames\.$/ : /objects? in two frames\.$/, { timeout: 40_000 });
 }
 
 /** The current labels of the element. */
@@ -41,17 +41,15 @@ test('the host receives the masks of the package', async ({ page }) => {
 
 test('a clip is stepped, named and saved', async ({ page }) => {
   await openHost(page);
-  const [first, second] = [await sample('first'), await sample('second')];
-  const third = { ...first, buffer: await readFile(new URL('../public/samples/intel-two-cars/third.png', import.meta.url)) };
-  const expected = await clipInNode([first, second, third, second, first, second, third, second, first]);
+  const expected = await clipInNode((await sampleClip()).slice(16, 49));
   expect(differences(await labels(page), expected[0]!)).toBe(0);
   await page.getByRole('button', { name: 'Next frame' }).click();
-  await expect(page.locator('#position')).toHaveText('Frame 2 of 9');
+  await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
   expect(differences(await labels(page), expected[1]!)).toBe(0);
   const lane = page.locator('#lanes > div').nth(1);
   const box = (await lane.boundingBox())!;
   await lane.click({ position: { x: box.width - 2, y: 10 } });
-  await expect(page.locator('#position')).toHaveText('Frame 9 of 9');
+  await expect(page.locator('#position')).toHaveText('Frame 33 of 33');
   await expect(page.getByRole('option', { name: 'Object 2', selected: true })).toBeAttached();
   await expect(page.getByRole('button', { name: 'Choose object 2' })).toHaveAttribute('aria-pressed', 'true');
 
@@ -59,7 +57,7 @@ test('a clip is stepped, named and saved', async ({ page }) => {
   await expect(lane).toHaveText('red car');
   await page.getByRole('button', { name: 'Save' }).click();
   const saved = page.getByRole('dialog', { name: 'Saved by the form' });
-  await expect(saved.getByRole('listitem')).toHaveCount(11);
+  await expect(saved.getByRole('listitem')).toHaveCount(35);
   await expect(saved.getByRole('listitem').last()).toHaveText('object-2red car');
   const waiting = page.waitForEvent('download');
   await saved.getByRole('link', { name: '00002.png' }).click();
@@ -73,7 +71,7 @@ test('a clip is stepped, named and saved', async ({ page }) => {
   await saved.getByRole('button', { name: 'Close' }).click();
 
   await page.getByRole('button', { name: 'Reset' }).click();
-  await expect(page.locator('#position')).toHaveText('Frame 1 of 9');
+  await expect(page.locator('#position')).toHaveText('Frame 1 of 33');
   await expect(page.getByRole('textbox', { name: 'Name of object 2' })).toHaveValue('');
   await expect(page.getByRole('listbox', { name: 'Objects' }).getByRole('option', { selected: true })).toHaveCount(0);
 });
@@ -91,7 +89,7 @@ test('nothing is saved before the masks are there, and a clip can be cancelled',
 });
 
 test('frames and videos are opened from files', async ({ page }) => {
-  await openHost(page, 'Leader and follower, pair');
+  await openHost(page, 'Parallax, pair');
   await page.getByLabel('Open a video, or frames as images').setInputFiles((await clipFrames(3, 96, 64)).reverse());
   await expect(page.locator('#host-status')).toHaveText(/in 3 frames\.$/, { timeout: 30_000 });
   await page.getByLabel('Open a video, or frames as images').setInputFiles(await video(page, 4, 'webm', 'vp8'));

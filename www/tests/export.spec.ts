@@ -143,7 +143,7 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   await page.getByRole('button', { name: 'Copy link' }).click();
   await expect(page.locator('#notice')).toContainText('Copied the link with the settings to the clipboard.');
   const link = await page.evaluate(() => navigator.clipboard.readText());
-  expect(new URL(link).hash).toBe('#motions=2&quality=fast&masks=motions');
+  expect(new URL(link).hash).toBe('#sample=intel-two-cars&motions=2&quality=fast&masks=motions');
   const other = await context.newPage();
   await other.goto(link);
   await done(other);
@@ -176,8 +176,8 @@ test('a copied link opens the current sample', async ({ page, context }) => {
   await expect(other.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
 
   // Also in a page that is open.
-  await other.evaluate(() => (location.hash = '#sample=leader-follower&motions=2&masks=groups'));
-  await expect(other.locator('.slot-name')).toHaveText(['first.png, 200 × 150', 'second.png, 200 × 150']);
+  await other.evaluate(() => (location.hash = '#sample=intel-two-cars&motions=2&masks=groups'));
+  await expect(other.locator('.slot-name')).toHaveText(['first.png, 768 × 432', 'second.png, 768 × 432']);
   await done(other);
   await expect(other.locator('#look [value=groups]')).toBeChecked();
   await motionsChosen(other, 2);

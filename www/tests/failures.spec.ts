@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { done, expect, labelsOnCanvas, open, sample, square, test, upload } from './support.js';
+import { PAIR, done, expect, labelsOnCanvas, open, sample, square, test, upload } from './support.js';
 
 /** The page still segments. */
 async function expectToWork(page: Page): Promise<void> {
@@ -50,7 +50,7 @@ test('a request is cancelled at once and can be repeated', async ({ page, contex
     await held;
     await route.continue().catch(() => undefined); // the worker may have been ended
   });
-  await page.goto('./');
+  await page.goto(PAIR);
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'working');
   await expect(page.getByRole('progressbar')).toBeVisible();
   await page.getByRole('button', { name: 'Cancel' }).click();

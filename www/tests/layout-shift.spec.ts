@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { done, expect, test, upload } from './support.js';
+import { PAIR, done, expect, test, upload } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -28,7 +28,7 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 780]] as const) {
   test(`three steps through a clip shift nothing, ${screen}`, async ({ page }) => {
     await page.setViewportSize({ width, height });
-    await page.goto('./'); // with the default quality: a preview, then the result
+    await page.goto(PAIR); // with the default quality: a preview, then the result
     await done(page);
     await upload(page, [await video(page, 8, 'webm', 'vp8')]);
     await expect(page.locator('#clip-name')).toContainText('clip.webm');

@@ -5,10 +5,10 @@ import { readFile } from 'node:fs/promises';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, openExport, pixelsOf, sample, segmentedInNode, square, test, upload, chooseMotions } from './support.js';
+import { PAIR, MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, openExport, pixelsOf, sample, segmentedInNode, square, test, upload, chooseMotions } from './support.js';
 
-test('the page opens with the sample pair segmented', async ({ page }) => {
-  await page.goto('./');
+test('the sample pair is segmented', async ({ page }) => {
+  await page.goto(PAIR);
   await done(page);
   await page.locator('#look [value=motions]').check();
   const rows = page.locator('#motions > li');

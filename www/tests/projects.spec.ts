@@ -6,7 +6,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openAdvanced, openExport, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openAdvanced, openExport, openSampleClip, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
@@ -377,6 +377,7 @@ test('damaged and foreign projects are refused with a reason, and change nothing
 test('a first visit loads nothing of projects', async ({ page }) => {
   const asked: string[] = [];
   page.on('request', (request) => asked.push(request.url()));
-  await open(page);
+  await openSampleClip(page);
+  await page.waitForTimeout(1000); // what is kept is written soon
   expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
 });

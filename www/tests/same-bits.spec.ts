@@ -1,11 +1,12 @@
-//! The estimator gives identical bits in the browser and in Node: motions, evidence and labels of 200 problems.
+//! The browser and Node give identical bits: motions, evidence and labels of 200 problems; pixels and labels of the sample clip.
 
 import { readFile } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type MotionFit, fitMotions } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
 
-import { expect, test } from './support.js';
+import { PAIR, clipInNode, differences, expect, labelsOnCanvas, openSampleClip, pixelsOf, sampleClip, test } from './support.js';
 
 const PROBLEMS = 200;
 const PACKAGE = fileURLToPath(new URL('../../pkg/', import.meta.url));
@@ -50,7 +51,7 @@ test('fits in the browser equal those in Node', async ({ page, baseURL }) => {
     const contentType = TYPES[path.split('.').pop() ?? ''];
     await route.fulfill({ body: await readFile(PACKAGE + path), ...(contentType === undefined ? {} : { contentType }) });
   });
-  await page.goto('./');
+  await page.goto(PAIR);
   const problems = Array.from({ length: PROBLEMS }, (_, index) => problem(index));
   const inBrowser = await page.evaluate(
     async ([url, list]) => {
@@ -68,5 +69,20 @@ test('fits in the browser equal those in Node', async ({ page, baseURL }) => {
   for (const [index, { positions, derivatives, motions }] of problems.entries()) {
     const found = await fitMotions({ positions: new Float64Array(positions), derivatives: new Float64Array(derivatives) }, { motions });
     expect(inBrowser[index] === bits(found), `problem ${index}`).toBe(true);
+  }
+});
+
+test('the frames of the sample clip have the same pixels and masks in the browser as in Node', async ({ page }) => {
+  test.setTimeout(120_000);
+  const files = await sampleClip();
+  const labels = await clipInNode(files);
+  await openSampleClip(page);
+  await page.getByRole('slider', { name: 'Current frame' }).press('Home');
+  for (const [index, { buffer }] of files.entries()) {
+    if (index > 0) await page.keyboard.press('ArrowRight');
+    await expect(page.locator('#caption')).toContainText(`Frame ${index}`);
+    const { data } = await decodeImage(buffer);
+    expect(differences((await pixelsOf(page, '#frame')).data, data), `pixels of frame ${index}`).toBe(0);
+    expect(differences(await labelsOnCanvas(page), labels[index]!), `masks of frame ${index}`).toBe(0);
   }
 });

@@ -2,11 +2,11 @@
 
 import { type Page } from '@playwright/test';
 
-import { clipFrames, done, expect, openExport, sample, screen, square, test, upload } from './support.js';
+import { PAIR, clipDone, clipFrames, done, expect, openExport, sample, screen, square, test, upload } from './support.js';
 
-/** Opens the page with its defaults. */
+/** Opens the page with the sample pair and its defaults. */
 async function openBest(page: Page): Promise<void> {
-  await page.goto('./');
+  await page.goto(PAIR);
   await done(page);
 }
 
@@ -20,10 +20,20 @@ for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
     test.describe(`${width}, ${colorScheme}`, () => {
       test.use({ viewport: { width, height }, colorScheme, hasTouch: width < 640, isMobile: width < 640 });
 
-      test('a pair', async ({ page }) => {
-        await openBest(page);
+      test('the first page', async ({ page }) => {
+        test.setTimeout(180_000);
+        await page.goto('./');
+        await done(page);
+        await page.screenshot({ path: screen(`start-working-${width}-${colorScheme}`) });
+        await clipDone(page);
         await shot(page, 'start');
         await shot(page, 'start-whole', true);
+      });
+
+      test('a pair', async ({ page }) => {
+        await openBest(page);
+        await shot(page, 'pair');
+        await shot(page, 'pair-whole', true);
         await page.locator('#look [value=split]').check({ force: true });
         await page.locator('#look [name=arrows]').check({ force: true });
         await page.locator('.stage').scrollIntoViewIfNeeded();
@@ -58,7 +68,7 @@ for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
       });
 
       test('a clip', async ({ page }) => {
-        await page.goto('./#quality=fast');
+        await page.goto(`${PAIR}&quality=fast`);
         await done(page);
         await upload(page, await clipFrames(12, 480, 300));
         await expect(page.locator('#clip-name')).toContainText('12 frames');
@@ -88,11 +98,11 @@ for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
       await page.goto('./embed.html');
       await page.locator('#cancel').waitFor();
       await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-busy`) });
-      await expect(page.locator('#host-status')).toHaveText(/in 9 frames/, { timeout: 40_000 });
+      await expect(page.locator('#host-status')).toHaveText(/in 33 frames/, { timeout: 40_000 });
       await page.getByRole('listbox').focus();
       await page.keyboard.press('ArrowDown');
       await page.keyboard.press('ArrowRight');
-      await expect(page.locator('#position')).toHaveText('Frame 2 of 9');
+      await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
       await page.screenshot({ path: screen(`embed-${width}-${colorScheme}`), fullPage: true });
       await page.getByRole('button', { name: 'Save' }).click();
       await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-saved`) });
@@ -108,7 +118,7 @@ test('progress', async ({ page, context }) => {
     await held;
     await route.continue().catch(() => undefined);
   });
-  await page.goto('./');
+  await page.goto(PAIR);
   await expect(page.getByRole('progressbar')).toBeVisible();
   await page.screenshot({ path: screen('progress') });
   release();
@@ -116,7 +126,7 @@ test('progress', async ({ page, context }) => {
 });
 
 test('export of a clip', async ({ page }) => {
-  await page.goto('./#quality=fast');
+  await page.goto(`${PAIR}&quality=fast`);
   await done(page);
   await upload(page, await clipFrames(12, 480, 300));
   await expect(page.locator('#clip-name')).toContainText('12 frames');

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { encodeColourPng } from 'veronese/codecs';
-import { type Upload, axe, differences, done, expect, labelsOnCanvas, screen, segmentedInNode, test, upload } from './support.js';
+import { PAIR, type Upload, axe, differences, done, expect, labelsOnCanvas, screen, segmentedInNode, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [320, 240];
 
@@ -24,7 +24,7 @@ async function parts(name: string, t: number): Promise<Upload> {
 
 /** Opens the page with the thing of two parts. */
 async function openParts(page: Page): Promise<void> {
-  await page.goto('./#quality=fast');
+  await page.goto(`${PAIR}&quality=fast`);
   await done(page);
   await upload(page, [await parts('first.png', 0), await parts('second.png', 1)]);
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('second.png');

@@ -1,7 +1,7 @@
 //! Shared by the tests: a page whose errors fail the test, files to upload, masks read back from the canvas.
 
 import { readFileSync } from 'node:fs';
-import { readFile } from 'node:fs/promises';
+import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type Page, test as base, expect } from '@playwright/test';
@@ -48,10 +48,31 @@ export const test = base.extend<{ page: Page }>({
 /** The options of {@link open}: most tests need masks, not the best ones. */
 export const FAST: SegmentOptions = { quality: 'fast' };
 
-/** Opens the page and waits for the masks of the sample pair, with quality `fast` and by default one per motion. */
+/** The address of the sample pair. Without a sample, the page opens with a clip. */
+export const PAIR = './#sample=intel-two-cars';
+
+/** Opens the page with the sample pair and waits for its masks, with quality `fast` and by default one per motion. */
 export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): Promise<void> {
-  await page.goto(`./#quality=fast&masks=${kind}`);
+  await page.goto(`${PAIR}&quality=fast&masks=${kind}`);
   await done(page);
+}
+
+/** The frames of the clip that opens the page. */
+export async function sampleClip(): Promise<Upload[]> {
+  const folder = new URL('../public/samples/passing-cars/frames/', import.meta.url);
+  const names = (await readdir(folder)).sort();
+  return Promise.all(names.map(async (name) => ({ name, mimeType: 'image/webp', buffer: await readFile(new URL(name, folder)) })));
+}
+
+/** Opens the page as a first visitor does, with the sample clip, and waits until it is segmented. */
+export async function openSampleClip(page: Page, settings = 'quality=fast'): Promise<void> {
+  await page.goto(`./#${settings}`);
+  await clipDone(page);
+}
+
+/** Waits until the clip is segmented. */
+export async function clipDone(page: Page): Promise<void> {
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 120_000 });
 }
 
 /** Makes the browser one that keeps no projects. */

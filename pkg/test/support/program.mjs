@@ -9,13 +9,13 @@ import { fileURLToPath } from 'node:url';
 const program = fileURLToPath(new URL('../../bin/veronese.js', import.meta.url));
 
 /** Starts it; `onStart(child)` may send it signals. Resolves to exit code, signal, output and seconds. */
-export function veronese(args, { onStart, stdout = 'pipe', env = {} } = {}) {
+export function veronese(args, { onStart, stdout = 'pipe', env = {}, timeout = 60_000 } = {}) {
   return new Promise((resolve, reject) => {
     const started = performance.now();
     const child = spawn(process.execPath, [program, ...args], {
       stdio: ['ignore', stdout, 'pipe'],
       env: { ...process.env, ...env },
-      timeout: 60_000,
+      timeout,
     });
     const text = { stdout: '', stderr: '' };
     child.stdout?.setEncoding('utf8').on('data', (chunk) => (text.stdout += chunk));

@@ -2,14 +2,15 @@
 
 import { folderOf, nameOfFile } from '../frames/files.js';
 import { type DecodedFrame, frameFromBlob } from '../frames/frame.js';
+import type { SampleClip } from '../frames/samples.js';
 import type { Clip, Picture } from './clip.js';
 
-export async function openFolder(files: readonly File[]): Promise<Clip> {
+export async function openFolder(files: readonly File[], sample?: SampleClip): Promise<Clip> {
   const size = await frameFromBlob(files[0]!, nameOfFile(files[0]!), Infinity);
   size.bitmap.close();
   // The first frame and the sizes of all files tell folders apart without reading them.
   const fingerprint = [size.fingerprint, ...files.map((file) => file.size)].join(' ');
-  return new Folder(files, fingerprint, size.width, size.height);
+  return new Folder(files, fingerprint, size.width, size.height, sample);
 }
 
 class Folder implements Clip {
@@ -23,6 +24,7 @@ class Folder implements Clip {
     readonly fingerprint: string,
     readonly width: number,
     readonly height: number,
+    readonly sample: SampleClip | undefined,
   ) {
     this.name = folderOf(files[0]!) ?? files[0]!.name;
     this.count = files.length;

@@ -167,7 +167,7 @@ export const strings = {
   removeOf: (name: string): string => `Delete ${name}: it becomes background in the whole clip`,
   selectObject: (name: string): string => `Select ${name}`,
   doubtful: (index: number): string => `Check #${index}`,
-  doubtfulOf: (name: string, index: number): string => `Go to frame ${index}, where ${name} is least certain`,
+  doubtfulOf: (name: string, index: number): string => `Check #${index}, the frame where ${name} is least certain`,
 
   motion,
   displacement,

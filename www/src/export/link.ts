@@ -1,6 +1,6 @@
 //! Settings and the sample in the page's address, read and written. Values that are not among the choices are ignored.
 
-import { SAMPLES, type Sample, sampleCalled } from '../frames/samples.js';
+import { type Sample, sampleCalled } from '../frames/samples.js';
 import type { Kind } from '../result/masks.js';
 import { sampleOf } from '../state/pair.js';
 import { CONTROLS, DEFAULT_SETTINGS, type Settings } from '../state/settings.js';
@@ -39,7 +39,8 @@ export function settingsFromHash(hash: string): Linked {
 export function linkFor({ settings, look: { kind }, pair }: Pick<State, 'settings' | 'look' | 'pair'>, address: string): string {
   const values = new URLSearchParams();
   const shown = sampleOf(pair);
-  if (shown !== null && (shown.sample !== SAMPLES[0] || shown.swapped)) values.set('sample', shown.sample.id);
+  // The sample clip needs none: the page opens with it.
+  if (shown !== null) values.set('sample', shown.sample.id);
   if (shown?.swapped) values.set('swapped', 'true');
   for (const [name, value] of Object.entries(settings)) {
     if (value !== DEFAULT_SETTINGS[name as keyof Settings]) values.set(name, String(value));

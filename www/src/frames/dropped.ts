@@ -2,6 +2,7 @@
 
 import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
+import { withPath } from './files.js';
 
 /**
  * The files of a drop or a paste. Files of a folder have their path in `webkitRelativePath`, as from a folder picker. Call this while the
@@ -38,5 +39,5 @@ async function entriesOf(folder: FileSystemDirectoryEntry): Promise<FileSystemEn
 
 async function fileOf(entry: FileSystemFileEntry): Promise<File> {
   const file = await new Promise<File>((resolve, reject) => entry.file(resolve, reject));
-  return Object.defineProperty(file, 'webkitRelativePath', { value: entry.fullPath.replace(/^\//, '') });
+  return withPath(file, entry.fullPath.replace(/^\//, ''));
 }

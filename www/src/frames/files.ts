@@ -12,6 +12,11 @@ function pathOf({ webkitRelativePath, name }: File): string[] {
   return webkitRelativePath === '' ? [name] : webkitRelativePath.split('/');
 }
 
+/** Gives a file its path, as a folder picker does. */
+export function withPath(file: File, path: string): File {
+  return Object.defineProperty(file, 'webkitRelativePath', { value: path });
+}
+
 /** The folder that was given; `null` if the file itself was. */
 export function folderOf(file: File): string | null {
   const [folder, ...rest] = pathOf(file);

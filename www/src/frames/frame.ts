@@ -73,8 +73,9 @@ export function smaller({ width, height }: { width: number; height: number }, lo
 }
 
 /** Fetches an image that is part of the page. */
-export async function frameFromUrl(url: string, name: string, longestSide: number): Promise<DecodedFrame> {
+export async function fetchImage(url: string): Promise<File> {
+  const name = url.replace(/^.*\//, '');
   const response = await fetch(url).catch(() => null);
   if (response === null || !response.ok) throw new PageError('unreadable-image', strings.errors.unreachable(name));
-  return frameFromBlob(await response.blob(), name, longestSide);
+  return new File([await response.blob()], name);
 }

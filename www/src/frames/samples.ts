@@ -1,23 +1,43 @@
-//! The sample pairs that come with the page. Their sources are named in the footer of `index.html`.
+//! The samples that come with the page: pairs and a clip. Their sources are named in the footer of `index.html`.
 
-export interface Sample {
+interface Common {
   readonly id: string;
   readonly title: string;
-  /** Paths relative to the page. */
-  readonly first: string;
-  readonly second: string;
+  /** A path relative to the page, like those of the frames. */
   readonly thumbnail: string;
 }
 
-function sample(id: string, title: string): Sample {
-  return { id, title, first: `samples/${id}/first.png`, second: `samples/${id}/second.png`, thumbnail: `samples/${id}/thumbnail.jpg` };
+export interface SamplePair extends Common {
+  readonly first: string;
+  readonly second: string;
+}
+
+export interface SampleClip extends Common {
+  readonly frames: readonly string[];
+  /** The frame that is shown first. */
+  readonly start: number;
+}
+
+export type Sample = SamplePair | SampleClip;
+
+function common(id: string, title: string): Common {
+  return { id, title, thumbnail: `samples/${id}/thumbnail.jpg` };
+}
+
+function pair(id: string, title: string): SamplePair {
+  return { ...common(id, title), first: `samples/${id}/first.png`, second: `samples/${id}/second.png` };
+}
+
+function clip(id: string, title: string, count: number, start: number): SampleClip {
+  return { ...common(id, title), frames: Array.from({ length: count }, (_, k) => `samples/${id}/frames/${String(k).padStart(2, '0')}.webp`), start };
 }
 
 /** The page opens with the first. */
 export const SAMPLES: readonly [Sample, ...Sample[]] = [
-  sample('intel-two-cars', 'Two cars'),
-  sample('leader-follower', 'Leader and follower'),
-  sample('parallax', 'Parallax'),
+  // Both cars are whole in frame 32.
+  clip('passing-cars', 'Passing cars', 51, 32),
+  pair('intel-two-cars', 'Two cars'),
+  pair('parallax', 'Parallax'),
 ];
 
 /** The sample with this id. */

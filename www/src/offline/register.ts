@@ -1,11 +1,11 @@
-//! Registers the service worker after the first result, so that caching does not slow that down.
+//! Registers the service worker when the sample that the page opens is segmented, so that caching does not slow that down.
 
 import type { Store } from '../state/state.js';
 
 export function keepForOffline(store: Store): void {
   if (!('serviceWorker' in navigator) || import.meta.env.DEV) return;
-  const stop = store.subscribe(({ run }) => {
-    if (run.phase !== 'done' && run.phase !== 'failed') return;
+  const stop = store.subscribe(({ run, tracked }) => {
+    if ((run.phase !== 'done' && run.phase !== 'failed') || tracked?.run.phase === 'working') return;
     stop();
     const root = document.documentElement;
     navigator.serviceWorker

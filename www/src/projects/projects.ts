@@ -6,7 +6,7 @@ import { strings } from '../common/strings.js';
 import { NO_EDITS, hasEdits } from '../correction/edits.js';
 import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
 import type { State, Store } from '../state/state.js';
-import { type SolvedPairs, isCorrecting } from '../state/tracked.js';
+import { type SolvedPairs, isCorrecting, isUnsavedClip } from '../state/tracked.js';
 import type { Project } from './project.js';
 
 /** How long a change waits for others, milliseconds; and while a clip is segmented, which changes all the time. */
@@ -121,7 +121,8 @@ export class Projects {
     if (clip === null || clip.clip !== clipBefore?.clip) return;
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
     if (!ticked && OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
-    if (clip.solved > 0) this.#touch(clip.clip.fingerprint, clip.run.phase === 'working' ? LATER : SOON);
+    // What the page does by itself when it opens a sample is not kept.
+    if (clip.solved > 0 && (!clip.clip.sample || isUnsavedClip(clip))) this.#touch(clip.clip.fingerprint, clip.run.phase === 'working' ? LATER : SOON);
   }
 
   #touch(of: string, delay: number): void {

@@ -9,9 +9,9 @@ import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
 import type { Path, Stroke } from '../correction/strokes.js';
 import { WHOLE } from '../drawing/viewport.js';
-import { nameOfFile, selectOpenable } from '../frames/files.js';
-import { frameFromBlob, frameFromUrl, smaller } from '../frames/frame.js';
-import { SAMPLES, type Sample } from '../frames/samples.js';
+import { nameOfFile, selectOpenable, withPath } from '../frames/files.js';
+import { fetchImage, frameFromBlob, smaller } from '../frames/frame.js';
+import { SAMPLES, type Sample, type SampleClip, type SamplePair } from '../frames/samples.js';
 import type { Project, ProjectClip } from '../projects/project.js';
 import { Projects } from '../projects/projects.js';
 import type { Kind } from '../result/masks.js';
@@ -60,11 +60,17 @@ export class Session {
     this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
-  /** Opens a sample; `swapped`: with the second frame first. */
+  /** Opens a sample and segments it. `swapped`: a pair with the second frame first. */
   openSample(sample: Sample = SAMPLES[0], swapped = false): Promise<void> {
     return this.#openFrames(
-      () => Promise.all((swapped ? (['second', 'first'] as const) : (['first', 'second'] as const)).map((slot) => this.#frameOfSample(sample, slot))),
+      async () => {
+        if ('frames' in sample) return this.#startOf(await openFolderOf(sample), sample.start);
+        return Promise.all((swapped ? (['second', 'first'] as const) : (['first', 'second'] as const)).map((slot) => this.#frameOfSample(sample, slot)));
+      },
       pairOf,
+      () => {
+        if (!isTracked(this.#store.get().tracked)) void this.tracking.segment();
+      },
     );
   }
 
@@ -321,10 +327,10 @@ export class Session {
     this.#store.set({ notice: { sentence, code } });
   }
 
-  /** The first two frames of a clip. */
-  async #startOf(clip: Clip): Promise<LoadedFrame[]> {
+  /** Two frames of a clip. */
+  async #startOf(clip: Clip, at = 0): Promise<LoadedFrame[]> {
     try {
-      return [await this.#frameOf(clip, 0), await this.#frameOf(clip, Math.min(FRAMES_APART, clip.count - 1))];
+      return [await this.#frameOf(clip, at), await this.#frameOf(clip, Math.min(at + FRAMES_APART, clip.count - 1))];
     } catch (error) {
       clip.close();
       throw error;
@@ -335,8 +341,9 @@ export class Session {
     return { ...(await clip.frame(index, this.#store.get().settings.longestSide)), origin: { clip, index } };
   }
 
-  async #frameOfSample(sample: Sample, slot: Slot): Promise<LoadedFrame> {
-    return { ...(await frameFromUrl(sample[slot], `${slot}.png`, this.#store.get().settings.longestSide)), origin: { sample, slot } };
+  async #frameOfSample(sample: SamplePair, slot: Slot): Promise<LoadedFrame> {
+    const image = await fetchImage(sample[slot]);
+    return { ...(await frameFromBlob(image, image.name, this.#store.get().settings.longestSide)), origin: { sample, slot } };
   }
 
   /** Goes to other frames of the clip. The timeline moves at once; the pair changes when the frames are loaded. */
@@ -479,6 +486,12 @@ export class Session {
   #fail(error: unknown): void {
     this.#store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
   }
+}
+
+/** Opens a sample as the folder that it is. */
+async function openFolderOf(sample: SampleClip): Promise<Clip> {
+  const images = await Promise.all(sample.frames.map(fetchImage));
+  return openFolder(images.map((image) => withPath(image, `${sample.id}/${image.name}`)), sample);
 }
 
 function clamped(index: number, count: number): number {

@@ -2,12 +2,12 @@
 
 import type { Clip } from '../clips/clip.js';
 import type { DecodedFrame } from '../frames/frame.js';
-import type { Sample } from '../frames/samples.js';
+import type { SamplePair } from '../frames/samples.js';
 
 export type Slot = 'first' | 'second';
 
-/** Where a frame comes from: a clip or a sample. */
-export type Origin = { readonly clip: Clip; readonly index: number } | { readonly sample: Sample; readonly slot: Slot };
+/** Where a frame comes from: a clip or a sample pair. */
+export type Origin = { readonly clip: Clip; readonly index: number } | { readonly sample: SamplePair; readonly slot: Slot };
 
 /** A frame that is open. `origin` is absent for a file of its own and for the camera. */
 export interface LoadedFrame extends DecodedFrame {
@@ -43,8 +43,8 @@ export function subjectOfClip({ fingerprint, name, count }: Clip): Subject {
   return { of: fingerprint, name, frames: count };
 }
 
-/** The sample that a pair shows; `null` if either frame is anything else. */
-export function sampleOf({ first, second }: FramePair): { readonly sample: Sample; readonly swapped: boolean } | null {
+/** The sample pair that is shown; `null` if either frame is anything else. */
+export function sampleOf({ first, second }: FramePair): { readonly sample: SamplePair; readonly swapped: boolean } | null {
   const [a, b] = [first?.origin, second?.origin];
   if (!a || !b || !('sample' in a && 'sample' in b) || a.sample !== b.sample || a.slot === b.slot) return null;
   return { sample: a.sample, swapped: a.slot === 'second' };

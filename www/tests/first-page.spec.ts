@@ -1,0 +1,94 @@
+//! The page as a first visitor meets it: it opens with a clip and segments it.
+
+import type { Page } from '@playwright/test';
+
+import { axe, clipDone, done, expect, labelsOnCanvas, openExport, openSampleClip, test } from './support.js';
+
+/** The frame that is shown first. */
+const START = 32;
+/** Pixels inside the cars in that frame. */
+const WHITE = { x: 125, y: 150 };
+const RED = { x: 265, y: 150 };
+
+/** Whether the browser has kept anything. */
+async function isAnythingKept(page: Page): Promise<boolean> {
+  return page.evaluate(async () => {
+    const folder = await navigator.storage.getDirectory();
+    for await (const _ of folder.keys()) return true;
+    return false;
+  });
+}
+
+test('the page opens with a clip and finds its two cars', async ({ page }) => {
+  test.setTimeout(180_000);
+  await page.goto('./');
+  await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 512 × 288');
+  await expect(page.locator('#clip-first-at')).toHaveText(`#${START}`);
+  await expect(page.locator('footer')).toContainText('Intel IoT DevKit sample-videos, car-detection.mp4, CC BY 4.0');
+  // Masks of the frame on screen are there while the clip is being segmented, which can be watched and cancelled.
+  await done(page);
+  expect(new Set(await labelsOnCanvas(page)).size).toBeGreaterThan(1);
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
+  await expect(page.locator('#clip-progress')).toBeVisible();
+  await expect(page.locator('#clip-detail')).toContainText('of 51 frames');
+  await expect(page.locator('#clip-cancel')).toBeEnabled();
+  await clipDone(page);
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
+  await expect(page.locator('#objects > li')).toHaveCount(3); // and the background
+  await expect(page.locator('#status')).toHaveText('2 objects in this frame.');
+  const labels = await labelsOnCanvas(page);
+  expect([WHITE, RED].map(({ x, y }) => labels[512 * y + x])).toEqual([1, 2]);
+  expect(await axe(page)).toEqual([]);
+  // Nothing was done that would have to be kept, or asked about.
+  await page.waitForTimeout(1000);
+  expect(await isAnythingKept(page)).toBe(false);
+});
+
+test('work on the clip is kept, and the next visit continues with it', async ({ page }) => {
+  await openSampleClip(page);
+  const name = page.locator('#objects .motion-name').first();
+  await name.fill('White car');
+  await name.press('Enter');
+  await openExport(page);
+  await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
+  await page.reload();
+  await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 51 frames.');
+  await expect(name).toHaveValue('White car');
+});
+
+test('a cancelled clip can be continued', async ({ page }) => {
+  await page.goto('./#quality=fast');
+  await page.locator('#clip-cancel').click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'cancelled');
+  await page.locator('#clip-segment').click();
+  await clipDone(page);
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
+});
+
+test('another sample replaces the clip while it is segmented, and the clip comes back', async ({ page }) => {
+  await page.goto('./#quality=fast');
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
+  await page.getByRole('button', { name: 'Two cars' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+  await done(page);
+  await expect(page.locator('#timeline')).toBeHidden();
+  await page.getByRole('button', { name: 'Passing cars' }).click();
+  await expect(page.locator('#clip-first-at')).toHaveText(`#${START}`);
+  await clipDone(page);
+  await expect(page.locator('#objects > li')).toHaveCount(3); // and the background
+});
+
+test('a link to a pair opens no clip, and one to the clip is the page itself', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.goto('./#sample=intel-two-cars&quality=fast');
+  await done(page);
+  await expect(page.locator('#timeline')).toBeHidden();
+  await page.evaluate(() => (location.hash = '#sample=passing-cars&quality=fast'));
+  await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 512 × 288');
+  await clipDone(page);
+  await page.locator('#look [value=groups]').check();
+  await done(page);
+  await openExport(page);
+  await page.getByRole('button', { name: 'Copy link' }).click();
+  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/\/#quality=fast$/);
+});
