@@ -7,7 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, motionsChosen, mergeWith, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
 
 type Place = readonly [number, number];
 
@@ -401,7 +401,7 @@ test('a stroke has the colour of its mask, also of a merged one', async ({ page 
   await open(page, 'groups');
   const rows = page.locator('#motions > li');
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).locator('[data-action=merge]').selectOption('0');
+  await mergeWith(rows.nth(1), 0);
   await rows.nth(0).locator('.motion-words').click();
   await page.locator('#tools [value=brush]').check();
   await draw(page, [0.7, 0.2], [0.8, 0.2]);
@@ -447,7 +447,7 @@ test('the status describes the last action', async ({ page }) => {
   await page.locator('#redo').click();
   await expect(status).toHaveText('Redone.');
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).locator('[data-action=merge]').selectOption('2');
+  await mergeWith(rows.nth(1), 2);
   await expect(status).toHaveText('Merged.');
   await rows.nth(1).getByText('More', { exact: true }).click();
   await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();

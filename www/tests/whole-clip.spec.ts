@@ -5,7 +5,7 @@ import { readFile } from 'node:fs/promises';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, square, test, upload } from './support.js';
+import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, mergeWith, open, openExport, square, test, upload } from './support.js';
 
 /** Opens frames as a clip. */
 async function openClip(page: Page, files: Awaited<ReturnType<typeof clipFrames>>): Promise<void> {
@@ -283,7 +283,7 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
 
   const rows = page.locator('#objects > li');
   await rows.nth(2).locator('summary').click();
-  await page.getByLabel('Merge Object 2').selectOption('1');
+  await mergeWith(rows.nth(2), 1);
   await expect(rows).toHaveCount(2);
   await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 6 frames have changed.');
   for (const index of [0, 5]) {

@@ -78,7 +78,7 @@ function remaining(seconds: number | null): string {
 const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
 const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
 const duration = (ms: number): string => (ms < 1000 ? `${whole.format(ms)}${NBSP}ms` : `${tenths.format(ms / 1000)}${NBSP}s`);
-const scoreAbove = (above: number): string => (above === 0 ? 'lowest score' : `score ${whole.format(above)} above the lowest`);
+const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest description' : `description ${whole.format(longer)} longer than the shortest`);
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
 const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
 
@@ -186,7 +186,8 @@ export const strings = {
   nameOf: (name: string): string => `Name of ${name}`,
   soloOf: (name: string): string => `Solo: show only ${name}`,
   stabiliseOf: (name: string): string => `Stabilise on ${name}: alternate between the frames with ${name} held in place`,
-  mergeOf: (name: string): string => `Merge ${name} with another mask`,
+  mergeWithOf: (name: string): string => `Mask to merge ${name} with`,
+  mergeOf: (name: string): string => `Merge ${name} with the chosen mask`,
   copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
@@ -200,10 +201,13 @@ export const strings = {
     about: (button: string, sentence: string): string => `${button}: ${sentence}`,
   },
 
-  /** `above`: the score above the lowest; `null` if there is none. */
-  forceNumber: (count: number, above: number | null): string =>
-    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${above === null ? '' : `: ${scoreAbove(above)}`}`,
-  scoreAbove,
+  /** `longer`: the length of the description above the shortest; `null` if there is none. */
+  forceNumber: (count: number, longer: number | null): string =>
+    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${longer === null ? '' : `: ${descriptionOf(longer)}`}`,
+  descriptionOf,
+  /** Why the number found has not the shortest description. */
+  otherThanShortest: (found: number, shortest: number): string =>
+    `Automatic took ${found}, though ${shortest} has the shortest description: these lengths are a check made afterwards, and do not decide.`,
 
   toolHelp: {
     look: '',

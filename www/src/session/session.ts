@@ -278,7 +278,7 @@ export class Session {
 
   /** Selects a mask. */
   select(mask: number | null): void {
-    this.#store.look({ selected: mask });
+    if (this.#store.get().look.selected !== mask) this.#store.look({ selected: mask });
   }
 
   /** Stops at once; the last result stays. */

@@ -7,7 +7,7 @@ import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { type Life, livesOf } from '../state/tracked.js';
 import { find } from './markup.js';
-import { maskRow, offerMerging } from './mask-row.js';
+import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
 import { chooseTool } from './tools.js';
 
 /** Updates one row; `ids` are the numbers of all. */
@@ -36,14 +36,14 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     if (look.selected !== null && look.selected > tracked.largest && look.selected !== UNLABELLED) ids.push(look.selected);
     if (ids.join() !== listed) {
       listed = ids.join();
-      const held = document.activeElement?.closest<HTMLElement>('#objects > li')?.dataset.mask;
+      const held = heldRow(list);
       list.replaceChildren();
       rows = ids.map((id) => {
         const { element: row, refresh } = rowOf(id, store, session);
         list.append(row);
         return refresh;
       });
-      list.querySelector<HTMLElement>(`[data-mask="${held}"] .motion-name`)?.focus({ preventScroll: true });
+      if (held !== null) focusRow(list, held, look);
     }
     for (const [k, refresh] of rows.entries()) refresh(now, lives.find(({ id }) => id === ids[k]) ?? null, ids);
   });
@@ -55,7 +55,6 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
   const share = find(row, '.motion-share', HTMLElement);
   const facts = find(row, '.motion-facts', HTMLElement);
   const doubtful = find(row, '[data-action=doubtful]', HTMLButtonElement);
-  const merge = find(row, '[data-action=merge]', HTMLSelectElement);
   const split = find(row, '[data-action=split]', HTMLButtonElement);
   const remove = find(row, '[data-action=remove]', HTMLButtonElement);
   doubtful.addEventListener('click', () => void session.goTo(Number(doubtful.dataset.frame)));
@@ -71,8 +70,8 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
     if (id === 0) return;
     facts.textContent = factsOf(life, here === undefined && result !== null);
     const ready = life !== null && tracked !== null && tracked.state !== null;
-    for (const control of [merge, split, remove]) control.disabled = !ready;
-    offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look);
+    for (const control of [split, remove]) control.disabled = !ready;
+    offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);
     doubtful.hidden = life === null;
     if (life !== null) {
       doubtful.dataset.frame = String(life.doubtful.index);
