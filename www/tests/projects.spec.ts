@@ -169,7 +169,7 @@ test('a project is saved as a file and opened in another browser, with its frame
   const project = await savedProject(page);
   expect(project.name).toBe('f00.veronese');
   const [header] = gunzipSync(project.buffer).toString('latin1').split('\n');
-  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 1, name: 'f00.png', frames: 6 });
+  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 2, name: 'f00.png', frames: 6 });
 
   const elsewhere = await browser.newContext({ baseURL: baseURL! });
   const other = await elsewhere.newPage();
@@ -334,7 +334,7 @@ test('damaged and foreign projects are refused with a reason, and change nothing
     [Buffer.from('not a project'), 'damaged-project'],
     [project.buffer.subarray(0, project.buffer.length - 9), 'damaged-project'],
     [flipped, 'damaged-project'],
-    [remade(([header, ...rest]) => [header!.replace('"version":1', '"version":2'), ...rest]), 'newer-project'],
+    [remade(([header, ...rest]) => [header!.replace('"version":2', '"version":3'), ...rest]), 'newer-project'],
     [remade(([header, ...rest]) => [header!.replace('"frames":5', '"frames":4'), ...rest]), 'damaged-project'],
     [remade(([header, content, ...rest]) => [header!, content!.replace('"confidence"', '"confident"'), ...rest]), 'damaged-project'],
     [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('[200,140,', '[200,141,'), ...rest]), 'damaged-project'],
@@ -354,4 +354,23 @@ test('a first visit loads nothing of projects', async ({ page }) => {
   page.on('request', (request) => asked.push(request.url()));
   await open(page);
   expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
+});
+
+test('a project of the first version is opened, and takes corrections', async ({ page }) => {
+  const files = await clipFrames(5);
+  await openClip(page, files);
+  await segmentClip(page);
+  const { name, mimeType, buffer } = await savedProject(page);
+  const [header, content, ...rest] = gunzipSync(buffer).toString('latin1').split('\n') as [string, string, ...string[]];
+  const project = JSON.parse(content) as { clip: Record<string, unknown> };
+  const { spans, found: _, became: __, ...clip } = project.clip;
+  const [{ state }] = spans as [{ state: unknown }];
+  const old = [header.replace('"version":2', '"version":1'), JSON.stringify({ ...project, clip: { ...clip, state } }), ...rest].join('\n');
+  await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('projects', { recursive: true }));
+  await page.reload();
+  await upload(page, [{ name, mimeType, buffer: gzipSync(Buffer.from(old, 'latin1')) }, ...files]);
+  await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 1' }).click();
+  await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 5 frames have changed.');
 });

@@ -28,7 +28,7 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     list.hidden = look.kind !== 'objects' || tracked === null;
     if (tracked === null) return;
     add.hidden = list.hidden;
-    add.disabled = tracked.state === null;
+    add.disabled = tracked.spans.length === 0;
     if (list.hidden) return;
     const lives = livesOf(tracked);
     const ids = [0, ...lives.map(({ id }) => id)];
@@ -69,7 +69,7 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
     share.textContent = here === undefined ? '' : strings.percent(here.share);
     if (id === 0) return;
     facts.textContent = factsOf(life, here === undefined && result !== null);
-    const ready = life !== null && tracked !== null && tracked.state !== null;
+    const ready = life !== null && tracked !== null && tracked.spans.length > 0;
     for (const control of [split, remove]) control.disabled = !ready;
     offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);
     doubtful.hidden = life === null;
