@@ -20,7 +20,7 @@ import type { Settings } from '../state/settings.js';
 import { FRESH, type Look, type Run, type State, type Store } from '../state/state.js';
 import { type Tracked, isTracked, livesOf } from '../state/tracked.js';
 import { Correcting, isCurrent, isPending } from './correcting.js';
-import { LiveView } from './live.js';
+import type { LiveView } from './live.js';
 import { frameOf, resultOf } from '../state/objects.js';
 import { Segmenting } from './segmenting.js';
 import { Tracking } from './tracking.js';
@@ -40,7 +40,8 @@ export class Session {
   readonly correcting: Correcting;
   readonly tracking: Tracking;
   readonly projects: Projects;
-  readonly #live: LiveView;
+  /** Loaded when the camera is used. */
+  #live: LiveView | null = null;
   /** Incremented by each opening, so that a slow one never replaces a later one. */
   #opened = 0;
   /** Distance between the two frames of the clip. */
@@ -57,7 +58,6 @@ export class Session {
       say: (sentence) => this.say(sentence),
     });
     this.projects = new Projects(store, this.tracking, (sentence, code) => this.say(sentence, code));
-    this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
   /** Opens a sample; `swapped`: with the second frame first. */
@@ -185,11 +185,20 @@ export class Session {
   /** Switches the camera on, or off: its last two frames become a pair. */
   toggleLive(): Promise<void> {
     if (this.#store.get().live !== null) {
-      this.#live.stop();
+      this.#live?.stop();
       return this.segment();
     }
     return this.#open(
-      () => this.#live.start(),
+      async (): Promise<() => void> => {
+        const turn: number = this.#opened;
+        this.#live ??= await import('./live.js').then(
+          ({ LiveView }) => new LiveView(this.#store, (error) => this.#fail(error)),
+          () => {
+            throw new PageError('not-loaded', strings.errors.notLoaded);
+          },
+        );
+        return turn === this.#opened ? this.#live.start() : () => undefined;
+      },
       (show) => {
         this.correcting.keep();
         this.#stop();
@@ -381,7 +390,7 @@ export class Session {
       },
       ({ frames, project }) => {
         const pair = place(frames, this.#store.get().pair);
-        if (frames.length > 0) this.#live.stop();
+        if (frames.length > 0) this.#live?.stop();
         if (project !== null) this.correcting.keep();
         this.projects.restore(project, pair);
         if (frames.length > 0 || project !== null) this.#setPair(pair);
@@ -427,7 +436,7 @@ export class Session {
 
   /** Invalidates whatever is being opened. */
   #invalidate(): number {
-    if (this.#store.get().live === null) this.#live.stop();
+    if (this.#store.get().live === null) this.#live?.stop();
     return ++this.#opened;
   }
 
