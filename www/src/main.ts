@@ -12,7 +12,6 @@ import { mountClipRun } from './views/clip-run.js';
 import { mountCompare } from './views/compare.js';
 import { mountDrop } from './views/drop.js';
 import { mountEvidence } from './views/evidence.js';
-import { mountExport } from './views/export.js';
 import { mountGestures } from './views/gestures.js';
 import { mountKeys } from './views/keys.js';
 import { mountLanes } from './views/lanes.js';
@@ -67,7 +66,6 @@ mountProgress(find(document, '#run', HTMLElement), store, session);
 mountToast(find(document, '#notice', HTMLElement), store);
 mountTimings(find(document, '#timings', HTMLElement), store);
 mountLeaving(window, store);
-mountExport(find(document, '#pair-export', HTMLElement), store, session);
 mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/panel.js')).mountPanel(panel, store, session));
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, keysFor(store, session, zoom));
 
