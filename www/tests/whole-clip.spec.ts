@@ -52,7 +52,7 @@ test('the objects of a clip keep number, name and colour in all frames', async (
   const track = page.getByRole('slider', { name: 'Current frame' });
   await track.press('End');
   await shows(page, 7);
-  await expect(track).toHaveAttribute('aria-valuetext', 'Frame 7 of 8');
+  await expect(track).toHaveAttribute('aria-valuetext', 'Frame 7 of 0–7');
   expect(differences(await labelsOnCanvas(page), found[7]!)).toBe(0);
   await expect(names.nth(1)).toHaveValue('Ball');
 
@@ -216,6 +216,10 @@ test('only the frames from the in point to the out point are segmented and expor
 test('a frame of another size ends the clip, and the frames before it have masks', async ({ page }) => {
   const files = await clipFrames(6);
   await openClip(page, [...files.slice(0, 5), await square('f05.png', 120, 90, 0, 0)]);
+  // It is told at once.
+  await expect(page.locator('#notice-sentence')).toHaveText('“f05.png” is 120 × 90, the first frame 200 × 140: only what is before it can be segmented as a clip.');
+  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
+  await page.locator('#notice-close').click();
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await phase(page, 'failed');
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
@@ -453,4 +457,40 @@ test('a run that is cancelled early leaves the masks that there were', async ({ 
     await goTo(page, index);
     expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
   }
+});
+
+test('frames that are the same are given as the reason why nothing moves', async ({ page }) => {
+  const [{ buffer }] = (await clipFrames(1)) as [Awaited<ReturnType<typeof clipFrames>>[number]];
+  await openClip(page, [0, 1, 2].map((k) => ({ name: `f${k}.png`, mimeType: 'image/png', buffer })));
+  await expect(page.locator('#status')).toHaveText('Both frames are the same, pixel by pixel: nothing moves.');
+  await segmentClip(page);
+  await expect(page.locator('#clip-status')).toHaveText('No objects: all 3 frames are the same, pixel by pixel.');
+  await upload(page, await clipFrames(3));
+  await expect(page.locator('#clip-name')).toHaveText('f00-f02.png, 3 frames, 200 × 140');
+  await done(page);
+  await expect(page.locator('#status')).toHaveText(/^2 objects found/);
+});
+
+test('a clip may have one frame', async ({ page }) => {
+  await open(page, 'groups');
+  await upload(page, [await video(page, 1, 'webm', 'vp8')]);
+  await expect(page.locator('#clip-name')).toHaveText('clip.webm, one frame, 192 × 128');
+  await done(page);
+});
+
+test('the button for the least certain frame goes once a person has looked there, until it is another', async ({ page }) => {
+  const files = await clipFrames(6);
+  await openClip(page, files);
+  await segmentClip(page);
+  const row = page.locator('#objects > li').nth(1);
+  const check = row.locator('[data-action=doubtful]');
+  const index = Number(/^Check #(\d)$/.exec((await check.textContent())!)![1]);
+  await check.click();
+  await shows(page, index);
+  await expect(row).toHaveClass(/selected/);
+  await expect(check).toBeHidden();
+  await expect(page.locator('.layers')).toBeFocused();
+  await expect(page.locator('#objects > li').nth(2).locator('[data-action=doubtful]')).toBeVisible();
+  await goTo(page, (index + 3) % 6);
+  await expect(check).toBeHidden();
 });

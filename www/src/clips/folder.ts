@@ -1,11 +1,11 @@
 //! A folder of frames as a clip, in the order of their names.
 
-import { folderOf, nameOfFile } from '../frames/files.js';
+import { folderOfAll, nameIn } from '../frames/files.js';
 import { type DecodedFrame, frameFromBlob } from '../frames/frame.js';
-import type { Clip, Picture } from './clip.js';
+import type { Clip, OtherSize, Picture } from './clip.js';
 
 export async function openFolder(files: readonly File[]): Promise<Clip> {
-  const size = await frameFromBlob(files[0]!, nameOfFile(files[0]!), Infinity);
+  const size = await frameFromBlob(files[0]!, nameIn(folderOfAll(files), files[0]!), Infinity);
   size.bitmap.close();
   // The first frame and the sizes of all files tell folders apart without reading them.
   const fingerprint = [size.fingerprint, ...files.map((file) => file.size)].join(' ');
@@ -17,6 +17,8 @@ class Folder implements Clip {
   readonly times = null;
   readonly name: string;
   readonly count: number;
+  readonly #path: string;
+  #closed = false;
 
   constructor(
     readonly files: readonly File[],
@@ -24,13 +26,13 @@ class Folder implements Clip {
     readonly width: number,
     readonly height: number,
   ) {
-    this.name = folderOf(files[0]!) ?? files[0]!.name;
+    this.#path = folderOfAll(files);
+    this.name = this.#path === '' ? fromTo(this.nameOf(0), this.nameOf(files.length - 1)) : this.#path;
     this.count = files.length;
   }
 
   frame(index: number, longestSide: number): Promise<DecodedFrame> {
-    const file = this.files[index]!;
-    return frameFromBlob(file, nameOfFile(file), longestSide);
+    return frameFromBlob(this.files[index]!, this.nameOf(index), longestSide);
   }
 
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {
@@ -43,8 +45,41 @@ class Folder implements Clip {
   }
 
   nameOf(index: number): string {
-    return nameOfFile(this.files[index]!);
+    return nameIn(this.#path, this.files[index]!);
   }
 
-  close(): void {}
+  async otherSize(): Promise<OtherSize | null> {
+    for (const [index, file] of this.files.entries()) {
+      if (this.#closed) return null;
+      const size = await sizeOf(file);
+      if (size !== null && (size.width !== this.width || size.height !== this.height)) return { index, ...size };
+    }
+    return null;
+  }
+
+  close(): void {
+    this.#closed = true;
+  }
+}
+
+/** What files from one to another are called together: "00000-00039.jpg". */
+function fromTo(first: string, last: string): string {
+  return `${first.replace(/\.[^.]*$/, '')}-${last}`;
+}
+
+/** The size of an image as it is shown, without its pixels; `null` if it cannot be read, which choosing the frame reports. */
+async function sizeOf(file: File): Promise<Pick<OtherSize, 'width' | 'height'> | null> {
+  const image = new Image();
+  try {
+    await file.slice(0, 1).arrayBuffer(); // throws if the file has gone
+    return await new Promise((resolve) => {
+      image.addEventListener('load', () => resolve({ width: image.naturalWidth, height: image.naturalHeight }));
+      image.addEventListener('error', () => resolve(null));
+      image.src = URL.createObjectURL(file);
+    });
+  } catch {
+    return null;
+  } finally {
+    URL.revokeObjectURL(image.src);
+  }
 }

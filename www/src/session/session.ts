@@ -2,14 +2,13 @@
 //! failure ends as a notice in the state, and the page stays usable.
 
 import type { Clip } from '../clips/clip.js';
-import { openFolder } from '../clips/folder.js';
 import { openClip } from '../clips/open.js';
 import { PageError, codeOf, sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
 import type { Path, Stroke } from '../correction/strokes.js';
 import { WHOLE } from '../drawing/viewport.js';
-import { nameOfFile, selectOpenable } from '../frames/files.js';
+import { folderOfAll, foldersOf, likelyFrames, nameIn, selectOpenable } from '../frames/files.js';
 import { frameFromBlob, frameFromUrl, smaller } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
 import type { Project, ProjectClip } from '../projects/project.js';
@@ -75,16 +74,24 @@ export class Session {
    */
   openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
     let opened: Project | null = null;
+    let leftOut = '';
+    let folder: Clip | null = null;
     return this.#openFrames(
       async () => {
-        const { project, video, images } = selectOpenable(await files);
+        const { project, video, images: all } = selectOpenable(await files);
         if (project !== null) opened = await this.projects.open(project);
         if (video !== null) return this.#startOf(await openClip(video));
-        if (images.length > 2) return this.#startOf(await openFolder(images));
+        const images = await this.#ofOneFolder(all);
+        if (images === null) return [];
+        if (images.length < all.length) leftOut = strings.notices.leftOut(folderOfAll(images), all.length - images.length);
+        if (images.length > 2) {
+          const { openFolder } = await loaded(import('../clips/folder.js'));
+          return this.#startOf((folder = await openFolder(images)));
+        }
         if (images.length === 0 && project !== null) return [];
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
         const { longestSide } = this.#store.get().settings;
-        return Promise.all(images.map((image) => frameFromBlob(image, nameOfFile(image), longestSide)));
+        return Promise.all(images.map((image) => frameFromBlob(image, nameIn(folderOfAll(images), image), longestSide)));
       },
       (frames, pair) => {
         if (frames.length === 2) return pairOf(frames);
@@ -95,6 +102,8 @@ export class Session {
       },
       (found) => {
         if (opened !== null && found !== opened) this.say(strings.projects.waiting(opened.name));
+        else if (leftOut !== '') this.say(leftOut);
+        if (folder !== null) void this.#checkSizes(folder);
       },
     );
   }
@@ -130,16 +139,17 @@ export class Session {
     return this.#goTo({ first: at, second: clamped(at + apart, clip.count) });
   }
 
-  /** Goes to the frame where the selected object is least certain; then, or if none is selected, to that of the next object. */
-  goToDoubtful(): void {
+  /** Goes to the frame where an object is least certain, by default the selected one; then, or if none is selected, to that of the next. */
+  goToDoubtful(id: number | null = null): void {
     const { tracked, look, timeline } = this.#store.get();
     if (tracked === null || look.kind !== 'objects') return;
     const lives = livesOf(tracked);
-    const selected = lives.findIndex(({ id }) => id === look.selected);
-    const seen = selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
+    const selected = lives.findIndex((life) => life.id === (id ?? look.selected));
+    const seen = id === null && selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
     const life = lives[(selected < 0 ? 0 : selected + Number(seen)) % lives.length];
     if (life === undefined) return;
     this.select(life.id);
+    this.#store.set({ tracked: { ...tracked, checked: new Map(tracked.checked).set(life.id, life.doubtful.index) } });
     void this.goTo(life.doubtful.index);
   }
 
@@ -191,12 +201,8 @@ export class Session {
     return this.#open(
       async (): Promise<() => void> => {
         const turn: number = this.#opened;
-        this.#live ??= await import('./live.js').then(
-          ({ LiveView }) => new LiveView(this.#store, (error) => this.#fail(error)),
-          () => {
-            throw new PageError('not-loaded', strings.errors.notLoaded);
-          },
-        );
+        const { LiveView } = await loaded(import('./live.js'));
+        this.#live ??= new LiveView(this.#store, (error) => this.#fail(error));
         return turn === this.#opened ? this.#live.start() : () => undefined;
       },
       (show) => {
@@ -330,6 +336,30 @@ export class Session {
     this.#store.set({ notice: { sentence, code } });
   }
 
+  /** The images of one folder if they are of several: the only one that is not called as of masks, or what the person chooses. */
+  async #ofOneFolder(images: readonly File[]): Promise<readonly File[] | null> {
+    const folders = foldersOf(images);
+    const [only, ...others] = likelyFrames(folders);
+    if (others.length === 0) return only?.images ?? images;
+    const turn = this.#opened;
+    const chosen = await new Promise<readonly File[] | null>((resolve) => {
+      const answer = (files: readonly File[] | null): void => {
+        this.#store.set({ question: null });
+        resolve(files);
+      };
+      this.#store.set({ question: { folders, images, answer } });
+    });
+    if (chosen === null && turn === this.#opened) this.#stopOpening();
+    return chosen;
+  }
+
+  /** Tells of a frame that has another size than the clip, which ends where it is segmented. */
+  async #checkSizes(clip: Clip): Promise<void> {
+    const other = await clip.otherSize?.();
+    if (!other || this.#store.get().timeline?.clip !== clip) return;
+    this.say(strings.errors.otherSize(clip.nameOf(other.index), other, clip), 'frame-size-mismatch');
+  }
+
   /** The first two frames of a clip. */
   async #startOf(clip: Clip): Promise<LoadedFrame[]> {
     try {
@@ -437,6 +467,7 @@ export class Session {
   /** Invalidates whatever is being opened. */
   #invalidate(): number {
     if (this.#store.get().live === null) this.#live?.stop();
+    this.#store.get().question?.answer(null);
     return ++this.#opened;
   }
 
@@ -488,6 +519,13 @@ export class Session {
   #fail(error: unknown): void {
     this.#store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
   }
+}
+
+/** A part of the page that is loaded when it is used. */
+function loaded<T>(part: Promise<T>): Promise<T> {
+  return part.catch(() => {
+    throw new PageError('not-loaded', strings.errors.notLoaded);
+  });
 }
 
 function clamped(index: number, count: number): number {

@@ -113,6 +113,7 @@ export class Tracking {
       let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
       try {
         await this.#take(found, frames, masks, set);
+        if (frames.same) run = { ...run, cause: 'same' };
       } catch (error) {
         if (error !== STOPPED) throw error;
         run = { phase: 'cancelled' };

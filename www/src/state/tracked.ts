@@ -21,7 +21,7 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'repeated' | 'corrected' | 'undone' | 'redone' | 'continued'; readonly changed: number }
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'corrected' | 'undone' | 'redone' | 'continued'; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
@@ -76,6 +76,8 @@ export interface Tracked extends Version {
   /** Earlier versions, and later ones that were undone; the nearest is last. */
   readonly past: readonly Version[];
   readonly future: readonly Version[];
+  /** The frames at which a person looked because an object is least certain there, by its number. */
+  readonly checked: ReadonlyMap<number, number>;
   /** Names and colours that the user gave to objects, by `keyOf`. */
   readonly names: Readonly<Record<string, string>>;
   readonly colours: Readonly<Record<string, Colour>>;
@@ -103,6 +105,7 @@ export function untracked(clip: Clip): Tracked {
     largest: 0,
     past: [],
     future: [],
+    checked: new Map(),
     names: NOTHING,
     colours: NOTHING,
     saved: { frames, names: NOTHING, colours: NOTHING },

@@ -57,7 +57,10 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
   const doubtful = find(row, '[data-action=doubtful]', HTMLButtonElement);
   const split = find(row, '[data-action=split]', HTMLButtonElement);
   const remove = find(row, '[data-action=remove]', HTMLButtonElement);
-  doubtful.addEventListener('click', () => void session.goTo(Number(doubtful.dataset.frame)));
+  doubtful.addEventListener('click', () => {
+    session.goToDoubtful(id);
+    find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
+  });
   split.addEventListener('click', () => session.tracking.split(id));
   remove.addEventListener('click', () => session.tracking.remove(id));
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;
@@ -72,9 +75,8 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
     const ready = life !== null && tracked !== null && tracked.spans.length > 0;
     for (const control of [split, remove]) control.disabled = !ready;
     offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);
-    doubtful.hidden = life === null;
+    doubtful.hidden = life === null || tracked?.checked.get(id) === life.doubtful.index;
     if (life !== null) {
-      doubtful.dataset.frame = String(life.doubtful.index);
       doubtful.textContent = strings.doubtful(life.doubtful.index);
       doubtful.setAttribute('aria-label', strings.doubtfulOf(called, life.doubtful.index));
     }
