@@ -146,6 +146,7 @@ test('of several folders of images one is chosen, or none', async ({ page }) => 
     await dropPaths(page, [join(root, 'street')]);
     await dialog.getByRole('button', { name: 'street/night, 4 images' }).click();
     await expect(page.locator('#clip-name')).toHaveText('street/night, 4 frames, 96 × 64');
+    await expect(page.locator('#notice')).toBeHidden();
     await done(page);
     // Something else is opened while the question is asked.
     await dropPaths(page, [join(root, 'street')]);

@@ -342,7 +342,7 @@ test('corrections are applied again when the clip is segmented again', async ({ 
   const corrected = await labelsOnCanvas(page);
   expect(new Set(corrected)).toEqual(new Set([0, 1, 3]));
   await page.getByRole('button', { name: 'Segment the clip again' }).click();
-  await expect(status).toHaveText('2 objects in 6 frames. Your corrections are applied again.', { timeout: 30_000 });
+  await expect(status).toHaveText('2 objects in 6 frames, corrected as before.', { timeout: 30_000 });
   expect(differences(await labelsOnCanvas(page), corrected)).toBe(0);
 
   // In another quality the objects are found anew, but are the same.
@@ -351,7 +351,7 @@ test('corrections are applied again when the clip is segmented again', async ({ 
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   expect(differences(await labelsOnCanvas(page), corrected)).toBe(0); // the masks before stay until then
   await phase(page, 'done');
-  await expect(status).toHaveText('2 objects in 6 frames. Your corrections are applied again.');
+  await expect(status).toHaveText('2 objects in 6 frames, corrected as before.');
   const best = await labelsOnCanvas(page);
   expect(new Set(best)).toEqual(new Set([0, 1, 3]));
   expect(best[Math.round(0.38 * 140) * 200 + Math.round(0.26 * 200)]).toBe(3);
@@ -365,7 +365,7 @@ test('corrections are applied again when the clip is segmented again', async ({ 
   await expect.poll(() => page.locator('#strokes').evaluate((strokes) => strokes.style.getPropertyValue('--colour'))).toBe(`rgb(${PALETTE[1]!.join(' ')})`);
   await page.getByRole('radio', { name: 'Fast', exact: true }).check();
   await page.getByRole('button', { name: 'Segment the clip again' }).click();
-  await expect(status).toHaveText('One object in 6 frames. Your corrections are applied again.', { timeout: 30_000 });
+  await expect(status).toHaveText('One object in 6 frames, corrected as before.', { timeout: 30_000 });
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 1]));
   await page.getByRole('button', { name: 'Undo' }).click();
   expect(differences(await labelsOnCanvas(page), best)).toBeGreaterThan(0);
@@ -398,7 +398,7 @@ test('segmenting a part again changes nothing outside it, and both take correcti
   await goTo(page, 5);
   await page.keyboard.press('o');
   await page.getByRole('button', { name: 'Segment frames 3–5' }).click();
-  await expect(status).toHaveText(/ objects in 9 frames\. Your corrections are applied again\.$/, { timeout: 30_000 });
+  await expect(status).toHaveText(/ objects in 9 frames, corrected as before\.$/, { timeout: 30_000 });
   // The disc is deleted there too, and the box is the object that it was.
   for (let index = 0; index < 9; index++) {
     await goTo(page, index);

@@ -67,15 +67,15 @@ function fromTo(first: string, last: string): string {
   return `${first.replace(/\.[^.]*$/, '')}-${last}`;
 }
 
-/** The size of an image as it is shown, without its pixels; `null` if it cannot be read, which choosing the frame reports. */
+/** The size of an image as it is shown, without decoding it; `null` if it cannot be read, which choosing the frame reports. */
 async function sizeOf(file: File): Promise<Pick<OtherSize, 'width' | 'height'> | null> {
   const image = new Image();
   try {
-    await file.slice(0, 1).arrayBuffer(); // throws if the file has gone
+    const bytes = await file.arrayBuffer();
     return await new Promise((resolve) => {
       image.addEventListener('load', () => resolve({ width: image.naturalWidth, height: image.naturalHeight }));
       image.addEventListener('error', () => resolve(null));
-      image.src = URL.createObjectURL(file);
+      image.src = URL.createObjectURL(new Blob([bytes], { type: file.type }));
     });
   } catch {
     return null;

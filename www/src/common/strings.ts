@@ -128,7 +128,7 @@ export const strings = {
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
     found: (count: number, of: number): string => `${objects(count)} in ${frames(of)}.`,
     same: (_count: number, of: number): string => `No objects: all ${frames(of)} are the same, pixel by pixel.`,
-    repeated: (count: number, of: number): string => `${objects(count)} in ${frames(of)}. Your corrections are applied again.`,
+    repeated: (count: number, of: number): string => `${objects(count)} in ${frames(of)}, corrected as before.`,
     continued: (count: number, of: number): string => `Continued: ${objects(count).toLowerCase()} in ${frames(of)}.`,
     cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
@@ -222,11 +222,13 @@ export const strings = {
     `Automatic took ${found}, though ${shortest} has the shortest description: these lengths are a check made afterwards, and do not decide.`,
 
   toolHelp: {
+    look: 'Press on a mask to select it.',
     brush: 'Paint what belongs to the selected mask. The pixels around it follow.',
     eraser: 'Paint what does not belong to the selected mask. The pixels around it follow.',
   },
 
   clipToolHelp: {
+    look: 'Press on an object to select it.',
     brush: 'Paint what belongs to the selected object, in any frame. The other frames follow.',
     eraser: 'Paint what does not belong to the selected object. The other frames follow.',
   },

@@ -8,7 +8,7 @@ import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
 import type { Path, Stroke } from '../correction/strokes.js';
 import { WHOLE } from '../drawing/viewport.js';
-import { folderOfAll, foldersOf, likelyFrames, nameIn, selectOpenable } from '../frames/files.js';
+import { type ImageFolder, folderOfAll, foldersOf, likelyFrames, nameIn, selectOpenable } from '../frames/files.js';
 import { frameFromBlob, frameFromUrl, smaller } from '../frames/frame.js';
 import { SAMPLES, type Sample } from '../frames/samples.js';
 import type { Project, ProjectClip } from '../projects/project.js';
@@ -81,9 +81,11 @@ export class Session {
         const { project, video, images: all } = selectOpenable(await files);
         if (project !== null) opened = await this.projects.open(project);
         if (video !== null) return this.#startOf(await openClip(video));
-        const images = await this.#ofOneFolder(all);
+        const folders = foldersOf(all);
+        const [likely, ...others] = likelyFrames(folders);
+        const images = others.length > 0 ? await this.#chosen(folders, all) : (likely?.images ?? []);
         if (images === null) return [];
-        if (images.length < all.length) leftOut = strings.notices.leftOut(folderOfAll(images), all.length - images.length);
+        if (others.length === 0 && images.length < all.length) leftOut = strings.notices.leftOut(likely!.path, all.length - images.length);
         if (images.length > 2) {
           const { openFolder } = await loaded(import('../clips/folder.js'));
           return this.#startOf((folder = await openFolder(images)));
@@ -336,11 +338,8 @@ export class Session {
     this.#store.set({ notice: { sentence, code } });
   }
 
-  /** The images of one folder if they are of several: the only one that is not called as of masks, or what the person chooses. */
-  async #ofOneFolder(images: readonly File[]): Promise<readonly File[] | null> {
-    const folders = foldersOf(images);
-    const [only, ...others] = likelyFrames(folders);
-    if (others.length === 0) return only?.images ?? images;
+  /** The images of the folder that the person chooses, or all; `null` if none. */
+  async #chosen(folders: readonly ImageFolder[], images: readonly File[]): Promise<readonly File[] | null> {
     const turn = this.#opened;
     const chosen = await new Promise<readonly File[] | null>((resolve) => {
       const answer = (files: readonly File[] | null): void => {
