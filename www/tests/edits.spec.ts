@@ -375,6 +375,9 @@ test('leaving the page asks first only with unsaved corrections', async ({ page 
 
 test('an exported file includes strokes that are still being applied', async ({ page }) => {
   await open(page);
+  await openExport(page);
+  await expect(page.locator('.export-buttons button').first()).toBeEnabled();
+  await page.keyboard.press('Escape');
   await brush(page, 1);
   const [download] = await Promise.all([page.waitForEvent('download'), drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '.export-buttons button' })]);
   const { data } = await decodeImage(await readFile(await download.path()));
