@@ -43,7 +43,7 @@ test('a clip is exported in the formats of annotation tools, with the objects th
 
   // An indexed PNG for each frame, under the frame's name.
   const davis = unzipSync((await savedAs(page, 'DAVIS')).bytes);
-  const folder = 'davis/Annotations/480p/f00';
+  const folder = 'davis/Annotations/480p/f00-f05';
   expect(Object.keys(davis)).toEqual([...files.map((file) => `${folder}/${file.name}`), 'davis/ImageSets/2017/val.txt']);
   for (const [index, file] of files.entries()) expect(differences(await labelsIn(davis[`${folder}/${file.name}`]!), found[index]!)).toBe(0);
 
@@ -107,9 +107,9 @@ test('the preview lists the files that are written, and shows one frame as they 
   await openExport(page);
   const formats = page.getByLabel('Format of the clip');
   await formats.selectOption({ label: 'DAVIS' });
-  await expect(listed).toHaveText(['davis/Annotations/480p/f00/f00.png … f04.png, 5 files', 'davis/ImageSets/2017/val.txt']);
+  await expect(listed).toHaveText(['davis/Annotations/480p/f00-f04/f00.png … f04.png, 5 files', 'davis/ImageSets/2017/val.txt']);
   const davis = unzipSync((await savedAs(page, 'DAVIS')).bytes);
-  const own = davis['davis/Annotations/480p/f00/f04.png']!;
+  const own = davis['davis/Annotations/480p/f00-f04/f04.png']!;
   await expect(caption).toHaveText(`f04.png: ${(own.length / 1000).toFixed(1)} kB`);
   const shown = async (): Promise<Uint8Array> => {
     const pixels = await preview.locator('img').evaluate(async (image: HTMLImageElement) => {

@@ -82,7 +82,7 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
   const times = at.map((k) => (k + 0.5) / 25);
 
   const transparent = await savedVideo(page, 'Video, transparent');
-  expect(transparent.name).toBe('f00-transparent.webm');
+  expect(transparent.name).toBe('f00-f05-transparent.webm');
   const cut = await played(page, transparent.bytes, 'video/webm', times);
   expect([cut.width, cut.height]).toEqual([WIDTH, HEIGHT]);
   expect(cut.duration).toBeCloseTo(6 / 25, 2);
@@ -96,7 +96,7 @@ test('a clip is saved as a video with transparency, a green screen and a matte, 
   }
 
   const green = await savedVideo(page, 'Video, green screen');
-  expect(green.name).toMatch(/^f00-green\.(mp4|webm)$/);
+  expect(green.name).toMatch(/^f00-f05-green\.(mp4|webm)$/);
   const screen = await played(page, green.bytes, green.name.endsWith('mp4') ? 'video/mp4' : 'video/webm', times);
   expect([screen.width, screen.height]).toEqual(green.name.endsWith('mp4') ? [WIDTH - 1, HEIGHT - 1] : [WIDTH, HEIGHT]);
   for (const [i, k] of at.entries()) {
@@ -157,7 +157,7 @@ test('the preview of a video shows the frame as the video does', async ({ page }
   await openExport(page);
   const preview = page.locator('#clip-preview');
   await page.getByLabel('Format of the clip').selectOption({ label: 'Video, transparent' });
-  await expect(preview.locator('li')).toHaveText(['f00-transparent.webm']);
+  await expect(preview.locator('li')).toHaveText(['f00-f04-transparent.webm']);
   await expect(preview.locator('figcaption')).toHaveText('Frame 0');
   const pixels = await preview.locator('img').evaluate(async (image: HTMLImageElement) => {
     await image.decode();

@@ -140,7 +140,7 @@ test('a folder of frames is a clip in the order of the names', async ({ page }) 
   const names = ['f10.png', 'f2.png', 'f1.png', 'f11.png'];
   const files = await Promise.all(names.map((name) => square(name, 96, 64, Number(/\d+/.exec(name)![0]), 0)));
   await page.locator('#open-pair').setInputFiles(files);
-  await expect(page.locator('#clip-name')).toHaveText('f1.png, 4 frames, 96 × 64');
+  await expect(page.locator('#clip-name')).toHaveText('f1-f11.png, 4 frames, 96 × 64');
   await done(page);
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f2.png, 96 × 64');
   await page.keyboard.press('.');

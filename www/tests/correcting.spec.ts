@@ -2,7 +2,8 @@
 
 import { type Page } from '@playwright/test';
 
-import { differences, done, expect, labelsOnCanvas, open, test } from './support.js';
+import { PALETTE } from '../src/drawing/palette.js';
+import { differences, done, expect, labelsOnCanvas, mergeWith, open, test } from './support.js';
 
 /** Draws a stroke between two points of the picture, 0…1. */
 async function stroke(page: Page, from: readonly [number, number], to: readonly [number, number]): Promise<void> {
@@ -60,7 +61,7 @@ test('masks are merged and ungrouped', async ({ page }) => {
   const rows = page.locator('#motions > li');
   const count = await rows.count();
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).locator('[data-action=merge]').selectOption('2');
+  await mergeWith(rows.nth(1), 2);
   await expect(rows).toHaveCount(count - 1);
   expect(differences(await labelsOnCanvas(page), found.map((mask) => (mask === 2 ? 1 : mask)))).toBe(0);
   await page.locator('#undo').click();
@@ -76,7 +77,7 @@ test('a stroke with a merged mask allows all of its motions', async ({ page }) =
   await open(page, 'groups');
   const rows = page.locator('#motions > li');
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).locator('[data-action=merge]').selectOption('2');
+  await mergeWith(rows.nth(1), 2);
   const merged = await labelsOnCanvas(page);
   await page.keyboard.press('p');
   await rows.nth(1).locator('.motion-words').click();
@@ -101,4 +102,25 @@ test('a stroke is drawn with the keyboard', async ({ page }) => {
   // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
   for (let x = 384 + 160; x <= 384 + 208; x++) expect(painted[216 * 768 + x]).toBe(1);
   expect(differences(painted, found)).toBeGreaterThan(0);
+});
+
+test('choosing a mask to merge with does not merge, and a merged mask is selected', async ({ page }) => {
+  await open(page, 'groups');
+  const rows = page.locator('#motions > li');
+  const count = await rows.count();
+  expect(count).toBeGreaterThan(2);
+  await page.locator('#tools [value=brush]').check();
+  await rows.nth(2).getByText('More', { exact: true }).click();
+  const choice = rows.nth(2).locator('[data-action=merge-with]');
+  await expect(rows.nth(2).getByRole('button', { name: 'Merge' })).toBeDisabled();
+  await choice.focus();
+  for (let k = 0; k < 2; k++) await page.keyboard.press('ArrowDown');
+  await expect(choice).toHaveValue('1');
+  await expect(rows).toHaveCount(count);
+  await page.keyboard.press('Tab');
+  await page.keyboard.press('Enter');
+  await expect(rows).toHaveCount(count - 1);
+  await expect(page.locator('#motions .selected')).toHaveAttribute('data-mask', '1');
+  await expect(page.locator('#motions .selected summary')).toBeFocused();
+  await expect.poll(() => page.locator('#strokes').evaluate((strokes) => strokes.style.getPropertyValue('--colour'))).toBe(`rgb(${PALETTE[1]!.join(' ')})`);
 });

@@ -7,7 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { PAIR, type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
+import { PAIR, type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, mergeWith, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
 
 type Place = readonly [number, number];
 
@@ -375,6 +375,9 @@ test('leaving the page asks first only with unsaved corrections', async ({ page 
 
 test('an exported file includes strokes that are still being applied', async ({ page }) => {
   await open(page);
+  await openExport(page);
+  await expect(page.locator('.export-buttons button').first()).toBeEnabled();
+  await page.keyboard.press('Escape');
   await brush(page, 1);
   const [download] = await Promise.all([page.waitForEvent('download'), drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '.export-buttons button' })]);
   const { data } = await decodeImage(await readFile(await download.path()));
@@ -401,7 +404,7 @@ test('a stroke has the colour of its mask, also of a merged one', async ({ page 
   await open(page, 'groups');
   const rows = page.locator('#motions > li');
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).locator('[data-action=merge]').selectOption('0');
+  await mergeWith(rows.nth(1), 0);
   await rows.nth(0).locator('.motion-words').click();
   await page.locator('#tools [value=brush]').check();
   await draw(page, [0.7, 0.2], [0.8, 0.2]);
@@ -447,7 +450,7 @@ test('the status describes the last action', async ({ page }) => {
   await page.locator('#redo').click();
   await expect(status).toHaveText('Redone.');
   await rows.nth(1).getByText('More', { exact: true }).click();
-  await rows.nth(1).locator('[data-action=merge]').selectOption('2');
+  await mergeWith(rows.nth(1), 2);
   await expect(status).toHaveText('Merged.');
   await rows.nth(1).getByText('More', { exact: true }).click();
   await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();

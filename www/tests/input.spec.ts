@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, done, expect, labelsOnCanvas, open, sample, segmentedInNode, differences, square, test, motionsChosen } from './support.js';
+import { type Upload, axe, done, expect, labelsOnCanvas, open, sample, segmentedInNode, differences, square, test, motionsChosen } from './support.js';
 
 /** Drops or pastes files. */
 async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise<void> {
@@ -76,12 +76,13 @@ test('a dropped folder is a clip in the order of its names', async ({ page }) =>
   });
 });
 
-test('subfolders of a dropped folder follow each other', async ({ page }) => {
+test('subfolders of a dropped folder follow each other if that is chosen', async ({ page }) => {
   await open(page);
   const { buffer } = await square('', 96, 64, 0, 0);
   const names = ['b/1.png', 'a10/1.png', 'a2/2.png', 'a2/1.png', '10.png', '9.png'];
   await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
     await dropPaths(page, [join(root, 'clip')]);
+    await page.getByRole('button', { name: 'All 6 images, folder by folder' }).click();
     await expect(page.locator('#clip-name')).toHaveText('clip, 6 frames, 96 × 64');
     const seen: string[] = [];
     for (let k = 0; k < names.length; k++) {
@@ -101,8 +102,58 @@ test('a folder from the picker has the same order and names', async ({ page }) =
   const names = ['b/1.png', 'a/2.png', 'a/1.png', '.hidden.png'];
   await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
     await page.locator('#open-folder').setInputFiles(join(root, 'clip'));
+    await page.getByRole('button', { name: 'All 3 images' }).click();
     await expect(page.locator('#clip-name')).toHaveText('clip, 3 frames, 96 × 64');
     await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('a/2.png, 96 × 64');
+    await done(page);
+  });
+});
+
+test('of a folder with frames and masks the frames are opened', async ({ page }) => {
+  await open(page);
+  const { buffer } = await square('', 96, 64, 0, 0);
+  const names = ['frames', 'masks', 'meta/Ground Truth'].flatMap((folder) => [0, 1, 2].map((k) => `set/${folder}/${k}.png`));
+  await withFolder(Object.fromEntries(names.map((name) => [name, buffer])), async (root) => {
+    await dropPaths(page, [join(root, 'set')]);
+    await expect(page.locator('#clip-name')).toHaveText('set/frames, 3 frames, 96 × 64');
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('0.png, 96 × 64');
+    await expect(page.locator('#notice-sentence')).toHaveText('Opened the images of “set/frames”. 6 images of other folders are left out.');
+    await done(page);
+    // Masks alone are what was asked for.
+    await dropPaths(page, [join(root, 'set', 'masks')]);
+    await expect(page.locator('#clip-name')).toHaveText('masks, 3 frames, 96 × 64');
+    await expect(page.locator('#notice')).toBeHidden();
+    await done(page);
+  });
+});
+
+test('of several folders of images one is chosen, or none', async ({ page }) => {
+  await open(page);
+  const { buffer } = await square('', 96, 64, 0, 0);
+  const names = ['day/1.png', 'day/2.png', 'day/3.png', 'night/1.png', 'night/2.png', 'night/3.png', 'night/4.png', 'night/masks/1.png'];
+  await withFolder(Object.fromEntries(names.map((name) => [`street/${name}`, buffer])), async (root) => {
+    const dialog = page.getByRole('dialog', { name: 'Which folder has the frames?' });
+    for (const leave of ['Escape', 'Cancel']) {
+      await dropPaths(page, [join(root, 'street')]);
+      await expect(dialog.getByRole('button')).toHaveText(['street/day, 3 images', 'street/night, 4 images', 'street/night/masks, one image', 'All 8 images, folder by folder', 'Cancel']);
+      expect(await axe(page)).toEqual([]);
+      if (leave === 'Escape') await page.keyboard.press('Escape');
+      else await dialog.getByRole('button', { name: 'Cancel' }).click();
+      await expect(dialog).toBeHidden();
+      await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
+      await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('first.png, 768 × 432');
+    }
+    await dropPaths(page, [join(root, 'street')]);
+    await dialog.getByRole('button', { name: 'street/night, 4 images' }).click();
+    await expect(page.locator('#clip-name')).toHaveText('street/night, 4 frames, 96 × 64');
+    await expect(page.locator('#notice')).toBeHidden();
+    await done(page);
+    // Something else is opened while the question is asked.
+    await dropPaths(page, [join(root, 'street')]);
+    await expect(dialog).toBeVisible();
+    await dropPaths(page, [join(root, 'street', 'day')]);
+    await expect(dialog).toBeHidden();
+    await expect(page.locator('#clip-name')).toHaveText('day, 3 frames, 96 × 64');
     await done(page);
   });
 });

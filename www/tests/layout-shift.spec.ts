@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { PAIR, done, expect, test, upload } from './support.js';
+import { PAIR, done, expect, open, test, upload } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -42,5 +42,17 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
       await done(page);
     }
     expect(await shift()).toBeLessThanOrEqual(0.01);
+  });
+
+  test(`choosing a tool moves nothing, ${screen}`, async ({ page }) => {
+    await page.setViewportSize({ width, height });
+    await open(page, 'groups');
+    const places = (): Promise<number[]> =>
+      page.evaluate(() => [...document.querySelectorAll('.layers, #tools label, #tools button, #run, #look, .pair')].map((part) => part.getBoundingClientRect().top + part.getBoundingClientRect().left));
+    const before = await places();
+    for (const tool of ['brush', 'eraser', 'look']) {
+      await page.locator(`#tools [value=${tool}]`).check();
+      expect(await places()).toEqual(before);
+    }
   });
 }

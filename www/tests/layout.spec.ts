@@ -42,3 +42,19 @@ test.describe('on a phone', () => {
     await expect(page.locator('#open-export')).toBeInViewport({ ratio: 1 });
   });
 });
+
+for (const [width, height] of [[1280, 720], [1280, 860], [390, 844]] as const) {
+  test(`a sample that is clicked is in view, ${width} × ${height}`, async ({ page }) => {
+    await page.setViewportSize({ width, height });
+    await open(page, 'groups');
+    const samples = page.locator('#samples button');
+    for (const sample of [samples.last(), samples.first()]) {
+      await sample.scrollIntoViewIfNeeded();
+      await sample.click();
+      await done(page);
+      const [header, picture] = await page.evaluate(() => ['.masthead', '.layers'].map((part) => document.querySelector(part)!.getBoundingClientRect().toJSON() as DOMRect));
+      expect(picture!.top).toBeGreaterThanOrEqual(header!.bottom);
+      expect(picture!.bottom).toBeLessThanOrEqual(height);
+    }
+  });
+}

@@ -77,7 +77,7 @@ test('a replaced frame is not listed as a frame of the clip', async ({ page }) =
 test('an unreadable frame leaves the timeline where it was', async ({ page }) => {
   await open(page);
   await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
-  await expect(page.locator('#clip-name')).toHaveText('f0.png, 3 frames, 96 × 64');
+  await expect(page.locator('#clip-name')).toHaveText('f0-f2.png, 3 frames, 96 × 64');
   await done(page);
   await page.getByRole('button', { name: 'Second frame: step forward' }).click();
   await expect(page.getByRole('alert')).toContainText('“f2.png” is not an image');

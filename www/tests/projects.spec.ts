@@ -48,7 +48,8 @@ function fileInBrowser(page: Page): Promise<string> {
     let text = '';
     if (folder === null) return text;
     for await (const name of folder.keys()) {
-      const file = await (await folder.getFileHandle(name)).getFile();
+      const file = await folder.getFileHandle(name).then((handle) => handle.getFile()).catch(() => null);
+      if (file === null) return ''; // it is being replaced
       text = await new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
     }
     return text;
@@ -167,9 +168,9 @@ test('a project is saved as a file and opened in another browser, with its frame
   const files = await clipFrames(6);
   await correctedClip(page, files);
   const project = await savedProject(page);
-  expect(project.name).toBe('f00.veronese');
+  expect(project.name).toBe('f00-f05.veronese');
   const [header] = gunzipSync(project.buffer).toString('latin1').split('\n');
-  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 1, name: 'f00.png', frames: 6 });
+  expect(JSON.parse(header!)).toMatchObject({ format: 'veronese-project', version: 2, name: 'f00-f05.png', frames: 6 });
 
   const elsewhere = await browser.newContext({ baseURL: baseURL! });
   const other = await elsewhere.newPage();
@@ -182,8 +183,8 @@ test('a project is saved as a file and opened in another browser, with its frame
   // In this one nothing may be left of it.
   await openExport(page);
   await page.getByText('One project in this browser').click();
-  await page.getByRole('button', { name: 'Forget the project of f00.png' }).click();
-  await expect(page.locator('#notice')).toContainText('The project of “f00.png” is forgotten.');
+  await page.getByRole('button', { name: 'Forget the project of f00-f05.png' }).click();
+  await expect(page.locator('#notice')).toContainText('The project of “f00-f05.png” is forgotten.');
   await expect(page.locator('#projects')).toBeHidden();
   await page.reload();
   await openClip(page, files);
@@ -194,7 +195,7 @@ test('a project is saved as a file and opened in another browser, with its frame
   await page.reload();
   await open(page, 'groups');
   await upload(page, [project]);
-  await expect(page.locator('#notice')).toContainText('The project of “f00.png” is open. Now open its frames');
+  await expect(page.locator('#notice')).toContainText('The project of “f00-f05.png” is open. Now open its frames');
   await upload(page, files);
   await isContinued(page, files);
 });
@@ -318,7 +319,7 @@ test('a second tab on a clip says that its work is not kept, and overwrites noth
   await openClip(second, files);
   await expect(second.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
   await expect(second.locator('#notice-code')).toHaveText('open-elsewhere');
-  await expect(second.locator('#notice-sentence')).toContainText('“f00.png” is open in another tab');
+  await expect(second.locator('#notice-sentence')).toContainText('“f00-f04.png” is open in another tab');
   await rename(second, 1, 'Ball');
   expect(await leaves(second)).toBe(false);
   await openExport(second);
@@ -359,7 +360,7 @@ test('damaged and foreign projects are refused with a reason, and change nothing
     [Buffer.from('not a project'), 'damaged-project'],
     [project.buffer.subarray(0, project.buffer.length - 9), 'damaged-project'],
     [flipped, 'damaged-project'],
-    [remade(([header, ...rest]) => [header!.replace('"version":1', '"version":2'), ...rest]), 'newer-project'],
+    [remade(([header, ...rest]) => [header!.replace('"version":2', '"version":3'), ...rest]), 'newer-project'],
     [remade(([header, ...rest]) => [header!.replace('"frames":5', '"frames":4'), ...rest]), 'damaged-project'],
     [remade(([header, content, ...rest]) => [header!, content!.replace('"confidence"', '"confident"'), ...rest]), 'damaged-project'],
     [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('[200,140,', '[200,141,'), ...rest]), 'damaged-project'],
@@ -380,4 +381,23 @@ test('a first visit loads nothing of projects', async ({ page }) => {
   await openSampleClip(page);
   await page.waitForTimeout(1000); // what is kept is written soon
   expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
+});
+
+test('a project of the first version is opened, and takes corrections', async ({ page }) => {
+  const files = await clipFrames(5);
+  await openClip(page, files);
+  await segmentClip(page);
+  const { name, mimeType, buffer } = await savedProject(page);
+  const [header, content, ...rest] = gunzipSync(buffer).toString('latin1').split('\n') as [string, string, ...string[]];
+  const project = JSON.parse(content) as { clip: Record<string, unknown> };
+  const { spans, found: _, became: __, ...clip } = project.clip;
+  const [{ state }] = spans as [{ state: unknown }];
+  const old = [header.replace('"version":2', '"version":1'), JSON.stringify({ ...project, clip: { ...clip, state } }), ...rest].join('\n');
+  await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('projects', { recursive: true }));
+  await page.reload();
+  await upload(page, [{ name, mimeType, buffer: gzipSync(Buffer.from(old, 'latin1')) }, ...files]);
+  await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 1' }).click();
+  await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 5 frames have changed.');
 });

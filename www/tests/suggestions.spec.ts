@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { encodeColourPng } from 'veronese/codecs';
-import { PAIR, type Upload, axe, differences, done, expect, labelsOnCanvas, screen, segmentedInNode, test, upload } from './support.js';
+import { PAIR, type Upload, axe, differences, done, expect, labelsOnCanvas, mergeWith, screen, segmentedInNode, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [320, 240];
 
@@ -67,7 +67,7 @@ test('a suggestion is answered with the keyboard, and read out', async ({ page }
   // Dismissed is dismissed, also after other corrections.
   const row = page.locator('#motions > li').nth(1);
   await row.getByText('More', { exact: true }).click();
-  await row.locator('[data-action=merge]').selectOption('0');
+  await mergeWith(row, 0);
   await page.locator('#undo').click();
   await expect(page.locator('#motions > li')).toHaveCount(3);
   await expect(suggestions.locator('li')).toHaveCount(0);

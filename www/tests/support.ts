@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
-import { type Page, test as base, expect } from '@playwright/test';
+import { type Locator, type Page, test as base, expect } from '@playwright/test';
 import { type ClipOptions, type Segmentation, type SegmentOptions, segmentClip, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
@@ -97,6 +97,12 @@ export async function chooseMotions(page: Page, motions: number | 'Automatic'): 
 /** Waits until this number is chosen. */
 export async function motionsChosen(page: Page, motions: number | 'Automatic'): Promise<void> {
   await expect(page.locator('#evidence button[aria-pressed=true]')).toHaveText(String(motions));
+}
+
+/** Merges the mask of a row of the list, whose details are open, with another. */
+export async function mergeWith(row: Locator, other: number): Promise<void> {
+  await row.locator('[data-action=merge-with]').selectOption(String(other));
+  await row.locator('[data-action=merge]').click();
 }
 
 /** Opens the settings that are folded away. */

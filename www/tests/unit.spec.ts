@@ -19,8 +19,10 @@ import { suggestionsOf } from '../src/result/junctions.js';
 import { labelSet, masksOf, merged, separated, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/numbering.js';
+import { becameAfter, editsIn, fromSpan, numbersOf, spanAt, toSpan } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
+import { type TrackedFrame, untracked } from '../src/state/tracked.js';
 import { differences } from './support.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
@@ -300,4 +302,55 @@ test('numbers before the camera are used again when all have been, but none twic
     const { objects: both } = numbering.numbered(cameraFrame(1, 1, 1, 1, 0, 0, 2, 2));
     expect(both.map(({ id }) => id)).toEqual([1, 2 + (stream % 253)]);
   }
+});
+
+/** Masks of 6×1 pixels. */
+function masks(...labels: number[]): TrackedFrame {
+  const objects = [...new Set(labels)].filter((id) => id > 0 && id < 255).map((id) => ({ id, pixels: 1, bbox: [0, 0, 6, 1] as [number, number, number, number], confidence: 1, matrix: null }));
+  return { runs: packed(Uint8Array.from(labels), 6, 1), objects, background: null };
+}
+
+test('an object keeps its number when its frames are segmented again', () => {
+  const none = untracked({ count: 4 } as Clip);
+  // Object 2 was deleted, 5 painted; frame 3 has no masks yet.
+  const found = [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 0, 2, 2)].map(({ runs }) => runs);
+  const frames = [masks(1, 1, 0, 0, 0, 5), masks(1, 1, 0, 0, 0, 5), masks(1, 1, 0, 0, 0, 0), null];
+  const version = { ...none, frames, found: [...found, null], largest: 5 };
+  // Each is what it overlaps most; what was deleted is known by where it was, what was painted by where it is.
+  expect(numbersOf([masks(4, 4, 0, 1, 1, 3), masks(4, 4, 0, 1, 1, 3)], { first: 0, last: 1 }, version)).toEqual(new Map([[4, 1], [1, 2], [3, 5]]));
+  // Two objects never become one, and the background is none.
+  expect(numbersOf([masks(1, 2, 2, 0, 0, 0)], { first: 0, last: 0 }, version)).toEqual(new Map([[1, 1]]));
+  // A frame without masks before is compared with its neighbour.
+  expect(numbersOf([masks(7, 7, 0, 0, 0, 0)], { first: 3, last: 3 }, version)).toEqual(new Map([[7, 1]]));
+});
+
+test('masks and corrections are translated between the numbers of a run and those of the clip', () => {
+  const numbers = new Map([[1, 3], [3, 1]]);
+  // What no run knows gets a number that no object of the run has.
+  expect(Array.from(toSpan(Uint8Array.of(0, 1, 3, 2, 255, 2), numbers))).toEqual([0, 3, 1, 2, 255, 2]);
+  expect(Array.from(toSpan(Uint8Array.of(7, 1), new Map([[7, 2]])))).toEqual([8, 1]);
+  expect(Array.from(toSpan(Uint8Array.of(9), new Map([[9, 1], [254, 2]])))).toEqual([1]);
+  const seen = fromSpan(masks(1, 3, 6, 0, 255, 2), numbers, 5);
+  expect(Array.from(unpacked(seen.runs))).toEqual([3, 1, 6, 0, 255, 2]);
+  expect(seen.objects.map(({ id }) => id)).toEqual([1, 2, 3, 6]);
+  // There are 254 numbers.
+  expect(Array.from(unpacked(fromSpan(masks(1, 1, 0, 0, 0, 0), new Map(), 254).runs))).toEqual([0, 0, 0, 0, 0, 0]);
+});
+
+test('merged and deleted objects are so in every run', () => {
+  let became = becameAfter(new Map(), { merge: [[2, 3]] });
+  became = becameAfter(became, { merge: [[1, 2]] });
+  became = becameAfter(became, { delete: [4] });
+  expect(became).toEqual(new Map([[3, 1], [2, 1], [4, 0]]));
+  expect(editsIn(new Map([[1, 1], [2, 2], [3, 3], [4, 4]]), became)).toEqual({ merge: [[1, 2, 3]], delete: [4] });
+  expect(editsIn(new Map([[5, 3], [6, 1]]), became)).toEqual({ merge: [[6, 5]], delete: [] });
+  // Where there is nothing else of an object, another goes on under its number.
+  const numbers = new Map([[5, 3], [6, 2]]);
+  expect(editsIn(numbers, became)).toEqual({ merge: [[6, 5]], delete: [] });
+  expect(numbers.get(6)).toBe(1);
+});
+
+test('masks are of the span that was segmented last', () => {
+  const [whole, part] = [{ first: 0, last: 8 }, { first: 3, last: 5 }].map((range) => ({ range, state: new Blob(), numbers: new Map() }));
+  expect([2, 3, 5, 6, 9].map((index) => spanAt([whole!, part!], index))).toEqual([whole, part, part, whole, null]);
 });

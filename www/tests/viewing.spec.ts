@@ -180,3 +180,19 @@ test('the number of motions can be forced in the evidence plot', async ({ page }
   await done(page);
   await motionsChosen(page, 'Automatic');
 });
+
+test('the evidence plot does not claim to decide when the number found has not the shortest description', async ({ page }) => {
+  await open(page);
+  const files = [await sample('first'), await sample('second')] as const;
+  for (const swapped of [false, true]) {
+    if (swapped) await page.locator('#swap').click();
+    const { count, evidence } = await segmentedInNode(files[Number(swapped)]!, files[Number(!swapped)]!);
+    const [shortest] = evidence.candidates.toSorted((one, other) => one.score - other.score);
+    await done(page);
+    await expect(page.locator('#evidence .number.found')).toHaveText(String(count));
+    await expect(page.getByRole('button', { name: `Use ${shortest!.motions} motions for this pair: shortest description` })).toBeVisible();
+    const sentence = page.locator('#evidence-choice');
+    if (shortest!.motions === count) await expect(sentence).toBeHidden();
+    else await expect(sentence).toHaveText(`Automatic took ${count}, though ${shortest!.motions} has the shortest description: these lengths are a check made afterwards, and do not decide.`);
+  }
+});

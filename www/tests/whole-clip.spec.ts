@@ -4,8 +4,9 @@ import { readFile } from 'node:fs/promises';
 
 import { type Page } from '@playwright/test';
 
+import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, square, test, upload } from './support.js';
+import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, mergeWith, open, openExport, square, test, upload } from './support.js';
 
 /** Opens frames as a clip. */
 async function openClip(page: Page, files: Awaited<ReturnType<typeof clipFrames>>): Promise<void> {
@@ -51,7 +52,7 @@ test('the objects of a clip keep number, name and colour in all frames', async (
   const track = page.getByRole('slider', { name: 'Current frame' });
   await track.press('End');
   await shows(page, 7);
-  await expect(track).toHaveAttribute('aria-valuetext', 'Frame 7 of 8');
+  await expect(track).toHaveAttribute('aria-valuetext', 'Frame 7 of 0–7');
   expect(differences(await labelsOnCanvas(page), found[7]!)).toBe(0);
   await expect(names.nth(1)).toHaveValue('Ball');
 
@@ -215,6 +216,10 @@ test('only the frames from the in point to the out point are segmented and expor
 test('a frame of another size ends the clip, and the frames before it have masks', async ({ page }) => {
   const files = await clipFrames(6);
   await openClip(page, [...files.slice(0, 5), await square('f05.png', 120, 90, 0, 0)]);
+  // It is told at once.
+  await expect(page.locator('#notice-sentence')).toHaveText('“f05.png” is 120 × 90, the first frame 200 × 140: only what is before it can be segmented as a clip.');
+  await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
+  await page.locator('#notice-close').click();
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await phase(page, 'failed');
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
@@ -283,7 +288,7 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
 
   const rows = page.locator('#objects > li');
   await rows.nth(2).locator('summary').click();
-  await page.getByLabel('Merge Object 2').selectOption('1');
+  await mergeWith(rows.nth(2), 1);
   await expect(rows).toHaveCount(2);
   await expect(page.locator('#clip-status')).toHaveText('Corrected: the masks of 6 frames have changed.');
   for (const index of [0, 5]) {
@@ -316,4 +321,176 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
   await page.getByRole('button', { name: 'Undo' }).click();
   await expect(rows).toHaveCount(3);
+});
+
+test('corrections are applied again when the clip is segmented again', async ({ page }) => {
+  const files = await clipFrames(6);
+  await openClip(page, files);
+  await segmentClip(page);
+  const status = page.locator('#clip-status');
+  const rows = page.locator('#objects > li');
+  // The box is deleted, part of the disc painted as a new object, and merged with what is left of it.
+  await rows.nth(2).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 2' }).click();
+  await expect(rows).toHaveCount(2);
+  await goTo(page, 3);
+  await page.getByRole('button', { name: 'New object' }).click();
+  await paint(page, [0.2, 0.3], [0.32, 0.46]);
+  await expect(status).toHaveText(/^Corrected/);
+  await rows.nth(1).locator('.motion-name').fill('Disc');
+  await rows.nth(1).locator('.motion-name').press('Enter');
+  const corrected = await labelsOnCanvas(page);
+  expect(new Set(corrected)).toEqual(new Set([0, 1, 3]));
+  await page.getByRole('button', { name: 'Segment the clip again' }).click();
+  await expect(status).toHaveText('2 objects in 6 frames, corrected as before.', { timeout: 30_000 });
+  expect(differences(await labelsOnCanvas(page), corrected)).toBe(0);
+
+  // In another quality the objects are found anew, but are the same.
+  await page.getByRole('radio', { name: 'Best', exact: true }).check();
+  await page.getByRole('button', { name: 'Segment the clip again' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
+  expect(differences(await labelsOnCanvas(page), corrected)).toBe(0); // the masks before stay until then
+  await phase(page, 'done');
+  await expect(status).toHaveText('2 objects in 6 frames, corrected as before.');
+  const best = await labelsOnCanvas(page);
+  expect(new Set(best)).toEqual(new Set([0, 1, 3]));
+  expect(best[Math.round(0.38 * 140) * 200 + Math.round(0.26 * 200)]).toBe(3);
+  await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Disc');
+  // What was merged stays merged, and it is selected.
+  await rows.nth(2).locator('summary').click();
+  await mergeWith(rows.nth(2), 1);
+  await expect(rows).toHaveCount(2);
+  await expect(status).toHaveText(/^Corrected/);
+  await expect(page.locator('#objects .selected')).toHaveAttribute('data-mask', '1');
+  await expect.poll(() => page.locator('#strokes').evaluate((strokes) => strokes.style.getPropertyValue('--colour'))).toBe(`rgb(${PALETTE[1]!.join(' ')})`);
+  await page.getByRole('radio', { name: 'Fast', exact: true }).check();
+  await page.getByRole('button', { name: 'Segment the clip again' }).click();
+  await expect(status).toHaveText('One object in 6 frames, corrected as before.', { timeout: 30_000 });
+  expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 1]));
+  await page.getByRole('button', { name: 'Undo' }).click();
+  expect(differences(await labelsOnCanvas(page), best)).toBeGreaterThan(0);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await expect.poll(async () => differences(await labelsOnCanvas(page), best)).toBe(0);
+});
+
+test('segmenting a part again changes nothing outside it, and both take corrections', async ({ page }) => {
+  const files = await clipFrames(9);
+  await openClip(page, files);
+  await segmentClip(page);
+  const status = page.locator('#clip-status');
+  const rows = page.locator('#objects > li');
+  await rows.nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 1' }).click();
+  await expect(status).toHaveText(/^Corrected/);
+  await goTo(page, 7);
+  await page.getByRole('button', { name: 'New object' }).click();
+  await paint(page, [0.1, 0.8], [0.2, 0.8]);
+  await expect(status).toHaveText(/^Corrected/);
+  const before: Uint8Array[] = [];
+  for (let index = 0; index < 9; index++) {
+    await goTo(page, index);
+    before.push(await labelsOnCanvas(page));
+  }
+  expect(new Set(before[7])).toEqual(new Set([0, 2, 3]));
+
+  await goTo(page, 3);
+  await page.keyboard.press('i');
+  await goTo(page, 5);
+  await page.keyboard.press('o');
+  await page.getByRole('button', { name: 'Segment frames 3–5' }).click();
+  await expect(status).toHaveText(/ objects in 9 frames, corrected as before\.$/, { timeout: 30_000 });
+  // The disc is deleted there too, and the box is the object that it was.
+  for (let index = 0; index < 9; index++) {
+    await goTo(page, index);
+    const now = await labelsOnCanvas(page);
+    if (index < 3 || index > 5) expect(differences(now, before[index]!)).toBe(0);
+    else expect(new Set(now)).toEqual(new Set([0, 2]));
+  }
+  // A correction is carried through the frames that were segmented with its own, and no others.
+  await page.locator('#tools [value=look]').check();
+  await page.getByRole('button', { name: 'New object' }).click();
+  await goTo(page, 4);
+  await paint(page, [0.1, 0.2], [0.2, 0.2]);
+  await expect(status).toHaveText(/^Corrected/);
+  const seen: number[] = [];
+  for (let index = 0; index < 9; index++) {
+    await goTo(page, index);
+    if (new Set(await labelsOnCanvas(page)).has(4)) seen.push(index);
+  }
+  expect(seen).toContain(4);
+  expect(seen.filter((index) => index < 3 || index > 5)).toEqual([]);
+  // The edit of an object is for the whole clip.
+  await rows.nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Object 2' }).click();
+  await expect(status).toHaveText('Corrected: the masks of 9 frames have changed.');
+  for (const index of [0, 4, 8]) {
+    await goTo(page, index);
+    expect(new Set(await labelsOnCanvas(page))).not.toContain(2);
+  }
+  // All of it is there after a reload.
+  const last = await labelsOnCanvas(page);
+  await page.waitForTimeout(1500);
+  await page.reload();
+  await done(page);
+  await upload(page, files);
+  await expect(status).toHaveText(/^Continued/);
+  await goTo(page, 8);
+  expect(differences(await labelsOnCanvas(page), last)).toBe(0);
+  await goTo(page, 0);
+  await page.getByRole('button', { name: 'New object' }).click();
+  await paint(page, [0.1, 0.2], [0.2, 0.2]);
+  await expect(status).toHaveText(/^Corrected/);
+});
+
+test('a run that is cancelled early leaves the masks that there were', async ({ page }) => {
+  const files = await clipFrames(8);
+  const found = await clipInNode(files);
+  await openClip(page, files);
+  await segmentClip(page);
+  await page.getByRole('radio', { name: 'Best', exact: true }).check();
+  await page.getByRole('button', { name: 'Segment the clip again' }).click();
+  await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
+  await page.locator('#clip-cancel').click();
+  await phase(page, 'cancelled');
+  await expect(page.locator('#clip-status')).toHaveText('Cancelled. 8 of 8 frames have masks.');
+  for (const index of [0, 7]) {
+    await goTo(page, index);
+    expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
+  }
+});
+
+test('frames that are the same are given as the reason why nothing moves', async ({ page }) => {
+  const [{ buffer }] = (await clipFrames(1)) as [Awaited<ReturnType<typeof clipFrames>>[number]];
+  await openClip(page, [0, 1, 2].map((k) => ({ name: `f${k}.png`, mimeType: 'image/png', buffer })));
+  await expect(page.locator('#status')).toHaveText('Both frames are the same, pixel by pixel: nothing moves.');
+  await segmentClip(page);
+  await expect(page.locator('#clip-status')).toHaveText('No objects: all 3 frames are the same, pixel by pixel.');
+  await upload(page, await clipFrames(3));
+  await expect(page.locator('#clip-name')).toHaveText('f00-f02.png, 3 frames, 200 × 140');
+  await done(page);
+  await expect(page.locator('#status')).toHaveText(/^2 objects found/);
+});
+
+test('a clip may have one frame', async ({ page }) => {
+  await open(page, 'groups');
+  await upload(page, [await video(page, 1, 'webm', 'vp8')]);
+  await expect(page.locator('#clip-name')).toHaveText('clip.webm, one frame, 192 × 128');
+  await done(page);
+});
+
+test('the button for the least certain frame goes once a person has looked there, until it is another', async ({ page }) => {
+  const files = await clipFrames(6);
+  await openClip(page, files);
+  await segmentClip(page);
+  const row = page.locator('#objects > li').nth(1);
+  const check = row.locator('[data-action=doubtful]');
+  const index = Number(/^Check #(\d)$/.exec((await check.textContent())!)![1]);
+  await check.click();
+  await shows(page, index);
+  await expect(row).toHaveClass(/selected/);
+  await expect(check).toBeHidden();
+  await expect(page.locator('.layers')).toBeFocused();
+  await expect(page.locator('#objects > li').nth(2).locator('[data-action=doubtful]')).toBeVisible();
+  await goTo(page, (index + 3) % 6);
+  await expect(check).toBeHidden();
 });

@@ -23,8 +23,17 @@ export interface Clip {
   thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void>;
   /** The name of a frame's file; of a frame of a video, what its file would be called. */
   nameOf(index: number): string;
+  /** The first frame of another size; absent if there can be none. */
+  otherSize?(): Promise<OtherSize | null>;
   /** Releases decoders and memory. */
   close(): void;
+}
+
+/** A frame whose size is not that of the clip, pixels. */
+export interface OtherSize {
+  readonly index: number;
+  readonly width: number;
+  readonly height: number;
 }
 
 /** Draws the thumbnail into the rectangle. */

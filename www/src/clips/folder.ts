@@ -1,12 +1,12 @@
 //! A folder of frames as a clip, in the order of their names.
 
-import { folderOf, nameOfFile } from '../frames/files.js';
+import { folderOfAll, nameIn } from '../frames/files.js';
 import { type DecodedFrame, frameFromBlob } from '../frames/frame.js';
 import type { SampleClip } from '../frames/samples.js';
-import type { Clip, Picture } from './clip.js';
+import type { Clip, OtherSize, Picture } from './clip.js';
 
 export async function openFolder(files: readonly File[], sample?: SampleClip): Promise<Clip> {
-  const size = await frameFromBlob(files[0]!, nameOfFile(files[0]!), Infinity);
+  const size = await frameFromBlob(files[0]!, nameIn(folderOfAll(files), files[0]!), Infinity);
   size.bitmap.close();
   // The first frame and the sizes of all files tell folders apart without reading them.
   const fingerprint = [size.fingerprint, ...files.map((file) => file.size)].join(' ');
@@ -18,6 +18,8 @@ class Folder implements Clip {
   readonly times = null;
   readonly name: string;
   readonly count: number;
+  readonly #path: string;
+  #closed = false;
 
   constructor(
     readonly files: readonly File[],
@@ -26,13 +28,13 @@ class Folder implements Clip {
     readonly height: number,
     readonly sample: SampleClip | undefined,
   ) {
-    this.name = folderOf(files[0]!) ?? files[0]!.name;
+    this.#path = folderOfAll(files);
+    this.name = this.#path === '' ? fromTo(this.nameOf(0), this.nameOf(files.length - 1)) : this.#path;
     this.count = files.length;
   }
 
   frame(index: number, longestSide: number): Promise<DecodedFrame> {
-    const file = this.files[index]!;
-    return frameFromBlob(file, nameOfFile(file), longestSide);
+    return frameFromBlob(this.files[index]!, this.nameOf(index), longestSide);
   }
 
   async thumbnails(indices: readonly number[], draw: (index: number, picture: Picture) => void): Promise<void> {
@@ -45,8 +47,41 @@ class Folder implements Clip {
   }
 
   nameOf(index: number): string {
-    return nameOfFile(this.files[index]!);
+    return nameIn(this.#path, this.files[index]!);
   }
 
-  close(): void {}
+  async otherSize(): Promise<OtherSize | null> {
+    for (const [index, file] of this.files.entries()) {
+      if (this.#closed) return null;
+      const size = await sizeOf(file);
+      if (size !== null && (size.width !== this.width || size.height !== this.height)) return { index, ...size };
+    }
+    return null;
+  }
+
+  close(): void {
+    this.#closed = true;
+  }
+}
+
+/** What files from one to another are called together: "00000-00039.jpg". */
+function fromTo(first: string, last: string): string {
+  return `${first.replace(/\.[^.]*$/, '')}-${last}`;
+}
+
+/** The size of an image as it is shown, without decoding it; `null` if it cannot be read, which choosing the frame reports. */
+async function sizeOf(file: File): Promise<Pick<OtherSize, 'width' | 'height'> | null> {
+  const image = new Image();
+  try {
+    const bytes = await file.arrayBuffer();
+    return await new Promise((resolve) => {
+      image.addEventListener('load', () => resolve({ width: image.naturalWidth, height: image.naturalHeight }));
+      image.addEventListener('error', () => resolve(null));
+      image.src = URL.createObjectURL(new Blob([bytes], { type: file.type }));
+    });
+  } catch {
+    return null;
+  } finally {
+    URL.revokeObjectURL(image.src);
+  }
 }

@@ -61,6 +61,13 @@ function displacement(parts: MotionParts): string {
 
 const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
 
+const images = (count: number): string => (count === 1 ? 'one image' : `${whole.format(count)} images`);
+
+interface Size {
+  readonly width: number;
+  readonly height: number;
+}
+
 const date = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
 
 /** "1.4 MB": of 1000 bytes each, as file managers count. */
@@ -78,7 +85,7 @@ function remaining(seconds: number | null): string {
 const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
 const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
 const duration = (ms: number): string => (ms < 1000 ? `${whole.format(ms)}${NBSP}ms` : `${tenths.format(ms / 1000)}${NBSP}s`);
-const scoreAbove = (above: number): string => (above === 0 ? 'lowest score' : `score ${whole.format(above)} above the lowest`);
+const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest description' : `description ${whole.format(longer)} longer than the shortest`);
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
 const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
 
@@ -101,8 +108,10 @@ export const strings = {
   frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
   stabilised: (name: string): string => `, stabilised on ${name}`,
 
-  clip: (name: string, count: number, width: number, height: number): string => `${name}, ${whole.format(count)} frames, ${size(width, height)}`,
+  clip: (name: string, count: number, width: number, height: number): string => `${name}, ${frames(count)}, ${size(width, height)}`,
   anotherFile: 'another file',
+  imagesIn: (folder: string, count: number): string => `${folder === '' ? 'No folder' : folder}, ${images(count)}`,
+  allImages: (count: number): string => `All ${images(count)}, folder by folder`,
   frameAt: (index: number, seconds: number | null): string => (seconds === null ? `#${index}` : `#${index}, ${seconds.toFixed(3)} s`),
 
   tracking: {
@@ -118,6 +127,8 @@ export const strings = {
     undone: (changed: number): string => `Undone${changed > 0 ? ` in ${frames(changed)}` : ''}.`,
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
     found: (count: number, of: number): string => `${objects(count)} in ${frames(of)}.`,
+    same: (_count: number, of: number): string => `No objects: all ${frames(of)} are the same, pixel by pixel.`,
+    repeated: (count: number, of: number): string => `${objects(count)} in ${frames(of)}, corrected as before.`,
     continued: (count: number, of: number): string => `Continued: ${objects(count).toLowerCase()} in ${frames(of)}.`,
     cancelled: (done: number, of: number): string => `Cancelled. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
@@ -153,12 +164,13 @@ export const strings = {
     ofAll: (name: string, index: number, bytes: number): string => `${name} with frame ${index} alone: ${fileSize(bytes)}`,
     picture: (index: number): string => `Masks of frame ${index} as they are saved`,
   },
+  sameFrames: 'Both frames are the same, pixel by pixel: nothing moves.',
   frameHas: (count: number): string => `${objects(count)} in this frame.`,
   notTracked: 'This frame has no masks yet.',
   play: 'Play',
   pause: 'Pause',
   frameSlider: (index: number, count: number, seconds: number | null): string =>
-    `Frame ${index} of ${count}${seconds === null ? '' : `, ${seconds.toFixed(2)} s`}`,
+    `Frame ${index} of 0–${count - 1}${seconds === null ? '' : `, ${seconds.toFixed(2)} s`}`,
   life: (first: number, last: number): string => (first === last ? `frame ${first} only` : `frames ${first} to ${last}`),
   away: 'not in this frame',
   mergeWith: 'Merge with…',
@@ -186,7 +198,8 @@ export const strings = {
   nameOf: (name: string): string => `Name of ${name}`,
   soloOf: (name: string): string => `Solo: show only ${name}`,
   stabiliseOf: (name: string): string => `Stabilise on ${name}: alternate between the frames with ${name} held in place`,
-  mergeOf: (name: string): string => `Merge ${name} with another mask`,
+  mergeWithOf: (name: string): string => `Mask to merge ${name} with`,
+  mergeOf: (name: string): string => `Merge ${name} with the chosen mask`,
   copied: (what: string, name: string): string => `Copied the motion of ${name} to the clipboard as ${what}.`,
   copiedText: (what: string): string => `Copied the ${what} to the clipboard.`,
 
@@ -200,19 +213,22 @@ export const strings = {
     about: (button: string, sentence: string): string => `${button}: ${sentence}`,
   },
 
-  /** `above`: the score above the lowest; `null` if there is none. */
-  forceNumber: (count: number, above: number | null): string =>
-    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${above === null ? '' : `: ${scoreAbove(above)}`}`,
-  scoreAbove,
+  /** `longer`: the length of the description above the shortest; `null` if there is none. */
+  forceNumber: (count: number, longer: number | null): string =>
+    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${longer === null ? '' : `: ${descriptionOf(longer)}`}`,
+  descriptionOf,
+  /** Why the number found has not the shortest description. */
+  otherThanShortest: (found: number, shortest: number): string =>
+    `Automatic took ${found}, though ${shortest} has the shortest description: these lengths are a check made afterwards, and do not decide.`,
 
   toolHelp: {
-    look: '',
+    look: 'Press on a mask to select it.',
     brush: 'Paint what belongs to the selected mask. The pixels around it follow.',
     eraser: 'Paint what does not belong to the selected mask. The pixels around it follow.',
   },
 
   clipToolHelp: {
-    look: '',
+    look: 'Press on an object to select it.',
     brush: 'Paint what belongs to the selected object, in any frame. The other frames follow.',
     eraser: 'Paint what does not belong to the selected object. The other frames follow.',
   },
@@ -229,7 +245,8 @@ export const strings = {
     waiting: (slot: 'first' | 'second'): string => (slot === 'second' ? 'Now add the second frame.' : 'Now add the first frame.'),
     working: (name: string, index: number, of: number): string => (of > 0 ? `${stage(name)} (${index + 1} of ${of})` : 'Starting…'),
     /** `moving`: the objects; null if motions are shown. `requested`: the number of motions in the settings; null for automatic. */
-    found: (count: number, moving: number | null, requested: number | null, waited: number): string => {
+    found: (count: number, moving: number | null, requested: number | null, waited: number, same: boolean): string => {
+      if (same) return strings.sameFrames;
       const answer = `${moving === null ? motions(count) : objects(moving)} found in ${duration(waited)}`;
       if (requested === null) return `${answer}.`;
       if (count < requested) return `${answer}. Of the ${requested} motions requested, only ${count === 1 ? 'one' : count} could be told apart.`;
@@ -264,6 +281,7 @@ export const strings = {
     noMasks: 'There are no masks to paint yet.',
     chooseMask: 'Select a mask in the list first.',
     nothingElse: 'There is no other mask that these pixels could belong to.',
+    leftOut: (folder: string, count: number): string => `Opened the images of “${folder}”. ${images(count)} of other folders ${count === 1 ? 'is' : 'are'} left out.`,
     nothingTicked: 'Tick an object in the list first.',
     notReady: 'Segment the clip first.',
     otherState:
@@ -277,6 +295,8 @@ export const strings = {
   errors: {
     unreadable: (name: string): string => `“${name}” is not an image that this browser can read.`,
     unreachable: (name: string): string => `“${name}” could not be loaded.`,
+    otherSize: (name: string, other: Size, all: Size): string =>
+      `“${name}” is ${size(other.width, other.height)}, the first frame ${size(all.width, all.height)}: only what is before it can be segmented as a clip.`,
     tooLarge: (name: string, width: number, height: number): string => `“${name}” is too large: ${width} × ${height} pixels.`,
     unreadableVideo: (name: string): string => `“${name}” is not a video that this browser can read.`,
     unreadableFolder: (name: string): string => `The folder “${name}” cannot be read.`,

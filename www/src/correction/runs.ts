@@ -41,32 +41,47 @@ const LEAST_COMMON = 0.1;
  * labels may continue the same one, if it was split.
  */
 export function continued(before: Runs, now: Runs): ReadonlyMap<number, number> {
-  const [old, areasBefore] = [before.width === now.width && before.height === now.height ? before : resized(before, now), new Map<number, number>()];
-  const areasNow = new Map<number, number>();
-  const common = new Map<number, number>();
+  const best = new Map<number, number>();
+  for (const { was, is } of overlapsOf([[before, now]])) if (!best.has(is)) best.set(is, was);
+  return best;
+}
+
+/** Two labels, and the intersection over union of their pixels, at least {@link LEAST_COMMON}. */
+interface Overlap {
+  readonly was: number;
+  readonly is: number;
+  readonly share: number;
+}
+
+/** Which labels of an earlier labelling overlap which ones of a later one, in all these images together, the largest share first. */
+export function overlapsOf(images: Iterable<readonly [Runs, Runs]>): Overlap[] {
+  const [areasBefore, areasNow, common] = [new Map<number, number>(), new Map<number, number>(), new Map<number, number>()];
   const add = (map: Map<number, number>, key: number, pixels: number): void => void map.set(key, (map.get(key) ?? 0) + pixels);
-  for (let i = 0, k = 0, from = 0; i < old.ends.length && k < now.ends.length; ) {
-    const to = Math.min(old.ends[i]!, now.ends[k]!);
-    const [was, is] = [old.labels[i]!, now.labels[k]!];
-    add(areasBefore, was, to - from);
-    add(areasNow, is, to - from);
-    add(common, 256 * is + was, to - from);
-    if (old.ends[i] === to) i += 1;
-    if (now.ends[k] === to) k += 1;
-    from = to;
+  for (const [before, now] of images) {
+    const old = resized(before, now);
+    for (let i = 0, k = 0, from = 0; i < old.ends.length && k < now.ends.length; ) {
+      const to = Math.min(old.ends[i]!, now.ends[k]!);
+      const [was, is] = [old.labels[i]!, now.labels[k]!];
+      add(areasBefore, was, to - from);
+      add(areasNow, is, to - from);
+      add(common, 256 * is + was, to - from);
+      if (old.ends[i] === to) i += 1;
+      if (now.ends[k] === to) k += 1;
+      from = to;
+    }
   }
-  const best = new Map<number, { readonly was: number; readonly share: number }>();
-  for (const [key, pixels] of common) {
-    const [is, was] = [key >> 8, key & 255];
-    if (is === UNLABELLED || was === UNLABELLED) continue;
-    const share = pixels / (areasNow.get(is)! + areasBefore.get(was)! - pixels);
-    if (share >= LEAST_COMMON && share > (best.get(is)?.share ?? 0)) best.set(is, { was, share });
-  }
-  return new Map([...best].map(([is, { was }]) => [is, was]));
+  return [...common]
+    .map(([key, pixels]) => {
+      const [is, was] = [key >> 8, key & 255];
+      return { was, is, share: pixels / (areasNow.get(is)! + areasBefore.get(was)! - pixels) };
+    })
+    .filter(({ was, is, share }) => is !== UNLABELLED && was !== UNLABELLED && share >= LEAST_COMMON)
+    .sort((one, other) => other.share - one.share);
 }
 
 /** The labels at another size, by nearest neighbour. */
-function resized(runs: Runs, { width, height }: Pick<Runs, 'width' | 'height'>): Runs {
+export function resized(runs: Runs, { width, height }: Pick<Runs, 'width' | 'height'>): Runs {
+  if (runs.width === width && runs.height === height) return runs;
   const [labels, sx, sy] = [unpacked(runs), runs.width / width, runs.height / height];
   const pixels = new Uint8Array(width * height);
   for (let y = 0, p = 0; y < height; y++) {

@@ -1,10 +1,11 @@
-//! Formats of annotation tools. The encoders are the package's, loaded on first use.
+//! Formats of annotation tools. The encoders are the package's.
 
+import * as encoders from 'veronese/formats';
 import type { FormatMeta } from 'veronese/formats';
 import { type Export, type Format, TOLERANCE } from './format.js';
 import { zipped } from './zip.js';
 
-type Encoders = typeof import('veronese/formats');
+type Encoders = typeof encoders;
 
 /** The arguments of the encoders. */
 function argumentsFor({ labels, segmentation: { width, height }, masks, annotated, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
@@ -28,7 +29,7 @@ function entry(
     type,
     hint,
     async make(exported) {
-      const made = await encode(await import('veronese/formats'), exported);
+      const made = await encode(encoders, exported);
       if (typeof made === 'string') return made;
       return made instanceof Uint8Array ? new Uint8Array(made) : `${JSON.stringify(made)}\n`;
     },

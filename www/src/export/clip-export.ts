@@ -5,7 +5,7 @@ import type { Clip } from '../clips/clip.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { segmentationOf } from '../state/objects.js';
 import type { Look } from '../state/state.js';
-import { type Life, type Range, type Tracked, livesOf, rangeOf } from '../state/tracked.js';
+import { type Life, type Tracked, livesOf } from '../state/tracked.js';
 import { atSize } from './full-size.js';
 
 /** The class of objects without a name of their own, as of `veronese convert`. */
@@ -19,7 +19,7 @@ export interface ClipFile extends LabelFrame {
   readonly stem: string;
 }
 
-/** Frames that follow each other, and what is said of them all. */
+/** Frames in their order, and what is said of them all. */
 interface Sequence {
   readonly meta: ClipMeta & { readonly clip: string; readonly names: Readonly<Record<number, string>>; readonly labels: readonly number[] };
   /** The frames in their order, each made when it is asked for. */
@@ -34,7 +34,7 @@ export interface ClipExport extends Sequence {
   readonly count: number;
   /** The names of the frames' own files, without extension. */
   readonly stems: readonly string[];
-  /** The same from the first frame of the clip on, without objects in frames before: for formats that count the frames of the video. */
+  /** The same with all frames from the first of the clip on, without objects in those that have no masks: for formats that count the frames. */
   readonly fromStart: Sequence;
 }
 
@@ -52,34 +52,35 @@ export interface ClipFormat {
 
 /** The frames that have masks. `told` is called when a frame has been made. */
 export function exportOfClip(tracked: Tracked, look: Look, told: (done: number, of: number) => void = () => undefined): ClipExport {
-  return exportOfFrames(tracked, look, rangeOf(tracked.frames) ?? { first: 0, last: -1 }, told);
+  return exportOfFrames(tracked, look, [...tracked.frames.keys()].filter((index) => tracked.frames[index] !== null), told);
 }
 
 /** One frame of {@link exportOfClip}; `null` if it has no masks. */
 export function exportOfFrame(tracked: Tracked, look: Look, index: number): ClipExport | null {
-  return (tracked.frames[index] ?? null) === null ? null : exportOfFrames(tracked, look, { first: index, last: index }, () => undefined);
+  return (tracked.frames[index] ?? null) === null ? null : exportOfFrames(tracked, look, [index], () => undefined);
 }
 
 /** The objects are those of all frames. */
-function exportOfFrames(tracked: Tracked, look: Look, { first, last }: Range, told: (done: number, of: number) => void): ClipExport {
+function exportOfFrames(tracked: Tracked, look: Look, indices: readonly number[], told: (done: number, of: number) => void): ClipExport {
   const { clip, frames } = tracked;
-  const count = last - first + 1;
+  const count = indices.length;
   const objects = livesOf(tracked).filter(({ id }) => !look.hidden.has(id));
   const names = Object.fromEntries(objects.map(({ id }) => [id, tracked.names[keyOf('objects', id)] ?? CLASS]));
   const wanted = new Set(objects.map(({ id }) => id));
-  const sequence = (from: number): Sequence => ({
+  const sequence = (exported: readonly number[]): Sequence => ({
     meta: {
       clip: stemOf(clip.name).replace(/[\\/:*?"<>|#]/g, '_'),
       names,
       labels: [...wanted],
       tracked: true,
-      ...(clip.times === null ? {} : { timestamps: [...clip.times.subarray(from, last + 1)].map((time) => time - clip.times![from]!) }),
+      ...(clip.times === null ? {} : { timestamps: exported.map((index) => clip.times![index]! - clip.times![exported[0]!]!) }),
     },
     async *frames() {
-      for (let index = from; index <= last; index++) {
+      for (const index of exported) {
         const image = clip.nameOf(index);
         const named = { index, image, stem: stemOf(image) };
-        const frame = index < first ? null : (frames[index] ?? null);
+        const at = indices.indexOf(index);
+        const frame = at < 0 ? null : (frames[index] ?? null);
         if (frame === null) {
           const { width, height } = clip;
           yield { ...named, labels: new Uint8Array(width * height), width, height, motions: [] };
@@ -91,14 +92,15 @@ function exportOfFrames(tracked: Tracked, look: Look, { first, last }: Range, to
         const moving = new Set(frame.objects.filter(({ id, matrix }) => matrix !== null && wanted.has(id)).map(({ id }) => id));
         if (frame.background !== null) moving.add(0);
         yield { ...named, labels: kept, width, height, motions: motions.filter(({ label }) => moving.has(label)) };
-        told(index - first + 1, count);
+        told(at + 1, count);
         // The page stays responsive between frames.
         await new Promise((resolve) => setTimeout(resolve));
       }
     },
   });
-  const stems = Array.from({ length: count }, (_, k) => stemOf(clip.nameOf(first + k)));
-  return { clip, objects, count, stems, ...sequence(first), fromStart: sequence(0) };
+  const stems = indices.map((index) => stemOf(clip.nameOf(index)));
+  const fromStart = Array.from({ length: (indices.at(-1) ?? -1) + 1 }, (_, index) => index);
+  return { clip, objects, count, stems, ...sequence(indices), fromStart: sequence(fromStart) };
 }
 
 function stemOf(name: string): string {

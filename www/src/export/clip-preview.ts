@@ -1,5 +1,6 @@
 //! What an export of a clip will write: the names of its files, and what it writes of one frame.
 
+import { unzipSync } from 'fflate';
 import type { Look } from '../state/state.js';
 import type { Tracked } from '../state/tracked.js';
 import { type ClipFormat, exportOfClip, exportOfFrame } from './clip-export.js';
@@ -35,14 +36,13 @@ export async function previewOf(format: ClipFormat, tracked: Tracked, look: Look
   if (format.picture !== undefined) return { folders, file: null, shown: await format.picture(one) };
   const [[name, content]] = Object.entries(await format.make(one)) as [[string, string | Uint8Array<ArrayBuffer>]];
   const file = { name: name.replace(/^.*\//, ''), bytes: new Blob([content]).size, ofFrame: name.includes(one.stems[0]!) };
-  if (typeof content !== 'string') return { folders, file, shown: await pictureIn(name, content) };
+  if (typeof content !== 'string') return { folders, file, shown: pictureIn(name, content) };
   return { folders, file, shown: content.slice(0, BEGINNING) + (content.length > BEGINNING ? '…' : '') };
 }
 
 /** The picture that a file is, or the first that it packs. */
-async function pictureIn(name: string, bytes: Uint8Array<ArrayBuffer>): Promise<Blob | null> {
+function pictureIn(name: string, bytes: Uint8Array<ArrayBuffer>): Blob | null {
   if (!name.endsWith('.zip')) return new Blob([bytes], { type: 'image/png' });
-  const { unzipSync } = await import('fflate');
   const picture = Object.entries(unzipSync(bytes)).find(([path]) => path.endsWith('.png'))?.[1];
   return picture === undefined ? null : new Blob([new Uint8Array(picture)], { type: 'image/png' });
 }

@@ -7,7 +7,7 @@ function isVideo(file: File): boolean {
   return file.type.startsWith('video/') || VIDEO_NAMES.test(file.name);
 }
 
-/** The path of a file below the folder that was given, that folder included. */
+/** The path of a file, from the folder that was given. */
 function pathOf({ webkitRelativePath, name }: File): string[] {
   return webkitRelativePath === '' ? [name] : webkitRelativePath.split('/');
 }
@@ -17,15 +17,47 @@ export function withPath(file: File, path: string): File {
   return Object.defineProperty(file, 'webkitRelativePath', { value: path });
 }
 
-/** The folder that was given; `null` if the file itself was. */
-export function folderOf(file: File): string | null {
-  const [folder, ...rest] = pathOf(file);
-  return rest.length === 0 ? null : folder!;
+/** Whether a file was given itself, and not its folder. */
+function isAlone(file: File): boolean {
+  return pathOf(file).length === 1;
 }
 
-/** The name of a file, with the path below the folder that was given: names alone may repeat. */
-export function nameOfFile(file: File): string {
-  return pathOf(file).slice(folderOf(file) === null ? 0 : 1).join('/');
+/** The folder that all files are in, as its path from the folder that was given; empty if files themselves were. */
+export function folderOfAll(files: readonly File[]): string {
+  const paths = files.map((file) => pathOf(file).slice(0, -1));
+  const [first = []] = paths;
+  const end = first.findIndex((part, k) => paths.some((path) => path[k] !== part));
+  return first.slice(0, end < 0 ? first.length : end).join('/');
+}
+
+/** The name of a file, with the path below a folder that it is in: names alone may repeat. */
+export function nameIn(folder: string, file: File): string {
+  return pathOf(file).join('/').slice(folder === '' ? 0 : folder.length + 1);
+}
+
+/** The images of one folder. */
+export interface ImageFolder {
+  readonly path: string;
+  readonly images: readonly File[];
+}
+
+/** Images by folder, in their order. */
+export function foldersOf(images: readonly File[]): ImageFolder[] {
+  const folders = new Map<string, File[]>();
+  for (const image of images) {
+    const path = folderOfAll([image]);
+    folders.set(path, [...(folders.get(path) ?? []), image]);
+  }
+  return [...folders].map(([path, files]) => ({ path, images: files }));
+}
+
+/** What folders of masks are called, and of what is made of frames. */
+const MADE = /^(annotations?|depth|flow|gt|ground[-_ ]?truth|labels?|masks?|overlays?|segmentations?)$/i;
+
+/** Those folders that may have frames: not those of masks, unless there are no others. */
+export function likelyFrames(folders: readonly ImageFolder[]): readonly ImageFolder[] {
+  const others = folders.filter(({ path }) => !path.split('/').some((part) => MADE.test(part)));
+  return others.length > 0 ? others : folders;
 }
 
 /** Frame order: `frame2.png` before `frame10.png`, folder by folder. */
@@ -55,8 +87,8 @@ export interface Openable {
 export function selectOpenable(files: Iterable<File>): Openable {
   const given = [...files];
   const project = given.find(({ name }) => PROJECT_NAMES.test(name)) ?? null;
-  const seen = given.filter((file) => !PROJECT_NAMES.test(file.name) && (folderOf(file) === null || !pathOf(file).some((part) => part.startsWith('.')))).sort(byPath);
+  const seen = given.filter((file) => !PROJECT_NAMES.test(file.name) && (isAlone(file) || !pathOf(file).some((part) => part.startsWith('.')))).sort(byPath);
   const video = seen.find(isVideo) ?? null;
-  const images = seen.filter((file) => file.type.startsWith('image/') || (folderOf(file) === null && seen.length <= 2));
+  const images = seen.filter((file) => file.type.startsWith('image/') || (isAlone(file) && seen.length <= 2));
   return { project, video, images };
 }

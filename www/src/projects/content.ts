@@ -4,7 +4,7 @@ import type { Edits } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Kept } from '../state/kept.js';
-import type { SolvedPairs } from '../state/tracked.js';
+import { type SolvedPairs, type Span, type TrackedFrame, rangeOf } from '../state/tracked.js';
 import type { Project, ProjectClip } from './project.js';
 import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, mapOf, objectOf, orNull } from './schema.js';
 
@@ -13,8 +13,10 @@ type Entries<K, V> = readonly (readonly [K, V])[];
 /** A project with lists of entries in place of maps. */
 export interface Content extends Pick<Project, 'settings'> {
   readonly clip:
-    | (Omit<ProjectClip, 'painted' | 'solved'> & {
+    | (Omit<ProjectClip, 'painted' | 'became' | 'spans' | 'solved'> & {
         readonly painted: Entries<number, Runs>;
+        readonly became: Entries<number, number>;
+        readonly spans: readonly (Omit<Span, 'numbers'> & { readonly numbers: Entries<number, number> })[];
         readonly solved: { readonly settings: SolvedPairs['settings']; readonly pairs: Entries<number, Blob> } | null;
       })
     | null;
@@ -27,9 +29,20 @@ export function isContent(value: unknown, frames: number): value is Content {
   const { clip, pairs } = value as Content;
   if (pairs.some(([, { edits, found }]) => edits.done > edits.actions.length || !(found === null || fits(found.packed)))) return false;
   if (clip === null) return true;
-  const images = [...clip.frames.flatMap((frame) => (frame === null ? [] : [frame.runs])), ...clip.painted.map(([, runs]) => runs)];
-  const { first, last } = clip.range;
-  return clip.frames.length === frames && clip.at < frames && first <= last && last < frames && images.every((image) => sameSize(image, images[0]!));
+  const masks = [...clip.frames.map((frame) => frame?.runs ?? null), ...clip.found, ...clip.painted.map(([, runs]) => runs)];
+  const images = masks.filter((image) => image !== null);
+  const inside = [clip.range, ...clip.spans.map(({ range }) => range)].every(({ first, last }) => first <= last && last < frames);
+  return clip.frames.length === frames && clip.found.length === frames && clip.at < frames && inside && images.every((image) => sameSize(image, images[0]!));
+}
+
+/** The content of a file of version 1 as of this version. Its clips have one state, of all frames that have masks. */
+export function upgraded(content: unknown): unknown {
+  if (!isOld(content) || content.clip === null) return content;
+  const { state, ...clip } = content.clip;
+  const range = rangeOf(clip.frames);
+  const numbers = Array.from({ length: clip.largest }, (_, k) => [k + 1, k + 1]);
+  const spans = state === null || range === null ? [] : [{ range, state, numbers }];
+  return { ...content, clip: { ...clip, spans, found: clip.frames.map((frame) => frame?.runs ?? null), became: [] } };
 }
 
 /** Whether labels and report are of one result. */
@@ -58,17 +71,20 @@ const isColour = listOf(isFrom(0, 255), 3);
 
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
+const isRange = objectOf({ first: isIndex, last: isIndex });
 const isClip = objectOf({
-  range: objectOf({ first: isIndex, last: isIndex }),
+  range: isRange,
   longestSide: isSide,
   largest: isFrom(0, 254),
   names: mapOf(isText),
   colours: mapOf(isColour),
   frames: listOf(orNull(isFrame)),
+  found: listOf(orNull(isRuns)),
   painted: listOf(entryOf(isIndex, isRuns)),
+  became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
+  spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))) })),
   at: isIndex,
   hidden: listOf(isFrom(1, 254)),
-  state: orNull(isBlob),
   solved: orNull(objectOf({ settings: isText, pairs: listOf(entryOf(isIndex, isBlob)) })),
 });
 
@@ -99,3 +115,8 @@ const isFound = objectOf({ packed: objectOf({ report: isReport, runs: isRuns }),
 const isPair = objectOf({ edits: isEdits, found: orNull(isFound), ownMotions: orNull(isMotions), width: isSide, height: isSide });
 
 const isProject = objectOf({ settings: isSettings, clip: orNull(isClip), pairs: listOf(entryOf(isText, isPair)) });
+
+/** What {@link upgraded} reads of a file of version 1. */
+const isOld = objectOf<{ readonly clip: { readonly state: Blob | null; readonly frames: readonly (TrackedFrame | null)[]; readonly largest: number } | null }>({
+  clip: orNull(objectOf({ state: orNull(isBlob), frames: listOf(orNull(isFrame)), largest: isFrom(0, 254) })) as Check<never>,
+});

@@ -6,12 +6,12 @@ import { NO_EDITS } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
 import type { Kept } from '../state/kept.js';
 import type { Subject } from '../state/pair.js';
-import { isContent, isRuns } from './content.js';
+import { isContent, isRuns, upgraded } from './content.js';
 import type { Project } from './project.js';
 import * as check from './schema.js';
 
 const FORMAT = 'veronese-project';
-const VERSION = 1;
+const VERSION = 2;
 const MEDIA_TYPE = 'application/gzip';
 
 /** Where a document refers to a label image, and where to other bytes: their place in its lists. */
@@ -25,7 +25,7 @@ interface BytesPlace {
 /** The first line: what a list of projects shows. */
 export interface Header extends Subject {
   readonly format: typeof FORMAT;
-  readonly version: typeof VERSION;
+  readonly version: 1 | typeof VERSION;
   /** When it was written, as an ISO 8601 date. */
   readonly saved: string;
 }
@@ -94,18 +94,25 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
     const images = lists.images.map(([width, height, count]) => runsFrom(width!, height!, new Uint32Array(taken(4 * count!).buffer), taken(count!)));
     const blobs = lists.bytes.map((length) => new Blob([taken(length)]));
     assert(at === bytes.length);
-    const value: unknown = JSON.parse(content, (_key, value: unknown) => {
+    const parsed: unknown = JSON.parse(content, (_key, value: unknown) => {
       if (isImagePlace(value)) return images[value.image];
       return isBytesPlace(value) ? blobs[value.bytes] : value;
     });
-    const { of, name: called, frames } = header;
+    const { of, name: called, frames, version } = header;
+    const value = version === 1 ? upgraded(parsed) : parsed;
     assert(isContent(value, frames));
     const { settings, clip, pairs } = value;
     const subject = { of, name: called, frames };
     return {
       ...subject,
       settings,
-      clip: clip && { ...clip, painted: new Map(clip.painted), solved: clip.solved && { ...clip.solved, pairs: new Map(clip.solved.pairs) } },
+      clip: clip && {
+        ...clip,
+        painted: new Map(clip.painted),
+        became: new Map(clip.became),
+        spans: clip.spans.map((span) => ({ ...span, numbers: new Map(span.numbers) })),
+        solved: clip.solved && { ...clip.solved, pairs: new Map(clip.solved.pairs) },
+      },
       pairs: new Map(pairs.map(([key, kept]) => [key, { ...kept, subject, edits: { ...NO_EDITS, ...kept.edits } }])),
     };
   });
@@ -126,7 +133,7 @@ function assert(condition: boolean): asserts condition {
 
 const isHeader = check.objectOf<Header>({
   format: check.isOne(FORMAT),
-  version: check.isOne(VERSION),
+  version: check.isOne(1, VERSION),
   of: check.isText,
   name: check.isText,
   frames: check.isFrom(1),

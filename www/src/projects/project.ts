@@ -9,7 +9,7 @@ import type { State } from '../state/state.js';
 import { type SolvedPairs, type Tracked, type Version, isComplete, isTracked, lengthOf, untracked, versionOf } from '../state/tracked.js';
 
 /** The objects of a clip. */
-export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'longestSide' | 'names' | 'colours'> {
+export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'names' | 'colours'> {
   /** The frame on screen and the objects that are not ticked, when the project was written. */
   readonly at: number;
   readonly hidden: readonly number[];

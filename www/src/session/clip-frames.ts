@@ -13,6 +13,9 @@ export class ClipFrames {
   /** Number of frames that have been read, from the first of the range on. */
   #read = 0;
   #stopped = false;
+  /** The pixels of the first frame that was read, while all others are the same. */
+  #first: Uint8ClampedArray | null = null;
+  #differ = false;
 
   constructor(
     readonly clip: Clip,
@@ -28,6 +31,11 @@ export class ClipFrames {
     return this.#stopped;
   }
 
+  /** Whether all frames that have been read have the same pixels. */
+  get same(): boolean {
+    return this.#first !== null;
+  }
+
   /** Ends the clip after the frames that have been read: the package labels those. */
   stop(): void {
     this.#stopped = true;
@@ -41,6 +49,14 @@ export class ClipFrames {
     bitmap.close();
     this.size.width = width;
     this.size.height = height;
+    this.#compare(data);
     return { data, width, height };
+  }
+
+  #compare(data: Uint8ClampedArray): void {
+    if (this.#differ) return;
+    const first = this.#first ?? data.slice(); // the package may take the buffer
+    this.#differ = !data.every((value, k) => value === first[k]);
+    this.#first = this.#differ ? null : first;
   }
 }

@@ -2,14 +2,13 @@
 //! failure ends as a notice in the state, and the page stays usable.
 
 import type { Clip } from '../clips/clip.js';
-import { openFolder } from '../clips/folder.js';
 import { openClip } from '../clips/open.js';
 import { PageError, codeOf, sentenceOf } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
 import type { Path, Stroke } from '../correction/strokes.js';
 import { WHOLE } from '../drawing/viewport.js';
-import { nameOfFile, selectOpenable, withPath } from '../frames/files.js';
+import { type ImageFolder, folderOfAll, foldersOf, likelyFrames, nameIn, selectOpenable, withPath } from '../frames/files.js';
 import { fetchImage, frameFromBlob, smaller } from '../frames/frame.js';
 import { SAMPLES, type Sample, type SampleClip, type SamplePair } from '../frames/samples.js';
 import type { Project, ProjectClip } from '../projects/project.js';
@@ -20,7 +19,7 @@ import type { Settings } from '../state/settings.js';
 import { FRESH, type Look, type Run, type State, type Store } from '../state/state.js';
 import { type Tracked, isTracked, livesOf } from '../state/tracked.js';
 import { Correcting, isCurrent, isPending } from './correcting.js';
-import { LiveView } from './live.js';
+import type { LiveView } from './live.js';
 import { frameOf, resultOf } from '../state/objects.js';
 import { Segmenting } from './segmenting.js';
 import { Tracking } from './tracking.js';
@@ -40,7 +39,8 @@ export class Session {
   readonly correcting: Correcting;
   readonly tracking: Tracking;
   readonly projects: Projects;
-  readonly #live: LiveView;
+  /** Loaded when the camera is used. */
+  #live: LiveView | null = null;
   /** Incremented by each opening, so that a slow one never replaces a later one. */
   #opened = 0;
   /** Distance between the two frames of the clip. */
@@ -57,7 +57,6 @@ export class Session {
       say: (sentence) => this.say(sentence),
     });
     this.projects = new Projects(store, this.tracking, (sentence, code) => this.say(sentence, code));
-    this.#live = new LiveView(store, (error) => this.#fail(error));
   }
 
   /** Opens a sample and segments it. `swapped`: a pair with the second frame first. */
@@ -81,16 +80,26 @@ export class Session {
    */
   openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
     let opened: Project | null = null;
+    let leftOut = '';
+    let folder: Clip | null = null;
     return this.#openFrames(
       async () => {
-        const { project, video, images } = selectOpenable(await files);
+        const { project, video, images: all } = selectOpenable(await files);
         if (project !== null) opened = await this.projects.open(project);
         if (video !== null) return this.#startOf(await openClip(video));
-        if (images.length > 2) return this.#startOf(await openFolder(images));
+        const folders = foldersOf(all);
+        const [likely, ...others] = likelyFrames(folders);
+        const images = others.length > 0 ? await this.#chosen(folders, all) : (likely?.images ?? []);
+        if (images === null) return [];
+        if (others.length === 0 && images.length < all.length) leftOut = strings.notices.leftOut(likely!.path, all.length - images.length);
+        if (images.length > 2) {
+          const { openFolder } = await loaded(import('../clips/folder.js'));
+          return this.#startOf((folder = await openFolder(images)));
+        }
         if (images.length === 0 && project !== null) return [];
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
         const { longestSide } = this.#store.get().settings;
-        return Promise.all(images.map((image) => frameFromBlob(image, nameOfFile(image), longestSide)));
+        return Promise.all(images.map((image) => frameFromBlob(image, nameIn(folderOfAll(images), image), longestSide)));
       },
       (frames, pair) => {
         if (frames.length === 2) return pairOf(frames);
@@ -101,6 +110,8 @@ export class Session {
       },
       (found) => {
         if (opened !== null && found !== opened) this.say(strings.projects.waiting(opened.name));
+        else if (leftOut !== '') this.say(leftOut);
+        if (folder !== null) void this.#checkSizes(folder);
       },
     );
   }
@@ -136,16 +147,17 @@ export class Session {
     return this.#goTo({ first: at, second: clamped(at + apart, clip.count) });
   }
 
-  /** Goes to the frame where the selected object is least certain; then, or if none is selected, to that of the next object. */
-  goToDoubtful(): void {
+  /** Goes to the frame where an object is least certain, by default the selected one; then, or if none is selected, to that of the next. */
+  goToDoubtful(id: number | null = null): void {
     const { tracked, look, timeline } = this.#store.get();
     if (tracked === null || look.kind !== 'objects') return;
     const lives = livesOf(tracked);
-    const selected = lives.findIndex(({ id }) => id === look.selected);
-    const seen = selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
+    const selected = lives.findIndex((life) => life.id === (id ?? look.selected));
+    const seen = id === null && selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
     const life = lives[(selected < 0 ? 0 : selected + Number(seen)) % lives.length];
     if (life === undefined) return;
     this.select(life.id);
+    this.#store.set({ tracked: { ...tracked, checked: new Map(tracked.checked).set(life.id, life.doubtful.index) } });
     void this.goTo(life.doubtful.index);
   }
 
@@ -191,11 +203,16 @@ export class Session {
   /** Switches the camera on, or off: its last two frames become a pair. */
   toggleLive(): Promise<void> {
     if (this.#store.get().live !== null) {
-      this.#live.stop();
+      this.#live?.stop();
       return this.segment();
     }
     return this.#open(
-      () => this.#live.start(),
+      async (): Promise<() => void> => {
+        const turn: number = this.#opened;
+        const { LiveView } = await loaded(import('./live.js'));
+        this.#live ??= new LiveView(this.#store, (error) => this.#fail(error));
+        return turn === this.#opened ? this.#live.start() : () => undefined;
+      },
       (show) => {
         this.correcting.keep();
         this.#stop();
@@ -284,7 +301,7 @@ export class Session {
 
   /** Selects a mask. */
   select(mask: number | null): void {
-    this.#store.look({ selected: mask });
+    if (this.#store.get().look.selected !== mask) this.#store.look({ selected: mask });
   }
 
   /** Stops at once; the last result stays. */
@@ -325,6 +342,27 @@ export class Session {
   /** Shows a notice; with a code it is an error. */
   say(sentence: string, code: string | null = null): void {
     this.#store.set({ notice: { sentence, code } });
+  }
+
+  /** The images of the folder that the person chooses, or all; `null` if none. */
+  async #chosen(folders: readonly ImageFolder[], images: readonly File[]): Promise<readonly File[] | null> {
+    const turn = this.#opened;
+    const chosen = await new Promise<readonly File[] | null>((resolve) => {
+      const answer = (files: readonly File[] | null): void => {
+        this.#store.set({ question: null });
+        resolve(files);
+      };
+      this.#store.set({ question: { folders, images, answer } });
+    });
+    if (chosen === null && turn === this.#opened) this.#stopOpening();
+    return chosen;
+  }
+
+  /** Tells of a frame that has another size than the clip, which ends where it is segmented. */
+  async #checkSizes(clip: Clip): Promise<void> {
+    const other = await clip.otherSize?.();
+    if (!other || this.#store.get().timeline?.clip !== clip) return;
+    this.say(strings.errors.otherSize(clip.nameOf(other.index), other, clip), 'frame-size-mismatch');
   }
 
   /** Two frames of a clip. */
@@ -388,7 +426,7 @@ export class Session {
       },
       ({ frames, project }) => {
         const pair = place(frames, this.#store.get().pair);
-        if (frames.length > 0) this.#live.stop();
+        if (frames.length > 0) this.#live?.stop();
         if (project !== null) this.correcting.keep();
         this.projects.restore(project, pair);
         if (frames.length > 0 || project !== null) this.#setPair(pair);
@@ -434,7 +472,8 @@ export class Session {
 
   /** Invalidates whatever is being opened. */
   #invalidate(): number {
-    if (this.#store.get().live === null) this.#live.stop();
+    if (this.#store.get().live === null) this.#live?.stop();
+    this.#store.get().question?.answer(null);
     return ++this.#opened;
   }
 
@@ -490,8 +529,15 @@ export class Session {
 
 /** Opens a sample as the folder that it is. */
 async function openFolderOf(sample: SampleClip): Promise<Clip> {
-  const images = await Promise.all(sample.frames.map(fetchImage));
+  const [{ openFolder }, images] = await Promise.all([loaded(import('../clips/folder.js')), Promise.all(sample.frames.map(fetchImage))]);
   return openFolder(images.map((image) => withPath(image, `${sample.id}/${image.name}`)), sample);
+}
+
+/** A part of the page that is loaded when it is used. */
+function loaded<T>(part: Promise<T>): Promise<T> {
+  return part.catch(() => {
+    throw new PageError('not-loaded', strings.errors.notLoaded);
+  });
 }
 
 function clamped(index: number, count: number): number {

@@ -13,14 +13,13 @@ import { UNLABELLED, keyOf } from '../result/masks.js';
 import { type Said, paintedOver, withSaid } from '../state/said.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
-import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, rangeOf, untracked, versionOf } from '../state/tracked.js';
+import { MOST_OBJECTS, contains, editsIn, fromSpan, numbersOf, spanAt, toSpan, withRun } from '../state/spans.js';
+import { type ClipRun, type Range, type SolvedPairs, type Span, type Tracked, type TrackedFrame, type Version, isTracked, untracked, versionOf } from '../state/tracked.js';
 import { ClipFrames, STOPPED } from './clip-frames.js';
 import { TimeLeft } from './time-left.js';
 
 /** Masks are shown at most this often while they come, milliseconds. */
 const OFTEN = 100;
-/** The largest number of an object. */
-const MOST_OBJECTS = 254;
 
 interface Hooks {
   /** The masks of some frames have changed; `before`: what there was. */
@@ -80,13 +79,17 @@ export class Tracking {
     this.#store.set({ tracked: { ...tracked, range } });
   }
 
-  /** Segments the open clip from its in point to its out point, or continues with it. */
+  /**
+   * Segments the open clip from its in point to its out point, or continues with it. Masks that there are stay until all new ones are
+   * there; what is outside stays, and corrections are applied again.
+   */
   async segment(): Promise<void> {
     const { tracked, settings: own, motionsElsewhere } = this.#store.get();
     if (tracked === null) return;
     const { clip, range } = tracked;
     // The number of motions of a single pair is not that of the clip.
-    const settings = { ...own, motions: motionsElsewhere ?? own.motions };
+    const alone = tracked.frames.every((frame, index) => frame === null || contains(range, index));
+    const settings = { ...own, motions: motionsElsewhere ?? own.motions, longestSide: alone ? own.longestSide : tracked.longestSide };
     const { longestSide, ...options } = settings;
     const { pairs } = this.#knownOf(clip, range, settings);
     await this.#run(async (signal, set) => {
@@ -94,7 +97,7 @@ export class Tracking {
       const solved = (): number => [...pairs.keys()].filter((index) => index < frames.length).length;
       const time = new TimeLeft(solved(), frames.length);
       const solving = (): void => {
-        if (!frames.stopped) set({ run: { phase: 'working', stage: 'pairs', left: time.at(solved()) }, solved: solved() });
+        if (!frames.stopped) set({ run: { phase: 'working', stage: 'pairs', left: time.at(solved()), labelled: 0 }, solved: solved() });
       };
       solving();
       const found = this.#segmenter.segmentClip(frames, {
@@ -107,17 +110,22 @@ export class Tracking {
           solving();
         },
       });
+      const masks: TrackedFrame[] = [];
       let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
       try {
-        await this.#take(found, frames, set);
+        await this.#take(found, frames, masks, set);
+        if (frames.same) run = { ...run, cause: 'same' };
       } catch (error) {
         if (error !== STOPPED) throw error;
         run = { phase: 'cancelled' };
       }
-      // Stopped before its first frame, the clip has told nothing.
-      if (frames.size.width === 0) return set({ run });
-      const state = await found.state();
-      set({ state: state === undefined ? null : blobOf(state), run });
+      const state = masks.length === 0 ? undefined : await found.state();
+      const { tracked: before } = this.#store.get();
+      if (signal.aborted || before === null) return;
+      // A run that was cancelled early has less than there was.
+      const covered = before.frames.every((frame, index) => frame === null || !contains(range, index) || index < range.first + masks.length);
+      if (state === undefined || !covered) return set({ run });
+      await this.#replace(before, masks, { first: range.first, last: range.first + masks.length - 1 }, { state, longestSide, run }, signal, set);
     });
   }
 
@@ -126,7 +134,7 @@ export class Tracking {
     const { tracked } = this.#store.get();
     if (tracked?.run.phase !== 'working' || tracked.run.stage !== 'pairs' || this.#solving === null) return this.#abort();
     this.#solving.stop();
-    this.#store.set({ tracked: { ...tracked, run: { phase: 'working', stage: 'labels', left: null } } });
+    this.#store.set({ tracked: { ...tracked, run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } } });
   }
 
   /** Stops the run at once; what is done stays. */
@@ -150,6 +158,7 @@ export class Tracking {
     const frame = timeline?.first ?? null;
     const own = look.selected;
     if (!this.#takesCorrections() || tracked === null || frame === null || pair.first === null) return null;
+    if (spanAt(tracked.spans, frame) === null) return this.#refuse(strings.notTracked);
     if (own === null) return this.#refuse(strings.notices.chooseMask);
     if (own === UNLABELLED) return this.#refuse(strings.notices.notPainted);
     if (own === 0 && tool === 'eraser') return this.#refuse(strings.notices.nothingElse);
@@ -245,7 +254,7 @@ export class Tracking {
 
   #takesCorrections(): boolean {
     const { tracked } = this.#store.get();
-    const ready = tracked !== null && tracked.state !== null;
+    const ready = tracked !== null && tracked.spans.length > 0;
     if (!ready) this.#hooks.say(strings.notices.notReady);
     return ready;
   }
@@ -279,37 +288,59 @@ export class Tracking {
     if (this.#store.get().tracked?.run.phase === 'failed') this.#show(carrying.settled, { phase: 'done', cause: 'undone', changed: 0 });
   }
 
-  /** Carries the next correction through the clip. */
+  /** Carries the next correction through the frames that were segmented together. */
   async #carry(carrying: Carrying, signal: AbortSignal, set: Change): Promise<void> {
     const { settled: before, waiting } = carrying;
     const said = waiting.shift();
+    if (said === undefined) return;
+    set({ run: { phase: 'working', stage: 'corrections', left: null, labelled: 0 } });
+    let after: Version = before;
+    if ('edits' in said) {
+      after = withSaid(before, said);
+      const objects = new Set([...(said.edits.merge ?? []), said.edits.delete ?? []].flat());
+      for (const span of before.spans) if ([...span.numbers.values()].some((id) => objects.has(id))) after = await this.#applied(after, span, [], signal);
+    } else {
+      const painted = paintedOver(before.painted.get(said.frame), said.labels, before.frames[said.frame]!.runs);
+      after = await this.#applied({ ...before, painted: new Map(before.painted).set(said.frame, painted) }, spanAt(before.spans, said.frame)!, [said.frame], signal);
+    }
+    const now = this.#store.get().tracked;
+    if (signal.aborted || now === null) return;
+    carrying.settled = after;
+    set({ past: [...now.past, before], future: [] });
+    const changed = after.frames.filter((frame, index) => frame !== before.frames[index]).length;
+    // What was said meanwhile stays on screen.
+    this.#show(waiting.reduce(withSaid, after), waiting.length > 0 ? now.run : { phase: 'done', cause: 'corrected', changed });
+  }
+
+  /** Applies what became of objects to the frames of a span, and what was painted in some of them. */
+  async #applied(version: Version, span: Span, painted: readonly number[], signal: AbortSignal): Promise<Version> {
     const { tracked, settings } = this.#store.get();
-    if (said === undefined || tracked === null || before.state === null) return;
-    set({ run: { phase: 'working', stage: 'corrections', left: null } });
-    const painted = 'labels' in said ? new Map(before.painted).set(said.frame, paintedOver(before.painted.get(said.frame), said.labels, before.frames[said.frame]!.runs)) : before.painted;
-    const range = rangeOf(before.frames)!;
-    const frames = new ClipFrames(tracked.clip, tracked.longestSide, range);
+    if (tracked === null) return version;
+    const { first } = span.range;
+    const numbers = new Map(span.numbers);
+    const frames = new ClipFrames(tracked.clip, version.longestSide, span.range);
+    const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(unpacked(version.painted.get(index)!), numbers) }));
     const found = this.#segmenter.segmentClip(frames, {
-      state: (await bytesOf(before.state))!,
+      state: (await bytesOf(span.state))!,
       markUnknown: settings.markUnknown,
       changesOnly: true,
       signal,
       transfer: true,
-      ...('edits' in said ? { edits: said.edits } : { corrections: [{ frame: said.frame - range.first, labels: unpacked(painted.get(said.frame)!) }] }),
+      edits: editsIn(numbers, version.became),
+      corrections,
     });
-    const masks = [...before.frames];
-    let changed = 0;
+    const masks = [...version.frames];
+    let { largest } = version;
     for await (const frame of found) {
-      masks[range.first + frame.index] = masksOf(frame, frames.size);
-      changed += 1;
+      const index = first + frame.index;
+      const named = fromSpan(masksOf(frame, frames.size), numbers, largest);
+      largest = Math.max(largest, ...named.objects.map(({ id }) => id));
+      if (spanAt(version.spans, index) === span) masks[index] = named;
     }
     const state = await found.state();
-    const now = this.#store.get().tracked;
-    if (signal.aborted || state === undefined || now === null) return;
-    carrying.settled = { frames: masks, state: blobOf(state), painted, largest: Math.max(before.largest, largestOf(masks)) };
-    set({ past: [...now.past, before], future: [] });
-    // What was said meanwhile stays on screen.
-    this.#show(waiting.reduce(withSaid, carrying.settled), waiting.length > 0 ? now.run : { phase: 'done', cause: 'corrected', changed });
+    if (state === undefined) return version;
+    const spans = version.spans.map((other) => (other === span ? { ...span, state: blobOf(state), numbers } : other));
+    return { ...version, frames: masks, spans, largest };
   }
 
   /** Another version of the masks. */
@@ -317,6 +348,9 @@ export class Tracking {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     this.#store.set({ tracked: { ...tracked, ...versionOf(version), run } });
+    const { selected } = this.#store.get().look;
+    const now = version.became.get(selected ?? 0);
+    if (now !== undefined) this.#store.look({ selected: now === 0 ? null : now });
     this.#hooks.changed(tracked);
   }
 
@@ -354,30 +388,53 @@ export class Tracking {
     }
   }
 
-  /** Takes the labelled frames as they come. They replace all masks that there were; those that a person corrected can be brought back. */
-  async #take(found: AsyncIterable<ClipFrame>, { clip, longestSide, range, size }: ClipFrames, set: Change): Promise<void> {
-    const frames = [...untracked(clip).frames];
+  /** Takes the labelled frames as they come, and shows them if there are no masks yet. */
+  async #take(found: AsyncIterable<ClipFrame>, { clip, longestSide, range, size }: ClipFrames, masks: TrackedFrame[], set: Change): Promise<void> {
+    const { tracked } = this.#store.get();
+    const fresh = !isTracked(tracked);
     let shown = 0;
     const show = (): void => {
       const { tracked: before } = this.#store.get();
       if (before === null) return;
-      const first = shown === 0;
       shown = performance.now();
-      const masks = [...frames];
-      const past = first && before.past.length > 0 ? { past: [...before.past, versionOf(before)] } : {};
-      if (first) set({ ...past, state: null, painted: new Map(), future: [], longestSide });
-      set({ run: { phase: 'working', stage: 'labels', left: null }, frames: masks, largest: largestOf(masks) });
-      if (first || before.saved.frames === before.frames) set({ saved: { frames: masks, names: before.names, colours: before.colours } });
+      set({ run: { phase: 'working', stage: 'labels', left: null, labelled: masks.length } });
+      if (!fresh) return;
+      const frames = untracked(clip).frames.map((_, index) => masks[index - range.first] ?? null);
+      set({ frames, largest: largestOf(frames), longestSide, saved: { frames, names: before.names, colours: before.colours } });
       this.#hooks.changed(before);
     };
     try {
       for await (const frame of found) {
-        frames[range.first + frame.index] = masksOf(frame, size);
+        masks.push(masksOf(frame, size));
         if (performance.now() - shown >= OFTEN) show();
       }
     } finally {
-      if (frames.some((frame) => frame !== null)) show();
+      if (masks.length > 0) show();
     }
+  }
+
+  /** Puts the masks of a run in the place of those before, under the same numbers, and corrects them as those were corrected. */
+  async #replace(
+    before: Tracked,
+    masks: readonly TrackedFrame[],
+    range: Range,
+    { state, longestSide, run }: { readonly state: Uint8Array; readonly longestSide: number; readonly run: ClipRun },
+    signal: AbortSignal,
+    set: Change,
+  ): Promise<void> {
+    const { spans, past, painted, became } = before;
+    const numbers = spans.length === 0 ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
+    let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
+    const said = [...painted.keys()].filter((index) => contains(range, index));
+    const corrected = said.length > 0 || became.size > 0;
+    if (corrected) version = await this.#applied(version, version.spans.at(-1)!, said, signal);
+    const { tracked: now } = this.#store.get();
+    if (signal.aborted || now === null) return;
+    // What a person corrected can be brought back.
+    if (past.length > 0) set({ past: [...past, versionOf(before)] });
+    else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
+    set({ future: [] });
+    this.#show(version, corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
   }
 
   /** What is known for these settings: other settings and another first frame begin anew. */

@@ -3,6 +3,7 @@
 import type { ClipFrame, ClipOptions } from 'veronese';
 import { type Runs, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
+import { becameAfter } from './spans.js';
 import type { Version } from './tracked.js';
 
 /** What a person says: pixels of one frame, or what becomes of whole objects. */
@@ -14,10 +15,11 @@ export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: 
   return packed(all, size.width, size.height);
 }
 
-/** The masks with what is painted in its own frame. The motions and certainties of that frame follow later. */
+/** The masks with what is painted in its own frame. The motions and certainties of that frame follow later, and the masks of whole objects. */
 export function withSaid<V extends Version>(version: V, said: Said): V {
-  const masks = 'labels' in said ? version.frames[said.frame] : null;
-  if (!('labels' in said) || !masks) return version;
+  if ('edits' in said) return { ...version, became: becameAfter(version.became, said.edits) };
+  const masks = version.frames[said.frame];
+  if (!masks) return version;
   const { width, height } = masks.runs;
   const labels = unpacked(masks.runs);
   const painted = new Set<number>();

@@ -5,6 +5,7 @@ import { NO_EDITS, type Edits } from '../correction/edits.js';
 import type { Stroke } from '../correction/strokes.js';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
+import type { ImageFolder } from '../frames/files.js';
 import type { Kept } from './kept.js';
 import type { FramePair, LoadedFrame, Slot, Timeline } from './pair.js';
 import { DEFAULT_SETTINGS, type Settings } from './settings.js';
@@ -67,6 +68,15 @@ export interface Live {
   readonly rate: number;
 }
 
+/** Which of several folders has the frames. */
+export interface Question {
+  readonly folders: readonly ImageFolder[];
+  /** Those of all folders. */
+  readonly images: readonly File[];
+  /** With the images that are opened; `null` for none. */
+  readonly answer: (images: readonly File[] | null) => void;
+}
+
 /** A message to the user; an error if `code` is set. */
 export interface Notice {
   readonly sentence: string;
@@ -100,6 +110,7 @@ export interface State {
   readonly viewport: Viewport;
   readonly tool: Tool;
   readonly notice: Notice | null;
+  readonly question: Question | null;
   /** Whether the browser keeps the work: it has not had to, does, or did not the last time. */
   readonly keeping: 'nothing' | 'kept' | 'refused';
 }
@@ -131,6 +142,7 @@ export const INITIAL: State = {
   viewport: WHOLE,
   tool: { name: 'look', radius: 8 },
   notice: null,
+  question: null,
   keeping: 'nothing',
 };
 

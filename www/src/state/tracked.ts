@@ -21,12 +21,14 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'corrected' | 'undone' | 'redone' | 'continued'; readonly changed: number }
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'corrected' | 'undone' | 'redone' | 'continued'; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
       /** Time left until all masks are there, seconds; `null` until it can be told. */
       readonly left: number | null;
+      /** Number of frames that are labelled. */
+      readonly labelled: number;
     };
 
 /** What the pairs of each frame have told, for a run that goes on. The bytes are in blobs, which browsers can move to disk. */
@@ -37,17 +39,29 @@ export interface SolvedPairs {
   readonly pairs: Map<number, Blob>;
 }
 
+/** Frames that were segmented together. */
+export interface Span {
+  readonly range: Range;
+  /** What the package knows of these frames, in a blob, which browsers can move to disk. */
+  readonly state: Blob;
+  /** The numbers of their objects here by those of the package, which counts anew in each run. */
+  readonly numbers: ReadonlyMap<number, number>;
+}
+
 /** The masks of all frames and what they follow from: one step of undo and redo. Frames that do not change are shared between steps. */
 export interface Version {
   /** By index; `null` for frames without masks. */
   readonly frames: readonly (TrackedFrame | null)[];
-  /**
-   * What the package knows of the frames that have masks, in a blob, which browsers can move to disk; `null` while there are masks to come
-   * of frames whose pairs are solved.
-   */
-  readonly state: Blob | null;
+  /** What the package knows of these frames. Where spans overlap, the masks are of the last. There are none until the first masks are complete. */
+  readonly spans: readonly Span[];
+  /** Longer side of the frames as they were segmented, pixels. */
+  readonly longestSide: number;
+  /** The masks before corrections, by index: they tell which object of another run is which. */
+  readonly found: readonly (Runs | null)[];
   /** What was painted in frames, by index: numbers as in `frames`, and 255 where nothing is said. */
   readonly painted: ReadonlyMap<number, Runs>;
+  /** What became of objects that were merged or deleted: the number of another object, or 0. */
+  readonly became: ReadonlyMap<number, number>;
   /** The largest number that an object ever had. Numbers are not used again. */
   readonly largest: number;
 }
@@ -59,11 +73,11 @@ export interface Tracked extends Version {
   readonly range: Range;
   /** Number of frames whose pairs are solved, nearly all the work. They are kept when a run is cancelled. */
   readonly solved: number;
-  /** Longer side of the frames as they were segmented, pixels. */
-  readonly longestSide: number;
   /** Earlier versions, and later ones that were undone; the nearest is last. */
   readonly past: readonly Version[];
   readonly future: readonly Version[];
+  /** The frames at which a person looked because an object is least certain there, by its number. */
+  readonly checked: ReadonlyMap<number, number>;
   /** Names and colours that the user gave to objects, by `keyOf`. */
   readonly names: Readonly<Record<string, string>>;
   readonly colours: Readonly<Record<string, Colour>>;
@@ -82,21 +96,24 @@ export function untracked(clip: Clip): Tracked {
     run: { phase: 'idle' },
     range: { first: 0, last: clip.count - 1 },
     solved: 0,
-    longestSide: Infinity,
     frames,
-    state: null,
+    spans: [],
+    longestSide: Infinity,
+    found: frames,
     painted: new Map(),
+    became: new Map(),
     largest: 0,
     past: [],
     future: [],
+    checked: new Map(),
     names: NOTHING,
     colours: NOTHING,
     saved: { frames, names: NOTHING, colours: NOTHING },
   };
 }
 
-export function versionOf({ frames, state, painted, largest }: Version): Version {
-  return { frames, state, painted, largest };
+export function versionOf({ frames, spans, longestSide, found, painted, became, largest }: Version): Version {
+  return { frames, spans, longestSide, found, painted, became, largest };
 }
 
 /** Whether leaving would lose what a person did. */
@@ -133,7 +150,7 @@ export function livesOf({ frames }: Pick<Tracked, 'frames'>): Life[] {
   return [...lives.values()].sort((one, other) => one.id - other.id);
 }
 
-/** The frames that have masks, which follow each other; `null` if there are none. */
+/** From the first frame that has masks to the last; `null` if there are none. */
 export function rangeOf(frames: Version['frames']): Range | null {
   const first = frames.findIndex((frame) => frame !== null);
   return first < 0 ? null : { first, last: frames.findLastIndex((frame) => frame !== null) };
@@ -144,12 +161,17 @@ export function lengthOf({ first, last }: Range): number {
   return last - first + 1;
 }
 
+/** Number of frames in the range that have masks. */
+export function masksIn(frames: Version['frames'], { first, last }: Range): number {
+  return frames.slice(first, last + 1).filter((frame) => frame !== null).length;
+}
+
 /** Whether there are masks of any frame. */
 export function isTracked(tracked: Tracked | null): tracked is Tracked {
   return tracked !== null && tracked.frames.some((frame) => frame !== null);
 }
 
 /** Whether all frames to segment have their masks, and take corrections. */
-export function isComplete({ frames, state, range }: Pick<Tracked, 'frames' | 'state' | 'range'>): boolean {
-  return state !== null && frames.slice(range.first, range.last + 1).every((frame) => frame !== null);
+export function isComplete({ frames, spans, range }: Pick<Tracked, 'frames' | 'spans' | 'range'>): boolean {
+  return spans.length > 0 && masksIn(frames, range) === lengthOf(range);
 }

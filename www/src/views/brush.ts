@@ -42,6 +42,9 @@ export class Brush {
       if (now.pair !== before.pair) {
         this.abandon();
         this.#at = null;
+        // Strokes are in pixels of the frame, whatever its masks are, and whether there are any.
+        const frame = now.pair.first ?? now.pair.second;
+        if (frame !== null) this.#picture.setAttribute('viewBox', `-0.5 -0.5 ${frame.width} ${frame.height}`);
       }
       if (now.tool.name !== before.tool.name) this.end();
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
@@ -57,7 +60,7 @@ export class Brush {
   key({ key, shiftKey }: KeyboardEvent): boolean {
     const { tool, result } = this.#store.get();
     if (tool.name === 'look' || result === null) return false;
-    const { width, height } = result.segmentation;
+    const { width, height } = result.pair.first;
     const [x, y] = this.#at ?? [width / 2, height / 2];
     const step = shiftKey ? 1 : Math.max(2, tool.radius);
     const [right, down] = STEPS[key] ?? [0, 0];
@@ -136,7 +139,6 @@ export class Brush {
   #draw({ edits, tool, result, found, look }: State): void {
     if (result === null || found === null || tool.name === 'look') return this.#strokes.replaceChildren();
     const { segmentation } = result;
-    this.#picture.setAttribute('viewBox', `-0.5 -0.5 ${segmentation.width} ${segmentation.height}`);
     this.#strokes.replaceChildren(
       ...strokesOf(edits).map((stroke) => {
         const mask = stroke.tool === 'brush' ? maskWith(labelsIn(stroke.mask, labellingOf(found)), segmentation, look.kind) : null;

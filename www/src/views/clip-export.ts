@@ -55,5 +55,5 @@ async function saveFiles(format: ClipFormat, made: Awaited<ReturnType<ClipFormat
   const [[name, content]] = files as [(typeof files)[number]];
   if (files.length === 1) return save(content instanceof Uint8Array ? new Uint8Array(content) : content, 'application/octet-stream', name);
   const bytes = files.map(async ([path, one]) => [path, new Uint8Array(await new Blob([one as BlobPart]).arrayBuffer())] as const);
-  save(await zipped(Object.fromEntries(await Promise.all(bytes))), 'application/zip', `${format.id}.zip`);
+  save(zipped(Object.fromEntries(await Promise.all(bytes))), 'application/zip', `${format.id}.zip`);
 }

@@ -3,7 +3,7 @@
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
-import { type Tracked, lengthOf, livesOf, rangeOf } from '../state/tracked.js';
+import { type Tracked, lengthOf, livesOf, masksIn, rangeOf } from '../state/tracked.js';
 import { find } from './markup.js';
 
 export function mountClipRun(root: HTMLElement, store: Store, session: Session): void {
@@ -59,26 +59,27 @@ function sentenceFor(tracked: Tracked): string {
     case 'working':
       return run.stage === 'corrections' ? tracking.corrections : tracking.started;
     case 'done':
-      return run.cause === 'found' || run.cause === 'continued' ? tracking[run.cause](livesOf(tracked).length, withMasks(frames)) : tracking[run.cause](run.changed);
+      if (run.cause === 'corrected' || run.cause === 'undone' || run.cause === 'redone') return tracking[run.cause](run.changed);
+      return tracking[run.cause](livesOf(tracked).length, masksIn(frames, all(tracked)));
     case 'cancelled':
     case 'failed':
-      return tracking[run.phase](withMasks(frames), lengthOf(range));
+      return tracking[run.phase](masksIn(frames, range), lengthOf(range));
   }
 }
 
-function detailOf({ run, solved, frames, range }: Tracked): string {
+function detailOf({ run, solved, range }: Tracked): string {
   if (run.phase !== 'working' || run.stage === 'corrections') return '';
-  return run.stage === 'pairs' ? strings.tracking.pairs(solved, lengthOf(range), run.left) : strings.tracking.labels(withMasks(frames), solved);
+  return run.stage === 'pairs' ? strings.tracking.pairs(solved, lengthOf(range), run.left) : strings.tracking.labels(run.labelled, solved);
 }
 
 /** What is done, 0 to 1; `null` if it cannot be told. */
-function shareOf({ run, solved, frames, range }: Tracked): number | null {
+function shareOf({ run, solved, range }: Tracked): number | null {
   if (run.phase !== 'working' || run.stage === 'corrections') return null;
-  if (run.stage === 'labels') return withMasks(frames) / Math.max(1, solved);
+  if (run.stage === 'labels') return run.labelled / Math.max(1, solved);
   const of = lengthOf(range);
   return solved < of ? solved / of : null;
 }
 
-function withMasks(frames: Tracked['frames']): number {
-  return frames.filter((frame) => frame !== null).length;
+function all({ clip }: Tracked): Tracked['range'] {
+  return { first: 0, last: clip.count - 1 };
 }

@@ -1,4 +1,5 @@
-//! The number of motions: the score of each number, lower is better, and a button to use it for this pair.
+//! The number of motions: how long the description of both frames is with each number, and a button to use it for this pair. The number found
+//! need not be that with the shortest: then a sentence says so.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
@@ -15,6 +16,7 @@ const MARGIN = 6;
 export function mountEvidence(root: HTMLElement, store: Store, session: Session): void {
   const plot = find(root, 'svg', SVGSVGElement);
   const buttons = find(root, '.numbers', HTMLElement);
+  const choice = find(root, '#evidence-choice', HTMLElement);
   const automatic = find(root, '[data-action=automatic]', HTMLButtonElement);
   automatic.addEventListener('click', () => session.change({ motions: 'auto' }));
   /** The scores of the last automatic search: with a forced number there are none for the others. */
@@ -29,7 +31,10 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
     if (found.settings.motions === 'auto') scores = found.evidence.candidates;
     const known = scores.length > 0 ? scores : found.evidence.candidates;
     const scored = known.filter(({ motions }) => motions >= 1 && motions <= 10);
-    const least = Math.min(...scored.map(({ score }) => score));
+    const [shortest] = scored.toSorted((one, other) => one.score - other.score);
+    const differs = found.settings.motions === 'auto' && shortest !== undefined && shortest.motions !== found.count;
+    choice.hidden = !differs;
+    choice.textContent = differs ? strings.otherThanShortest(found.count, shortest.motions) : '';
     const offered = Math.max(OFFERED, found.count, typeof settings.motions === 'number' ? settings.motions : 0, ...scored.map(({ motions }) => motions));
     automatic.setAttribute('aria-pressed', String(settings.motions === 'auto'));
     const focused = buttons.contains(document.activeElement) ? document.activeElement?.textContent : null;
@@ -37,13 +42,13 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
       ...Array.from({ length: offered }, (_, k) => {
         const motions = k + 1;
         const score = scored.find((candidate) => candidate.motions === motions)?.score;
-        const above = score === undefined ? null : score - least;
+        const longer = score === undefined || shortest === undefined ? null : score - shortest.score;
         const button = element('button', String(motions), 'number');
         button.type = 'button';
         button.setAttribute('aria-pressed', String(settings.motions === motions));
         button.classList.toggle('found', motions === found.count);
-        button.setAttribute('aria-label', strings.forceNumber(motions, above));
-        if (above !== null) button.title = strings.scoreAbove(above);
+        button.setAttribute('aria-label', strings.forceNumber(motions, longer));
+        if (longer !== null) button.title = strings.descriptionOf(longer);
         button.addEventListener('click', () => session.forceMotions(motions));
         return button;
       }),

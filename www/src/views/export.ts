@@ -27,7 +27,6 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
   const button = (text: string, run: (result: Result) => void, className = 'button small quiet'): HTMLButtonElement => {
     const made = element('button', text, className);
     made.type = 'button';
-    made.disabled = true;
     made.addEventListener('click', () => {
       const { result } = store.get();
       if (result !== null) run(result);
@@ -72,12 +71,12 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
   link.addEventListener('click', () => copyText(linkFor(store.get(), location.href), strings.copiedText('link with the settings'), session));
   copies.append(link);
 
-  store.subscribe(({ result, live, look }, before) => {
+  const render = ({ result, live, look }: State): void => {
     root.hidden = look.kind === 'objects';
-    if (result === before.result && live === before.live) return;
     for (const control of need) control.disabled = result === null || live !== null;
-  });
-  select.disabled = true;
+  };
+  store.subscribe(render);
+  render(store.get());
 }
 
 function copyPicture(picture: Promise<Blob>, session: Session): void {

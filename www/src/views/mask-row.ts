@@ -24,7 +24,8 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   const colour = find(row, '[data-action=colour]', HTMLInputElement);
   const name = find(row, '.motion-name', HTMLInputElement);
   const solo = find(row, '[data-action=solo]', HTMLButtonElement);
-  const merge = find(row, '[data-action=merge]', HTMLSelectElement);
+  const mergeWith = find(row, '[data-action=merge-with]', HTMLSelectElement);
+  const merge = find(row, '[data-action=merge]', HTMLButtonElement);
   const masks = of === 'pair' ? session.correcting : session.tracking;
 
   shown.addEventListener('change', () => {
@@ -39,7 +40,9 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     if (event.key === 'Enter') name.blur();
   });
   solo.addEventListener('click', () => store.look({ solo: store.get().look.solo === id ? null : id }));
-  merge.addEventListener('change', () => masks.merge(id, Number(merge.value)));
+  // A select changes with every arrow key, so it only chooses.
+  mergeWith.addEventListener('change', () => (merge.disabled = mergeWith.value === ''));
+  merge.addEventListener('click', () => masks.merge(id, Number(mergeWith.value)));
   row.addEventListener('focusin', () => session.select(id));
   row.addEventListener('pointerdown', () => session.select(id));
   // The background cannot be hidden: it is not painted.
@@ -59,16 +62,32 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     colour.setAttribute('aria-label', strings.colourOf(called));
     name.setAttribute('aria-label', strings.nameOf(called));
     solo.setAttribute('aria-label', strings.soloOf(called));
+    mergeWith.setAttribute('aria-label', strings.mergeWithOf(called));
     merge.setAttribute('aria-label', strings.mergeOf(called));
   };
   return { element: row, refresh };
 }
 
-/** Lists the masks that this one can be merged with. Options that stay are left alone: their list may be open. */
-export function offerMerging(row: HTMLElement, others: readonly number[], look: Look): void {
-  const merge = find(row, '[data-action=merge]', HTMLSelectElement);
+/** Lists the masks that this one can be merged with. Options that stay are left alone: their list may be open, or one chosen. */
+export function offerMerging(row: HTMLElement, others: readonly number[], look: Look, ready = true): void {
+  const merge = find(row, '[data-action=merge-with]', HTMLSelectElement);
+  const button = find(row, '[data-action=merge]', HTMLButtonElement);
   const offered = [new Option(strings.mergeWith, ''), ...others.map((id) => new Option(nameOf(look, id), String(id)))];
   const said = (options: Iterable<HTMLOptionElement>): string => Array.from(options, ({ text, value }) => `${value} ${text}`).join();
   if (said(offered) !== said(merge.options)) merge.replaceChildren(...offered);
-  merge.hidden = others.length === 0;
+  merge.disabled = !ready;
+  button.disabled = !ready || merge.value === '';
+  merge.hidden = button.hidden = others.length === 0;
+}
+
+/** The mask whose row has the focus. */
+export function heldRow(list: HTMLElement): number | null {
+  const row = list.contains(document.activeElement) ? document.activeElement!.closest<HTMLElement>('[data-mask]') : null;
+  return row === null ? null : Number(row.dataset.mask);
+}
+
+/** Gives the focus back to a list that was made anew: to the row that had it, or if that is gone, to the selected one. */
+export function focusRow(list: HTMLElement, held: number, { selected }: Look): void {
+  const summaryOf = (id: number | null): HTMLElement | null => list.querySelector(`[data-mask="${id}"] summary`);
+  (summaryOf(held) ?? summaryOf(selected))?.focus({ preventScroll: true });
 }

@@ -10,7 +10,7 @@ import type { Session } from '../session/session.js';
 import { type Look, type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { copyText } from './clipboard.js';
 import { element, find, prefersStillness } from './markup.js';
-import { maskRow, offerMerging } from './mask-row.js';
+import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
 
 type Segmentation = Result['segmentation'];
 
@@ -36,9 +36,11 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
     if (awaited) return;
     if (other) {
       const typed = typedName(list, before.look.kind);
+      const held = heldRow(list);
       list.replaceChildren();
       rows = result === null || live !== null || look.kind === 'objects' ? [] : fillList(list, now, result.segmentation, store, session);
       if (result?.pair.first === before.result?.pair.first) typed?.(list, now);
+      if (held !== null && typed === null) focusRow(list, held, look);
     }
     if (other || look !== before.look) for (const refresh of rows) refresh(look);
   });

@@ -7,7 +7,7 @@ import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { type Life, livesOf } from '../state/tracked.js';
 import { find } from './markup.js';
-import { maskRow, offerMerging } from './mask-row.js';
+import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
 import { chooseTool } from './tools.js';
 
 /** Updates one row; `ids` are the numbers of all. */
@@ -28,7 +28,7 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     list.hidden = look.kind !== 'objects' || tracked === null;
     if (tracked === null) return;
     add.hidden = list.hidden;
-    add.disabled = tracked.state === null;
+    add.disabled = tracked.spans.length === 0;
     if (list.hidden) return;
     const lives = livesOf(tracked);
     const ids = [0, ...lives.map(({ id }) => id)];
@@ -36,14 +36,14 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     if (look.selected !== null && look.selected > tracked.largest && look.selected !== UNLABELLED) ids.push(look.selected);
     if (ids.join() !== listed) {
       listed = ids.join();
-      const held = document.activeElement?.closest<HTMLElement>('#objects > li')?.dataset.mask;
+      const held = heldRow(list);
       list.replaceChildren();
       rows = ids.map((id) => {
         const { element: row, refresh } = rowOf(id, store, session);
         list.append(row);
         return refresh;
       });
-      list.querySelector<HTMLElement>(`[data-mask="${held}"] .motion-name`)?.focus({ preventScroll: true });
+      if (held !== null) focusRow(list, held, look);
     }
     for (const [k, refresh] of rows.entries()) refresh(now, lives.find(({ id }) => id === ids[k]) ?? null, ids);
   });
@@ -55,10 +55,12 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
   const share = find(row, '.motion-share', HTMLElement);
   const facts = find(row, '.motion-facts', HTMLElement);
   const doubtful = find(row, '[data-action=doubtful]', HTMLButtonElement);
-  const merge = find(row, '[data-action=merge]', HTMLSelectElement);
   const split = find(row, '[data-action=split]', HTMLButtonElement);
   const remove = find(row, '[data-action=remove]', HTMLButtonElement);
-  doubtful.addEventListener('click', () => void session.goTo(Number(doubtful.dataset.frame)));
+  doubtful.addEventListener('click', () => {
+    session.goToDoubtful(id);
+    find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
+  });
   split.addEventListener('click', () => session.tracking.split(id));
   remove.addEventListener('click', () => session.tracking.remove(id));
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;
@@ -70,12 +72,11 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
     share.textContent = here === undefined ? '' : strings.percent(here.share);
     if (id === 0) return;
     facts.textContent = factsOf(life, here === undefined && result !== null);
-    const ready = life !== null && tracked !== null && tracked.state !== null;
-    for (const control of [merge, split, remove]) control.disabled = !ready;
-    offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look);
-    doubtful.hidden = life === null;
+    const ready = life !== null && tracked !== null && tracked.spans.length > 0;
+    for (const control of [split, remove]) control.disabled = !ready;
+    offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);
+    doubtful.hidden = life === null || tracked?.checked.get(id) === life.doubtful.index;
     if (life !== null) {
-      doubtful.dataset.frame = String(life.doubtful.index);
       doubtful.textContent = strings.doubtful(life.doubtful.index);
       doubtful.setAttribute('aria-label', strings.doubtfulOf(called, life.doubtful.index));
     }

@@ -1,13 +1,16 @@
-//! The parts of the export panel that are loaded when it is first opened.
+//! The export panel, which is loaded when it is first opened.
 
 import { clipFormats } from '../export/clip-formats.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { mountClipExport } from './clip-export.js';
 import { mountClipPreview } from './clip-preview.js';
+import { mountExport } from './export.js';
+import { find } from './markup.js';
 import { mountProjects } from './projects.js';
 
 export async function mountPanel(panel: HTMLElement, store: Store, session: Session): Promise<void> {
+  mountExport(find(panel, '#pair-export', HTMLElement), store, session);
   const formats = await clipFormats();
   mountClipExport(panel, store, session, formats);
   mountClipPreview(panel, store, formats);

@@ -22,7 +22,12 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
   camera.hidden = navigator.mediaDevices === undefined;
   const swap = find(root, '#swap', HTMLButtonElement);
   swap.addEventListener('click', () => session.swap());
-  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, session)));
+  const [header, main, stage] = ['.masthead', 'main', '#stage'].map((part) => find(root, part, HTMLElement)) as [HTMLElement, HTMLElement, HTMLElement];
+  // The picture is at the top, and may be under the header or above it.
+  const show = (): void => {
+    if (stage.getBoundingClientRect().top < header.getBoundingClientRect().bottom) main.scrollIntoView();
+  };
+  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, () => void session.openSample(sample).then(show))));
 
   const slots = (['first', 'second'] as const).map((slot) => {
     const box = find(root, `[data-slot=${slot}]`, HTMLElement);
@@ -48,7 +53,7 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
   });
 }
 
-function sampleButton(sample: (typeof SAMPLES)[number], session: Session): HTMLElement {
+function sampleButton(sample: (typeof SAMPLES)[number], open: () => void): HTMLElement {
   const button = element('button', '', 'sample');
   button.type = 'button';
   const picture = element('img');
@@ -57,7 +62,7 @@ function sampleButton(sample: (typeof SAMPLES)[number], session: Session): HTMLE
   picture.loading = 'lazy';
   picture.decoding = 'async';
   button.append(picture, element('span', sample.title));
-  button.addEventListener('click', () => void session.openSample(sample));
+  button.addEventListener('click', open);
   return button;
 }
 

@@ -71,7 +71,7 @@ function sentenceFor(state: State): string {
 }
 
 /** What led to the masks on screen. */
-function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentation, waited }: Result): string {
+function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentation, pair, waited }: Result): string {
   const { status } = strings;
   const strokes = strokesOf(edits);
   if (cause === 'solved') return status.solved(strokes.length, waited);
@@ -79,6 +79,11 @@ function sentenceAbout(cause: Cause, { look, found, edits }: State, { segmentati
   if (cause !== 'found') return status[cause];
   const { count, motions, settings } = segmentation;
   const moving = look.kind === 'groups' ? new Set(motions.map(({ group }) => group)).size - 1 : null;
-  const answer = status.found(count, moving, settings.motions === 'auto' ? null : settings.motions, waited);
+  const answer = status.found(count, moving, settings.motions === 'auto' ? null : settings.motions, waited, count === 1 && isSame(pair));
   return found === null || strokes.length === 0 ? answer : `${answer} ${status.applied(constraintsFrom(strokes, found).length, strokes.length)}`;
+}
+
+/** Whether nothing can move, because both frames have the same pixels. */
+function isSame({ first, second }: Result['pair']): boolean {
+  return first.fingerprint === second.fingerprint || first.data.every((value, k) => value === second.data[k]);
 }

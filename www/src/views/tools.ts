@@ -8,10 +8,10 @@ import { find } from './markup.js';
 export const RADII = { least: 2, most: 60 } as const;
 
 export function mountTools(form: HTMLFormElement, store: Store, session: Session): void {
-  const radios = (['look', 'brush', 'eraser'] as const).map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
+  const names = ['look', 'brush', 'eraser'] as const;
+  const radios = names.map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
   const size = find(form, '[name=radius]', HTMLInputElement);
-  const sizeRow = find(form, '#radius-row', HTMLElement);
-  const help = find(form, '#tool-help', HTMLElement);
+  const helps = names.map((name) => ({ name, help: find(form, `#tool-help [data-tool=${name}]`, HTMLElement) }));
   const undo = find(form, '#undo', HTMLButtonElement);
   const redo = find(form, '#redo', HTMLButtonElement);
 
@@ -29,9 +29,11 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
       radio.disabled = !usable && radio.value !== 'look';
     }
     size.value = String(tool.radius);
-    sizeRow.hidden = tool.name === 'look';
     const clip = look.kind === 'objects' ? tracked : null;
-    help.textContent = (clip === null ? strings.toolHelp : strings.clipToolHelp)[tool.name];
+    for (const { name, help } of helps) {
+      help.textContent = (clip === null ? strings.toolHelp : strings.clipToolHelp)[name];
+      help.classList.toggle('away', tool.name !== name);
+    }
     undo.disabled = clip === null ? edits.done === 0 : clip.past.length === 0 && !(clip.run.phase === 'working' && clip.run.stage === 'corrections');
     redo.disabled = clip === null ? edits.done === edits.actions.length : clip.future.length === 0;
   };
