@@ -282,7 +282,7 @@ impl Pair {
         for _ in 0..if brightness { BRIGHTNESS_ROUNDS } else { 0 } {
             let level = &self.levels[self.base];
             let label = |x: usize, y: usize| usize::from(labels[(y << level.index) * width + (x << level.index)]);
-            let photometric = Photometric::along_labels(level, &motions, label);
+            let photometric = Photometric::along_labels(level, &motions, &label);
             self.remove(photometric, View::Second);
             let level = &mut self.levels[self.base];
             level.noise = noise(level, &AffineMotion::STATIC);

@@ -48,14 +48,14 @@ impl Photometric {
             View::Second => (&*level.second, *motion),
             View::Before => (level.before.as_deref()?, inverse(motion)?),
         };
-        Some(Photometric::measured(level, view, &[motion], |_, _| 0))
+        Some(Photometric::measured(level, view, &[motion], &|_, _| 0))
     }
 
     /// The change between the first frame and the second where each pixel has one of several motions, the one of its `label`.
     pub(crate) fn along_labels(
         level: &Level,
         motions: &[AffineMotion],
-        label: impl Fn(usize, usize) -> usize,
+        label: &dyn Fn(usize, usize) -> usize,
     ) -> Photometric {
         Photometric::measured(level, &level.second, motions, label)
     }
@@ -64,7 +64,7 @@ impl Photometric {
         level: &Level,
         view: &Plane,
         motions: &[AffineMotion],
-        label: impl Fn(usize, usize) -> usize,
+        label: &dyn Fn(usize, usize) -> usize,
     ) -> Photometric {
         let scaled: Vec<AffineMotion> = motions.iter().map(|motion| level.scaled(motion)).collect();
         let sample = |x: usize, y: usize| {
