@@ -3,8 +3,9 @@ import { spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readdirSync, readFileSync, symlinkSync, writeFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
+import { describe as describePair } from '../../scripts/lib/describe.mjs';
 import { frame, png } from './support/frames.mjs';
-import { temporaryFolder } from './support/program.mjs';
+import { temporaryFolder, veronese } from './support/program.mjs';
 import { examples } from './support/readme.mjs';
 
 /** A project with the package and the files that the examples speak of. */
@@ -54,6 +55,22 @@ describe('README.md', () => {
     assert.deepEqual(readdirSync(folder.path('results-of-machine-1')), ['000000-f0']);
     assert.deepEqual(readdirSync(folder.path('tracked')), ['.clip', '.veronese', 'labels', 'overlay', 'tracks.json']);
     assert.match(readFileSync(folder.path('tracked', 'tracks.json'), 'utf8'), /"name":"box"/);
+  });
+
+  test('what the project says of its bundled pair is what comes out', async () => {
+    const at = (name) => fileURLToPath(new URL(`../../${name}`, import.meta.url));
+    const sample = (name) => at(`www/public/samples/intel-two-cars/${name}.png`);
+    const { code, stdout } = await veronese(['pair', sample('first'), sample('second')]);
+    assert.equal(code, 0);
+    const found = JSON.parse(stdout);
+    const withoutTimes = (text) => text.replace(/[\d,]+ ms/g, '… ms');
+    const text = readFileSync(at('README.md'), 'utf8');
+    const [, quoted] = /```text\n(.*? motions in .*?)\n```/s.exec(text);
+    assert.equal(withoutTimes(quoted), withoutTimes(describePair(found)));
+    // "Motions 2 and 3 are parts of the car on the left and share a group."
+    const groups = found.motions.map(({ group }) => group);
+    assert.equal(groups[2], groups[3]);
+    assert.equal(new Set(groups).size, 3);
   });
 
   test('every error code has its place in the types', async () => {
