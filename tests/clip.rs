@@ -395,7 +395,7 @@ fn objects_can_be_merged_and_removed() {
     let with_resting = clip.frames_with(30);
     assert!(clip.frames_with(moving) == all && with_resting.contains(&5));
     for (object, number) in [(moving, 31), (31, moving), (31, 0), (31, 32)] {
-        assert_eq!(clip.renumber(object, number).unwrap(), [], "no object has the number 31 or 32");
+        assert!(clip.renumber(object, number).unwrap().is_empty(), "no object has the number 31 or 32");
     }
     assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (all.clone(), with_resting));
     assert_eq!(clip.renumber(moving, 30).unwrap(), all);

@@ -160,7 +160,7 @@ fn check_pair(name: &str) {
             expected["background"] == "at rest",
             "{case}: the background moves by {moved:.2} pixels"
         );
-        let groups: Vec<u8> = found.motions.iter().map(|motion| motion.group as u8).collect();
+        let groups: Vec<u8> = found.motions.iter().map(|motion| motion.group).collect();
         let background = groups[0];
         let in_parts = objects.iter().any(|object| object["parts"] == true);
         let others: BTreeSet<u8> = groups.iter().copied().filter(|&group| group != background).collect();

@@ -212,11 +212,11 @@ fn step(clip: u32, work: &mut dyn FnMut(&mut Clip) -> Option<Result<JsValue, Err
     Ok(done.transpose().map_err(Failure::from)?.unwrap_or(JsValue::NULL))
 }
 
+/// What is done with a clip that is concluded and with the correction that goes through it.
+type Work<'a> = &'a mut dyn FnMut(&mut SegmentedClip, &mut Option<ClipCorrection>) -> Result<JsValue, Error>;
+
 /// [`step`] for a clip that is concluded. Frames that are not those of a state are the state's fault.
-fn segmented(
-    clip: u32,
-    work: &mut dyn FnMut(&mut SegmentedClip, &mut Option<ClipCorrection>) -> Result<JsValue, Error>,
-) -> Result<JsValue, JsValue> {
+fn segmented(clip: u32, work: Work<'_>) -> Result<JsValue, JsValue> {
     step(clip, &mut |clip| match clip {
         Clip::Segmented { clip, correction, restored } => Some(work(clip, correction).map_err(|error| match error {
             Error::OtherFrame { .. } if *restored => Error::InvalidOption { name: "state", reason: error.to_string() },
