@@ -1,24 +1,33 @@
 // npm test: all tests and all checks; `npm test -- native page` runs the named parts only.
+//
+// Parts of one lane run one after another, because they would wait for each other: for cargo's lock on its folder, for ports, for cores. The
+// two lanes run side by side, and what a part writes is shown when it ends. Some page tests measure time, so that cargo takes the cores that
+// they leave.
 
 import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
 import { buildModules, buildPackage, buildPage } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
 import { cargoCounts, nodeCounts, playwrightCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
-import { Stop, command } from './lib/run.mjs';
+import { Stop, command, inLane, say } from './lib/run.mjs';
 import { tests } from './lib/tests.mjs';
 
+const LANES = { cargo: { niceness: 10 }, node: { niceness: 0 } };
+
 const PARTS = {
-  check: { title: 'checks', run: runChecks },
   native: {
+    lane: 'cargo',
     title: 'native tests',
     run: () => tests(cargoCounts, 'cargo', ['test', '--locked', '--no-fail-fast', '--features', 'codecs']),
   },
   wasm: {
+    lane: 'cargo',
     title: 'WebAssembly tests in Node',
     run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked']),
   },
+  check: { lane: 'cargo', title: 'checks', run: runChecks },
   package: {
+    lane: 'node',
     title: 'package tests',
     run: async () => {
       await buildModules();
@@ -27,15 +36,17 @@ const PARTS = {
     },
   },
   formats: {
+    lane: 'node',
     title: "formats, read by the annotation tools' own decoders",
     run: async ({ python }) => {
       await buildModules();
       await buildPackage();
-      if (python.problem) console.log(python.problem);
+      if (python.problem) say(python.problem);
       return tests(nodeCounts, 'npm', ['run', '--silent', 'test:formats', '--workspace', 'pkg']);
     },
   },
   hosts: {
+    lane: 'node',
     title: 'the packed package in its hosts',
     run: async ({ chromium }) => {
       await buildModules();
@@ -46,6 +57,7 @@ const PARTS = {
     },
   },
   page: {
+    lane: 'node',
     title: 'page tests in Chromium',
     run: async ({ chromium }) => {
       await buildModules();
@@ -57,6 +69,7 @@ const PARTS = {
     },
   },
   browsers: {
+    lane: 'node',
     title: 'the page in the browsers that are installed',
     run: async ({ chromium }) => {
       await buildModules();
@@ -80,18 +93,44 @@ await command(async (args) => {
     python: names.includes('formats'),
     hosts: names.includes('hosts'),
   });
-  const results = [];
-  for (const name of names) results.push(await runPart(PARTS[name], setup));
-  return summarise(results);
+  return summarise(await runParts(names, setup));
 });
+
+/** Runs parts in their lanes; the results have the order of `names`. */
+async function runParts(names, setup) {
+  const lanes = Object.entries(LANES).flatMap(([lane, options]) => {
+    const own = names.filter((name) => PARTS[name].lane === lane);
+    return own.length > 0 ? [{ ...options, own }] : [];
+  });
+  const results = {};
+  const alone = lanes.length === 1;
+  await Promise.all(
+    lanes.map(async ({ niceness, own }) => {
+      for (const name of own) results[name] = alone ? await runPart(PARTS[name], setup) : await runBeside(PARTS[name], setup, niceness);
+    }),
+  );
+  return names.map((name) => results[name]);
+}
+
+/** Runs a part while others run, and shows what it has written when it ends. */
+async function runBeside(part, setup, niceness) {
+  console.log(`… ${part.title}: begin`);
+  const pieces = [];
+  try {
+    return await inLane({ write: (piece) => pieces.push(Buffer.from(piece)), niceness }, () => runPart(part, setup));
+  } finally {
+    process.stdout.write(Buffer.concat(pieces));
+    console.log(`… ${part.title}: end`);
+  }
+}
 
 /** Runs one part; a failure does not stop the parts after it. */
 async function runPart({ title, run: runTests }, setup) {
-  console.log(`\n=== ${title} ===`);
+  say(`\n=== ${title} ===`);
   const start = Date.now();
   const outcome = await runTests(setup).catch((error) => {
     if (!(error instanceof Stop)) throw error;
-    console.error(error.message);
+    say(error.message);
     return { passed: 0, failed: 1, skipped: 0, note: error.message };
   });
   return { title, seconds: (Date.now() - start) / 1000, ...outcome };

@@ -10,6 +10,7 @@ import { ProgressBar } from '../build/cli/terminal.js';
 import { pixmaps } from '../build/cli/video.js';
 import { frame, png, ppm } from './support/frames.mjs';
 import { temporaryFolder, veronese } from './support/program.mjs';
+import { cases } from './support/soak.mjs';
 import { checkPair, timeless } from './support/shapes.mjs';
 
 /** The k-th frame of a small clip. */
@@ -141,32 +142,40 @@ describe('veronese batch', () => {
       assert.deepEqual(tree(out), before, title);
     };
     const report = before[join('000000-f0', 'result.json')];
-    const edits = {
-      'the number of motions': (record) => (record.count += 1),
-      'an entry of a matrix': ({ motions }) => (motions[0].matrix[2] += 1e-9),
-      'a new entry': (record) => (record.note = 'mine'),
-      'an entry taken away': (record) => delete record.evidence,
-      'an image taken out of the list': ({ files }) => delete files['labels.png'],
-      'a hash': ({ files }) => (files['labels.png'] = files['labels.png'].replace(/^./, (c) => (c === '0' ? '1' : '0'))),
-      'the name of an input': ({ inputs }) => (inputs[0].name = 'other.png'),
-    };
-    for (const [title, edit] of Object.entries(edits)) {
+    const edits = cases(
+      [
+        ['an entry of a matrix', ({ motions }) => (motions[0].matrix[2] += 1e-9)],
+        ['an image taken out of the list', ({ files }) => delete files['labels.png']],
+      ],
+      [
+        ['the number of motions', (record) => (record.count += 1)],
+        ['a new entry', (record) => (record.note = 'mine')],
+        ['an entry taken away', (record) => delete record.evidence],
+        ['a hash', ({ files }) => (files['labels.png'] = files['labels.png'].replace(/^./, (c) => (c === '0' ? '1' : '0')))],
+        ['the name of an input', ({ inputs }) => (inputs[0].name = 'other.png')],
+      ],
+    );
+    for (const [title, edit] of edits) {
       const record = JSON.parse(report);
       edit(record);
       writeFileSync(place('result.json'), `${JSON.stringify(record)}\n`);
       await kept('result.json', title);
     }
-    const texts = {
-      'another layout': JSON.stringify(JSON.parse(report), null, 1),
-      'an entry twice': report.replace('{', '{"count":7,'),
-      'a line more': `${report}\n`,
-      'a line end less': report.trimEnd(),
-      'the first half': report.slice(0, report.length / 2),
-      'nothing': '',
-      'null': 'null',
-      'a list': '[]',
-    };
-    for (const [title, text] of Object.entries(texts)) {
+    const texts = cases(
+      [
+        ['an entry twice', report.replace('{', '{"count":7,')],
+        ['a line end less', report.trimEnd()],
+        ['nothing', ''],
+        ['null', 'null'],
+      ],
+      [
+        ['another layout', JSON.stringify(JSON.parse(report), null, 1)],
+        ['a line more', `${report}\n`],
+        ['the first half', report.slice(0, report.length / 2)],
+        ['a list', '[]'],
+      ],
+    );
+    for (const [title, text] of texts) {
       writeFileSync(place('result.json'), text);
       await kept('result.json', title);
     }
@@ -174,7 +183,7 @@ describe('veronese batch', () => {
       const whole = Buffer.from(before[join('000000-f0', name)], 'latin1');
       const flipped = Buffer.from(whole);
       flipped[whole.length >> 1] ^= 1;
-      for (const bytes of [flipped, whole.subarray(0, -1), Buffer.alloc(0)]) {
+      for (const bytes of cases([flipped], [whole.subarray(0, -1), Buffer.alloc(0)])) {
         writeFileSync(place(name), bytes);
         await kept(name, name);
       }

@@ -66,23 +66,26 @@ describe('SIGTERM', { skip: process.platform === 'win32' }, () => {
 
   test('ends a wait for a list', async (t) => {
     const folder = frames(t);
-    await ends(['batch', '--list', '-'], { stdin: 'pipe' });
-    await ends(['clip', '--list', '-', '--out', folder.path('out')], { stdin: 'pipe' });
-    if (spawnSync('mkfifo', [folder.path('list')]).status === 0) await ends(['batch', '--list', folder.path('list')]);
+    await Promise.all([
+      ends(['batch', '--list', '-'], { stdin: 'pipe' }),
+      ends(['clip', '--list', '-', '--out', folder.path('out')], { stdin: 'pipe' }),
+      spawnSync('mkfifo', [folder.path('list')]).status === 0 && ends(['batch', '--list', folder.path('list')]),
+    ]);
   });
 
   test('ends a wait for ffmpeg', async (t) => {
     const folder = temporaryFolder(t);
-    const bin = folder.path('bin');
-    mkdirSync(bin);
     const file = folder.file('film.mp4', 'film');
-    for (const script of ['exec sleep 60', '[ "$1" = -version ] && echo "ffmpeg version 6.0" && exit; exec sleep 60']) {
+    const scripts = { asked: 'exec sleep 60', reading: '[ "$1" = -version ] && echo "ffmpeg version 6.0" && exit; exec sleep 60' };
+    const runs = Object.entries(scripts).flatMap(([name, script]) => {
+      const bin = folder.path(name);
+      mkdirSync(bin);
       writeFileSync(join(bin, 'ffmpeg'), `#!/bin/sh\n${script}\n`);
       chmodSync(join(bin, 'ffmpeg'), 0o755);
       const env = { PATH: `${bin}:${process.env.PATH}` };
-      await ends(['video', file], { env });
-      await ends(['clip', file, '--out', folder.path('out')], { env });
-    }
+      return [ends(['video', file], { env }), ends(['clip', file, '--out', folder.path(`out-${name}`)], { env })];
+    });
+    await Promise.all(runs);
   });
 });
 

@@ -10,6 +10,7 @@ import { inOrder } from '../build/calls/ordered.js';
 import { pair } from './support/frames.mjs';
 import { random } from './support/masks.mjs';
 import { failure } from './support/shapes.mjs';
+import { soaking } from './support/soak.mjs';
 
 const mine = new Error('mine');
 const stopped = new Error('stopped');
@@ -107,12 +108,14 @@ function scripted({ kind, steps, next }) {
   return { notes, source: { [kind === 'sync' ? Symbol.iterator : Symbol.asyncIterator]: () => iterator } };
 }
 
+const ROUNDS = soaking ? 5000 : 150;
+
 describe('inOrder, on random sources, readers and signals', () => {
   for (const kind of ['sync', 'async']) {
     test(`${kind}: answers come in order, errors at their place, and the source is closed once`, async () => {
       assert.equal(spinning, false, 'see the tests above');
       const next = random(kind.length);
-      for (let round = 0; round < 400; round++) {
+      for (let round = 0; round < ROUNDS; round++) {
         const words = kind === 'sync' ? ['value', 'value', 'value', 'promise', 'throw', 'rejection'] : ['value', 'value', 'value', 'throw'];
         const steps = Array.from({ length: Math.floor(next() * 7) }, () => words[Math.floor(next() * words.length)]);
         const firstBad = steps.findIndex((step) => step === 'throw' || step === 'rejection');

@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { playwrightCounts } from './counts.mjs';
 import { installDebianPackages } from './debian.mjs';
 import { which } from './project.mjs';
-import { Stop } from './run.mjs';
+import { Stop, say } from './run.mjs';
 import { prepareGeckodriver } from './rust.mjs';
 import { tests } from './tests.mjs';
 
@@ -83,7 +83,7 @@ function miniBrowser() {
 /** Drives the built page in each of the browsers; those that have a problem are skipped, and it is said. */
 export async function testInBrowsers(browsers) {
   const problems = browsers.flatMap(({ problem }) => problem ?? []);
-  for (const problem of problems) console.log(problem);
+  for (const problem of problems) say(problem);
   if (problems.length === browsers.length) return { passed: 0, failed: 0, skipped: problems.length };
   const env = { VERONESE_BROWSERS: JSON.stringify(browsers) };
   return tests(playwrightCounts, 'npm', ['run', '--silent', 'test:browsers', '--workspace', 'www'], env);

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
 import { cargoHome, root, which } from './project.mjs';
-import { Stop, must, run } from './run.mjs';
+import { Stop, must, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 const RUST_SOURCES = ['src', 'Cargo.toml', 'Cargo.lock', '.cargo'];
@@ -28,7 +28,7 @@ export async function buildAll() {
 }
 
 /** Compiles Rust to WebAssembly, one module after another. */
-export async function buildModules() {
+export const buildModules = once(async () => {
   const versions = await Promise.all(
     [['rustc', '-vV'], ['wasm-pack', '--version'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
       async ([program, flag]) => (await run(program, [flag], { output: 'collect' })).text,
@@ -44,10 +44,10 @@ export async function buildModules() {
       wasmPack(name, folder, features),
     );
   }
-}
+});
 
 /** Builds the npm package: the modules' JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
-export async function buildPackage() {
+export const buildPackage = once(async () => {
   // Includes the modules, because one entry of the package embeds them.
   const glue = MODULES.flatMap(({ name, folder }) => [`${name}.js`, `${name}.d.ts`, `${name}_bg.wasm`].map((file) => `${folder}/${file}`));
   const sources = ['pkg/src', 'pkg/scripts', 'pkg/types', 'pkg/package.json', 'pkg/tsconfig.json'];
@@ -55,24 +55,30 @@ export async function buildPackage() {
   await step('the npm package', 'pkg/dist', ['pkg/build/module/glue.js', 'pkg/dist/node.js', 'pkg/dist/web.js'], inputs, [], () =>
     must('The npm package could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'pkg']),
   );
-}
+});
 
 /** Builds the page with the parts of the package that it uses. */
-export async function buildPage() {
+export const buildPage = once(async () => {
   const built = ['pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm'];
   const licences = ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'];
   const inputs = ['www', 'scripts/lib/policy.mjs', ...built, ...licences, 'package-lock.json'];
   await step('the page', 'www/dist', ['www/dist/index.html'], inputs, [], () =>
     must('The page could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'www']),
   );
+});
+
+/** The same build for all who ask for it, one after another or at the same time. */
+function once(build) {
+  let built;
+  return () => (built ??= build());
 }
 
 async function step(title, folder, outputs, inputs, versions, build) {
   const built = await buildIfChanged(folder.replaceAll('/', '-'), { inputs, outputs, versions }, async () => {
-    console.log(`Building ${title} …`);
+    say(`Building ${title} …`);
     await build();
   });
-  if (!built) console.log(`${folder} is up to date.`);
+  if (!built) say(`${folder} is up to date.`);
 }
 
 async function wasmPack(name, folder, features) {

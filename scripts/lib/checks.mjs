@@ -3,7 +3,7 @@
 import { buildModules, buildPackage } from './builds.mjs';
 import { importsAgree } from './imports.mjs';
 import { projectText } from './project.mjs';
-import { run } from './run.mjs';
+import { run, say } from './run.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
@@ -42,11 +42,11 @@ export async function runChecks() {
   await buildModules();
   await buildPackage();
   for (const [title, program, args, env = {}] of CHECKS) {
-    console.log(`\n— ${title}: ${program} ${args.join(' ')}`);
+    say(`\n— ${title}: ${program} ${args.join(' ')}`);
     results.push([title, (await run(program, args, { env })).code === 0]);
   }
-  console.log();
-  for (const [title, good] of results) console.log(`${good ? 'passed' : 'FAILED'}  ${title}`);
+  say();
+  for (const [title, good] of results) say(`${good ? 'passed' : 'FAILED'}  ${title}`);
   const failed = results.filter(([, good]) => !good).length;
   return { passed: results.length - failed, failed, skipped: 0 };
 }
@@ -59,6 +59,6 @@ function versionsAgree() {
     'pkg/package.json': JSON.parse(projectText('pkg/package.json')).version,
   };
   const agree = new Set(Object.values(versions)).size === 1;
-  if (!agree) console.error(`The versions differ: ${JSON.stringify(versions)}`);
+  if (!agree) say(`The versions differ: ${JSON.stringify(versions)}`);
   return agree;
 }

@@ -5,6 +5,7 @@ import { readdirSync } from 'node:fs';
 import { join, posix } from 'node:path';
 
 import { projectText, root } from './project.mjs';
+import { say } from './run.mjs';
 
 const DOCUMENT = 'ARCHITECTURE.md';
 
@@ -19,7 +20,7 @@ export function importsAgree() {
     ...cycles('pkg/src', packageFiles),
     ...cycles('www/src', pageFiles),
   ];
-  for (const problem of problems) console.error(problem);
+  for (const problem of problems) say(problem);
   return problems.length === 0;
 }
 

@@ -1,6 +1,8 @@
 // Starts other programs.
 
+import { AsyncLocalStorage } from 'node:async_hooks';
 import { spawn } from 'node:child_process';
+import { setPriority } from 'node:os';
 
 import { environment, root } from './project.mjs';
 
@@ -8,6 +10,26 @@ import { environment, root } from './project.mjs';
 export class Stop extends Error {}
 
 const running = new Set();
+const lanes = new AsyncLocalStorage();
+
+/**
+ * Runs `main` beside others: what it says and what its programs show goes to `write`, and its programs get this `niceness` (0 to 19; where
+ * cores are short, those with less go first).
+ */
+export function inLane({ write, niceness }, main) {
+  return lanes.run({ write, niceness }, main);
+}
+
+/** Shows a line. */
+export function say(line = '') {
+  show(`${line}\n`, process.stdout);
+}
+
+function show(piece, stream) {
+  const lane = lanes.getStore();
+  if (lane) lane.write(piece);
+  else stream.write(piece);
+}
 
 /**
  * Runs a program to its end and never throws.
@@ -17,20 +39,23 @@ const running = new Set();
  * wrote, with standard output in `stdout` alone as well.
  */
 export function run(program, args, { output = 'inherit', env = {}, cwd = root } = {}) {
-  const pipe = output === 'inherit' ? 'inherit' : 'pipe';
+  const lane = lanes.getStore();
+  const pipe = output === 'inherit' && !lane ? 'inherit' : 'pipe';
   return new Promise((resolve) => {
-    const child = spawn(program, args, { cwd, env: merged(env), stdio: ['ignore', pipe, pipe] });
-    running.add(child);
+    // A process group of its own, so that an interruption reaches the programs that it starts as well.
+    const child = spawn(program, args, { cwd, env: merged(env), stdio: ['ignore', pipe, pipe], detached: true });
+    if (child.pid) running.add(child);
+    if (lane?.niceness && child.pid) setPriority(child.pid, lane.niceness);
     const pieces = [];
     const written = [];
     child.stdout?.on('data', (piece) => {
       pieces.push(piece);
       written.push(piece);
-      if (output === 'both') process.stdout.write(piece);
+      if (output !== 'collect') show(piece, process.stdout);
     });
     child.stderr?.on('data', (piece) => {
       pieces.push(piece);
-      if (output === 'both') process.stderr.write(piece);
+      if (output !== 'collect') show(piece, process.stderr);
     });
     const finish = (code, note = '') => {
       running.delete(child);
@@ -45,7 +70,7 @@ export function run(program, args, { output = 'inherit', env = {}, cwd = root } 
 export async function must(sentence, program, args, options = {}) {
   const result = await run(program, args, options);
   if (result.code === 0) return result;
-  if (options.output === 'collect') process.stderr.write(result.text);
+  if (options.output === 'collect') show(result.text, process.stderr);
   throw new Stop(sentence);
 }
 
@@ -78,13 +103,19 @@ export async function command(main) {
   }
 }
 
-// An interruption ends the programs started here and this program.
+// The programs started here end with this one, which an interruption ends.
+process.on('exit', () => {
+  for (const { pid } of running) {
+    try {
+      process.kill(-pid, 'SIGTERM');
+    } catch {
+      // It has just ended.
+    }
+  }
+});
 const INTERRUPTIONS = { SIGINT: 130, SIGTERM: 143 };
 const handlers = Object.entries(INTERRUPTIONS).map(([signal, code]) => {
-  const handler = () => {
-    for (const child of running) child.kill(signal);
-    process.exit(code);
-  };
+  const handler = () => process.exit(code);
   process.on(signal, handler);
   return [signal, handler];
 });
