@@ -1,10 +1,10 @@
-// npm run soak: the tests that take long, natively, in WebAssembly and of the package: those that npm test ignores, whole sweeps, and many
-// more random cases.
+// npm run soak: the tests that take long, natively, in WebAssembly, of the package and of the page: those that npm test ignores, whole
+// sweeps, and many more random cases.
 
-import { buildModules, buildPackage } from './lib/builds.mjs';
-import { cargoCounts, nodeCounts } from './lib/counts.mjs';
+import { buildAll } from './lib/builds.mjs';
+import { cargoCounts, nodeCounts, playwrightCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
-import { command } from './lib/run.mjs';
+import { Stop, command } from './lib/run.mjs';
 import { tests } from './lib/tests.mjs';
 
 const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs'];
@@ -15,12 +15,14 @@ const RUNS = [
 ];
 
 await command(async () => {
-  await prepare({});
+  const { chromium } = await prepare({ browser: true });
+  if (chromium.problem) throw new Stop(chromium.problem);
   let failed = 0;
   for (const [program, args, env] of RUNS) failed += (await tests(cargoCounts, program, args, env)).failed;
-  await buildModules();
-  await buildPackage();
-  failed += (await tests(nodeCounts, 'npm', ['test', '--silent', '--workspace', 'pkg'], { VERONESE_SOAK: '1' })).failed;
+  await buildAll();
+  const env = { VERONESE_SOAK: '1', VERONESE_CHROMIUM: chromium.path };
+  failed += (await tests(nodeCounts, 'npm', ['test', '--silent', '--workspace', 'pkg'], env)).failed;
+  failed += (await tests(playwrightCounts, 'npm', ['test', '--silent', '--workspace', 'www', '--', 'screens'], env)).failed;
   console.log(failed === 0 ? '\nEverything passed.' : `\n${failed} FAILED`);
   return failed === 0 ? 0 : 1;
 });

@@ -6,7 +6,7 @@ export default defineConfig({
   testDir: 'tests',
   outputDir: 'test-results',
   fullyParallel: true,
-  workers: 1,
+  workers: 2,
   timeout: 60_000,
   forbidOnly: process.env.CI !== undefined,
   reporter: [['list']],

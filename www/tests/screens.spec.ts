@@ -1,8 +1,14 @@
-//! Screenshots of the page in various states, written to `out/screens/` for review.
+//! Screenshots of the page in various states, written to `out/screens/` for review: one desktop and one phone, of which one is dark. With
+//! npm run soak in all sizes, light and dark.
 
 import { type Page } from '@playwright/test';
 
 import { PAIR, clipDone, clipFrames, done, expect, openExport, sample, screen, square, test, upload } from './support.js';
+
+const SIZES = [[1440, 900], [1280, 720], [390, 844]] as const;
+const SCHEMES = ['light', 'dark'] as const;
+const ALL = SIZES.flatMap(([width, height]) => SCHEMES.map((colorScheme) => ({ width, height, colorScheme })));
+const SHOWN = process.env.VERONESE_SOAK === undefined ? [ALL[0]!, ALL.at(-1)!] : ALL;
 
 /** Opens the page with the sample pair and its defaults. */
 async function openBest(page: Page): Promise<void> {
@@ -10,104 +16,100 @@ async function openBest(page: Page): Promise<void> {
   await done(page);
 }
 
-for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
-  for (const colorScheme of ['light', 'dark'] as const) {
-    const shot = async (page: Page, state: string, fullPage = false): Promise<void> => {
-      await page.waitForTimeout(300); // transitions and thumbnails
-      await page.screenshot({ path: screen(`${state}-${width}-${colorScheme}`), fullPage });
-    };
+for (const { width, height, colorScheme } of SHOWN) {
+  const shot = async (page: Page, state: string, fullPage = false): Promise<void> => {
+    await page.waitForTimeout(300); // transitions and thumbnails
+    await page.screenshot({ path: screen(`${state}-${width}-${colorScheme}`), fullPage });
+  };
 
-    test.describe(`${width}, ${colorScheme}`, () => {
-      test.use({ viewport: { width, height }, colorScheme, hasTouch: width < 640, isMobile: width < 640 });
+  test.describe(`${width}, ${colorScheme}`, () => {
+    test.use({ viewport: { width, height }, colorScheme, hasTouch: width < 640, isMobile: width < 640 });
 
-      test('the first page', async ({ page }) => {
-        test.setTimeout(180_000);
-        await page.goto('./');
-        await done(page);
-        await page.screenshot({ path: screen(`start-working-${width}-${colorScheme}`) });
-        await clipDone(page);
-        await shot(page, 'start');
-        await shot(page, 'start-whole', true);
-      });
-
-      test('a pair', async ({ page }) => {
-        await openBest(page);
-        await shot(page, 'pair');
-        await shot(page, 'pair-whole', true);
-        await page.locator('#look [value=split]').check({ force: true });
-        await page.locator('#look [name=arrows]').check({ force: true });
-        await page.locator('.stage').scrollIntoViewIfNeeded();
-        await shot(page, 'split');
-        await page.locator('#look [value=first]').check({ force: true });
-        await page.locator('#look [name=residual]').check({ force: true });
-        await page.locator('#look [name=opacity]').fill('0');
-        await page.locator('#zoom-in').click();
-        await shot(page, 'residual');
-        await page.locator('#zoom-fit').click();
-        await expect(page.locator('#zoom-out')).toBeDisabled();
-        await page.locator('#look [name=residual]').uncheck({ force: true });
-        await page.locator('#look [name=opacity]').fill('50');
-        await page.locator('#tools [value=brush]').check({ force: true });
-        const box = (await page.locator('.layers').boundingBox())!;
-        await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
-        await page.mouse.down();
-        await page.mouse.move(box.x + 0.26 * box.width, box.y + 0.7 * box.height, { steps: 8 });
-        await shot(page, 'brush');
-        await page.mouse.up();
-        await done(page);
-        await page.locator('#motions .more summary').nth(1).click();
-        await page.locator('#settings details summary').click();
-        await page.evaluate(() => window.scrollTo(0, 0));
-        await shot(page, 'details', true);
-        await page.keyboard.press('?');
-        await shot(page, 'keys');
-        await page.keyboard.press('Escape');
-        await upload(page, [await sample('first'), await square('second.png', 640, 480, 0, 0)]);
-        await expect(page.getByRole('alert')).toBeVisible();
-        await shot(page, 'error');
-      });
-
-      test('a clip', async ({ page }) => {
-        await page.goto(`${PAIR}&quality=fast`);
-        await done(page);
-        await upload(page, await clipFrames(12, 480, 300));
-        await expect(page.locator('#clip-name')).toContainText('12 frames');
-        await done(page);
-        await shot(page, 'clip-opened', true);
-        await page.locator('#clip-segment').click();
-        await expect(page.locator('#clip-detail')).toContainText('of 12 frames');
-        await page.screenshot({ path: screen(`clip-segmenting-${width}-${colorScheme}`) });
-        await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
-        await page.getByRole('slider', { name: 'In point' }).press('ArrowRight');
-        await page.getByRole('slider', { name: 'Out point' }).press('ArrowLeft');
-        await page.locator('#objects li').nth(1).locator('.motion-head').click();
-        await page.locator('#tools [value=brush]').check({ force: true });
-        await page.locator('.stage').scrollIntoViewIfNeeded();
-        await shot(page, 'clip-segmented');
-        await shot(page, 'clip-segmented-whole', true);
-      });
+    test('the first page', async ({ page }) => {
+      test.setTimeout(180_000);
+      await page.goto('./');
+      await done(page);
+      await page.screenshot({ path: screen(`start-working-${width}-${colorScheme}`) });
+      await clipDone(page);
+      await shot(page, 'start');
+      await shot(page, 'start-whole', true);
     });
-  }
+
+    test('a pair', async ({ page }) => {
+      await openBest(page);
+      await shot(page, 'pair');
+      await shot(page, 'pair-whole', true);
+      await page.locator('#look [value=split]').check({ force: true });
+      await page.locator('#look [name=arrows]').check({ force: true });
+      await page.locator('.stage').scrollIntoViewIfNeeded();
+      await shot(page, 'split');
+      await page.locator('#look [value=first]').check({ force: true });
+      await page.locator('#look [name=residual]').check({ force: true });
+      await page.locator('#look [name=opacity]').fill('0');
+      await page.locator('#zoom-in').click();
+      await shot(page, 'residual');
+      await page.locator('#zoom-fit').click();
+      await expect(page.locator('#zoom-out')).toBeDisabled();
+      await page.locator('#look [name=residual]').uncheck({ force: true });
+      await page.locator('#look [name=opacity]').fill('50');
+      await page.locator('#tools [value=brush]').check({ force: true });
+      const box = (await page.locator('.layers').boundingBox())!;
+      await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
+      await page.mouse.down();
+      await page.mouse.move(box.x + 0.26 * box.width, box.y + 0.7 * box.height, { steps: 8 });
+      await shot(page, 'brush');
+      await page.mouse.up();
+      await done(page);
+      await page.locator('#motions .more summary').nth(1).click();
+      await page.locator('#settings details summary').click();
+      await page.evaluate(() => window.scrollTo(0, 0));
+      await shot(page, 'details', true);
+      await page.keyboard.press('?');
+      await shot(page, 'keys');
+      await page.keyboard.press('Escape');
+      await upload(page, [await sample('first'), await square('second.png', 640, 480, 0, 0)]);
+      await expect(page.getByRole('alert')).toBeVisible();
+      await shot(page, 'error');
+    });
+
+    test('a clip', async ({ page }) => {
+      await page.goto(`${PAIR}&quality=fast`);
+      await done(page);
+      await upload(page, await clipFrames(12, 480, 300));
+      await expect(page.locator('#clip-name')).toContainText('12 frames');
+      await done(page);
+      await shot(page, 'clip-opened', true);
+      await page.locator('#clip-segment').click();
+      await expect(page.locator('#clip-detail')).toContainText('of 12 frames');
+      await page.screenshot({ path: screen(`clip-segmenting-${width}-${colorScheme}`) });
+      await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+      await page.getByRole('slider', { name: 'In point' }).press('ArrowRight');
+      await page.getByRole('slider', { name: 'Out point' }).press('ArrowLeft');
+      await page.locator('#objects li').nth(1).locator('.motion-head').click();
+      await page.locator('#tools [value=brush]').check({ force: true });
+      await page.locator('.stage').scrollIntoViewIfNeeded();
+      await shot(page, 'clip-segmented');
+      await shot(page, 'clip-segmented-whole', true);
+    });
+  });
 }
 
-for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
-  for (const colorScheme of ['light', 'dark'] as const) {
-    test(`host page, ${width}, ${colorScheme}`, async ({ page }) => {
-      await page.setViewportSize({ width, height });
-      await page.emulateMedia({ colorScheme });
-      await page.goto('./embed.html');
-      await page.locator('#cancel').waitFor();
-      await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-busy`) });
-      await expect(page.locator('#host-status')).toHaveText(/in 33 frames/, { timeout: 40_000 });
-      await page.getByRole('listbox').focus();
-      await page.keyboard.press('ArrowDown');
-      await page.keyboard.press('ArrowRight');
-      await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
-      await page.screenshot({ path: screen(`embed-${width}-${colorScheme}`), fullPage: true });
-      await page.getByRole('button', { name: 'Save' }).click();
-      await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-saved`) });
-    });
-  }
+for (const { width, height, colorScheme } of SHOWN) {
+  test(`host page, ${width}, ${colorScheme}`, async ({ page }) => {
+    await page.setViewportSize({ width, height });
+    await page.emulateMedia({ colorScheme });
+    await page.goto('./embed.html');
+    await page.locator('#cancel').waitFor();
+    await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-busy`) });
+    await expect(page.locator('#host-status')).toHaveText(/in 33 frames/, { timeout: 40_000 });
+    await page.getByRole('listbox').focus();
+    await page.keyboard.press('ArrowDown');
+    await page.keyboard.press('ArrowRight');
+    await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
+    await page.screenshot({ path: screen(`embed-${width}-${colorScheme}`), fullPage: true });
+    await page.getByRole('button', { name: 'Save' }).click();
+    await page.screenshot({ path: screen(`embed-${width}-${colorScheme}-saved`) });
+  });
 }
 
 test('progress', async ({ page, context }) => {
@@ -134,9 +136,9 @@ test('export of a clip', async ({ page }) => {
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
   await page.getByRole('slider', { name: 'Current frame' }).press('PageDown');
-  for (const [width, height] of [[1440, 900], [1280, 720], [390, 844]] as const) {
+  for (const [width, height] of SIZES) {
     await page.setViewportSize({ width, height });
-    for (const colorScheme of ['light', 'dark'] as const) {
+    for (const colorScheme of SCHEMES) {
       await page.emulateMedia({ colorScheme });
       await openExport(page);
       await page.getByLabel('Format of the clip').selectOption({ label: colorScheme === 'light' ? 'DAVIS' : width === 1280 ? 'CVAT, tracks' : 'Video, transparent' });
