@@ -11,7 +11,8 @@
 //!       + Σ ρ(d − d̄) + P + ln p(c | object)/p(c | ground)    over those given back
 //!       + borders
 //! ```
-//! p(c | object) is learned from the pixels of objects that no change of light explains.
+//! p(c | object) is learned from the pixels of objects that no change of light explains. p(c | ground) is that of c or of the colour a step
+//! brighter, whichever is larger: the ground is darker in a shadow.
 
 use super::solver::Solver;
 use super::terms::smoothness::Borders;
