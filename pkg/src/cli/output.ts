@@ -70,7 +70,8 @@ export class Output {
 
   /** Removes what is half-written. */
   discard(): void {
-    if (this.#part !== undefined) rmSync(this.#part, { recursive: true, force: true });
+    // A file that is still being written can come into the folder while it is emptied.
+    if (this.#part !== undefined) rmSync(this.#part, { recursive: true, force: true, maxRetries: 10 });
     this.#part = undefined;
   }
 }
