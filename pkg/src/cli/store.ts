@@ -60,7 +60,7 @@ export function recordFiles(report: Report, job: string, inputs: readonly InputF
 export async function writePair(out: string, name: string, files: readonly OutputFile[]): Promise<void> {
   const [part, folder] = [join(out, temporary(name)), join(out, name)];
   const hashes = new Map(files.map(({ name, bytes }) => [name, sha256(bytes)]));
-  await writing(folder, async () => {
+  const write = async (): Promise<void> => {
     const there = statSync(folder, { throwIfNoEntry: false });
     const replace = there && (await (await Ledger.open(folder)).replacing(hashes.keys(), isImageOfPair));
     try {
@@ -73,7 +73,14 @@ export async function writePair(out: string, name: string, files: readonly Outpu
     } finally {
       rmSync(part, { recursive: true, force: true });
     }
-  });
+  };
+  await writing(folder, () =>
+    write().catch((thrown: NodeJS.ErrnoException) => {
+      // Another run has just given its folder this name: that one is there now.
+      if (thrown.code === 'ENOTEMPTY' || thrown.code === 'EEXIST') return write();
+      throw thrown;
+    }),
+  );
 }
 
 /** Throws `file-exists` where the folder of a pair that is `mine` has a file of another in a place that may be needed. */
