@@ -17,6 +17,7 @@ mod description;
 mod evidence;
 mod grouping;
 mod identity;
+mod layer;
 mod parting;
 mod record;
 mod round;
@@ -33,6 +34,7 @@ use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
 
 pub use correction::ClipCorrection;
+pub use layer::Spread;
 pub use stream::StreamSegmenter;
 #[doc(hidden)]
 pub use tracker::ClipPart;

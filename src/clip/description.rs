@@ -28,11 +28,15 @@ const UNLABELLED: u8 = u8::MAX;
 impl WorkingFrame<'_> {
     /// The frame described at the size of its luminance.
     pub(crate) fn described(&self, luminance: &Plane) -> ClipFrame {
-        let mut labels = self.upsampled(luminance);
+        self.marked(self.upsampled(luminance), luminance.width())
+    }
+
+    /// The frame with these labels of full size, marked where they are unknown if that is asked for.
+    pub(crate) fn marked(&self, mut labels: Vec<u8>, width: usize) -> ClipFrame {
         if self.mark_unknown {
-            self.mark_undecided(&mut labels, luminance.width());
+            self.mark_undecided(&mut labels, width);
         }
-        self.describe(labels, luminance.width())
+        self.describe(labels, width)
     }
 
     /// The labels at full size.
@@ -57,7 +61,7 @@ impl WorkingFrame<'_> {
     }
 
     /// What these labels of full size say of the objects.
-    pub(crate) fn describe(&self, labels: Vec<u8>, width: usize) -> ClipFrame {
+    fn describe(&self, labels: Vec<u8>, width: usize) -> ClipFrame {
         let scale = |motion: &AffineMotion| motion.scaled(self.reduction(width) as f64);
         let background = self.onward.map(|onward| scale(&onward.motions[BACKGROUND]));
         let mut objects = boxes(&labels, width);

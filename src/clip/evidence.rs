@@ -65,6 +65,15 @@ impl Flow {
         self.labels.len() / self.width
     }
 
+    /// The flow at another size, a multiple of its own.
+    pub(crate) fn enlarged(&self, [width, height]: [usize; 2]) -> Flow {
+        let factor = (width as f64 / self.width as f64).round();
+        let place = |p: usize| (p / width * self.height() / height) * self.width + p % width * self.width / width;
+        let labels = (0..width * height).map(|p| self.labels[place(p)]).collect();
+        let motions = self.motions.iter().map(|motion| motion.scaled(factor)).collect();
+        Flow { width, labels, motions, measured: self.measured }
+    }
+
     /// Where the pixels go if they keep the motions with which they came.
     pub(crate) fn continued(&self) -> Flow {
         let motions = self.motions.iter().map(|motion| inverse(motion).unwrap_or(AffineMotion::STATIC)).collect();

@@ -2,6 +2,7 @@
 
 use super::correction::ClipCorrection;
 use super::description::WorkingFrame;
+use super::layer::{Layer, SaidFrame, Spread};
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs, Pairs};
 use super::grouping::Census;
 use super::identity::Parting;
@@ -60,7 +61,7 @@ saved!(FramePairs { history, pairs });
 
 /// The bytes of [`FramePairs`] and of a [`SegmentedClip`].
 const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR3 ", env!("CARGO_PKG_VERSION"), "\n") };
-const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP3 ", env!("CARGO_PKG_VERSION"), "\n") };
+const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP4 ", env!("CARGO_PKG_VERSION"), "\n") };
 
 impl FramePairs {
     /// The bytes of these pairs, for [`from_bytes`](Self::from_bytes) of the same version.
@@ -159,7 +160,8 @@ impl ClipSegmenter {
         let (mark_unknown, best) = (options.mark_unknown, options.quality == Quality::Best);
         let stream = look_ahead.is_some();
         let ClipSegmenter { hashes, frames, .. } = self;
-        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, hashes, frames }
+        let locked = vec![false; 256];
+        SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, hashes, frames }
     }
 
     /// Divides what was one object before it was two.
@@ -204,79 +206,61 @@ pub struct SegmentedClip {
     dropped: usize,
     /// The number that each object is given, itself unless it was merged or removed.
     numbers: Vec<u8>,
+    /// Whether no correction of others changes the object of a number.
+    pub(super) locked: Vec<bool>,
     /// Of every frame as it was segmented.
     hashes: Vec<u64>,
     pub(super) frames: Vec<FrameState>,
 }
 
-saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, hashes, frames });
+saved!(SegmentedClip { size, mark_unknown, best, stream, dropped, numbers, locked, hashes, frames });
 
-/// A frame of a segmented clip, working size.
+/// A frame of a segmented clip.
 #[derive(Clone, Debug)]
 pub(super) struct FrameState {
-    /// As the clip was segmented.
+    /// As the clip was segmented, working size.
     found: Labelling,
-    pub(super) corrected: Option<Corrected>,
+    pub(super) said: Option<SaidFrame>,
+    pub(super) layer: Option<Layer>,
     /// To the next frame of the scene.
     onward: Option<KeptFlow>,
     /// To the frame before.
-    back: Option<KeptFlow>,
+    pub(super) back: Option<KeptFlow>,
 }
 
-saved!(FrameState { found, corrected, onward, back });
+saved!(FrameState { found, said, layer, onward, back });
 
 /// Labels with their odds.
 #[derive(Clone, Debug)]
-pub(super) struct Labelling {
+struct Labelling {
     labels: Runs,
     odds: KeptOdds,
 }
 
 saved!(Labelling { labels, odds });
 
-/// What a correction has made of a frame.
-#[derive(Clone, Debug)]
-pub(super) struct Corrected {
-    pub(super) labelling: Labelling,
-    /// The frame that was corrected.
-    pub(super) origin: usize,
-    /// In the frame that was corrected, what was said there of each full-size pixel: a label, or 255 for nothing.
-    pub(super) said: Option<Runs>,
-}
-
-saved!(Corrected { labelling, origin, said });
-
 impl FrameState {
     fn new(Tracked { record, labels, odds, goes_on }: Tracked) -> FrameState {
         FrameState {
             found: Labelling::of(&labels, &odds),
-            corrected: None,
+            said: None,
+            layer: None,
             onward: record.onward.as_ref().filter(|_| goes_on).map(KeptFlow::of),
             back: record.back.as_ref().map(KeptFlow::of),
         }
     }
 
-    fn labelling(&self) -> &Labelling {
-        self.corrected.as_ref().map_or(&self.found, |corrected| &corrected.labelling)
-    }
-
-    fn is_valid(&self, index: usize, frames: usize, pixels: usize, full: usize) -> bool {
-        let valid = |labelling: &Labelling| labelling.labels.is_valid(pixels) && labelling.odds.is_valid(pixels);
-        let corrected = |Corrected { labelling, origin, said }: &Corrected| {
-            let said_there = if *origin == index { said.as_ref() } else { None };
-            valid(labelling)
-                && *origin < frames
-                && said.is_some() == (*origin == index)
-                && said_there.is_none_or(|said| said.is_valid(full))
-        };
-        valid(&self.found)
-            && self.corrected.as_ref().is_none_or(corrected)
+    fn is_valid(&self, pixels: usize, full: usize) -> bool {
+        self.found.labels.is_valid(pixels)
+            && self.found.odds.is_valid(pixels)
+            && self.said.as_ref().is_none_or(|said| said.labels.is_valid(full))
+            && self.layer.as_ref().is_none_or(|layer| layer.labels.is_valid(full) && layer.odds.is_valid(pixels))
             && [&self.onward, &self.back].into_iter().flatten().all(|flow| flow.is_valid(pixels))
     }
 }
 
 impl Labelling {
-    pub(super) fn of(labels: &[u8], odds: &Plane) -> Labelling {
+    fn of(labels: &[u8], odds: &Plane) -> Labelling {
         Labelling { labels: Runs::of(labels), odds: KeptOdds::of(odds) }
     }
 
@@ -317,14 +301,9 @@ impl SegmentedClip {
 
     /// Indices of the frames in which an object is, by its number of now.
     pub fn frames_with(&self, object: u8) -> Vec<usize> {
+        let is_it = |(label, _): (u8, usize)| self.numbers[usize::from(label)] == object;
         let is_there = |frame: &FrameState| {
-            let said = frame.corrected.as_ref().and_then(|corrected| corrected.said.as_ref());
-            let labels = [Some(&frame.labelling().labels), said];
-            labels
-                .into_iter()
-                .flatten()
-                .flat_map(Runs::each)
-                .any(|(label, _)| self.numbers[usize::from(label)] == object)
+            frame.found.labels.each().any(is_it) || frame.layer.as_ref().is_some_and(|layer| layer.labels.each().any(is_it))
         };
         (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
     }
@@ -337,25 +316,92 @@ impl SegmentedClip {
         self.check(index, frame)?;
         let _call = workspace::begin(self.size);
         let state = &self.frames[index];
-        let labelling = state.labelling();
-        let mut labels = labelling.labels();
-        labels.iter_mut().for_each(|label| *label = self.numbers[usize::from(*label)]);
-        let (odds, onward) = (labelling.odds(self.working_size()), self.onward(index));
-        let working = WorkingFrame {
-            index,
-            labels: &labels,
-            odds: &odds,
-            onward: onward.as_ref(),
-            mark_unknown: self.mark_unknown,
+        let persons = self.persons();
+        let given = |label: u8| if persons.contains(&label) { label } else { self.numbers[usize::from(label)] };
+        let mut labels = state.found.labels();
+        labels.iter_mut().for_each(|label| *label = given(*label));
+        let (mut odds, onward) = (state.found.odds(self.working_size()), self.onward(index));
+        let working = |labels: &[u8], odds: &Plane, mark_unknown| {
+            WorkingFrame { index, labels, odds, onward: onward.as_ref(), mark_unknown }.described(frame.luminance())
         };
-        let Some(said) = state.corrected.as_ref().and_then(|corrected| corrected.said.as_ref()) else {
-            return Ok(working.described(frame.luminance()));
-        };
-        let mut full = working.described(frame.luminance()).labels;
-        for (label, &said) in full.iter_mut().zip(said.values().iter()).filter(|(_, said)| **said != NOTHING_SAID) {
-            *label = self.numbers[usize::from(said)];
+        if state.layer.is_none() && !labels.iter().any(|label| persons.contains(label)) {
+            return Ok(working(&labels, &odds, self.mark_unknown));
         }
-        Ok(working.describe(full, frame.width()))
+        let found = working(&labels, &odds, false).labels;
+        let full = self.overlaid(index, &found, &persons);
+        let [w, h] = self.working_size();
+        let step = self.size[0].div_ceil(w).next_power_of_two();
+        let layer = state.layer.as_ref().map(|layer| layer.odds.odds(w, h));
+        for p in 0..w * h {
+            let q = (p / w * step).min(self.size[1] - 1) * self.size[0] + (p % w * step).min(self.size[0] - 1);
+            let odds = &mut odds.values_mut()[p];
+            let of_layer = layer.as_ref().map_or(0.0, |layer| layer.values()[p]);
+            if full[q] != found[q] || of_layer != 0.0 {
+                *odds = if full[q] > 0 { of_layer.max(0.0) } else { -of_layer.abs().max(FREED) };
+            }
+            labels[p] = full[q];
+        }
+        let working = WorkingFrame { index, labels: &labels, odds: &odds, onward: onward.as_ref(), mark_unknown: self.mark_unknown };
+        Ok(working.marked(full, frame.width()))
+    }
+
+    /// What was found in a frame, at full size.
+    pub(super) fn found_full(&self, index: usize, luminance: &Plane) -> Vec<u8> {
+        let (labels, odds) = self.found(index);
+        WorkingFrame { index, labels: &labels, odds: &odds, onward: None, mark_unknown: false }.upsampled(luminance)
+    }
+
+    /// The labels of a frame with what persons say, without other numbers.
+    pub(super) fn layered(&self, index: usize, luminance: &Plane) -> Vec<u8> {
+        self.overlaid(index, &self.found_full(index, luminance), &self.persons())
+    }
+
+    /// Full-size labels with the layer of a frame over them.
+    fn overlaid(&self, index: usize, found: &[u8], persons: &[u8]) -> Vec<u8> {
+        let layer = self.frames[index].layer.as_ref().map(|layer| layer.labels.values());
+        let above = |p: usize| {
+            let label = layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]);
+            let gone = label > 0 && label != NOTHING_SAID && self.numbers[usize::from(label)] == 0;
+            if gone { NOTHING_SAID } else { label }
+        };
+        // What was found yields to a person's object that has most of it.
+        let mut sizes = [[0usize; 2]; 256];
+        for (p, &label) in found.iter().enumerate() {
+            let above = above(p);
+            sizes[usize::from(label)][0] += 1;
+            sizes[usize::from(label)][1] += usize::from(above > 0 && above != NOTHING_SAID);
+        }
+        let below = |label: u8| {
+            let [all, taken] = sizes[usize::from(label)];
+            if persons.contains(&label) || 2 * taken > all && !self.locked[usize::from(label)] { 0 } else { label }
+        };
+        let shown = |p: usize| match above(p) {
+            NOTHING_SAID => below(found[p]),
+            label => self.numbers[usize::from(label)],
+        };
+        (0..found.len()).map(shown).collect()
+    }
+
+    /// Numbers of the objects that a person has spoken of.
+    pub(super) fn persons(&self) -> Vec<u8> {
+        let mut persons: Vec<u8> =
+            self.frames.iter().filter_map(|frame| frame.said.as_ref()).flat_map(|said| said.speaks_of.clone()).collect();
+        persons.sort_unstable();
+        persons.dedup();
+        persons
+    }
+
+    /// What was found in a frame, at another size.
+    pub(super) fn found_at(&self, index: usize, [width, height]: [usize; 2]) -> Vec<u8> {
+        let (labels, [w, h]) = (self.frames[index].found.labels(), self.working_size());
+        let place = |p: usize| (p / width * h / height).min(h - 1) * w + (p % width * w / width).min(w - 1);
+        (0..width * height).map(|p| labels[place(p)]).collect()
+    }
+
+    /// Objects that no correction of others changes, by number; all others can be changed from now on.
+    pub fn lock(&mut self, objects: &[u8]) {
+        self.locked = vec![false; 256];
+        objects.iter().for_each(|&object| self.locked[usize::from(object)] = true);
     }
 
     /// Begins a correction: `labels` has for every pixel of a frame what is certain there, 0 for the background, the number of an object,
@@ -364,14 +410,14 @@ impl SegmentedClip {
     ///
     /// # Errors
     /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), or labels that do not fill the frame.
-    pub fn correct(&mut self, index: usize, labels: &[u8]) -> Result<ClipCorrection> {
+    pub fn correct(&mut self, index: usize, labels: &[u8], spread: Spread) -> Result<ClipCorrection> {
         self.check_index(index)?;
         let [width, height] = self.size;
         if labels.len() != width * height {
             let reason = format!("{} labels do not fill a frame of {width}×{height} pixels", labels.len());
             return Err(Error::InvalidOption { name: "corrections", reason });
         }
-        Ok(ClipCorrection::new(self, index, labels))
+        Ok(ClipCorrection::new(self, index, labels, spread))
     }
 
     /// Gives every pixel of an object another number for the whole clip: that of another object to merge them, 0 to make it background.
@@ -410,7 +456,7 @@ impl SegmentedClip {
 
     fn is_valid(&self) -> bool {
         let [width, height] = self.size;
-        if self.numbers.len() != 256 || self.hashes.len() != self.frames.len() {
+        if self.numbers.len() != 256 || self.locked.len() != 256 || self.hashes.len() != self.frames.len() {
             return false;
         }
         if self.frames.is_empty() {
@@ -420,8 +466,7 @@ impl SegmentedClip {
             return false;
         }
         let [w, h] = self.working_size();
-        let valid = |(index, frame): (usize, &FrameState)| frame.is_valid(index, self.len(), w * h, width * height);
-        self.frames.iter().enumerate().all(valid)
+        self.frames.iter().all(|frame| frame.is_valid(w * h, width * height))
     }
 
     fn check_index(&self, index: usize) -> Result<()> {
@@ -466,6 +511,8 @@ impl SegmentedClip {
     }
 }
 
+/// Odds where something that was found is no object any more, nats.
+const FREED: f32 = 4.0;
 /// The label of a pixel of which a correction says nothing.
 pub(super) const NOTHING_SAID: u8 = u8::MAX;
 

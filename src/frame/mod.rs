@@ -3,6 +3,7 @@
 pub(crate) mod area;
 mod derivatives;
 pub(crate) mod filter;
+pub(crate) mod lab;
 pub(crate) mod mirror;
 pub(crate) mod palette;
 pub(crate) mod picture;

@@ -142,7 +142,7 @@ pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue
 #[wasm_bindgen(js_name = correctClip)]
 pub fn correct_clip(clip: u32, index: usize, labels: &[u8]) -> Result<JsValue, JsValue> {
     segmented(clip, &mut |clip, correction| {
-        *correction = Some(clip.correct(index, labels)?);
+        *correction = Some(clip.correct(index, labels, crate::clip::Spread::Both)?);
         Ok(JsValue::UNDEFINED)
     })
 }

@@ -43,6 +43,15 @@ impl Borders {
         borders
     }
 
+    /// The prices within an area, multiplied by a factor.
+    pub(crate) fn cropped(&self, area: &Area, factor: f32) -> Borders {
+        let [horizontal, vertical] = [&self.horizontal, &self.vertical].map(|plane| {
+            let (left, top) = (area.columns.start, area.rows.start);
+            Plane::from_fn(area.width(), area.height(), |x, y| factor * plane.at(left + x, top + y))
+        });
+        Borders { horizontal, vertical }
+    }
+
     /// Borders that cost the same everywhere.
     pub(crate) fn uniform(width: usize, height: usize, smoothness: f32) -> Borders {
         let everywhere = Plane::filled(width, height, smoothness);

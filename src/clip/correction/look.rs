@@ -1,0 +1,63 @@
+//! What the propagation sees of a frame.
+
+use super::memory::colour;
+use crate::frame::Frame;
+use crate::frame::Plane;
+use crate::frame::filter::{gaussian, halve};
+use crate::frame::lab::lab;
+use crate::frame::picture::{Picture, colours};
+use crate::labelling::terms::smoothness::Borders;
+
+/// Noise that edges stand out from, grey levels.
+const EDGE_NOISE: f32 = 1.0;
+/// Blur of the colours, pixels.
+const BLUR: f32 = 0.7;
+/// Longer side at most, pixels.
+pub(super) const LONGEST: usize = 480;
+
+/// A frame at the working size of the propagation.
+#[derive(Clone, Debug)]
+pub(super) struct Look {
+    pub(super) size: [usize; 2],
+    /// Full-size pixels for each of these.
+    pub(super) step: usize,
+    /// Colour cell of every pixel.
+    pub(super) colours: Vec<u16>,
+    /// L, a, b at a quarter of the size.
+    pub(super) coarse: [Plane; 3],
+    /// Prices of borders, in units of the smoothness.
+    pub(super) borders: Borders,
+}
+
+/// Full-size pixels for each pixel of the working size.
+pub(super) fn step_of(size: [usize; 2]) -> usize {
+    let mut step = 1;
+    while size[0].max(size[1]).div_ceil(step) > LONGEST {
+        step *= 2;
+    }
+    step
+}
+
+impl Look {
+    pub(super) fn new(frame: &Frame) -> Look {
+        let step = step_of([frame.width(), frame.height()]);
+        let mut luminance = frame.luminance().clone();
+        (0..step.ilog2()).for_each(|_| luminance = halve(&luminance));
+        let picture = Picture { colours: colours(frame, luminance.width()), luminance };
+        let sharp = lab(&picture.colours);
+        let smooth = sharp.each_ref().map(|plane| gaussian(plane, BLUR));
+        let size = [picture.luminance.width(), picture.luminance.height()];
+        let colours = (0..size[0] * size[1]).map(|p| colour(smooth.each_ref().map(|plane| plane.values()[p]))).collect();
+        let coarse = smooth.each_ref().map(|plane| halve(&halve(plane)));
+        let borders = Borders::new(&picture, EDGE_NOISE, 1.0);
+        Look { size, step, colours, coarse, borders }
+    }
+}
+
+impl Look {
+    /// The pixel of the working size that a full-size pixel belongs to.
+    pub(super) fn pixel(&self, p: usize, full_width: usize) -> usize {
+        let (x, y) = (p % full_width / self.step, p / full_width / self.step);
+        y.min(self.size[1] - 1) * self.size[0] + x.min(self.size[0] - 1)
+    }
+}

@@ -1,0 +1,193 @@
+//! What an object and the ground around it look like: how often each colour was seen at each place relative to the object's centre.
+//!
+//! Two counts for every cell of place and colour, of the object's pixels and of others: those of corrected frames, which stay, and those of
+//! the frames passed since, which fade. Cells with few pixels fall back on wider ones, and these on the colours of all places.
+
+use super::constants::Constants;
+use super::look::Look;
+use crate::frame::area::Area;
+
+/// Colour cells: steps of L, and of a and b, and how many of each. Of a and b only the middle half is told apart.
+const STEP: [f32; 2] = [14.0, 6.0];
+const LIGHTNESS: usize = 20;
+const CHROMA: usize = 24;
+pub(super) const COLOURS: usize = LIGHTNESS * CHROMA * CHROMA;
+/// Ground around the object whose place is told apart, cells on each side.
+const MARGIN: usize = 3;
+/// Share of the back-off that wider cells need.
+const WIDER: f32 = 0.1;
+
+/// The colour cell of a pixel.
+pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
+    let chroma = |value: f32| (((value - 64.0) / STEP[1] + 1.5).max(0.0) as usize).min(CHROMA - 1);
+    let lightness = ((l / STEP[0] + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
+    ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
+}
+
+/// Counts of pixels: object, ground.
+type Counts = [f32; 2];
+
+#[derive(Clone, Debug)]
+pub(super) struct Memory {
+    /// Columns and rows of cells.
+    size: [usize; 2],
+    /// Side of a cell, pixels.
+    cell: f32,
+    /// One more than the place of each colour in the counts; 0 for one that was never seen.
+    places: Vec<u16>,
+    seen: Vec<u16>,
+    /// Cells of all colours seen, those of corrected frames and recent ones.
+    given: Vec<Counts>,
+    recent: Vec<Counts>,
+}
+
+impl Memory {
+    /// Nothing yet, of an object within an area.
+    pub(super) fn new(area: &Area, cell: f32) -> Memory {
+        let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * MARGIN;
+        let size = [cells(area.width()), cells(area.height())];
+        Memory { size, cell, places: vec![0; COLOURS], seen: Vec::new(), given: Vec::new(), recent: Vec::new() }
+    }
+
+    fn cells(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
+    /// Place of pixel (x, y) in cells, for an object with the given centre.
+    fn at(&self, x: usize, y: usize, centre: [f32; 2]) -> [f32; 2] {
+        let place = |at: usize, centre: f32, size: usize| {
+            ((at as f32 - centre) / self.cell + 0.5 * (size - 1) as f32).clamp(0.0, size as f32 - 1.001)
+        };
+        [place(x, centre[0], self.size[0]), place(y, centre[1], self.size[1])]
+    }
+
+    /// What is recent fades.
+    pub(super) fn fade(&mut self, left: f32) {
+        self.recent.iter_mut().flatten().for_each(|count| *count *= left);
+    }
+
+    /// Forgets what is recent.
+    pub(super) fn forget_recent(&mut self) {
+        self.recent.fill([0.0; 2]);
+    }
+
+    /// Adds the pixels of a frame with weights; `sides` has 0 for the object, 1 for ground, anything else for neither.
+    pub(super) fn learn(&mut self, look: &Look, centre: [f32; 2], recent: bool, weight: f32, sides: impl Fn(usize) -> usize) {
+        let [width, height] = look.size;
+        for y in 0..height {
+            for x in 0..width {
+                let side = sides(y * width + x);
+                if side > 1 {
+                    continue;
+                }
+                let place = self.place_of(look.colours[y * width + x]);
+                let [u, v] = self.at(x, y, centre);
+                let cell = place * self.cells() + (v + 0.5) as usize * self.size[0] + (u + 0.5) as usize;
+                let counts = if recent { &mut self.recent } else { &mut self.given };
+                counts[cell][side] += weight;
+            }
+        }
+    }
+
+    fn place_of(&mut self, colour: u16) -> usize {
+        let place = &mut self.places[usize::from(colour)];
+        if *place == 0 {
+            self.seen.push(colour);
+            *place = self.seen.len() as u16;
+            let cells = self.seen.len() * self.size[0] * self.size[1];
+            self.given.resize(cells, [0.0; 2]);
+            self.recent.resize(cells, [0.0; 2]);
+        }
+        usize::from(*place) - 1
+    }
+
+    /// Probability of the object at every pixel of an area, for an object with the given centre.
+    pub(super) fn read(&self, look: &Look, area: &Area, centre: [f32; 2], constants: &Constants) -> Vec<f32> {
+        let (cells, width) = (self.cells(), look.size[0]);
+        let mut blurred: Vec<Counts> =
+            self.given.iter().zip(&self.recent).map(|(given, recent)| [given[0] + recent[0], given[1] + recent[1]]).collect();
+        let mut total = [0.0f32; 2];
+        for counts in &blurred {
+            total = [total[0] + counts[0], total[1] + counts[1]];
+        }
+        let mut line = vec![[0.0; 2]; self.size[0].max(self.size[1])];
+        blurred.chunks_exact_mut(cells).for_each(|plane| self.blur(plane, &mut line));
+        // One plane of cells for each colour of the area, made when it first occurs.
+        let mut known = vec![0u16; COLOURS];
+        let mut planes: Vec<Counts> = Vec::new();
+        let mut wide: Vec<Counts> = Vec::new();
+        let mut shares: Vec<f32> = Vec::new();
+        let mut probabilities = Vec::with_capacity(area.width() * area.height());
+        for y in area.rows.clone() {
+            for x in area.columns.clone() {
+                let colour = look.colours[y * width + x];
+                if known[usize::from(colour)] == 0 {
+                    let from = planes.len();
+                    planes.resize(from + cells, [0.0; 2]);
+                    self.gather(colour, &blurred, &mut planes[from..]);
+                    wide.extend_from_slice(&planes[from..]);
+                    (0..2).for_each(|_| self.blur(&mut wide[from..], &mut line));
+                    let mut sum = [0.0f32; 2];
+                    planes[from..].iter().for_each(|counts| sum = [sum[0] + counts[0], sum[1] + counts[1]]);
+                    let [object, ground] = [0, 1].map(|k| sum[k] / total[k].max(1e-6) + 1e-5);
+                    shares.push(object / (object + ground));
+                    known[usize::from(colour)] = shares.len() as u16;
+                }
+                let k = usize::from(known[usize::from(colour)]) - 1;
+                let [u, v] = self.at(x, y, centre);
+                let (column, row) = (u as usize, v as usize);
+                let (fx, fy) = (u - column as f32, v - row as f32);
+                let first = k * cells + row * self.size[0] + column;
+                let sample = |counts: &[Counts]| {
+                    let window = &counts[first..first + self.size[0] + 2];
+                    let [a, b, c, d] = [window[0], window[1], window[self.size[0]], window[self.size[0] + 1]];
+                    [0, 1].map(|s| {
+                        let (top, bottom) = (a[s] + fx * (b[s] - a[s]), c[s] + fx * (d[s] - c[s]));
+                        top + fy * (bottom - top)
+                    })
+                };
+                let (near, wider) = (sample(&planes), sample(&wide));
+                let back_off = constants.back_off;
+                let of_wider = (wider[0] + WIDER * back_off * shares[k]) / (wider[0] + wider[1] + WIDER * back_off);
+                probabilities.push((near[0] + back_off * of_wider) / (near[0] + near[1] + back_off));
+            }
+        }
+        probabilities
+    }
+
+    /// Adds the counts of a colour and of those beside it.
+    fn gather(&self, colour: u16, counts: &[Counts], plane: &mut [Counts]) {
+        let colour = usize::from(colour);
+        let [l, a, b] = [colour / (CHROMA * CHROMA), colour / CHROMA % CHROMA, colour % CHROMA];
+        let near = |at: usize, size: usize| at.saturating_sub(1)..(at + 2).min(size);
+        let weight = |at: usize, other: usize| if at == other { 0.5 } else { 0.25f32 };
+        for i in near(l, LIGHTNESS) {
+            for j in near(a, CHROMA) {
+                for k in near(b, CHROMA) {
+                    let place = usize::from(self.places[(i * CHROMA + j) * CHROMA + k]);
+                    if place > 0 {
+                        let weight = weight(l, i) * weight(a, j) * weight(b, k);
+                        let other = &counts[(place - 1) * plane.len()..place * plane.len()];
+                        for (sum, count) in plane.iter_mut().flatten().zip(other.iter().flatten()) {
+                            *sum += weight * count;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// [1 2 1]/4 along rows and columns.
+    fn blur(&self, plane: &mut [Counts], line: &mut [Counts]) {
+        let [columns, rows] = self.size;
+        let mut along = |first: usize, step: usize, count: usize| {
+            (0..count).for_each(|k| line[k] = plane[first + k * step]);
+            for k in 0..count {
+                let (before, after) = (line[k.saturating_sub(1)], line[(k + 1).min(count - 1)]);
+                plane[first + k * step] = [0, 1].map(|s| 0.25 * before[s] + 0.5 * line[k][s] + 0.25 * after[s]);
+            }
+        };
+        (0..rows).for_each(|row| along(row * columns, 1, columns));
+        (0..columns).for_each(|column| along(column, columns, rows));
+    }
+}
