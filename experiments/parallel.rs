@@ -8,6 +8,15 @@ type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// `work` on every case, on all cores; the results in the order of the cases, or the first error.
 pub(crate) fn in_parallel<C: Sync, T: Send>(cases: &[C], work: impl Fn(&C) -> Result<T> + Sync) -> Result<Vec<T>> {
+    on_threads(std::thread::available_parallelism().map_or(1, usize::from), cases, work)
+}
+
+/// [`in_parallel`] on this number of threads.
+pub(crate) fn on_threads<C: Sync, T: Send>(
+    threads: usize,
+    cases: &[C],
+    work: impl Fn(&C) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
     let next = AtomicUsize::new(0);
     let results: Mutex<Vec<(usize, Result<T>)>> = Mutex::new(Vec::new());
     let worker = || {
@@ -23,8 +32,7 @@ pub(crate) fn in_parallel<C: Sync, T: Send>(cases: &[C], work: impl Fn(&C) -> Re
             }
         }
     };
-    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
-    std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(worker))));
+    std::thread::scope(|scope| (0..threads.min(cases.len())).for_each(|_| drop(scope.spawn(worker))));
     let mut results = results.into_inner().map_err(|_| "a thread ended early")?;
     results.sort_by_key(|(k, _)| *k);
     results.into_iter().map(|(_, result)| result).collect()

@@ -4,11 +4,9 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use veronese::Frame;
 use veronese::codecs::{Picture, decode_image, encode_colour_png, encode_grey_png};
 use veronese::scene::{ClipSceneOptions, Event, generate_clip};
-
-use super::scores::VOID;
+use veronese::{Frame, UNLABELLED};
 
 /// Seed of the first generated clip.
 const SEED: u64 = 50_000;
@@ -87,15 +85,20 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
     }
     let real = shared.join("data").join("clips");
     if !quick && real.is_dir() {
-        let mut folders: Vec<PathBuf> = fs::read_dir(&real)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
-        folders.retain(|folder| folder.join("frames").is_dir() && folder.join("masks").is_dir());
-        folders.sort();
-        cases.extend(folders.into_iter().map(|folder| {
-            let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-            Case { name, source: Source::Folder(folder), in_ablation: true }
-        }));
+        cases.extend(of_folders(&real)?);
     }
     Ok(cases)
+}
+
+/// The real clips in the folders of `real`.
+pub(crate) fn of_folders(real: &Path) -> Result<Vec<Case>> {
+    let mut folders = files(real)?;
+    folders.retain(|folder| folder.join("frames").is_dir() && folder.join("masks").is_dir());
+    let case = |folder: PathBuf| {
+        let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        Case { name, source: Source::Folder(folder), in_ablation: true }
+    };
+    Ok(folders.into_iter().map(case).collect())
 }
 
 /// An event in the name of a clip.
@@ -201,7 +204,7 @@ pub(crate) fn labels(folder: &Path, data: &Data) -> Result<Option<Vec<Vec<u8>>>>
         let pixels = data.truths[t].len();
         let file = folder.join(format!("{t:05}.png"));
         if !file.is_file() {
-            return Ok(vec![VOID; pixels]);
+            return Ok(vec![UNLABELLED; pixels]);
         }
         let labels: Vec<u8> = picture(&file)?.rgba.chunks_exact(4).map(|pixel| pixel[0]).collect();
         if labels.len() == pixels { Ok(labels) } else { Err(format!("{} has another size", file.display()).into()) }

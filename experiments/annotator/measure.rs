@@ -1,0 +1,182 @@
+//! What an annotator gets for what he does, on clips with masks of one object.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use serde::{Deserialize, Serialize};
+use veronese::Quality;
+
+use crate::cases::{Case, Data};
+use crate::robot::{NOTHING_SAID, View};
+use crate::session::Session;
+use crate::{Failure, Options, dump};
+
+/// Clips that had part in setting constants before the others came.
+const OLD: [&str; 10] =
+    ["boat", "bus", "car-turn", "elephant", "flamingo", "hockey", "kite-walk", "scooter-gray", "soccerball", "tennis"];
+/// The number of the object whose mask is given, and that of one that no label found fits.
+const GIVEN: u8 = 200;
+const NEW: u8 = 250;
+/// Least J of a label that is taken for the object.
+const FITS: f64 = 0.05;
+
+/// The figures of a clip. J is the mean IoU over all frames unless said.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Row {
+    pub(crate) clip: String,
+    pub(crate) quality: String,
+    pub(crate) frames: usize,
+    /// J of everything but the background label, nothing said.
+    pub(crate) auto: f64,
+    /// J of the one label that fits best, as one click gives it.
+    pub(crate) click: f64,
+    /// J of the object in the frames between the first and the last, its true mask of frame 0 given.
+    pub(crate) mask: f64,
+    /// J of the object's label after one click and 0, 1, … rounds of strokes in the worst frame.
+    pub(crate) rounds: Vec<f64>,
+    /// Time of each round, and of a frame that a correction changed.
+    pub(crate) round_seconds: Vec<f64>,
+    pub(crate) frame_milliseconds: f64,
+    /// `mask` of OpenCV's flow and GrabCut.
+    pub(crate) baseline: Option<f64>,
+}
+
+/// All figures of a clip.
+pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
+    let data = case.load()?;
+    let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
+    let truths: Vec<Vec<bool>> = data.truths.iter().map(|truth| of_label(truth, 1)).collect();
+    let (count, pixels) = (truths.len(), truths[0].len());
+    let quality = if options.quality == Quality::Best { "best" } else { "fast" };
+    let state = options.out.join("states").join(format!("{}-{quality}", case.name));
+    let automatic = Session::open(&data.frames, options.quality, &state)?;
+    dump::write(options, case, "auto", &data, &automatic.labels)?;
+
+    let mut areas = [0usize; 256];
+    automatic.labels.iter().flatten().for_each(|&label| areas[usize::from(label)] += 1);
+    // The first of equals.
+    let background = (0..=u8::MAX).rev().max_by_key(|&label| areas[usize::from(label)]).unwrap_or(0);
+    let moving = |labels: &Vec<u8>| labels.iter().map(|&label| label != background && label != NOTHING_SAID).collect();
+    let auto = mean(&each(&automatic.labels.iter().map(moving).collect::<Vec<_>>(), &truths));
+    let of = |label: u8| mean(&each(&masks(&automatic.labels, label), &truths));
+    let there = (0..NOTHING_SAID).filter(|&label| label != background && areas[usize::from(label)] > 0);
+    let best = there.map(|label| (label, of(label))).reduce(|a, b| if b.1 > a.1 { b } else { a });
+    let (label, click) = best.unwrap_or_else(|| (NEW, mean(&each(&vec![vec![false; pixels]; count], &truths))));
+    let label = if click < FITS { NEW } else { label };
+
+    let mut session = automatic.clone();
+    let given: Vec<u8> = truths[0].iter().map(|&object| if object { GIVEN } else { 0 }).collect();
+    session.correct(0, &given)?;
+    let mask = between(&masks(&session.labels, GIVEN), &truths);
+    dump::write(options, case, "mask", &data, &session.labels)?;
+    let mut effort = session.effort;
+
+    let mut session = automatic;
+    let (mut rounds, mut round_seconds) = (vec![click], Vec::new());
+    let mut said: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+    for round in 1..=options.rounds {
+        let found = masks(&session.labels, label);
+        let worst = worst(&each(&found, &truths));
+        let said = said.entry(worst).or_insert_with(|| vec![NOTHING_SAID; pixels]);
+        View { width, truth: &truths[worst], found: &found[worst] }.draw(label, |_| true, said);
+        let before = session.effort.time;
+        session.correct(worst, said)?;
+        round_seconds.push((session.effort.time - before).as_secs_f64());
+        rounds.push(mean(&each(&masks(&session.labels, label), &truths)));
+        dump::write(options, case, &format!("round-{round}"), &data, &session.labels)?;
+    }
+    effort.time += session.effort.time;
+    effort.frames += session.effort.frames;
+    let baseline = baseline(case, &data, options, &truths)?;
+    let (clip, quality, frame_milliseconds) = (case.name.clone(), quality.into(), effort.per_frame());
+    Ok(Row { clip, quality, frames: count, auto, click, mask, rounds, round_seconds, frame_milliseconds, baseline })
+}
+
+/// J between the first and the last frame of what OpenCV made of the first mask, if it ran.
+fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -> Result<Option<f64>, Failure> {
+    let found = crate::cases::labels(&options.out.join("baseline").join(&case.name), data)?;
+    Ok(found.map(|labels| between(&masks(&labels, 1), truths)))
+}
+
+pub(crate) fn of_label(labels: &[u8], label: u8) -> Vec<bool> {
+    labels.iter().map(|&own| own == label).collect()
+}
+
+fn masks(labels: &[Vec<u8>], label: u8) -> Vec<Vec<bool>> {
+    labels.iter().map(|labels| of_label(labels, label)).collect()
+}
+
+/// IoU of two masks, 1 where both are empty.
+pub(crate) fn iou(a: &[bool], b: &[bool]) -> f64 {
+    let both = |(&a, &b): (&bool, &bool)| [usize::from(a && b), usize::from(a || b)];
+    let [inside, union] = a.iter().zip(b).map(both).fold([0; 2], |[i, u], [inside, union]| [i + inside, u + union]);
+    if union == 0 { 1.0 } else { inside as f64 / union as f64 }
+}
+
+/// IoU in each frame.
+fn each(found: &[Vec<bool>], truths: &[Vec<bool>]) -> Vec<f64> {
+    found.iter().zip(truths).map(|(found, truth)| iou(found, truth)).collect()
+}
+
+fn between(found: &[Vec<bool>], truths: &[Vec<bool>]) -> f64 {
+    let each = each(found, truths);
+    mean(&each[1..each.len() - 1])
+}
+
+/// The first of the frames with the least IoU.
+pub(crate) fn worst(each: &[f64]) -> usize {
+    (0..each.len()).reduce(|a, b| if each[b] < each[a] { b } else { a }).unwrap_or(0)
+}
+
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Clips that belong together in the tables.
+pub(crate) fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
+    let old = |row: &&Row| OLD.contains(&row.clip.as_str());
+    let groups = [
+        ("all", rows.iter().collect::<Vec<_>>()),
+        ("old", rows.iter().filter(old).collect()),
+        ("new", rows.iter().filter(|row| !old(row)).collect()),
+    ];
+    groups.into_iter().filter(|(_, rows)| !rows.is_empty()).collect()
+}
+
+/// The figures of a group or of a clip, by title.
+pub(crate) fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
+    let of =
+        |figure: &dyn Fn(&Row) -> Option<f64>| mean(&rows.iter().filter_map(|row| figure(row)).collect::<Vec<_>>());
+    let rounds = rows.iter().map(|row| row.rounds.len()).min().unwrap_or(0);
+    let mut figures = vec![
+        ("auto".to_owned(), of(&|row| Some(row.auto))),
+        ("mask".to_owned(), of(&|row| Some(row.mask))),
+        ("OpenCV".to_owned(), of(&|row| row.baseline)),
+        ("click".to_owned(), of(&|row| Some(row.click))),
+    ];
+    figures.extend((1..rounds).map(|k| (format!("round {k}"), of(&|row| Some(row.rounds[k])))));
+    figures.push(("s a round".to_owned(), of(&|row| Some(mean(&row.round_seconds)))));
+    figures.push(("ms a frame".to_owned(), of(&|row| Some(row.frame_milliseconds))));
+    figures
+}
+
+/// The means as a table of Markdown; with `clips` each clip has a row before.
+pub(crate) fn table(rows: &[Row], clips: bool) -> String {
+    let titles: Vec<String> = figures(&rows.iter().collect::<Vec<_>>()).into_iter().map(|(title, _)| title).collect();
+    let mut text = format!("| clips | {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len() + 1));
+    let mut line = |name: &str, rows: &[&Row]| {
+        let cell = |(title, value): (String, f64)| match title.as_str() {
+            _ if !value.is_finite() => "–".into(),
+            "ms a frame" => format!("{value:.0}"),
+            "s a round" => format!("{value:.1}"),
+            _ => format!("{value:.3}"),
+        };
+        let cells: Vec<String> = figures(rows).into_iter().map(cell).collect();
+        let _ = writeln!(text, "| {name} | {} |", cells.join(" | "));
+    };
+    if clips {
+        rows.iter().for_each(|row| line(&row.clip, &[row]));
+    }
+    groups(rows).iter().for_each(|(name, rows)| line(&format!("{name} ({})", rows.len()), rows));
+    text
+}
