@@ -72,7 +72,7 @@ impl<'a> Session<'a> {
     /// Corrects a frame and lets that spread through the clip.
     pub(crate) fn correct(&mut self, index: usize, said: &[u8]) -> Result<()> {
         let start = Instant::now();
-        let mut correction = self.clip.correct(index, said)?;
+        let mut correction = self.clip.correct(index, said, veronese::clip::Spread::Both)?;
         while let Some(wanted) = correction.wanted() {
             correction.take(&mut self.clip, &self.frames[wanted])?;
         }
