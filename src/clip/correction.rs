@@ -66,8 +66,10 @@ pub struct ClipCorrection {
     /// Frames of the scene.
     scene: [usize; 2],
     tracks: Vec<Track>,
-    /// The frame that is wanted, and whether the backward sweep wants it.
-    next: Option<(usize, bool)>,
+    /// The frame that is wanted, and what for.
+    next: Option<(usize, Pass)>,
+    /// Frames that are still to be surveyed.
+    survey: Vec<usize>,
     /// Frames whose layer is up to date.
     done: Vec<bool>,
     /// What there was before, of every frame that has changed.
@@ -75,6 +77,18 @@ pub struct ClipCorrection {
     said_before: Option<SaidFrame>,
     changed: Vec<usize>,
 }
+
+/// What a frame is wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pass {
+    /// To learn what objects look like that were found automatically.
+    Survey,
+    Forward,
+    Backward,
+}
+
+/// Frames that are surveyed at most.
+const SURVEYED: usize = 8;
 
 impl ClipCorrection {
     pub(super) fn new(clip: &mut SegmentedClip, index: usize, labels: &[u8], spread: Spread) -> ClipCorrection {
@@ -90,7 +104,8 @@ impl ClipCorrection {
             said: Some((Runs::of(labels), spread)),
             scene: [first, last],
             tracks: Vec::new(),
-            next: Some((index, false)),
+            next: Some((index, Pass::Forward)),
+            survey: Vec::new(),
             done: vec![false; last + 1 - first],
             before: BTreeMap::new(),
             said_before: clip.frames[index].said.clone(),
@@ -120,7 +135,7 @@ impl ClipCorrection {
     /// [`Error::FrameSizeMismatch`](crate::Error::FrameSizeMismatch), [`Error::OtherFrame`](crate::Error::OtherFrame); the correction can
     /// continue with the right frame.
     pub fn take(&mut self, clip: &mut SegmentedClip, frame: &Frame) -> Result<()> {
-        let Some((index, backward)) = self.next else { return Ok(()) };
+        let Some((index, pass)) = self.next else { return Ok(()) };
         clip.check(index, frame)?;
         let _call = workspace::begin(clip.size());
         let constants = Constants::current();
@@ -128,15 +143,40 @@ impl ClipCorrection {
         if let Some((said, spread)) = self.said.take() {
             self.begin(clip, frame, said, spread);
             self.first_look(clip, frame, &look, &constants);
-            let first = self.tracks.iter().filter_map(Track::first).min();
-            let last = self.tracks.iter().filter_map(Track::last).max();
-            self.next = first.map(|t| (t, false)).or(last.map(|t| (t, true)));
-            if self.next != Some((index, backward)) {
-                return Ok(self.finish_if_done(clip));
+            self.survey = self.surveyed(clip);
+            self.next = self.after_survey();
+            if self.next != Some((index, pass)) {
+                self.finish_if_done(clip);
+                return Ok(());
             }
         }
-        self.visit(clip, frame, &look, index, backward, &constants);
-        Ok(self.finish_if_done(clip))
+        if pass == Pass::Survey {
+            let found = clip.found_at(index, look.size);
+            self.tracks.iter_mut().filter(|track| found.contains(&track.number)).for_each(|track| track.survey(&look, &found, &constants));
+            self.next = self.after_survey();
+        } else {
+            self.visit(clip, frame, &look, index, pass == Pass::Backward, &constants);
+        }
+        self.finish_if_done(clip);
+        Ok(())
+    }
+
+    /// Frames in which objects were found that a person speaks of now, in even steps.
+    fn surveyed(&self, clip: &SegmentedClip) -> Vec<usize> {
+        let [first, last] = self.scene;
+        let shows = |t: &usize| clip.finds_any(*t, &|label| self.tracks.iter().any(|track| track.number == label));
+        let there: Vec<usize> = (first..=last).rev().filter(shows).collect();
+        let count = there.len().min(SURVEYED);
+        (0..count).map(|k| there[k * there.len() / count]).collect()
+    }
+
+    fn after_survey(&mut self) -> Option<(usize, Pass)> {
+        if let Some(t) = self.survey.pop() {
+            return Some((t, Pass::Survey));
+        }
+        let first = self.tracks.iter().filter_map(Track::first).min();
+        let last = self.tracks.iter().filter_map(Track::last).max();
+        first.map(|t| (t, Pass::Forward)).or(last.map(|t| (t, Pass::Backward)))
     }
 
     /// Takes everything back that the correction has changed so far.
@@ -246,14 +286,14 @@ impl ClipCorrection {
             self.done[t - first] = true;
         }
         self.next = if backward {
-            (t > first).then(|| (t - 1, true))
+            (t > first).then(|| (t - 1, Pass::Backward))
         } else if t < last {
-            Some((t + 1, false))
+            Some((t + 1, Pass::Forward))
         } else {
             furthest.and_then(|furthest| {
                 // The last frame that both sweeps need was composed on the way.
                 let from = if self.done[furthest - first] { furthest.checked_sub(1)? } else { furthest };
-                (from >= first).then_some((from, true))
+                (from >= first).then_some((from, Pass::Backward))
             })
         };
     }

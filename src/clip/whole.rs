@@ -391,6 +391,11 @@ impl SegmentedClip {
         persons
     }
 
+    /// Whether any such label was found in a frame.
+    pub(super) fn finds_any(&self, index: usize, is_such: &dyn Fn(u8) -> bool) -> bool {
+        self.frames[index].found.labels.each().any(|(label, _)| is_such(label))
+    }
+
     /// What was found in a frame, at another size.
     pub(super) fn found_at(&self, index: usize, [width, height]: [usize; 2]) -> Vec<u8> {
         let (labels, [w, h]) = (self.frames[index].found.labels(), self.working_size());

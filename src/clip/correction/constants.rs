@@ -26,9 +26,9 @@ pub struct Constants {
 impl Default for Constants {
     fn default() -> Constants {
         Constants {
-            bias: 0.8,
+            bias: 1.0,
             carried: 0.5,
-            memory: 1.0,
+            memory: 1.6,
             back_off: 2.0,
             decay: 0.8,
             cell: 0.047,

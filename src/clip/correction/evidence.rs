@@ -31,7 +31,7 @@ impl Evidence {
     }
 
     /// Takes a frame.
-    pub(super) fn learn(&mut self, found: &[u8], mask: &Plane, begins: bool) {
+    pub(super) fn learn(&mut self, found: &[u8], mask: &Plane, begins: bool, own: Option<u8>) {
         let inside: Vec<usize> = (0..found.len()).filter(|&p| mask.values()[p] > 0.5).collect();
         if inside.is_empty() {
             return;
@@ -44,7 +44,16 @@ impl Evidence {
                 counts[kind(found[p])][usize::from(mask.values()[p] < 0.5)] += 1.0;
             }
         }
-        let [old, new] = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
+        let [mut old, mut new] = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
+        if begins && let Some(own) = own {
+            let t: f32 = std::env::var("OWN").map_or(0.5, |t| t.parse().unwrap());
+            [old, new] = [t, 1.0 - t];
+            let sum = |side: usize| counts.iter().map(|count| count[side]).sum::<f32>();
+            let [object, ground] = [sum(0), sum(1)];
+            self.counts = vec![[0.0; 2]; 256];
+            self.counts[0] = [0.2 * object, 0.9 * ground];
+            self.counts[usize::from(own)] = [0.8 * object, 0.1 * ground];
+        }
         let mut totals = [0.0f32; 2];
         for (count, now) in self.counts.iter_mut().zip(&counts) {
             for side in 0..2 {

@@ -5,6 +5,7 @@
 
 use super::constants::Constants;
 use super::look::Look;
+use crate::frame::Plane;
 use crate::frame::area::Area;
 
 /// Colour cells: steps of L, and of a and b, and how many of each. Of a and b only the middle half is told apart.
@@ -42,6 +43,14 @@ pub(super) struct Memory {
 }
 
 impl Memory {
+    /// Nothing yet, of an object as large as a mask.
+    pub(super) fn of(mask: &Plane, constants: &Constants) -> Memory {
+        let (width, height) = (mask.width(), mask.height());
+        let pixels: Vec<usize> = (0..width * height).filter(|&p| mask.values()[p] > 0.0).collect();
+        let around = if pixels.is_empty() { Area::whole(width, height) } else { Area::of(&pixels, width) };
+        Memory::new(&around, constants.cell * width.max(height) as f32)
+    }
+
     /// Nothing yet, of an object within an area.
     pub(super) fn new(area: &Area, cell: f32) -> Memory {
         let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * MARGIN;

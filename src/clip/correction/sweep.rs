@@ -63,6 +63,8 @@ pub(super) struct Sweep {
     front: Option<Front>,
     memory: Option<Memory>,
     evidence: Evidence,
+    /// The label that it has where it was found automatically.
+    pub(super) own: Option<u8>,
 }
 
 /// What a frame tells besides its pixels.
@@ -90,25 +92,40 @@ impl Sweep {
         if let (Some(memory), Some(front)) = (&mut memory, &self.front) {
             memory.forget_recent();
             memory.learn(look, front.centre, true, 1.0 - constants.decay, |p| front.side(p));
-            evidence.learn(found, &front.mask, true);
+            evidence.learn(found, &front.mask, true, self.own);
         }
-        Sweep { front: self.front.clone(), memory, evidence }
+        Sweep { front: self.front.clone(), memory, evidence, own: self.own }
+    }
+
+    /// Learns what the object looks like where it was found, before it begins.
+    pub(super) fn survey(&mut self, look: &Look, inside: &dyn Fn(usize) -> bool, constants: &Constants) {
+        let [width, height] = look.size;
+        let mask = Plane::from_fn(width, height, |x, y| f32::from(u8::from(inside(y * width + x))));
+        let Some(centre) = centre_of(&mask) else { return };
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
+        let weight: f32 = std::env::var("SURVEY").map_or(0.03, |t| t.parse().unwrap());
+        memory.learn(look, centre, false, weight, |p| usize::from(mask.values()[p] < 0.5));
     }
 
     /// The first frame: `unsaid` are the odds where nothing is said.
     pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, unsaid: &dyn Fn(usize) -> f32, constants: &Constants) -> Claim {
         let [width, height] = look.size;
-        let odds = (0..width * height).map(unsaid).collect();
+        let mut odds: Vec<f32> = (0..width * height).map(unsaid).collect();
+        if let Some(memory) = &self.memory {
+            let here = Plane::from_fn(width, height, |x, y| f32::from(u8::from(odds[y * width + x] > 0.0)));
+            let centre = centre_of(&here).or_else(|| centre_of(&said_mask(given.said?, look)));
+            if let Some(centre) = centre {
+                let area = Area::whole(width, height);
+                let w: f32 = std::env::var("BEG").map_or(0.5, |t| t.parse().unwrap());
+                for (odds, p) in odds.iter_mut().zip(memory.read(look, &area, centre, constants)) {
+                    *odds = w * *odds + constants.bias + constants.memory * logit(p);
+                }
+            }
+        }
         let claim = solved(look, Area::whole(width, height), odds, given.said, constants);
         let mask = claim.plane(look);
         let centre = centre_of(&mask).unwrap_or([0.5 * width as f32, 0.5 * height as f32]);
-        let memory = self.memory.get_or_insert_with(|| {
-            let pixels: Vec<usize> = (0..width * height).filter(|&p| mask.values()[p] > 0.0).collect();
-            let around = Area::of(&pixels, width);
-            let around = if pixels.is_empty() { Area::whole(width, height) } else { around };
-            Memory::new(&around, constants.cell * width.max(height) as f32)
-        });
-        let _ = memory;
+        self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
         self.arrive(look, given, mask, centre, true, constants);
         claim
     }
@@ -196,9 +213,15 @@ impl Sweep {
                 memory.learn(look, centre, true, 1.0 - constants.decay, |p| front.side(p));
             }
         }
-        self.evidence.learn(given.found, &front.mask, begins);
+        self.evidence.learn(given.found, &front.mask, begins, self.own);
         self.front = Some(front);
     }
+}
+
+/// 1 where the object is said to be.
+fn said_mask(said: &[Said], look: &Look) -> Plane {
+    let [width, height] = look.size;
+    Plane::from_fn(width, height, |x, y| f32::from(u8::from(said[y * width + x] == Said::Object)))
 }
 
 impl Front {

@@ -45,6 +45,14 @@ impl Track {
         }
     }
 
+    /// Learns from a frame in which the object was found automatically.
+    pub(super) fn survey(&mut self, look: &Look, found: &[u8], constants: &Constants) {
+        for sweep in [&mut self.forward, &mut self.backward] {
+            sweep.own = Some(self.number);
+            sweep.survey(look, &|p| found[p] == self.number, constants);
+        }
+    }
+
     /// The first frame that spreads forward.
     pub(super) fn first(&self) -> Option<usize> {
         self.starts.iter().find(|(_, spread)| spread.forward()).map(|(t, _)| *t)
