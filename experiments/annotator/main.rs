@@ -5,6 +5,8 @@
 mod cases;
 mod dump;
 mod measure;
+mod objects;
+mod overlap;
 #[path = "../panels.rs"]
 mod panels;
 #[path = "../parallel.rs"]
@@ -24,7 +26,8 @@ use veronese::Quality;
 const HELP: &str = "\
 Measures what an annotator gets for what he says of a clip, in steps:
 
-  measure        real clips with masks of one object: a line of figures for each, then means; writes clips.jsonl
+  measure        real clips with masks of one object: a line of figures for each, then means; writes measure.jsonl
+  objects        generated clips with several objects: the same; writes objects.jsonl
 
   --data DIR         folder of the real clips; default ../shared/data/clips
   --only A,B         only clips whose name contains one of these
@@ -79,7 +82,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "measure" => options.step = name,
+            "measure" | "objects" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -97,20 +100,34 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step.".into()),
+        true => Err("Say which step: measure or objects.".into()),
         false => Ok(Some(options)),
     }
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
     fs::create_dir_all(options.out.join("states"))?;
-    let real = options.chosen(cases::of_folders(&options.data)?)?;
-    let rows = options.on_all(&real, |case| measure::measure(case, options))?;
-    print!("\n{}", measure::table(&rows, false));
+    let table = if options.step == "objects" {
+        let cases = options.chosen(objects::cases())?;
+        objects::table(&options.on_all(&cases, |case| objects::measure(case, options))?, false)
+    } else {
+        let cases = options.chosen(cases::of_folders(&options.data)?)?;
+        measure::table(&options.on_all(&cases, |case| measure::measure(case, options))?, false)
+    };
+    print!("\n{table}");
     Ok(())
 }
 
 impl Options {
+    pub(crate) fn quality_name(&self) -> &'static str {
+        if self.quality == Quality::Best { "best" } else { "fast" }
+    }
+
+    /// Where what was found automatically in a clip is kept.
+    pub(crate) fn state(&self, case: &cases::Case) -> PathBuf {
+        self.out.join("states").join(format!("{}-{}", case.name, self.quality_name()))
+    }
+
     fn chosen(&self, mut cases: Vec<cases::Case>) -> Result<Vec<cases::Case>, Failure> {
         cases.retain(|case| self.only.is_empty() || self.only.iter().any(|part| case.name.contains(part)));
         if cases.is_empty() { Err("There is no such clip.".into()) } else { Ok(cases) }

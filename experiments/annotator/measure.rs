@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
-use veronese::Quality;
 
 use crate::cases::{Case, Data};
+use crate::overlap::{between, each, masks, mean, of_label, worst};
 use crate::robot::{NOTHING_SAID, View};
 use crate::session::Session;
 use crate::{Failure, Options, dump};
@@ -47,9 +47,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
     let truths: Vec<Vec<bool>> = data.truths.iter().map(|truth| of_label(truth, 1)).collect();
     let (count, pixels) = (truths.len(), truths[0].len());
-    let quality = if options.quality == Quality::Best { "best" } else { "fast" };
-    let state = options.out.join("states").join(format!("{}-{quality}", case.name));
-    let automatic = Session::open(&data.frames, options.quality, &state)?;
+    let automatic = Session::open(&data.frames, options.quality, &options.state(case))?;
     dump::write(options, case, "auto", &data, &automatic.labels)?;
 
     let mut areas = [0usize; 256];
@@ -88,7 +86,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     effort.time += session.effort.time;
     effort.frames += session.effort.frames;
     let baseline = baseline(case, &data, options, &truths)?;
-    let (clip, quality, frame_milliseconds) = (case.name.clone(), quality.into(), effort.per_frame());
+    let (clip, quality, frame_milliseconds) = (case.name.clone(), options.quality_name().into(), effort.per_frame());
     Ok(Row { clip, quality, frames: count, auto, click, mask, rounds, round_seconds, frame_milliseconds, baseline })
 }
 
@@ -96,40 +94,6 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
 fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -> Result<Option<f64>, Failure> {
     let found = crate::cases::labels(&options.out.join("baseline").join(&case.name), data)?;
     Ok(found.map(|labels| between(&masks(&labels, 1), truths)))
-}
-
-pub(crate) fn of_label(labels: &[u8], label: u8) -> Vec<bool> {
-    labels.iter().map(|&own| own == label).collect()
-}
-
-fn masks(labels: &[Vec<u8>], label: u8) -> Vec<Vec<bool>> {
-    labels.iter().map(|labels| of_label(labels, label)).collect()
-}
-
-/// IoU of two masks, 1 where both are empty.
-pub(crate) fn iou(a: &[bool], b: &[bool]) -> f64 {
-    let both = |(&a, &b): (&bool, &bool)| [usize::from(a && b), usize::from(a || b)];
-    let [inside, union] = a.iter().zip(b).map(both).fold([0; 2], |[i, u], [inside, union]| [i + inside, u + union]);
-    if union == 0 { 1.0 } else { inside as f64 / union as f64 }
-}
-
-/// IoU in each frame.
-fn each(found: &[Vec<bool>], truths: &[Vec<bool>]) -> Vec<f64> {
-    found.iter().zip(truths).map(|(found, truth)| iou(found, truth)).collect()
-}
-
-fn between(found: &[Vec<bool>], truths: &[Vec<bool>]) -> f64 {
-    let each = each(found, truths);
-    mean(&each[1..each.len() - 1])
-}
-
-/// The first of the frames with the least IoU.
-pub(crate) fn worst(each: &[f64]) -> usize {
-    (0..each.len()).reduce(|a, b| if each[b] < each[a] { b } else { a }).unwrap_or(0)
-}
-
-pub(crate) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Clips that belong together in the tables.
