@@ -97,7 +97,7 @@ fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -
 }
 
 /// Clips that belong together in the tables.
-pub(crate) fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
+fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
     let old = |row: &&Row| OLD.contains(&row.clip.as_str());
     let groups = [
         ("all", rows.iter().collect::<Vec<_>>()),
@@ -108,7 +108,7 @@ pub(crate) fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
 }
 
 /// The figures of a group or of a clip, by title.
-pub(crate) fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
+fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
     let of =
         |figure: &dyn Fn(&Row) -> Option<f64>| mean(&rows.iter().filter_map(|row| figure(row)).collect::<Vec<_>>());
     let rounds = rows.iter().map(|row| row.rounds.len()).min().unwrap_or(0);
@@ -124,7 +124,7 @@ pub(crate) fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
     figures
 }
 
-/// The means as a table of Markdown; with `clips` each clip has a row before.
+/// The means of groups, or the figures of single clips, as a table of Markdown.
 pub(crate) fn table(rows: &[Row], clips: bool) -> String {
     let titles: Vec<String> = figures(&rows.iter().collect::<Vec<_>>()).into_iter().map(|(title, _)| title).collect();
     let mut text = format!("| clips | {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len() + 1));
@@ -140,6 +140,7 @@ pub(crate) fn table(rows: &[Row], clips: bool) -> String {
     };
     if clips {
         rows.iter().for_each(|row| line(&row.clip, &[row]));
+        return text;
     }
     groups(rows).iter().for_each(|(name, rows)| line(&format!("{name} ({})", rows.len()), rows));
     text

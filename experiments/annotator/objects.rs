@@ -109,7 +109,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     Ok(Row { clip: case.name.clone(), quality, objects, frame_milliseconds })
 }
 
-/// The figures as a table of Markdown, by kind and in all; with `clips` each clip has a row.
+/// The figures as a table of Markdown: by kind and in all, or of single clips.
 pub(crate) fn table(rows: &[Row], clips: bool) -> String {
     let mut text = String::from(
         "| clips | objects | assigned | after strokes | pixels of others changed | ms a frame |\n|---|---|---|---|---|---|\n",
@@ -127,6 +127,7 @@ pub(crate) fn table(rows: &[Row], clips: bool) -> String {
     };
     if clips {
         rows.iter().for_each(|row| line(&row.clip, &[row]));
+        return text;
     }
     let kinds = KINDS.map(|(kind, ..)| (kind, kind));
     for (name, start) in kinds.into_iter().chain([("all", "")]) {
