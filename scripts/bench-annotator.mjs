@@ -16,8 +16,8 @@ await command(async (args) => {
   await checkRust();
   const place = args.indexOf('--out');
   const out = resolve(root, place < 0 ? 'out/annotator' : args[place + 1]);
-  // What is found automatically is kept from run to run, but the page must not be of another version.
-  const old = args.includes('--write-docs') ? ['baseline', 'states'] : ['baseline'];
+  // What pairs of frames told is kept from run to run, but the page must not be of another version.
+  const old = args.includes('--write-docs') ? ['baseline', 'pairs'] : ['baseline'];
   for (const folder of old) rmSync(join(out, folder), { recursive: true, force: true });
   console.error('Building the program if it has changed (some minutes when everything is new) …');
   const frames = await run('cargo', [...CARGO, 'frames', ...args], { output: 'collect' });

@@ -42,7 +42,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --quality Q        fast or best; default best
   --rounds N         rounds of strokes; default 4
   --jobs N           clips at once; default one for each core
-  --out DIR          output folder; default out/annotator. Its folder states keeps what was found automatically
+  --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
   --dump DIR         also write the labels of every stage as indexed images, and strips of small ones
   --write-docs       also write docs/annotating.md
 ";
@@ -117,7 +117,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             return Err(sealed::changed("docs/annotating.md", "experiments/annotator").into());
         }
     }
-    fs::create_dir_all(options.out.join("states"))?;
+    fs::create_dir_all(&options.out)?;
     let table = match options.step.as_str() {
         "frames" => {
             for case in options.real()? {
@@ -165,9 +165,9 @@ impl Options {
         if self.quality == Quality::Best { "best" } else { "fast" }
     }
 
-    /// Where what was found automatically in a clip is kept.
-    pub(crate) fn state(&self, case: &Case) -> PathBuf {
-        self.out.join("states").join(format!("{}-{}", case.name, self.quality_name()))
+    /// Where what the pairs of a clip told is kept.
+    pub(crate) fn pairs(&self, case: &Case) -> PathBuf {
+        self.out.join("pairs").join(format!("{}-{}", case.name, self.quality_name()))
     }
 
     /// The real clips asked for.

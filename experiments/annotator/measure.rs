@@ -47,7 +47,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
     let truths: Vec<Vec<bool>> = data.truths.iter().map(|truth| of_label(truth, 1)).collect();
     let (count, pixels) = (truths.len(), truths[0].len());
-    let automatic = Session::open(&data.frames, options.quality, &options.state(case))?;
+    let automatic = Session::open(&data.frames, options.quality, &options.pairs(case))?;
     dump::write(options, case, "auto", &data, &automatic.labels)?;
 
     let mut areas = [0usize; 256];

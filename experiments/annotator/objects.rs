@@ -65,7 +65,7 @@ pub(crate) fn cases() -> Vec<Case> {
 pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let data = case.load()?;
     let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
-    let mut session = Session::open(&data.frames, options.quality, &options.state(case))?;
+    let mut session = Session::open(&data.frames, options.quality, &options.pairs(case))?;
     let given: Vec<u8> = data.truths[0].iter().map(|&label| if label > 0 { GIVEN + label } else { 0 }).collect();
     session.correct(0, &given)?;
     dump::write(options, case, "masks", &data, &session.labels)?;
