@@ -50,9 +50,10 @@ proptest! {
 
 #[test]
 fn pixels_that_share_no_more_than_a_corner_or_the_end_of_a_row_are_of_different_parts() {
-    let (mask, width) = drawn(&["##..#", "#..##", "..#..", ".####"]);
-    let (part, _) = drawn(&[".....", ".....", "..#..", ".####"]);
-    assert_eq!(largest(&mask, width), part);
+    for above in [["##..#", "#..#."], ["...##", "##..."], ["#...#", "#...."]] {
+        let (mask, width) = drawn(&[above[0], above[1], "..#..", ".###."]);
+        assert_eq!(largest(&mask, width), drawn(&[".....", ".....", "..#..", ".###."]).0);
+    }
     // Of equals the first.
     let (mask, width) = drawn(&["#..#", "#..#"]);
     assert_eq!(largest(&mask, width), drawn(&["#...", "#..."]).0);

@@ -87,6 +87,9 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
         };
         let of = |values: &[f64]| mean(&values.iter().copied().filter(|value| value.is_finite()).collect::<Vec<_>>());
         let before = seen(&session);
+        if !before.iter().any(|value| value.is_finite()) {
+            continue;
+        }
         let worst = worst(&before);
         let found = of_label(&session.labels[worst], GIVEN + number);
         let mut said = vec![NOTHING_SAID; found.len()];
