@@ -175,3 +175,29 @@ fn the_same_seed_gives_the_same_bytes_on_every_machine() {
     let others = [Event::Entering, Event::Leaving, Event::HiddenByObject, Event::Slow];
     assert_eq!(hash_of(&others, 32), "b2d439ce14255c89");
 }
+
+/// The mean colour of an object in frame 0.
+fn mean_colour(clip: &ClipScene, object: u8) -> [f64; 3] {
+    let (rgba, labels) = (clip.rgba(0).unwrap(), clip.labels(0).unwrap());
+    let own: Vec<&[u8]> =
+        rgba.chunks_exact(4).zip(labels).filter(|(_, label)| *label == object).map(|(pixel, _)| pixel).collect();
+    [0, 1, 2].map(|k| own.iter().map(|pixel| f64::from(pixel[k])).sum::<f64>() / own.len() as f64)
+}
+
+#[test]
+fn objects_that_are_alike_have_colours_in_common_and_move_as_others_do() {
+    let mut distances = [0.0; 2];
+    for seed in 0..6 {
+        let options =
+            ClipSceneOptions { width: WIDTH, height: HEIGHT, objects: 2, seed, ..ClipSceneOptions::default() };
+        let clips = [false, true].map(|alike| generate_clip(&ClipSceneOptions { alike, ..options.clone() }).unwrap());
+        for t in [0, 31] {
+            assert_eq!(clips[0].labels(t).unwrap(), clips[1].labels(t).unwrap());
+        }
+        for (clip, distance) in clips.iter().zip(&mut distances) {
+            let [one, two] = [1, 2].map(|object| mean_colour(clip, object));
+            *distance += one.iter().zip(two).map(|(a, b)| (a - b).abs()).sum::<f64>() / 18.0;
+        }
+    }
+    assert!(distances[1] < 0.4 * distances[0], "{distances:?}");
+}

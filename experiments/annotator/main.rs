@@ -5,34 +5,46 @@
 mod cases;
 mod dump;
 mod measure;
+mod objects;
+mod overlap;
+mod page;
 #[path = "../panels.rs"]
 mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
+#[path = "../program.rs"]
+mod program;
 mod robot;
+#[path = "../sealed.rs"]
+mod sealed;
 mod session;
 #[path = "../clips/strips.rs"]
 mod strips;
 
 use std::error::Error;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use cases::Case;
 use parallel::{in_parallel, on_threads};
 use veronese::Quality;
 
 const HELP: &str = "\
 Measures what an annotator gets for what he says of a clip, in steps:
 
-  measure        real clips with masks of one object: a line of figures for each, then means; writes clips.jsonl
+  frames         prints a line per real clip: its name, a tab, its folder
+  measure        real clips with masks of one object: a line of figures for each, then means; writes measure.jsonl
+  objects        generated clips with several objects: the same; writes objects.jsonl
+  page           writes annotating.md from these figures
 
   --data DIR         folder of the real clips; default ../shared/data/clips
   --only A,B         only clips whose name contains one of these
   --quality Q        fast or best; default best
   --rounds N         rounds of strokes; default 4
   --jobs N           clips at once; default one for each core
-  --out DIR          output folder; default out/annotator. Its folder states keeps what was found automatically
+  --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
   --dump DIR         also write the labels of every stage as indexed images, and strips of small ones
+  --write-docs       also write docs/annotating.md
 ";
 
 pub(crate) type Failure = Box<dyn Error + Send + Sync>;
@@ -46,20 +58,11 @@ pub(crate) struct Options {
     jobs: Option<usize>,
     pub(crate) out: PathBuf,
     pub(crate) dump: Option<PathBuf>,
+    write_docs: bool,
 }
 
 fn main() {
-    match options(std::env::args().skip(1)).map(|options| options.map(|options| run(&options))) {
-        Ok(None) => print!("{HELP}"),
-        Ok(Some(Ok(()))) => {}
-        Ok(Some(Err(error))) => stop(&error.to_string(), 1),
-        Err(message) => stop(&format!("{message}\n\n{HELP}"), 2),
-    }
-}
-
-fn stop(message: &str, code: i32) {
-    eprintln!("{message}");
-    std::process::exit(code);
+    program::start(HELP, options(std::env::args().skip(1)), run);
 }
 
 /// What was asked for; `None` where help was.
@@ -73,13 +76,14 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         jobs: None,
         out: "out/annotator".into(),
         dump: None,
+        write_docs: false,
     };
     while let Some(name) = arguments.next() {
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "measure" => options.step = name,
+            "frames" | "measure" | "objects" | "page" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -92,37 +96,101 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--rounds" => options.rounds = number(value()?)?,
             "--jobs" => options.jobs = Some(number(value()?)?.max(1)),
             "--out" => options.out = value()?.into(),
+            "--write-docs" => options.write_docs = true,
             "--dump" => options.dump = Some(value()?.into()),
             _ => return Err(format!("There is no option '{name}'.")),
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step.".into()),
+        true => Err("Say which step: frames, measure, objects or page.".into()),
         false => Ok(Some(options)),
     }
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    fs::create_dir_all(options.out.join("states"))?;
-    let real = options.chosen(cases::of_folders(&options.data)?)?;
-    let rows = options.on_all(&real, |case| measure::measure(case, options))?;
-    print!("\n{}", measure::table(&rows, false));
+    if options.write_docs {
+        if !options.only.is_empty() {
+            return Err("docs/annotating.md has all clips: --only and --write-docs exclude each other.".into());
+        }
+        let kept = fs::read_to_string(docs());
+        if kept.is_ok_and(|page| sealed::opened(&page).is_none()) {
+            return Err(sealed::changed("docs/annotating.md", "experiments/annotator").into());
+        }
+    }
+    fs::create_dir_all(&options.out)?;
+    let table = match options.step.as_str() {
+        "frames" => {
+            for case in options.real()? {
+                println!("{}\t{}", case.name, case.folder(&options.out)?.display());
+            }
+            return Ok(());
+        }
+        "page" => return write_page(options),
+        "objects" => {
+            let cases = options.chosen(objects::cases());
+            objects::table(&options.on_all(&cases, |case| objects::measure(case, options))?, false)
+        }
+        _ => measure::table(&options.on_all(&options.real()?, |case| measure::measure(case, options))?, false),
+    };
+    print!("\n{table}");
     Ok(())
 }
 
+fn docs() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/annotating.md")
+}
+
+fn write_page(options: &Options) -> Result<(), Failure> {
+    let (real, generated) = (rows::<measure::Row>(options, "measure")?, rows::<objects::Row>(options, "objects")?);
+    let text = sealed::sealed(&page::text(&real, &generated));
+    fs::write(options.out.join("annotating.md"), &text)?;
+    if options.write_docs {
+        if real.is_empty() || generated.len() < objects::cases().len() {
+            return Err("docs/annotating.md has all clips: measure them before.".into());
+        }
+        fs::write(docs(), &text)?;
+    }
+    Ok(())
+}
+
+/// The figures that a step has left.
+fn rows<T: serde::de::DeserializeOwned>(options: &Options, step: &str) -> Result<Vec<T>, Failure> {
+    let file = options.out.join(format!("{step}.jsonl"));
+    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+    Ok(text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?)
+}
+
 impl Options {
-    fn chosen(&self, mut cases: Vec<cases::Case>) -> Result<Vec<cases::Case>, Failure> {
+    pub(crate) fn quality_name(&self) -> &'static str {
+        if self.quality == Quality::Best { "best" } else { "fast" }
+    }
+
+    /// Where what the pairs of a clip told is kept.
+    pub(crate) fn pairs(&self, case: &Case) -> PathBuf {
+        self.out.join("pairs").join(format!("{}-{}", case.name, self.quality_name()))
+    }
+
+    /// The real clips asked for.
+    fn real(&self) -> Result<Vec<Case>, Failure> {
+        if !self.data.is_dir() {
+            eprintln!("{} is not there: only generated clips are measured.", self.data.display());
+            return Ok(Vec::new());
+        }
+        Ok(self.chosen(cases::of_folders(&self.data)?))
+    }
+
+    fn chosen(&self, mut cases: Vec<Case>) -> Vec<Case> {
         cases.retain(|case| self.only.is_empty() || self.only.iter().any(|part| case.name.contains(part)));
-        if cases.is_empty() { Err("There is no such clip.".into()) } else { Ok(cases) }
+        cases
     }
 
     /// `work` on all cases; a line of figures for each as soon as it is done, and a file of all.
     fn on_all<T: serde::Serialize + Send>(
         &self,
-        cases: &[cases::Case],
-        work: impl Fn(&cases::Case) -> Result<T, Failure> + Sync,
+        cases: &[Case],
+        work: impl Fn(&Case) -> Result<T, Failure> + Sync,
     ) -> Result<Vec<T>, Failure> {
-        let shown = |case: &cases::Case| {
+        let shown = |case: &Case| {
             let row = work(case).map_err(|error| format!("{}: {error}", case.name))?;
             println!("{}", serde_json::to_string(&row)?);
             Ok(row)
@@ -132,7 +200,7 @@ impl Options {
             None => in_parallel(cases, shown),
         }?;
         let lines = rows.iter().map(serde_json::to_string).collect::<Result<Vec<_>, _>>()?;
-        fs::write(self.out.join(format!("{}.jsonl", self.step)), lines.join("\n") + "\n")?;
+        fs::write(self.out.join(format!("{}.jsonl", self.step)), lines.join("\n"))?;
         Ok(rows)
     }
 }

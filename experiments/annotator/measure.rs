@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
-use veronese::Quality;
 
 use crate::cases::{Case, Data};
+use crate::overlap::{between, each, masks, mean, of_label, worst};
 use crate::robot::{NOTHING_SAID, View};
 use crate::session::Session;
 use crate::{Failure, Options, dump};
@@ -47,9 +47,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
     let truths: Vec<Vec<bool>> = data.truths.iter().map(|truth| of_label(truth, 1)).collect();
     let (count, pixels) = (truths.len(), truths[0].len());
-    let quality = if options.quality == Quality::Best { "best" } else { "fast" };
-    let state = options.out.join("states").join(format!("{}-{quality}", case.name));
-    let automatic = Session::open(&data.frames, options.quality, &state)?;
+    let automatic = Session::open(&data.frames, options.quality, &options.pairs(case))?;
     dump::write(options, case, "auto", &data, &automatic.labels)?;
 
     let mut areas = [0usize; 256];
@@ -88,7 +86,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     effort.time += session.effort.time;
     effort.frames += session.effort.frames;
     let baseline = baseline(case, &data, options, &truths)?;
-    let (clip, quality, frame_milliseconds) = (case.name.clone(), quality.into(), effort.per_frame());
+    let (clip, quality, frame_milliseconds) = (case.name.clone(), options.quality_name().into(), effort.per_frame());
     Ok(Row { clip, quality, frames: count, auto, click, mask, rounds, round_seconds, frame_milliseconds, baseline })
 }
 
@@ -98,42 +96,8 @@ fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -
     Ok(found.map(|labels| between(&masks(&labels, 1), truths)))
 }
 
-pub(crate) fn of_label(labels: &[u8], label: u8) -> Vec<bool> {
-    labels.iter().map(|&own| own == label).collect()
-}
-
-fn masks(labels: &[Vec<u8>], label: u8) -> Vec<Vec<bool>> {
-    labels.iter().map(|labels| of_label(labels, label)).collect()
-}
-
-/// IoU of two masks, 1 where both are empty.
-pub(crate) fn iou(a: &[bool], b: &[bool]) -> f64 {
-    let both = |(&a, &b): (&bool, &bool)| [usize::from(a && b), usize::from(a || b)];
-    let [inside, union] = a.iter().zip(b).map(both).fold([0; 2], |[i, u], [inside, union]| [i + inside, u + union]);
-    if union == 0 { 1.0 } else { inside as f64 / union as f64 }
-}
-
-/// IoU in each frame.
-fn each(found: &[Vec<bool>], truths: &[Vec<bool>]) -> Vec<f64> {
-    found.iter().zip(truths).map(|(found, truth)| iou(found, truth)).collect()
-}
-
-fn between(found: &[Vec<bool>], truths: &[Vec<bool>]) -> f64 {
-    let each = each(found, truths);
-    mean(&each[1..each.len() - 1])
-}
-
-/// The first of the frames with the least IoU.
-pub(crate) fn worst(each: &[f64]) -> usize {
-    (0..each.len()).reduce(|a, b| if each[b] < each[a] { b } else { a }).unwrap_or(0)
-}
-
-pub(crate) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
-}
-
 /// Clips that belong together in the tables.
-pub(crate) fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
+fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
     let old = |row: &&Row| OLD.contains(&row.clip.as_str());
     let groups = [
         ("all", rows.iter().collect::<Vec<_>>()),
@@ -144,7 +108,7 @@ pub(crate) fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
 }
 
 /// The figures of a group or of a clip, by title.
-pub(crate) fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
+fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
     let of =
         |figure: &dyn Fn(&Row) -> Option<f64>| mean(&rows.iter().filter_map(|row| figure(row)).collect::<Vec<_>>());
     let rounds = rows.iter().map(|row| row.rounds.len()).min().unwrap_or(0);
@@ -160,7 +124,7 @@ pub(crate) fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
     figures
 }
 
-/// The means as a table of Markdown; with `clips` each clip has a row before.
+/// The means of groups, or the figures of single clips, as a table of Markdown.
 pub(crate) fn table(rows: &[Row], clips: bool) -> String {
     let titles: Vec<String> = figures(&rows.iter().collect::<Vec<_>>()).into_iter().map(|(title, _)| title).collect();
     let mut text = format!("| clips | {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len() + 1));
@@ -176,6 +140,7 @@ pub(crate) fn table(rows: &[Row], clips: bool) -> String {
     };
     if clips {
         rows.iter().for_each(|row| line(&row.clip, &[row]));
+        return text;
     }
     groups(rows).iter().for_each(|(name, rows)| line(&format!("{name} ({})", rows.len()), rows));
     text

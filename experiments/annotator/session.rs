@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use veronese::clip::{ClipOptions, ClipSegmenter, SegmentedClip};
+use veronese::clip::{ClipOptions, ClipSegmenter, FramePairs, SegmentedClip};
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
 use crate::Failure;
@@ -35,30 +35,24 @@ impl Effort {
 }
 
 impl<'a> Session<'a> {
-    /// The clip as it is segmented when nothing is said. It is kept in the file `state`, and taken from there if it is of these frames
-    /// and this version, because it takes minutes where corrections take seconds.
+    /// The clip as it is segmented when nothing is said. What its pairs told is kept in the folder `pairs`, and taken from there if it is
+    /// of these frames and this version: it takes minutes, all the rest seconds.
     pub(crate) fn open(
         frames: &'a [Frame],
         quality: Quality,
-        state: &Path,
+        pairs: &Path,
     ) -> std::result::Result<Session<'a>, Failure> {
-        let kept =
-            fs::read(state).ok().and_then(|bytes| Session::of(frames, SegmentedClip::from_bytes(&bytes).ok()?).ok());
-        if let Some(session) = kept {
-            return Ok(session);
-        }
+        fs::create_dir_all(pairs)?;
         let pair = SegmentOptions { quality, ..SegmentOptions::default() };
         let mut segmenter = ClipSegmenter::new(ClipOptions { pair, ..ClipOptions::default() })?;
-        for frame in frames {
-            segmenter.push(frame.clone())?;
+        for (index, frame) in frames.iter().enumerate() {
+            let file = pairs.join(index.to_string());
+            let known = fs::read(&file).ok().and_then(|bytes| FramePairs::from_bytes(&bytes).ok());
+            if known.is_none_or(|known| segmenter.push_known(frame.clone(), &known).is_err()) {
+                fs::write(file, segmenter.push(frame.clone())?.to_bytes())?;
+            }
         }
-        let clip = segmenter.conclude();
-        fs::write(state, clip.to_bytes())?;
-        Ok(Session::of(frames, clip)?)
-    }
-
-    fn of(frames: &'a [Frame], clip: SegmentedClip) -> Result<Session<'a>> {
-        let mut session = Session { frames, clip, labels: Vec::new(), effort: Effort::default() };
+        let mut session = Session { frames, clip: segmenter.conclude(), labels: Vec::new(), effort: Effort::default() };
         session.look()?;
         Ok(session)
     }

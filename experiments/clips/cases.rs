@@ -80,7 +80,7 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
         let name = format!("{seed}-{}", if words.is_empty() { "plain" } else { &words });
         let fourth = k % 4 == 2;
         if !quick || fourth {
-            cases.push(Case { name, source: Source::Generated(options), in_ablation: fourth });
+            cases.push(Case::generated(name, options, fourth));
         }
     }
     let real = shared.join("data").join("clips");
@@ -123,6 +123,11 @@ pub(crate) fn word(event: Event) -> &'static str {
 }
 
 impl Case {
+    /// A generated clip.
+    pub(crate) fn generated(name: String, options: ClipSceneOptions, in_ablation: bool) -> Case {
+        Case { name, source: Source::Generated(options), in_ablation }
+    }
+
     /// Whether the clip is generated, so that its truth has all that moves, and pictures of it may be shown.
     pub(crate) fn is_generated(&self) -> bool {
         matches!(self.source, Source::Generated(_))

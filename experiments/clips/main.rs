@@ -13,6 +13,8 @@ mod page;
 mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
+#[path = "../program.rs"]
+mod program;
 mod scores;
 #[path = "../sealed.rs"]
 mod sealed;
@@ -54,17 +56,7 @@ struct Options {
 type Failure = Box<dyn Error + Send + Sync>;
 
 fn main() {
-    match options(std::env::args().skip(1)).map(|options| options.map(|options| run(&options))) {
-        Ok(None) => print!("{HELP}"),
-        Ok(Some(Ok(()))) => {}
-        Ok(Some(Err(error))) => stop(&error.to_string(), 1),
-        Err(message) => stop(&format!("{message}\n\n{HELP}"), 2),
-    }
-}
-
-fn stop(message: &str, code: i32) {
-    eprintln!("{message}");
-    std::process::exit(code);
+    program::start(HELP, options(std::env::args().skip(1)), run);
 }
 
 /// What was asked for; `None` where help was.

@@ -1,5 +1,7 @@
 //! The paper's experiments: Figure 1 as tables and a plot, Figures 2 and 3 as pictures. Run it with `npm run paper`.
 
+#[path = "../program.rs"]
+mod program;
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
 #[path = "../../tests/support/protocol.rs"]
 mod protocol;
@@ -37,17 +39,7 @@ struct Options {
 }
 
 fn main() {
-    match options(std::env::args().skip(1)).map(|options| options.map(|options| run(&options))) {
-        Ok(None) => print!("{HELP}"),
-        Ok(Some(Ok(()))) => {}
-        Ok(Some(Err(error))) => stop(&error.to_string(), 1),
-        Err(message) => stop(&format!("{message}\n\n{HELP}"), 2),
-    }
-}
-
-fn stop(message: &str, code: i32) {
-    eprintln!("{message}");
-    std::process::exit(code);
+    program::start(HELP, options(std::env::args().skip(1)), run);
 }
 
 /// The options; `None` if help was requested.

@@ -8,6 +8,8 @@ mod clips;
 mod masks;
 #[path = "../parallel.rs"]
 mod parallel;
+#[path = "../program.rs"]
+mod program;
 mod report;
 mod statistics;
 
@@ -40,17 +42,7 @@ struct Options {
 }
 
 fn main() {
-    match options(std::env::args().skip(1)).map(|options| options.map(|options| run(&options))) {
-        Ok(None) => print!("{HELP}"),
-        Ok(Some(Ok(()))) => {}
-        Ok(Some(Err(error))) => stop(&error.to_string(), 1),
-        Err(message) => stop(&format!("{message}\n\n{HELP}"), 2),
-    }
-}
-
-fn stop(message: &str, code: i32) {
-    eprintln!("{message}");
-    std::process::exit(code);
+    program::start(HELP, options(std::env::args().skip(1)), run);
 }
 
 /// What was asked for; `None` where help was.

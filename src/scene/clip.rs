@@ -116,6 +116,8 @@ pub struct ClipSceneOptions {
     pub blur: f64,
     /// Colour or grey; default colour.
     pub colour: bool,
+    /// Whether the objects of a shot are cut from one cloth, so that colours do not tell them apart; default false.
+    pub alike: bool,
     /// What else there is in the clip follows from this number; default 1.
     pub seed: u64,
 }
@@ -131,6 +133,7 @@ impl Default for ClipSceneOptions {
             noise: 2.0,
             blur: 0.65,
             colour: true,
+            alike: false,
             seed: 1,
         }
     }
@@ -306,6 +309,10 @@ impl Shot {
             for part in &actor.parts {
                 sprites.push(Sprite::cut(random, part.shape.clone(), [0.0; 2], options.colour, &style));
             }
+        }
+        if options.alike {
+            let owners = script.owners();
+            Sprite::share(sprites.iter_mut().zip(owners).filter(|(_, owner)| *owner > 0).map(|(sprite, _)| sprite));
         }
         Shot { script, backdrop, sprites }
     }

@@ -69,6 +69,19 @@ impl Sprite {
         let half = 0.5 * side as f64;
         Sprite { texture, offset: [half - centre[0], half - centre[1]], shape: Some((shape, centre)) }
     }
+
+    /// Gives all of them the largest of their textures, middle on middle.
+    pub(super) fn share<'a>(sprites: impl Iterator<Item = &'a mut Sprite>) {
+        let mut sprites: Vec<&mut Sprite> = sprites.collect();
+        let half = |sprite: &Sprite| sprite.shape.as_ref().map_or(0.0, |(_, centre)| sprite.offset[0] + centre[0]);
+        let largest = sprites.iter().max_by(|a, b| half(a).total_cmp(&half(b)));
+        let Some((texture, most)) = largest.map(|sprite| (sprite.texture.clone(), half(sprite))) else { return };
+        for sprite in &mut sprites {
+            let shift = most - half(sprite);
+            sprite.offset = sprite.offset.map(|offset| offset + shift);
+            sprite.texture = texture.clone();
+        }
+    }
 }
 
 /// The first of nine random textures with at least the given contrast, or the last.

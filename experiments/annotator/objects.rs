@@ -1,0 +1,143 @@
+//! Several objects in one clip: generated clips whose truth is exact.
+
+use std::fmt::Write;
+
+use serde::{Deserialize, Serialize};
+use veronese::scene::{ClipSceneOptions, Event};
+
+use crate::cases::Case;
+use crate::overlap::{each, masks, mean, of_label, worst};
+use crate::robot::{NOTHING_SAID, View};
+use crate::session::Session;
+use crate::{Failure, Options, dump};
+
+/// Seed of the first clip; no other program uses any of these.
+const SEED: u64 = 83_000;
+/// Clips of each kind.
+const EACH: u64 = 4;
+/// A kind of clips: its name, what happens, the least number of objects, and whether they have colours in common.
+type Kind = (&'static str, &'static [Event], usize, bool);
+const KINDS: [Kind; 5] = [
+    ("crossing", &[Event::Crossing], 3, false),
+    ("hidden", &[Event::HiddenByBackground, Event::HiddenByObject], 3, false),
+    ("limbs", &[Event::Articulated, Event::Articulated], 2, false),
+    ("similar colours", &[Event::Crossing], 3, true),
+    ("all together", &[Event::Crossing, Event::HiddenByBackground, Event::Articulated], 4, true),
+];
+/// An object whose mask is given has its true number and this much.
+const GIVEN: u8 = 100;
+
+/// The figures of a clip.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Row {
+    pub(crate) clip: String,
+    pub(crate) quality: String,
+    pub(crate) objects: Vec<Object>,
+    /// Time of a frame that the masks changed.
+    pub(crate) frame_milliseconds: f64,
+}
+
+/// The figures of an object whose mask was given.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Object {
+    /// Mean IoU over the frames after the first in which it is in sight …
+    pub(crate) assigned: f64,
+    /// … and after strokes in the worst of them.
+    pub(crate) stroked: f64,
+    /// Pixels of the other given objects, all frames, that these strokes changed.
+    pub(crate) others_changed: usize,
+}
+
+/// All clips.
+pub(crate) fn cases() -> Vec<Case> {
+    let seeds = KINDS.into_iter().flat_map(|kind| [kind; EACH as usize]).zip(SEED..);
+    let case = |((kind, events, objects, alike), seed): (Kind, u64)| {
+        // Before a camera at rest and one that pans, by turns.
+        let pan = (seed % 2 == 1).then_some(Event::Pan);
+        let events = events.iter().copied().chain(pan).collect();
+        let options = ClipSceneOptions { objects, events, alike, seed, ..ClipSceneOptions::default() };
+        Case::generated(format!("{kind} {seed}"), options, false)
+    };
+    seeds.map(case).collect()
+}
+
+/// All figures of a clip.
+pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
+    let data = case.load()?;
+    let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
+    let mut session = Session::open(&data.frames, options.quality, &options.pairs(case))?;
+    let given: Vec<u8> = data.truths[0].iter().map(|&label| if label > 0 { GIVEN + label } else { 0 }).collect();
+    session.correct(0, &given)?;
+    dump::write(options, case, "masks", &data, &session.labels)?;
+    let frame_milliseconds = session.effort.per_frame();
+
+    let mut numbers: Vec<u8> = data.truths[0].iter().copied().filter(|&number| number > 0).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let is_other = |label: u8, number: u8| label > GIVEN && label != GIVEN + number && label != NOTHING_SAID;
+    let mut objects = Vec::new();
+    for &number in &numbers {
+        let truths = masks(&data.truths, number);
+        // Infinite where it is not judged: in the given frame and where it is out of sight.
+        let seen = |session: &Session<'_>| {
+            let values = each(&masks(&session.labels, GIVEN + number), &truths);
+            let judged =
+                |(t, value): (usize, f64)| if t > 0 && truths[t].contains(&true) { value } else { f64::INFINITY };
+            values.into_iter().enumerate().map(judged).collect::<Vec<f64>>()
+        };
+        let of = |values: &[f64]| mean(&values.iter().copied().filter(|value| value.is_finite()).collect::<Vec<_>>());
+        let before = seen(&session);
+        if !before.iter().any(|value| value.is_finite()) {
+            continue;
+        }
+        let worst = worst(&before);
+        let found = of_label(&session.labels[worst], GIVEN + number);
+        let mut said = vec![NOTHING_SAID; found.len()];
+        // What is another's, truly or as given, is not this object's to correct.
+        let free = |p: usize| {
+            let truth = data.truths[worst][p];
+            let others = truth != number && numbers.contains(&truth);
+            !others && !is_other(session.labels[worst][p], number)
+        };
+        View { width, truth: &truths[worst], found: &found }.draw(GIVEN + number, free, &mut said);
+        let mut corrected = session.clone();
+        corrected.correct(worst, &said)?;
+        dump::write(options, case, &format!("strokes-{number}"), &data, &corrected.labels)?;
+        let pixels = session.labels.iter().flatten().zip(corrected.labels.iter().flatten());
+        let changed = |&(&a, &b): &(&u8, &u8)| a != b && (is_other(a, number) || is_other(b, number));
+        let (assigned, stroked) = (of(&before), of(&seen(&corrected)));
+        objects.push(Object { assigned, stroked, others_changed: pixels.filter(changed).count() });
+    }
+    let quality = options.quality_name().into();
+    Ok(Row { clip: case.name.clone(), quality, objects, frame_milliseconds })
+}
+
+/// The figures as a table of Markdown: by kind and in all, or of single clips.
+pub(crate) fn table(rows: &[Row], clips: bool) -> String {
+    let mut text = String::from(
+        "| clips | objects | assigned | after strokes | pixels of others changed | ms a frame |\n|---|---|---|---|---|---|\n",
+    );
+    let mut line = |name: &str, rows: &[&Row]| {
+        let all: Vec<&Object> = rows.iter().flat_map(|row| &row.objects).collect();
+        let of = |figure: fn(&Object) -> f64| {
+            let values: Vec<f64> = all.iter().map(|object| figure(object)).filter(|value| value.is_finite()).collect();
+            mean(&values)
+        };
+        let changed: usize = all.iter().map(|object| object.others_changed).sum();
+        let [assigned, stroked] = [of(|object| object.assigned), of(|object| object.stroked)];
+        let time = mean(&rows.iter().map(|row| row.frame_milliseconds).collect::<Vec<_>>());
+        let _ = writeln!(text, "| {name} | {} | {assigned:.3} | {stroked:.3} | {changed} | {time:.0} |", all.len());
+    };
+    if clips {
+        rows.iter().for_each(|row| line(&row.clip, &[row]));
+        return text;
+    }
+    let kinds = KINDS.map(|(kind, ..)| (kind, kind));
+    for (name, start) in kinds.into_iter().chain([("all", "")]) {
+        let own: Vec<&Row> = rows.iter().filter(|row| row.clip.starts_with(start)).collect();
+        if !own.is_empty() {
+            line(&format!("{name} ({})", own.len()), &own);
+        }
+    }
+    text
+}

@@ -1,0 +1,96 @@
+//! Writes docs/annotating.md from the figures that the steps have left.
+
+use std::fmt::Write;
+
+use crate::measure::Row;
+use crate::{measure, objects};
+
+const HEAD: &str = "\
+# Annotating
+
+This page measures what an annotator gets for what he says of a clip: a mask of one frame, a click, strokes. All of it is written by
+
+```sh
+npm run bench:annotator -- --write-docs
+```
+
+which measures every clip again. All figures of ours except the times are the same on every machine. J is the intersection over union
+of an object's label and its true mask, the mean over frames; experiments/annotator defines the figures.
+
+";
+
+const PROTOCOL: &str = "\
+- **auto**: J of everything but the label with most pixels of the clip, when nothing is said; all frames;
+- **mask**: the true mask of the first frame is given; J of its label in the frames between the first and the last, as in the
+  semi-supervised protocol of DAVIS 2016;
+- **OpenCV**: the same of a baseline: the mask is carried along dense flow (DIS), and GrabCut decides in a band around its border
+  (experiments/annotator/peers.py);
+- **click**: J of the one label that fits best over the clip, as one click gives it; all frames;
+- **round 1, 2, …**: a robot goes on from the click. It looks at the frame with the lowest J and draws one stroke in the largest missed
+  region and one in the largest wrong region: the pixels at least half as deep in the region as its deepest. Regions below 0.05 % of the
+  frame are left. Everything said of a frame counts together;
+- **s a round**, **ms a frame**: time of native code for the correction of a round, and for each frame that a correction changed, masks
+  included, with decoded frames, on one core of a machine in use.
+
+The clips are training sequences of [DAVIS 2016](https://davischallenge.org), at most 33 frames each, 854 × 480 pixels, taken as
+CC BY-NC 4.0; this page shows no pictures of them. They are measured if they are in `../shared/data/clips` next to the checkout. *Old*
+are the ten that constants of clips were first set on, *new* the others.
+
+";
+
+const PUBLISHED: &str = "\
+### Published figures
+
+J with the true mask of the first frame given, of methods without learning. These clips are other ones, and longer: the figures show
+where the field stands and cannot be compared with ours one to one, which are of at most 33 frames of training sequences.
+
+| method | J | clips | frames |
+|---|---|---|---|
+| OFL, object flow (Tsai et al. 2016) | 0.680 | DAVIS 2016 val, 20 clips | all |
+| BVS, bilateral space (Märki et al. 2016) | 0.600 | DAVIS 2016 val, 20 clips | all |
+| FCP, fully connected proposals (Perazzi et al. 2015) | 0.584 | DAVIS 2016 val, 20 clips | all |
+| JMP, JumpCut (Fan et al. 2015) | 0.570 | DAVIS 2016 val, 20 clips | all |
+| HVS, hierarchical graph (Grundmann et al. 2010) | 0.546 | DAVIS 2016 val, 20 clips | all |
+| SEA, SeamSeg (Avinash Ramakanth and Babu 2014) | 0.504 | DAVIS 2016 val, 20 clips | all |
+
+Source: the benchmark of DAVIS 2016 (Perazzi et al., *A Benchmark Dataset and Evaluation Methodology for Video Object Segmentation*,
+CVPR 2016, and the results on its site).
+
+";
+
+const OBJECTS: &str = "\
+## Several objects
+
+Generated clips with exact truth, 320 × 240 pixels, 32 frames, four of each kind; every second one has a camera that pans. The masks of
+all objects in sight in the first frame are given at once, each with its number, and everything else as background.
+
+- **assigned**: mean J of an object's number over the frames after the first in which the object is in sight; the mean over objects;
+- **after strokes**: the same when the robot has drawn strokes for the object in the worst of those frames, on pixels that are no other
+  given object's;
+- **pixels of others changed**: how many pixels of the other given objects these strokes have changed, in all frames.
+
+In clips of *similar colours* and *all together* all objects are cut from one cloth.
+
+";
+
+/// The page; sections without figures are left out.
+pub(crate) fn text(real: &[Row], generated: &[objects::Row]) -> String {
+    let mut text = String::from(HEAD);
+    let quality = real.first().map(|row| &row.quality).or(generated.first().map(|row| &row.quality));
+    if let Some(quality) = quality {
+        let _ = writeln!(text, "The quality is *{quality}*.\n");
+    }
+    if !real.is_empty() {
+        let _ = writeln!(text, "## One object\n\n{}\n{PROTOCOL}{PUBLISHED}", measure::table(real, false));
+        let _ = writeln!(text, "### By clip\n\n{}", measure::table(real, true));
+    }
+    if !generated.is_empty() {
+        let _ = writeln!(text, "{OBJECTS}{}", objects::table(generated, false));
+        let _ = writeln!(
+            text,
+            "### By generated clip\n\nA name has the kind and the seed.\n\n{}",
+            objects::table(generated, true)
+        );
+    }
+    text
+}

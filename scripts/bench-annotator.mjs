@@ -1,0 +1,39 @@
+// npm run bench:annotator: scores what an annotator gets for what he says of a clip; `-- --help` lists the options.
+// First OpenCV's baseline runs on the real clips, then the program measures them and generated clips, and writes the page.
+
+import { rmSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+
+import { findOpenCv, runOnAll } from './lib/opencv.mjs';
+import { root } from './lib/project.mjs';
+import { checkRust } from './lib/rust.mjs';
+import { command, run } from './lib/run.mjs';
+
+const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'annotator', '--'];
+
+await command(async (args) => {
+  if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
+  await checkRust();
+  const place = args.indexOf('--out');
+  const out = resolve(root, place < 0 ? 'out/annotator' : args[place + 1]);
+  // What pairs of frames told is kept from run to run, but the page must not be of another version.
+  const old = args.includes('--write-docs') ? ['baseline', 'pairs'] : ['baseline'];
+  for (const folder of old) rmSync(join(out, folder), { recursive: true, force: true });
+  console.error('Building the program if it has changed (some minutes when everything is new) …');
+  const frames = await run('cargo', [...CARGO, 'frames', ...args], { output: 'collect' });
+  if (frames.code !== 0) {
+    process.stderr.write(frames.text);
+    return frames.code;
+  }
+  const clips = frames.stdout.split('\n').filter(Boolean).map((line) => line.split('\t'));
+  const python = clips.length > 0 && (await findOpenCv());
+  if (python) {
+    const program = join(root, 'experiments', 'annotator', 'peers.py');
+    await runOnAll(python, program, clips, (_, folder) => [folder, join(out, 'baseline')]);
+  }
+  for (const step of ['measure', 'objects', 'page']) {
+    const { code } = await run('cargo', [...CARGO, step, ...args]);
+    if (code !== 0) return code;
+  }
+  return 0;
+});
