@@ -5,6 +5,7 @@
 
 use super::constants::Constants;
 use super::look::Look;
+use super::sweep::Said;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 
@@ -96,6 +97,16 @@ impl Memory {
                 counts[cell][side] += weight;
             }
         }
+    }
+
+    /// Learns what is said of a frame.
+    pub(super) fn learn_said(&mut self, look: &Look, centre: [f32; 2], said: Option<&[Said]>) {
+        let Some(said) = said else { return };
+        self.learn(look, centre, false, 1.0, |p| match said[p] {
+            Said::Object => 0,
+            Said::Other => 1,
+            Said::Nothing => 2,
+        });
     }
 
     fn place_of(&mut self, colour: u16) -> usize {

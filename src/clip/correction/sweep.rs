@@ -111,22 +111,33 @@ impl Sweep {
     pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, unsaid: &dyn Fn(usize) -> f32, constants: &Constants) -> Claim {
         let [width, height] = look.size;
         let mut odds: Vec<f32> = (0..width * height).map(unsaid).collect();
-        if let Some(memory) = &self.memory {
-            let here = Plane::from_fn(width, height, |x, y| f32::from(u8::from(odds[y * width + x] > 0.0)));
-            let centre = centre_of(&here).or_else(|| centre_of(&said_mask(given.said?, look)));
-            if let Some(centre) = centre {
-                let area = Area::whole(width, height);
-                let w: f32 = std::env::var("BEG").map_or(0.5, |t| t.parse().unwrap());
-                for (odds, p) in odds.iter_mut().zip(memory.read(look, &area, centre, constants)) {
-                    *odds = w * *odds + constants.bias + constants.memory * logit(p);
-                }
+        let here = Plane::from_fn(width, height, |x, y| {
+            let p = y * width + x;
+            let object = match given.said.map(|said| said[p]) {
+                Some(Said::Object) => true,
+                Some(Said::Other) => false,
+                _ => odds[p] > 0.0,
+            };
+            f32::from(u8::from(object))
+        });
+        let partly = given.said.is_none_or(|said| said.contains(&Said::Nothing));
+        if let Some(centre) = centre_of(&here).filter(|_| partly) {
+            let memory = self.memory.get_or_insert_with(|| Memory::of(&here, constants));
+            memory.learn_said(look, centre, given.said);
+            let area = Area::whole(width, height);
+            let w: f32 = std::env::var("BEG").map_or(0.5, |t| t.parse().unwrap());
+            for (odds, p) in odds.iter_mut().zip(memory.read(look, &area, centre, constants)) {
+                *odds = w * *odds + constants.bias + constants.memory * logit(p);
             }
         }
         let claim = solved(look, Area::whole(width, height), odds, given.said, constants);
         let mask = claim.plane(look);
         let centre = centre_of(&mask).unwrap_or([0.5 * width as f32, 0.5 * height as f32]);
-        self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
-        self.arrive(look, given, mask, centre, true, constants);
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
+        if !partly {
+            memory.learn_said(look, centre, given.said);
+        }
+        self.arrive(look, given, mask, centre, !partly, true, constants);
         claim
     }
 
@@ -166,6 +177,10 @@ impl Sweep {
             }
         }
         let centre = if moments[0] > 3.0 { [1, 2].map(|k| (moments[k] / moments[0]) as f32) } else { front.centre };
+        let learned = given.speaks && learns;
+        if let Some(memory) = self.memory.as_mut().filter(|_| learned) {
+            memory.learn_said(look, centre, given.said);
+        }
         let remembered = self.memory.as_ref().map(|memory| memory.read(look, &area, centre, constants));
         let mut odds = Vec::with_capacity(carried.len());
         for (k, carried) in carried.iter().enumerate() {
@@ -176,6 +191,7 @@ impl Sweep {
             odds.push(z.clamp(-MOST, MOST));
         }
         let free = || solved(look, area.clone(), odds.clone(), None, constants);
+        let mut contradicted = false;
         let (claim, goes_on) = match given.said {
             None => (free(), None),
             Some(said) => {
@@ -187,41 +203,34 @@ impl Sweep {
                 match without {
                     Some(claim) if !given.speaks && !contradicts(&claim) => (claim, None),
                     without => {
+                        contradicted = !given.speaks && learns;
                         let with = solved(look, area.clone(), odds.clone(), Some(said), constants);
                         (with, without.filter(|_| !learns))
                     }
                 }
             }
         };
-        let said = given.said.filter(|_| goes_on.is_none());
         let mask = goes_on.as_ref().unwrap_or(&claim).plane(look);
         let here = centre_of(&mask).unwrap_or(centre);
-        self.arrive(look, &Given { said, ..*given }, mask, here, false, constants);
+        if let Some(memory) = self.memory.as_mut().filter(|_| contradicted) {
+            memory.learn_said(look, here, given.said);
+        }
+        self.arrive(look, given, mask, here, false, false, constants);
         Some(claim)
     }
 
     /// Learns from a frame and goes on from there.
-    fn arrive(&mut self, look: &Look, given: &Given<'_>, mask: Plane, centre: [f32; 2], begins: bool, constants: &Constants) {
+    fn arrive(&mut self, look: &Look, given: &Given<'_>, mask: Plane, centre: [f32; 2], known: bool, begins: bool, constants: &Constants) {
         let front = Front { mask, coarse: look.coarse.clone(), centre };
         if let Some(memory) = &mut self.memory {
-            if let Some(said) = given.said {
-                memory.learn(look, centre, false, 1.0, |p| if said[p] == Said::Nothing { 2 } else { front.side(p) });
-            }
             memory.fade(constants.decay);
-            let all_said = given.said.is_some_and(|said| !said.contains(&Said::Nothing));
-            if !(begins && all_said) {
+            if !known {
                 memory.learn(look, centre, true, 1.0 - constants.decay, |p| front.side(p));
             }
         }
         self.evidence.learn(given.found, &front.mask, begins, self.own);
         self.front = Some(front);
     }
-}
-
-/// 1 where the object is said to be.
-fn said_mask(said: &[Said], look: &Look) -> Plane {
-    let [width, height] = look.size;
-    Plane::from_fn(width, height, |x, y| f32::from(u8::from(said[y * width + x] == Said::Object)))
 }
 
 impl Front {
