@@ -29,6 +29,17 @@ pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
 /// Counts of pixels: object, ground.
 type Counts = [f32; 2];
 
+/// Where pixels are learned from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// What is said of them.
+    Given,
+    /// The frames passed.
+    Recent,
+    /// What was found automatically.
+    Surveyed,
+}
+
 #[derive(Clone, Debug)]
 pub(super) struct Memory {
     /// Columns and rows of cells.
@@ -41,6 +52,9 @@ pub(super) struct Memory {
     /// Cells of all colours seen, those of corrected frames and recent ones.
     given: Vec<Counts>,
     recent: Vec<Counts>,
+    /// Cells of what was found automatically, and all that was said of each colour, which silences them where it disagrees.
+    surveyed: Vec<Counts>,
+    said: Vec<Counts>,
 }
 
 impl Memory {
@@ -56,7 +70,7 @@ impl Memory {
     pub(super) fn new(area: &Area, cell: f32) -> Memory {
         let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * MARGIN;
         let size = [cells(area.width()), cells(area.height())];
-        Memory { size, cell, places: vec![0; COLOURS], seen: Vec::new(), given: Vec::new(), recent: Vec::new() }
+        Memory { size, cell, places: vec![0; COLOURS], seen: Vec::new(), given: Vec::new(), recent: Vec::new(), surveyed: Vec::new(), said: Vec::new() }
     }
 
     fn cells(&self) -> usize {
@@ -82,7 +96,7 @@ impl Memory {
     }
 
     /// Adds the pixels of a frame with weights; `sides` has 0 for the object, 1 for ground, anything else for neither.
-    pub(super) fn learn(&mut self, look: &Look, centre: [f32; 2], recent: bool, weight: f32, sides: impl Fn(usize) -> usize) {
+    pub(super) fn learn(&mut self, look: &Look, centre: [f32; 2], part: Part, weight: f32, sides: impl Fn(usize) -> usize) {
         let [width, height] = look.size;
         for y in 0..height {
             for x in 0..width {
@@ -93,8 +107,14 @@ impl Memory {
                 let place = self.place_of(look.colours[y * width + x]);
                 let [u, v] = self.at(x, y, centre);
                 let cell = place * self.cells() + (v + 0.5) as usize * self.size[0] + (u + 0.5) as usize;
-                let counts = if recent { &mut self.recent } else { &mut self.given };
-                counts[cell][side] += weight;
+                match part {
+                    Part::Given => {
+                        self.said[place][side] += weight;
+                        self.given[cell][side] += weight;
+                    }
+                    Part::Recent => self.recent[cell][side] += weight,
+                    Part::Surveyed => self.surveyed[cell][side] += weight,
+                }
             }
         }
     }
@@ -102,7 +122,7 @@ impl Memory {
     /// Learns what is said of a frame.
     pub(super) fn learn_said(&mut self, look: &Look, centre: [f32; 2], said: Option<&[Said]>) {
         let Some(said) = said else { return };
-        self.learn(look, centre, false, 1.0, |p| match said[p] {
+        self.learn(look, centre, Part::Given, 1.0, |p| match said[p] {
             Said::Object => 0,
             Said::Other => 1,
             Said::Nothing => 2,
@@ -117,6 +137,8 @@ impl Memory {
             let cells = self.seen.len() * self.size[0] * self.size[1];
             self.given.resize(cells, [0.0; 2]);
             self.recent.resize(cells, [0.0; 2]);
+            self.surveyed.resize(cells, [0.0; 2]);
+            self.said.push([0.0; 2]);
         }
         usize::from(*place) - 1
     }
@@ -126,6 +148,13 @@ impl Memory {
         let (cells, width) = (self.cells(), look.size[0]);
         let mut blurred: Vec<Counts> =
             self.given.iter().zip(&self.recent).map(|(given, recent)| [given[0] + recent[0], given[1] + recent[1]]).collect();
+        for (place, &colour) in self.seen.iter().enumerate() {
+            let trust = self.trust(colour);
+            let cells = place * cells..(place + 1) * cells;
+            for (sum, found) in blurred[cells.clone()].iter_mut().zip(&self.surveyed[cells]) {
+                *sum = [sum[0] + trust[0] * found[0], sum[1] + trust[1] * found[1]];
+            }
+        }
         let mut total = [0.0f32; 2];
         for counts in &blurred {
             total = [total[0] + counts[0], total[1] + counts[1]];
@@ -173,6 +202,14 @@ impl Memory {
             }
         }
         probabilities
+    }
+
+    /// How far what was found automatically is trusted for a colour, 0…1: that it is the object's, and that it is ground.
+    pub(super) fn trust(&self, colour: u16) -> Counts {
+        let mut told = [[0.0; 2]];
+        self.gather(colour, &self.said, &mut told);
+        let [object, ground] = told[0];
+        [object, ground].map(|agrees| (agrees + 1.0) / (object + ground + 1.0))
     }
 
     /// Adds the counts of a colour and of those beside it.

@@ -9,7 +9,7 @@
 use super::constants::Constants;
 use super::evidence::Evidence;
 use super::look::Look;
-use super::memory::Memory;
+use super::memory::{Memory, Part};
 use super::placing::shift_of;
 use crate::clip::evidence::Flow;
 use crate::frame::Plane;
@@ -91,7 +91,7 @@ impl Sweep {
         let (mut memory, mut evidence) = (self.memory.clone(), Evidence::default());
         if let (Some(memory), Some(front)) = (&mut memory, &self.front) {
             memory.forget_recent();
-            memory.learn(look, front.centre, true, 1.0 - constants.decay, |p| front.side(p));
+            memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, |p| front.side(p));
             evidence.learn(found, &front.mask, true, self.own);
         }
         Sweep { front: self.front.clone(), memory, evidence, own: self.own }
@@ -104,7 +104,7 @@ impl Sweep {
         let Some(centre) = centre_of(&mask) else { return };
         let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
         let weight: f32 = std::env::var("SURVEY").map_or(0.03, |t| t.parse().unwrap());
-        memory.learn(look, centre, false, weight, |p| usize::from(mask.values()[p] < 0.5));
+        memory.learn(look, centre, Part::Surveyed, weight, |p| usize::from(mask.values()[p] < 0.5));
     }
 
     /// The first frame: `unsaid` are the odds where nothing is said.
@@ -126,8 +126,9 @@ impl Sweep {
             memory.learn_said(look, centre, given.said);
             let area = Area::whole(width, height);
             let w: f32 = std::env::var("BEG").map_or(0.5, |t| t.parse().unwrap());
-            for (odds, p) in odds.iter_mut().zip(memory.read(look, &area, centre, constants)) {
-                *odds = w * *odds + constants.bias + constants.memory * logit(p);
+            for ((odds, p), &colour) in odds.iter_mut().zip(memory.read(look, &area, centre, constants)).zip(&look.colours) {
+                let trust = memory.trust(colour)[usize::from(*odds < 0.0)];
+                *odds = w * trust * *odds + constants.bias + constants.memory * logit(p);
             }
         }
         let claim = solved(look, Area::whole(width, height), odds, given.said, constants);
@@ -225,7 +226,7 @@ impl Sweep {
         if let Some(memory) = &mut self.memory {
             memory.fade(constants.decay);
             if !known {
-                memory.learn(look, centre, true, 1.0 - constants.decay, |p| front.side(p));
+                memory.learn(look, centre, Part::Recent, 1.0 - constants.decay, |p| front.side(p));
             }
         }
         self.evidence.learn(given.found, &front.mask, begins, self.own);
