@@ -5,7 +5,7 @@
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use veronese::clip::{
-    ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, StreamSegmenter,
+    ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
 };
 use veronese::{Error, Frame, MotionCount, Quality, Random, SegmentOptions};
 
@@ -301,17 +301,17 @@ fn mistakes_have_a_code_and_the_clip_goes_on() {
     assert_eq!(clip.len(), 2);
     assert!(matches!(clip.frame(2, &frames[2]), Err(Error::InvalidOption { name: "frame", .. })));
     assert!(matches!(clip.frame(0, &small), Err(Error::FrameSizeMismatch { .. })));
-    assert!(matches!(clip.correct(2, &[255; 160 * 120]), Err(Error::InvalidOption { name: "frame", .. })));
-    assert!(matches!(clip.correct(0, &[255; 12]), Err(Error::InvalidOption { name: "corrections", .. })));
+    assert!(matches!(clip.correct(2, &[255; 160 * 120], Spread::Both), Err(Error::InvalidOption { name: "frame", .. })));
+    assert!(matches!(clip.correct(0, &[255; 12], Spread::Both), Err(Error::InvalidOption { name: "corrections", .. })));
     assert!(matches!(clip.renumber(0, 3), Err(Error::InvalidOption { name: "objects", .. })));
-    let mut correction = clip.correct(0, &[0; 160 * 120]).unwrap();
+    let mut correction = clip.correct(0, &[0; 160 * 120], Spread::Both).unwrap();
     assert!(matches!(correction.take(&mut clip, &small), Err(Error::FrameSizeMismatch { .. })));
     assert_eq!(correction.wanted(), Some(0), "it waits for the right frame");
 }
 
 /// Corrects a frame; returns the frames that have changed.
 fn correct(clip: &mut SegmentedClip, frames: &[Frame], index: usize, labels: &[u8]) -> Vec<usize> {
-    let mut correction = clip.correct(index, labels).unwrap();
+    let mut correction = clip.correct(index, labels, Spread::Both).unwrap();
     while let Some(wanted) = correction.wanted() {
         correction.take(clip, &frames[wanted]).unwrap();
     }
@@ -446,7 +446,7 @@ fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {
 fn a_clip_knows_its_frames() {
     let (frames, _) = moving_and_resting();
     let mut clip = whole(&frames, options(Quality::Fast, None));
-    let mut correction = clip.correct(3, &[1; 160 * 120]).unwrap();
+    let mut correction = clip.correct(3, &[1; 160 * 120], Spread::Both).unwrap();
     assert!(matches!(clip.frame(3, &frames[4]), Err(Error::OtherFrame { index: 3 })));
     assert!(matches!(correction.take(&mut clip, &frames[4]), Err(Error::OtherFrame { index: 3 })));
     correction.take(&mut clip, &frames[3]).unwrap();
