@@ -23,8 +23,8 @@ const ENTRIES = sources({
 const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-work': 'cli/batch-work' });
 /** What an encoder of masks shares with the calls. */
 const SHARED = ['common/'];
-/** What all entries with calls share. */
-const CALLS = ['module/', 'calls/', 'pool/', 'entries/package.js'];
+/** What all entries with calls share, but for what they load when masks are given. */
+const CALLS = ['module/', 'calls/(?!clip/masks\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({

@@ -1,0 +1,68 @@
+// Given masks in the forms that they come in: labels, pictures of labels, run lengths. Loaded when there are some.
+
+import { isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
+import { veroneseError } from '../../common/errors.js';
+import { davisPalette } from '../../common/palette.js';
+import { decompressed } from '../../formats/reading/coco-rle.js';
+import { isObjectNumber, RANGE } from './edits.js';
+import { bytesOf, checkedList, type Said, type Wrong } from './said.js';
+
+/** Masks of single objects in one frame become one. */
+export function checkedMasks(masks: unknown, length: number): Said[] {
+  return checkedList('masks', '{ frame, labels } or { frame, id, rle }', masks, length, (entry, wrong, before) => {
+    if (entry['rle'] !== undefined) return withObject(entry, before, wrong);
+    const { data, width, height } = Object(entry['labels']) as Record<string, unknown>;
+    if (data === undefined) return { labels: bytesOf(entry['labels'], wrong) };
+    return { labels: labelsOfImage(data, width, height, wrong), width: width as number };
+  });
+}
+
+/** Of a picture whose pixels are grey, the grey level; of others, the index of the colour in the DAVIS palette. */
+function labelsOfImage(data: unknown, width: unknown, height: unknown, wrong: Wrong): Uint8Array {
+  const rgba = bytesOf(data, wrong);
+  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE) || rgba.length !== 4 * width * height) {
+    throw wrong('must have RGBA pixels that fill its width and height');
+  }
+  const colours = new Uint32Array(rgba.buffer);
+  const colourOf = (r: number, g: number, b: number) => new Uint32Array(Uint8Array.of(r, g, b, UNLABELLED).buffer)[0] as number;
+  const isSeen = (p: number) => rgba[4 * p + 3] !== 0;
+  const isGrey = (_: number, p: number) => !isSeen(p) || (rgba[4 * p] === rgba[4 * p + 1] && rgba[4 * p] === rgba[4 * p + 2]);
+  const palette = colours.every(isGrey)
+    ? Array.from({ length: 256 }, (_, level) => colourOf(level, level, level))
+    : davisPalette().map((colour) => colourOf(...colour));
+  // Of colours that the palette has twice the lower index counts.
+  const indices = new Map(palette.map((colour, index) => [colour, index] as const).reverse());
+  return Uint8Array.from(colours, (colour, p) => {
+    const label = isSeen(p) ? indices.get(colour) : UNLABELLED;
+    if (label === undefined) throw wrong(`has a pixel of a colour that is neither grey nor of the DAVIS palette, at ${p % width}, ${Math.floor(p / width)}`);
+    return label;
+  });
+}
+
+/** The mask of an object over those of others in the same frame. */
+function withObject({ frame, id, rle }: Record<string, unknown>, before: Said | undefined, wrong: Wrong): Omit<Said, 'frame'> {
+  if (!isObjectNumber(id)) throw wrong(`must have an id, ${RANGE}`);
+  const { size, counts } = Object(rle) as Record<string, unknown>;
+  const [height, width] = Array.isArray(size) && size.length === 2 ? (size as unknown[]) : [];
+  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) throw wrong(`must have an rle with a size, [height, width]`);
+  if (before && (before.width !== width || before.labels.length !== width * height)) throw wrong(`has another size than the mask of frame ${String(frame)} before it`);
+  const labels = before?.labels ?? new Uint8Array(width * height);
+  let at = 0;
+  for (const [k, count] of runsOf(counts, wrong).entries()) {
+    if (!isWhole(count, 0, labels.length - at)) throw wrong('has run lengths that do not fill its size');
+    // Column by column; every second run is of the object.
+    for (const end = at + count; at < end; at++) if (k % 2 === 1) labels[(at % height) * width + Math.floor(at / height)] = id;
+  }
+  if (at !== labels.length) throw wrong('has run lengths that do not fill its size');
+  return { labels, width };
+}
+
+function runsOf(counts: unknown, wrong: Wrong): unknown[] {
+  if (Array.isArray(counts)) return counts;
+  if (typeof counts !== 'string') throw wrong('must have an rle with counts, text or a list of numbers');
+  try {
+    return decompressed(counts);
+  } catch (thrown) {
+    throw wrong(`has an rle that cannot be read: ${veroneseError(thrown).message}`);
+  }
+}
