@@ -54,8 +54,11 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --motions auto|1..10   number of motions in each pair of frames (default: auto)
       --quality fast|best    speed or accuracy (default: best)
       --look-ahead N         let each frame wait for N others, 0 to 8 (default: the whole clip)
+      --masks DIR            masks of objects in some frames: DIR/NAME.png with numbers of your own, which the objects keep (0: background,
+                             255: nothing said), and DIR/edits.json
       --corrections DIR      what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said),
-                             and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"}}
+                             and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"},
+                             "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"
       --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
       --seed N               every seed gives the same masks; reports repeat it (default: 1)
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
@@ -128,7 +131,8 @@ export type Command =
       list?: string;
       every: number;
       options: ClipSettings;
-      /** Folder of corrections. */
+      /** Folders of given masks and of corrections. */
+      masks?: string;
       corrections?: string;
       /** Of a video. */
       allowDamaged: boolean;
@@ -196,6 +200,7 @@ const OPTIONS = {
   jobs: { type: 'string', short: 'j' },
   shard: { type: 'string', default: '1/1' },
   'look-ahead': { type: 'string' },
+  masks: { type: 'string' },
   corrections: { type: 'string' },
   'allow-damaged': { type: 'boolean', default: false },
 } as const;
@@ -207,7 +212,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: ['before', ...OF_PAIRS],
   batch: ['list', ...OF_SEQUENCES],
   video: ['allow-damaged', ...OF_SEQUENCES],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
   convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'out'],
   points: ['motions', 'method', 'seed'],
 };
@@ -250,7 +255,7 @@ export function parseCommand(args: string[]): Command {
     };
   }
   if (name === 'clip') {
-    const { list, out, overlay, corrections, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
+    const { list, out, overlay, masks, corrections, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
     checkFrames(name, files, list);
     if (out === undefined) throw usage("'clip' needs '--out DIR'");
     const options: ClipSettings = {
@@ -259,7 +264,11 @@ export function parseCommand(args: string[]): Command {
       lookAhead: lookAhead === undefined ? 'all' : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
       markUnknown: values['mark-unknown'],
     };
-    const given = { ...(list !== undefined && { list }), ...(corrections !== undefined && { corrections }) };
+    const given = {
+      ...(list !== undefined && { list }),
+      ...(masks !== undefined && { masks }),
+      ...(corrections !== undefined && { corrections }),
+    };
     return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, out };
   }
   for (const name of ['overlay', 'confidence'] as const) {
