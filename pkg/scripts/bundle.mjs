@@ -21,6 +21,8 @@ const ENTRIES = sources({
   'formats/index': 'formats/index',
 });
 const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-work': 'cli/batch-work' });
+/** Becomes part of the package, from its sources: what it publishes are no modules, which browsers need that load the package unbundled. */
+const XML = '@rgrove/parse-xml';
 /** What an encoder of masks shares with the calls. */
 const SHARED = ['common/'];
 /** What all entries with calls share, but for what they load when masks are given. */
@@ -36,12 +38,14 @@ const bundle = await rolldown({
       // An entry that another one imports stays the one file that package.json names. Importers end up in the top folder.
       resolveId: (id, importer) => {
         const file = importer && resolve(dirname(importer), id);
+        if (id === XML) return resolve(folder('../node_modules'), XML, 'src/index.ts');
         const entry = Object.keys(ENTRIES).find((name) => ENTRIES[name] === file);
         return entry && { id: `./${entry}.js`, external: 'relative' };
       },
     },
   ],
   platform: 'neutral',
+  resolve: { extensionAlias: { '.js': ['.js', '.ts'] } },
   // No comments that name compiled sources, which are not in the package.
   experimental: { attachDebugInfo: 'none' },
   // A warning stops the build, as does a circle of imports.

@@ -84,6 +84,11 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --video NAME           file name of the video, for cvat-video and label-studio-video (default: the name of DIR)
       --frame-rate N         frames per second, for formats that need it (default: the clip's, else 25)
 
+  veronese convert SOURCE --to corrections --out DIR
+                                         read masks back, for --corrections of clip: NAME.png for each annotated frame, and edits.json; SOURCE
+                                         is a file, an archive or a folder: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks
+      --clip DIR             the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)
+
   veronese points FILE.json [options]    fit motions to {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
       --motions auto|1..10   number of motions (default: auto)
       --method paper|best    the paper's own algorithm, or ours (default: best)
@@ -94,6 +99,9 @@ export const HELP = `veronese segments two video frames by motion: how many moti
 Prints one line of JSON on stdout; batch and video print one line per pair, clip one line per frame and a last one.
 Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
 `;
+
+/** What `convert` reads masks back to. */
+const BACK = 'corrections';
 
 /** Settings of the two commands for sequences of frames. */
 export interface SequenceSettings extends PairSettings {
@@ -154,6 +162,14 @@ export type Command =
       out?: string;
     }
   | {
+      name: 'corrections';
+      /** A file or a folder of annotations. */
+      source: string;
+      /** Folder of a clip. */
+      clip?: string;
+      out: string;
+    }
+  | {
       name: 'points';
       file: string;
       options: { motions: 'auto' | number; method: 'paper' | 'best'; seed: number };
@@ -162,6 +178,7 @@ export type Command =
 export type PairCommand = Extract<Command, { name: 'pair' }>;
 export type PointsCommand = Extract<Command, { name: 'points' }>;
 export type ConvertCommand = Extract<Command, { name: 'convert' }>;
+export type CorrectionsCommand = Extract<Command, { name: 'corrections' }>;
 export type ClipCommand = Extract<Command, { name: 'clip' }>;
 export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
 export type WorkCommand = PairCommand | PointsCommand;
@@ -202,6 +219,7 @@ const OPTIONS = {
   'look-ahead': { type: 'string' },
   masks: { type: 'string' },
   corrections: { type: 'string' },
+  clip: { type: 'string' },
   'allow-damaged': { type: 'boolean', default: false },
 } as const;
 
@@ -213,7 +231,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   batch: ['list', ...OF_SEQUENCES],
   video: ['allow-damaged', ...OF_SEQUENCES],
   clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
-  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'out'],
+  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out'],
   points: ['motions', 'method', 'seed'],
 };
 
@@ -239,6 +257,16 @@ export function parseCommand(args: string[]): Command {
   if (name === 'convert') {
     const [folder] = exactly(1, files, "'convert' takes one folder");
     if (values.to === undefined) throw usage("'convert' needs '--to FORMATS'");
+    const back = values.to.split(',').includes(BACK);
+    for (const token of tokens) {
+      if (token.kind !== 'option' || (back ? ['to', 'clip', 'out'].includes(token.name) : token.name !== 'clip')) continue;
+      throw usage(back ? `'--to ${BACK}' has no option '--${token.name}'` : `'--clip' needs '--to ${BACK}'`);
+    }
+    if (back) {
+      if (values.to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
+      if (values.out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
+      return { name: BACK, source: folder as string, out: values.out, ...(values.clip !== undefined && { clip: values.clip }) };
+    }
     return {
       name,
       folder: folder as string,

@@ -11,7 +11,7 @@ import type { ClipFrames } from './clip-frames.js';
 import { readJson, readLabels } from './label-files.js';
 import { sha256 } from './files.js';
 
-const EDITS = 'edits.json';
+export const EDITS = 'edits.json';
 
 /** What a folder says. */
 interface Folder {
