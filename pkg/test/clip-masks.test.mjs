@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { davisPalette, segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
-import { encodeCocoRle, encodeCocoRleCounts } from 'veronese/formats';
+import { encodeColourPng, encodeGreyPng } from 'veronese/codecs';
+import { encodeCocoRle, encodeCocoRleCounts, encodeDavis } from 'veronese/formats';
 import { frame } from './support/frames.mjs';
 import { failure } from './support/shapes.mjs';
 
@@ -110,6 +111,8 @@ for (const [way, make] of Object.entries(WAYS)) {
       const mask = labels.map(Number);
       assert.deepEqual(await said({ id: 7, rle: encodeCocoRle(mask, width, height) }), expected, 'compressed run lengths');
       assert.deepEqual(await said({ id: 7, rle: encodeCocoRleCounts(mask, width, height) }), expected, 'run lengths');
+      assert.deepEqual(await said({ png: encodeDavis(labels, width, height) }), expected, 'an indexed PNG');
+      assert.deepEqual(await said({ png: await encodeGreyPng(width, height, labels) }), expected, 'a grey PNG');
       // Where a picture is transparent, nothing is said.
       const open = { ...SIZE, data: Uint8ClampedArray.from([...labels].flatMap((label) => (label ? [7, 7, 7, 255] : [1, 2, 3, 0]))) };
       assert.deepEqual(await said({ labels: open }), await said({ labels: labelled(3, 7, 255) }), 'transparent');
@@ -229,10 +232,11 @@ for (const [way, make] of Object.entries(WAYS)) {
     test('refuses what it cannot use before any pair is solved', async (t) => {
       const segment = make(t);
       const mask = (rest) => ({ masks: [{ frame: 0, ...rest }] });
+      const colours = await encodeColourPng(4, 3, new Uint8Array(36));
       const rle = { size: [72, 96], counts: [PIXELS] };
       const pixel = (...rgba) => ({ ...SIZE, data: new Uint8ClampedArray(4 * PIXELS).fill(255).map((value, at) => (at < 4 ? rgba[at] : value)) });
       const cases = [
-        [{ masks: {} }, /'masks': must be a list of \{ frame, labels \} or \{ frame, id, rle \}/],
+        [{ masks: {} }, /'masks': must be a list of \{ frame, labels \}, \{ frame, png \} or \{ frame, id, rle \}/],
         [{ masks: [null] }, /'masks': must be a list/],
         [mask({ frame: COUNT, labels: labelled(0, 1) }), /'masks': number 0 must have a frame from 0 to 6/],
         [mask({}), /'masks': number 0 must have labels, a Uint8Array/],
@@ -243,6 +247,10 @@ for (const [way, make] of Object.entries(WAYS)) {
         [mask({ labels: pixel(1, 2, 3, 255) }), /number 0 has a pixel of a colour that is neither grey nor of the DAVIS palette, at 0, 0/],
         [mask({ labels: labelled(0, 1), propagate: 'left' }), /number 0 must propagate 'both', 'forward', 'backward' or 'none'/],
         [{ masks: [{ frame: 0, labels: labelled(0, 1) }, { frame: 0, labels: labelled(0, 1) }] }, /number 1 is of frame 0, as one before is/],
+        [mask({ png: 5 }), /number 0 must have png, a Uint8Array/],
+        [mask({ png: new Uint8Array(99) }), /number 0 has a png that is not a PNG/],
+        [mask({ png: encodeDavis(new Uint8Array(12), 4, 3) }), /'masks': that of frame 0 has 12 labels/],
+        [mask({ png: colours }), /number 0 has a png that has no labels: it is not an indexed or grey PNG/],
         [mask({ rle }), /number 0 must have an id, numbers from 1 to 254/],
         [mask({ id: 255, rle }), /number 0 must have an id/],
         [mask({ id: 1, rle: 'rle' }), /number 0 must have an rle with a size, \[height, width\]/],

@@ -253,6 +253,10 @@ export type ClipMask = {
       labels: Uint8Array | Pixels;
     }
   | {
+      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. Read with `fflate`, a dependency of this package. */
+      png: Uint8Array;
+    }
+  | {
       /** Number of the object, 1 to 254. */
       id: number;
       /** Its run lengths as COCO has them: `size` is height and width, `counts` are compressed or a list. */

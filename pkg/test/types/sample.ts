@@ -83,6 +83,7 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const masks: ClipMask[] = [
     { frame: 0, labels: new Uint8Array(64 * 48) },
     { frame: 1, labels: new ImageData(64, 48), propagate: 'none' },
+    { frame: 1, png: new Uint8Array(99) },
     { frame: 2, id: 7, rle: encodeCocoRle(new Uint8Array(64 * 48), 64, 48) },
   ];
   const onChange = async (index: number, segmented: () => Promise<ClipFrame>) => console.log(index, (await segmented()).labels.length);

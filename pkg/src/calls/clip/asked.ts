@@ -48,7 +48,7 @@ export function asked(frames: unknown, options: unknown): Asked {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
   const { masks, corrections = [], edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, ...rest } = given;
   const { call, transfer, settings } = parted(rest, OF_ALL);
-  const name = OF_WHOLE.find((name) => given[name] !== undefined && given[name] !== false);
+  const name = OF_WHOLE.find((name) => given[name] !== undefined && (name !== 'changesOnly' || changesOnly !== false));
   const source = sourceOf(frames, settings['lookAhead'], name);
   if (typeof changesOnly !== 'boolean') throw invalidOption('changesOnly', 'true or false', changesOnly);
   for (const [name, listener] of Object.entries({ onChange, knownPairs, onPairs })) {

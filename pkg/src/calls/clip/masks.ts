@@ -1,25 +1,40 @@
-// Given masks in the forms that they come in: labels, pictures of labels, run lengths. Loaded when there are some.
+// Given masks in the forms that they come in: labels, pictures of labels, PNG files, run lengths. Loaded when there are some.
 
-import { isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
+import { isListOf, isObject, isWhole, LONGEST_SIDE, UNLABELLED } from '../../common/checks.js';
 import { veroneseError } from '../../common/errors.js';
 import { davisPalette } from '../../common/palette.js';
+import type { decodeIndices as Decode } from '../../formats/indexed-png.js';
 import { decompressed } from '../../formats/reading/coco-rle.js';
 import { isObjectNumber, RANGE } from './edits.js';
 import { bytesOf, checkedList, type Said, type Wrong } from './said.js';
 
 /** Masks of single objects in one frame become one. */
-export function checkedMasks(masks: unknown, length: number): Said[] {
-  return checkedList('masks', '{ frame, labels } or { frame, id, rle }', masks, length, (entry, wrong, before) => {
+export async function checkedMasks(masks: unknown, length: number): Promise<Said[]> {
+  const isPng = ({ png }: Record<string, unknown>) => png !== undefined;
+  // It needs an inflater, which not everybody has.
+  const reader = isListOf(masks, isObject) && masks.some(isPng) ? await import('../../formats/indexed-png.js') : undefined;
+  return checkedList('masks', '{ frame, labels }, { frame, png } or { frame, id, rle }', masks, length, (entry, wrong, before) => {
     if (entry['rle'] !== undefined) return withObject(entry, before, wrong);
+    if (reader && isPng(entry)) return labelsOfPng(reader.decodeIndices, entry['png'], wrong);
     const { data, width, height } = Object(entry['labels']) as Record<string, unknown>;
-    if (data === undefined) return { labels: bytesOf(entry['labels'], wrong) };
+    if (data === undefined) return { labels: bytesOf(entry['labels'], 'labels', wrong) };
     return { labels: labelsOfImage(data, width, height, wrong), width: width as number };
   });
 }
 
+function labelsOfPng(decodeIndices: typeof Decode, png: unknown, wrong: Wrong): Omit<Said, 'frame'> {
+  const bytes = bytesOf(png, 'png', wrong);
+  try {
+    const { indices, width } = decodeIndices(bytes, { foreign: true });
+    return { labels: indices, width };
+  } catch (thrown) {
+    throw wrong(`has a png that ${veroneseError(thrown).message}`);
+  }
+}
+
 /** Of a picture whose pixels are grey, the grey level; of others, the index of the colour in the DAVIS palette. */
 function labelsOfImage(data: unknown, width: unknown, height: unknown, wrong: Wrong): Uint8Array {
-  const rgba = bytesOf(data, wrong);
+  const rgba = bytesOf(data, 'pixels', wrong);
   if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE) || rgba.length !== 4 * width * height) {
     throw wrong('must have RGBA pixels that fill its width and height');
   }

@@ -21,7 +21,7 @@ export type Propagation = (typeof PROPAGATIONS)[number];
 export type Wrong = (reason: string) => VeroneseError;
 
 export function checkedCorrections(corrections: unknown, length: number): Said[] {
-  return checkedList('corrections', '{ frame, labels }', corrections, length, ({ labels }, wrong) => ({ labels: bytesOf(labels, wrong) }));
+  return checkedList('corrections', '{ frame, labels }', corrections, length, ({ labels }, wrong) => ({ labels: bytesOf(labels, 'labels', wrong) }));
 }
 
 /** What is said of each frame: a correction goes before the mask of its frame where it says anything. */
@@ -63,8 +63,8 @@ export function isPropagation(value: unknown): value is Propagation {
   return (PROPAGATIONS as readonly unknown[]).includes(value);
 }
 
-export function bytesOf(labels: unknown, wrong: Wrong): Uint8Array {
-  if (!isArrayOf(labels, 'Uint8Array', 'Uint8ClampedArray')) throw wrong('must have labels, a Uint8Array');
-  checkAttached('the labels', labels);
-  return taken([labels], false)[0] as Uint8Array;
+export function bytesOf(bytes: unknown, name: string, wrong: Wrong): Uint8Array {
+  if (!isArrayOf(bytes, 'Uint8Array', 'Uint8ClampedArray')) throw wrong(`must have ${name}, a Uint8Array`);
+  checkAttached(`the ${name}`, bytes);
+  return taken([bytes], false)[0] as Uint8Array;
 }

@@ -1,7 +1,7 @@
 // A clip whose frames can be read again: once for their pairs, where corrections want them, and once for their labels.
 
 import type { ClipFrame } from '../../../types/index.js';
-import { checkedBytes, invalidInput, reading } from '../../common/checks.js';
+import { checkedBytes, invalidInput } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import type { ClipChange, ClipSummary } from '../messages.js';
 import { taken } from '../taking.js';
@@ -40,7 +40,7 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: A
 
 async function masksOf({ masks, source }: Asked): Promise<Said[]> {
   const { checkedMasks } = await import('./masks.js');
-  return reading(() => checkedMasks(masks, source.length as number));
+  return checkedMasks(masks, source.length as number);
 }
 
 /** Solves the pairs that are not known. */
