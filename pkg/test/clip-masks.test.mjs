@@ -5,6 +5,7 @@ import { describe, test } from 'node:test';
 import { davisPalette, segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { encodeColourPng, encodeGreyPng } from 'veronese/codecs';
 import { encodeCocoRle, encodeCocoRleCounts, encodeDavis } from 'veronese/formats';
+import { asked } from '../build/calls/clip/asked.js';
 import { frame } from './support/frames.mjs';
 import { failure } from './support/shapes.mjs';
 
@@ -68,6 +69,13 @@ const WAYS = {
 
 test('the square is found by itself', () => {
   assert.deepEqual(idsOf(whole), ALL.map(() => [1]));
+});
+
+test('what is merged into a locked object is locked with it', () => {
+  const lockedBy = (options) => asked(list, options).locked;
+  assert.deepEqual(lockedBy({ edits: { merge: [[2, 5], [6, 7]], names: { 2: 'car' } } }), Uint8Array.of(2, 5));
+  assert.deepEqual(lockedBy({ locked: [3], edits: { locked: [4, 3] } }), Uint8Array.of(3, 4));
+  assert.deepEqual([lockedBy({ locked: [] }), lockedBy({ edits: {} })], [new Uint8Array(), undefined]);
 });
 
 for (const [way, make] of Object.entries(WAYS)) {
