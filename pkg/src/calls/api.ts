@@ -2,9 +2,6 @@
 
 import type {
   CallOptions,
-  Clip,
-  ClipOptions,
-  ClipSource,
   FitOptions,
   Milliseconds,
   MotionFit,
@@ -22,7 +19,6 @@ import { colourBytes, davisPalette } from '../common/palette.js';
 import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
-import { clipOf } from './clip.js';
 import type { CallTask, ClipTask, Corrected, Result } from './messages.js';
 import { taken } from './taking.js';
 import { fitCall, relabelCall, segmentCall, start } from './tasks.js';
@@ -54,9 +50,6 @@ export class Api {
 
   readonly fitMotions = (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> =>
     start(() => fitCall(measurements, options), this.perform);
-
-  readonly segmentClip = (frames: ClipSource, options?: ClipOptions): Clip =>
-    clipOf(frames, options, async () => ({ perform: this.perform, release: () => undefined }));
 
   /** What was checked and taken, here or on the other side of a worker. */
   readonly perform = (task: CallTask, call: CallOptions): Promise<Result> => {
