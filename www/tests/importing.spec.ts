@@ -1,9 +1,10 @@
 //! Masks of annotation tools, imported into a clip as corrections of its frames.
 
 import { type Page } from '@playwright/test';
-import { encodeCocoImages, encodeDavis, encodeLabelMe } from 'veronese/formats';
+import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe } from 'veronese/formats';
 
 import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, test, upload } from './support.js';
+import { HEIGHT, WIDTH, video } from './video.js';
 
 const SIZE = { width: 200, height: 140 };
 
@@ -64,6 +65,24 @@ test('a file of annotations corrects the frames that it is of, in one step that 
     expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
   }
   await expect(page.locator('#undo')).toBeDisabled();
+});
+
+test('the frames of a video are known by their numbers', async ({ page }) => {
+  await open(page, 'groups');
+  await upload(page, [await video(page, 6, 'webm', 'vp8')]);
+  await expect(page.locator('#clip-name')).toContainText('6 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  // Frames without a shape are not said: the first that is, is number 4.
+  const said = Uint8Array.from({ length: WIDTH * HEIGHT }, (_, p) => (p % WIDTH < 40 ? 9 : 0));
+  const frames = Array.from({ length: 5 }, (_, k) => ({ labels: k < 4 ? new Uint8Array(said.length) : said, width: WIDTH, height: HEIGHT }));
+  const xml = encodeCvatVideo(frames, { names: { 9: 'Strip' }, labels: [9] });
+  await upload(page, [{ name: 'annotations.xml', mimeType: 'application/xml', buffer: Buffer.from(xml) }]);
+  await corrected(page);
+  await goTo(page, 4);
+  expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+  await expect(page.locator('#notice')).toBeHidden();
 });
 
 test('masks that are dropped on the clip are no frames, and frames are', async ({ page }) => {

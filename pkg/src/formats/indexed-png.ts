@@ -48,7 +48,8 @@ export function decodeDeep(file: Uint8Array): Size & { levels: Uint16Array } {
     throw new VeroneseError('invalid-input', 'is not a grey PNG of 16 bits without interlacing');
   }
   const rows = rowsOf(png);
-  const levels = Uint16Array.from({ length: rows.length / 2 }, (_, at) => ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number));
+  const levels = new Uint16Array(rows.length / 2);
+  for (let at = 0; at < levels.length; at++) levels[at] = ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number);
   return { levels, width: png.width, height: png.height };
 }
 
