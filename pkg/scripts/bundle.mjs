@@ -25,8 +25,10 @@ const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-wo
 const XML = '@rgrove/parse-xml';
 /** What an encoder of masks shares with the calls. */
 const SHARED = ['common/'];
+/** What encoders and readers of masks share. */
+const BOTH_WAYS = ['base64', 'input', 'names', 'veronese-json'].map((name) => `formats/${name}.js`);
 /** What all entries with calls share, but for what they load when masks are given. */
-const CALLS = ['module/', 'calls/(?!clip/masks\\.js)', 'pool/', 'entries/package.js'];
+const CALLS = ['module/', 'calls/(?!clip/given-masks\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({
@@ -67,6 +69,10 @@ await bundle.write({
     groups: [
       { name: 'shared', test: within(SHARED), priority: 1 },
       { name: 'calls', test: within(CALLS) },
+      // A page that writes masks need not load what reads them: it has a file of its own, and so has what the two share.
+      ...['png-file', 'indexed-png'].map((name) => ({ name, test: within([`formats/${name}.js`]), priority: 1 })),
+      { name: 'masks', test: within(BOTH_WAYS), priority: 1 },
+      { name: 'annotations', test: within(['formats/reading/']) },
     ],
   },
 });

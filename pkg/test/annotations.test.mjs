@@ -175,7 +175,7 @@ describe('a clip', () => {
     const frames = [drawn('11'), drawn('01')];
     const video = file('video.xml', formats.encodeCvatVideo(frames, { labels: [1] }));
     assert.deepEqual([...readAnnotations([video]).frames.keys()], ['00000', '00001']);
-    assert.deepEqual([...readAnnotations([video], { frames: ['a', 'b', 'c'] }).frames.keys()], ['a', 'b']);
+    assert.deepEqual([...readAnnotations([video], { frames: ['a.1', 'a.2', 'c'] }).frames.keys()], ['a.1', 'a.2']);
     const message = "'video.xml': it has a frame 1, and the clip has 1";
     assert.throws(() => readAnnotations([video], { frames: ['a'] }), { code: 'invalid-input', message });
     assert.throws(() => readAnnotations([video], { frames: 3 }), { code: 'invalid-option' });
@@ -387,7 +387,7 @@ describe('what is none of that', () => {
     'sizes of MOTS that differ': ['1 1001 1 1 4 04\n1 1002 1 1 5 05', /line 2: the frame has had another size/],
     'a large frame of MOTS': ['1 1001 1 1 5000 0', /width and height of line 1/],
 
-    'a bitmap that is none': [supervisely({ bitmap: { data: 'AAAA', origin: [0, 0] } }), /a bitmap is damaged/],
+    'a bitmap that is none': [supervisely({ bitmap: { data: 'AAAA', origin: [0, 0] } }), /a bitmap is damaged/, 'unreadable-image'],
     'a polygon of Supervisely': [supervisely({ geometryType: 'polygon' }), /object that is no bitmap/],
     'a bitmap outside': [supervisely({ bitmap: { data: deflateSync(png).toString('base64'), origin: [1, 0] } }), /must lie inside the frame/],
 

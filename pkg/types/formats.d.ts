@@ -397,8 +397,8 @@ export interface Annotations {
 
 /**
  * Reads masks from files of annotation tools, in the formats that the encoders write: corrections for `segmentClip`. The format is
- * recognised by the content; pictures beside other annotations are ignored. `frames` are the names of a clip's frames in their order, for
- * formats that count them (CVAT for video and MOTS); default `00000`, `00001` … Throws `invalid-input`, `unreadable-image` or
+ * recognised by the content; pictures beside other annotations are ignored. `frames` are the names of a clip's frames in their order,
+ * without extension, for formats that count them (CVAT for video and MOTS); default `00000`, `00001` … Throws `invalid-input`, `unreadable-image` or
  * `frame-size-mismatch` with the name of the file.
  */
 export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[] }): Annotations;

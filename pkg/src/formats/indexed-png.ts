@@ -48,7 +48,8 @@ export function decodeDeep(file: Uint8Array): Size & { levels: Uint16Array } {
     throw new VeroneseError('invalid-input', 'is not a grey PNG of 16 bits without interlacing');
   }
   const rows = rowsOf(png);
-  const levels = Uint16Array.from({ length: rows.length / 2 }, (_, at) => ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number));
+  const levels = new Uint16Array(rows.length / 2);
+  for (let at = 0; at < levels.length; at++) levels[at] = ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number);
   return { levels, width: png.width, height: png.height };
 }
 
@@ -108,26 +109,28 @@ function* chunks(file: Uint8Array): Generator<{ name: string; content: Uint8Arra
 /** The bytes of all rows, as many as a pixel of this depth and width needs. */
 function rowsOf({ data, width, height, depth }: Png): Uint8Array {
   const row = Math.ceil((width * depth) / 8);
-  return unfiltered(inflated(data, (row + 1) * height), row, height, Math.ceil(depth / 8));
+  const length = (row + 1) * height;
+  const rows = inflated(data, length);
+  if (rows.length !== length) throw unreadable('is damaged');
+  return unfiltered(rows, row, height, Math.ceil(depth / 8));
 }
 
-function inflated(data: readonly Uint8Array[], length: number): Uint8Array {
-  const rows = new Uint8Array(length);
+/** What a zlib stream in pieces holds. Throws `unreadable-image` where that is more than `most` bytes, or damaged. */
+export function inflated(data: readonly Uint8Array[], most: number): Uint8Array {
+  const whole = new Uint8Array(most);
   let filled = 0;
   const inflater = new Unzlib((piece) => {
-    if (filled + piece.length > length) throw unreadable('is damaged');
-    rows.set(piece, filled);
+    whole.set(piece, filled);
     filled += piece.length;
   });
   try {
     for (const content of data) for (let at = 0; at < content.length; at += PIECE) inflater.push(content.subarray(at, at + PIECE));
     inflater.push(new Uint8Array(), true);
   } catch {
-    // Cut off, damaged, or longer than the picture.
-    filled = 0;
+    // Cut off, damaged, or longer than the place for it.
+    throw unreadable('is damaged');
   }
-  if (filled === length) return rows;
-  throw unreadable('is damaged');
+  return whole.subarray(0, filled);
 }
 
 /** Every row begins with the number of its filter, which adds what stands to the left, above or both; `step` bytes are a pixel. */

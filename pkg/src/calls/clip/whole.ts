@@ -39,7 +39,7 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: A
 }
 
 async function masksOf({ masks, source }: Asked): Promise<Said[]> {
-  const { checkedMasks } = await import('./masks.js');
+  const { checkedMasks } = await import('./given-masks.js');
   return checkedMasks(masks, source.length as number);
 }
 

@@ -15,6 +15,7 @@ import {
 } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import { decodeIndices, headOf } from '../indexed-png.js';
+import { checkPath } from '../names.js';
 import { decodeVeronese } from '../veronese-json.js';
 import { Canvas } from './canvas.js';
 import { readCoco, readYouTubeVis } from './coco.js';
@@ -75,7 +76,8 @@ function contextOf(all: readonly Source[], names: readonly string[] | undefined)
     nameOf(index) {
       const name = names ? names[index] : String(index).padStart(5, '0');
       if (name === undefined) throw invalidInput(`it has a frame ${index}, and the clip has ${names?.length}`);
-      return stemOf(name);
+      checkPath(name);
+      return name;
     },
     classesOf({ name }) {
       const list = all.find((other) => other.name === `${folderOf(name)}labels.txt`);

@@ -1,16 +1,15 @@
 // Supervisely: one file for each image, called by its name, with bitmaps. Objects have no numbers.
 
-import { unzlibSync } from 'fflate';
 import { invalidInput, isObject } from '../../common/checks.js';
 import { fromBase64 } from '../base64.js';
-import { decodeIndices } from '../indexed-png.js';
+import { decodeIndices, inflated } from '../indexed-png.js';
 import type { Canvas } from './canvas.js';
 import { checkBox, checkSize, decoding, frameOfShapes, listOf, type ReadFrame, stemOf, Unnumbered } from './frame.js';
 
 type Json = Record<string, unknown>;
 
-/** A PNG is about as large compressed again. */
-const LARGEST = 2 ** 26;
+/** Most bytes in the PNG of a bitmap: as many as the largest frame has pixels. */
+const LARGEST = 2 ** 24;
 
 export function readSupervisely({ size, objects }: Json, file: string): ReadFrame {
   const { width, height } = isObject(size) ? size : {};
@@ -25,14 +24,6 @@ export function readSupervisely({ size, objects }: Json, file: string): ReadFram
 }
 
 function stamp(canvas: Canvas, data: string, [left, top]: readonly unknown[], label: number): void {
-  const { indices, width, height } = decoding('a bitmap', () => decodeIndices(inflated(fromBase64(data)), { foreign: true }));
+  const { indices, width, height } = decoding('a bitmap', () => decodeIndices(inflated([fromBase64(data)], LARGEST), { foreign: true }));
   canvas.stamp(indices, checkBox([left, top, width, height], canvas), label);
-}
-
-function inflated(bytes: Uint8Array): Uint8Array {
-  try {
-    return unzlibSync(bytes, { out: new Uint8Array(Math.min(LARGEST, 4 * bytes.length + 65_536)) });
-  } catch {
-    throw invalidInput('is damaged');
-  }
 }
