@@ -129,6 +129,8 @@ for (const [way, make] of Object.entries(WAYS)) {
       const rleOf = (id) => encodeCocoRle(halves.map((label) => Number(label === id)), width, height);
       const masks = [{ frame: 3, id: 7, rle: rleOf(7) }, { frame: 3, id: 9, rle: rleOf(9) }];
       assert.deepEqual(await run(segment, { state, masks }), await said({ labels: halves }));
+      const over = [{ frame: 3, labels }, { frame: 3, id: 9, rle: rleOf(9) }];
+      assert.deepEqual(await run(segment, { state, masks: over }), await said({ labels: halves }), 'one over the other');
     });
 
     test('the arrays of masks stay the caller\'s', async (t) => {

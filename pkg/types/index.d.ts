@@ -235,8 +235,8 @@ export interface ClipCorrection {
 }
 
 /**
- * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. Of single
- * objects there may be several in a frame; a later one covers an earlier one, and what is in none of them is background.
+ * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. A frame
+ * may have several of single objects; a later one covers an earlier one, and what is in none of them is background.
  */
 export type ClipMask = {
   /** Index of the frame, from 0. */

@@ -32,26 +32,28 @@ function labelsOfPng(decodeIndices: typeof Decode, png: unknown, wrong: Wrong): 
   }
 }
 
-/** Of a picture whose pixels are grey, the grey level; of others, the index of the colour in the DAVIS palette. */
+/** Grey levels if there is nothing else, otherwise indices of colours in the DAVIS palette. What is transparent says nothing. */
 function labelsOfImage(data: unknown, width: unknown, height: unknown, wrong: Wrong): Uint8Array {
   const rgba = bytesOf(data, 'pixels', wrong);
   if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE) || rgba.length !== 4 * width * height) {
     throw wrong('must have RGBA pixels that fill its width and height');
   }
-  const colours = new Uint32Array(rgba.buffer);
-  const colourOf = (r: number, g: number, b: number) => new Uint32Array(Uint8Array.of(r, g, b, UNLABELLED).buffer)[0] as number;
-  const isSeen = (p: number) => rgba[4 * p + 3] !== 0;
-  const isGrey = (_: number, p: number) => !isSeen(p) || (rgba[4 * p] === rgba[4 * p + 1] && rgba[4 * p] === rgba[4 * p + 2]);
-  const palette = colours.every(isGrey)
-    ? Array.from({ length: 256 }, (_, level) => colourOf(level, level, level))
-    : davisPalette().map((colour) => colourOf(...colour));
+  const byte = (p: number, channel: number) => rgba[4 * p + channel] as number;
+  const colours = Int32Array.from({ length: width * height }, (_, p) => (byte(p, 3) === 0 ? -1 : numberOf([byte(p, 0), byte(p, 1), byte(p, 2)])));
+  const greys = Array.from({ length: 256 }, (_, level) => numberOf([level, level, level]));
+  const isGrey = colours.every((colour) => colour === -1 || colour === greys[colour & 255]);
   // Of colours that the palette has twice the lower index counts.
-  const indices = new Map(palette.map((colour, index) => [colour, index] as const).reverse());
+  const palette = isGrey ? greys : davisPalette().map(numberOf);
+  const labels = new Map(palette.map((colour, index) => [colour, index] as const).reverse()).set(-1, UNLABELLED);
   return Uint8Array.from(colours, (colour, p) => {
-    const label = isSeen(p) ? indices.get(colour) : UNLABELLED;
-    if (label === undefined) throw wrong(`has a pixel of a colour that is neither grey nor of the DAVIS palette, at ${p % width}, ${Math.floor(p / width)}`);
-    return label;
+    const label = labels.get(colour);
+    if (label !== undefined) return label;
+    throw wrong(`has a pixel of a colour that is neither grey nor of the DAVIS palette, at ${p % width}, ${Math.floor(p / width)}`);
   });
+}
+
+function numberOf([r, g, b]: readonly [number, number, number]): number {
+  return (r << 16) | (g << 8) | b;
 }
 
 /** The mask of an object over those of others in the same frame. */
@@ -59,9 +61,9 @@ function withObject({ frame, id, rle }: Record<string, unknown>, before: Said | 
   if (!isObjectNumber(id)) throw wrong(`must have an id, ${RANGE}`);
   const { size, counts } = Object(rle) as Record<string, unknown>;
   const [height, width] = Array.isArray(size) && size.length === 2 ? (size as unknown[]) : [];
-  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) throw wrong(`must have an rle with a size, [height, width]`);
-  if (before && (before.width !== width || before.labels.length !== width * height)) throw wrong(`has another size than the mask of frame ${String(frame)} before it`);
-  const labels = before?.labels ?? new Uint8Array(width * height);
+  if (!isWhole(width, 1, LONGEST_SIDE) || !isWhole(height, 1, LONGEST_SIDE)) throw wrong('must have an rle with a size, [height, width]');
+  const { labels = new Uint8Array(width * height), width: same = width } = before ?? {};
+  if (same !== width || labels.length !== width * height) throw wrong(`has another size than the mask of frame ${String(frame)} before it`);
   let at = 0;
   for (const [k, count] of runsOf(counts, wrong).entries()) {
     if (!isWhole(count, 0, labels.length - at)) throw wrong('has run lengths that do not fill its size');
