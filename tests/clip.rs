@@ -5,7 +5,7 @@
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use veronese::clip::{
-    ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, StreamSegmenter,
+    ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
 };
 use veronese::{Error, Frame, MotionCount, Quality, Random, SegmentOptions};
 
@@ -301,17 +301,20 @@ fn mistakes_have_a_code_and_the_clip_goes_on() {
     assert_eq!(clip.len(), 2);
     assert!(matches!(clip.frame(2, &frames[2]), Err(Error::InvalidOption { name: "frame", .. })));
     assert!(matches!(clip.frame(0, &small), Err(Error::FrameSizeMismatch { .. })));
-    assert!(matches!(clip.correct(2, &[255; 160 * 120]), Err(Error::InvalidOption { name: "frame", .. })));
-    assert!(matches!(clip.correct(0, &[255; 12]), Err(Error::InvalidOption { name: "corrections", .. })));
+    assert!(matches!(
+        clip.correct(2, &[255; 160 * 120], Spread::Both),
+        Err(Error::InvalidOption { name: "frame", .. })
+    ));
+    assert!(matches!(clip.correct(0, &[255; 12], Spread::Both), Err(Error::InvalidOption { name: "corrections", .. })));
     assert!(matches!(clip.renumber(0, 3), Err(Error::InvalidOption { name: "objects", .. })));
-    let mut correction = clip.correct(0, &[0; 160 * 120]).unwrap();
+    let mut correction = clip.correct(0, &[0; 160 * 120], Spread::Both).unwrap();
     assert!(matches!(correction.take(&mut clip, &small), Err(Error::FrameSizeMismatch { .. })));
     assert_eq!(correction.wanted(), Some(0), "it waits for the right frame");
 }
 
 /// Corrects a frame; returns the frames that have changed.
 fn correct(clip: &mut SegmentedClip, frames: &[Frame], index: usize, labels: &[u8]) -> Vec<usize> {
-    let mut correction = clip.correct(index, labels).unwrap();
+    let mut correction = clip.correct(index, labels, Spread::Both).unwrap();
     while let Some(wanted) = correction.wanted() {
         correction.take(clip, &frames[wanted]).unwrap();
     }
@@ -446,7 +449,7 @@ fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {
 fn a_clip_knows_its_frames() {
     let (frames, _) = moving_and_resting();
     let mut clip = whole(&frames, options(Quality::Fast, None));
-    let mut correction = clip.correct(3, &[1; 160 * 120]).unwrap();
+    let mut correction = clip.correct(3, &[1; 160 * 120], Spread::Both).unwrap();
     assert!(matches!(clip.frame(3, &frames[4]), Err(Error::OtherFrame { index: 3 })));
     assert!(matches!(correction.take(&mut clip, &frames[4]), Err(Error::OtherFrame { index: 3 })));
     correction.take(&mut clip, &frames[3]).unwrap();
@@ -549,4 +552,43 @@ fn the_same_bits_on_every_target() {
         hash
     };
     assert_eq!([hash(None), hash(Some(1))], [4_489_319_569_541_349_816, 9_588_751_157_850_698_864]);
+}
+
+#[test]
+fn reserved_numbers_are_free_for_objects_of_a_person() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let found = frames_of(&clip, &frames);
+    let (number, _) = carrier(&found[3].labels, &truths[3], 1).unwrap();
+    let ids: Vec<u8> = (1..255).filter(|&id| !clip.frames_with(id).is_empty()).collect();
+    assert!(number != 0 && ids.contains(&number));
+    let in_frames = clip.frames_with(number);
+    // The lowest number that is neither found nor reserved.
+    let free = (1..255).find(|id| !ids.contains(id) && *id != 77).unwrap();
+    assert_eq!(clip.reserve(&[0, number, 77, 255, number]), in_frames);
+    assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], in_frames));
+    for (before, after) in found.iter().zip(frames_of(&clip, &frames)) {
+        let renumbered: Vec<u8> =
+            before.labels.iter().map(|&label| if label == number { free } else { label }).collect();
+        assert_eq!(after.labels, renumbered);
+    }
+    // A person's object has its number for good; what was found under it before has another.
+    let mask: Vec<u8> = truths[3].iter().map(|&t| if t == 2 { number } else { 255 }).collect();
+    correct(&mut clip, &frames, 3, &mask);
+    assert_eq!(clip.reserve(&[number]), Vec::<usize>::new());
+    assert!(clip.frames_with(number).contains(&3));
+    let said = clip.frame(3, &frames[3]).unwrap().labels;
+    assert!(mask.iter().zip(&said).all(|(&said, &label)| said != number || label == number));
+    // A number that was merged away or deleted before is a new one, and what was merged into it goes along.
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    clip.renumber(number, 0).unwrap();
+    clip.reserve(&[number]);
+    assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], vec![]));
+    correct(&mut clip, &frames, 3, &mask);
+    assert!(clip.frames_with(number).contains(&3));
+    // Where no number is left there is nothing to give.
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    clip.reserve(&(0..=255).collect::<Vec<u8>>());
+    assert_eq!(clip.dropped(), ids.len());
+    assert!(frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label == 0)));
 }

@@ -21,10 +21,14 @@ const ENTRIES = sources({
   'formats/index': 'formats/index',
 });
 const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-work': 'cli/batch-work' });
+/** Becomes part of the package, from its sources: what it publishes are no modules, which browsers need that load the package unbundled. */
+const XML = '@rgrove/parse-xml';
 /** What an encoder of masks shares with the calls. */
 const SHARED = ['common/'];
-/** What all entries with calls share. */
-const CALLS = ['module/', 'calls/', 'pool/', 'entries/package.js'];
+/** What encoders and readers of masks share. */
+const BOTH_WAYS = ['base64', 'input', 'names', 'veronese-json'].map((name) => `formats/${name}.js`);
+/** What all entries with calls share, but for what they load when masks are given. */
+const CALLS = ['module/', 'calls/(?!clip/given-masks\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({
@@ -36,12 +40,14 @@ const bundle = await rolldown({
       // An entry that another one imports stays the one file that package.json names. Importers end up in the top folder.
       resolveId: (id, importer) => {
         const file = importer && resolve(dirname(importer), id);
+        if (id === XML) return resolve(folder('../node_modules'), XML, 'src/index.ts');
         const entry = Object.keys(ENTRIES).find((name) => ENTRIES[name] === file);
         return entry && { id: `./${entry}.js`, external: 'relative' };
       },
     },
   ],
   platform: 'neutral',
+  resolve: { extensionAlias: { '.js': ['.js', '.ts'] } },
   // No comments that name compiled sources, which are not in the package.
   experimental: { attachDebugInfo: 'none' },
   // A warning stops the build, as does a circle of imports.
@@ -63,6 +69,10 @@ await bundle.write({
     groups: [
       { name: 'shared', test: within(SHARED), priority: 1 },
       { name: 'calls', test: within(CALLS) },
+      // A page that writes masks need not load what reads them: it has a file of its own, and so has what the two share.
+      ...['png-file', 'indexed-png'].map((name) => ({ name, test: within([`formats/${name}.js`]), priority: 1 })),
+      { name: 'masks', test: within(BOTH_WAYS), priority: 1 },
+      { name: 'annotations', test: within(['formats/reading/']) },
     ],
   },
 });

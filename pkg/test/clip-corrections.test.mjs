@@ -22,13 +22,14 @@ const SIZE = { width: 96, height: 72 };
 const PIXELS = SIZE.width * SIZE.height;
 const clipFrame = (k) => frame(k / 2, SIZE);
 
-/** A folder of frames, one for corrections, and places for results. */
+/** A folder of frames, one for corrections, one for masks, and places for results. */
 function clip(t, count = COUNT) {
   const folder = temporaryFolder(t);
-  for (const name of ['frames', 'said']) mkdirSync(folder.path(name));
+  for (const name of ['frames', 'said', 'masks']) mkdirSync(folder.path(name));
   for (let k = 0; k < count; k++) writeFileSync(folder.path('frames', `f${k}.png`), png(clipFrame(k)));
   const said = (name, content) => writeFileSync(folder.path('said', name), content);
-  return { ...folder, frames: folder.path('frames'), corrections: folder.path('said'), said, out: folder.path('out') };
+  const given = (name, content) => writeFileSync(folder.path('masks', name), content);
+  return { ...folder, frames: folder.path('frames'), corrections: folder.path('said'), said, masks: folder.path('masks'), given, out: folder.path('out') };
 }
 
 /** The square in frame 3 as an object 9; nothing is said of the rest. */
@@ -91,7 +92,7 @@ describe('veronese clip --corrections', () => {
     assert.deepEqual(tree(out), tree(path('straight')));
     said('edits.json', '{"delete": [9]}');
     const { lines } = await run([frames, '--corrections', corrections, '--out', out]);
-    assert.deepEqual(lines.at(-1), { done: true, objects: 0 });
+    assert.deepEqual(lines.slice(0, -1).map(({ objects }) => objects), Array(COUNT).fill([1]), 'what was found is there again');
     assert.notEqual(tracksOf(out).settings.corrections, first);
     for (const name of ['f3.png', 'edits.json']) rmSync(join(corrections, name));
     await run([frames, '--corrections', corrections, '--out', out]);
@@ -164,13 +165,19 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"merge": [1, 2]}', 'invalid-input', /edits\.json': 'merge' must be lists/],
       ['edits.json', '{"remove": [1]}', 'invalid-input', /edits\.json': there is no edit 'remove'/],
       ['edits.json', '{"names": {"255": "sky"}}', 'invalid-input', /edits\.json': 'names'/],
+      ['edits.json', '{"locked": 5}', 'invalid-input', /edits\.json': 'locked' must be a list of objects/],
+      ['edits.json', '{"propagate": ["f1"]}', 'invalid-input', /edits\.json': 'propagate' must be an object/],
+      ['edits.json', '{"propagate": {"g1": "none"}}', 'invalid-input', /edits\.json': 'propagate' has 'g1', the name of no frame/],
+      ['edits.json', '{"propagate": {"f1": "up"}}', 'invalid-input', /edits\.json': 'propagate' must have 'both', 'forward', 'backward' or 'none' for 'f1'/],
     ];
     for (const [name, content, code, message] of cases) {
       said(name, content);
-      const { stderr, stdout } = await run([frames, '--corrections', corrections, '--out', out], { code: 1 });
-      assert.match(stderr, new RegExp(`^veronese: error: ${code}: [^\\n]+\\n$`));
-      assert.match(stderr, message);
-      assert.deepEqual([stdout, existsSync(out)], ['', false]);
+      for (const option of ['--corrections', '--masks']) {
+        const { stderr, stdout } = await run([frames, option, corrections, '--out', out], { code: 1 });
+        assert.match(stderr, new RegExp(`^veronese: error: ${code}: [^\\n]+\\n$`));
+        assert.match(stderr, message);
+        assert.deepEqual([stdout, existsSync(out)], ['', false]);
+      }
       rmSync(join(corrections, name));
     }
     const missing = await run([frames, '--corrections', path('nowhere'), '--out', out], { code: 1 });
@@ -210,6 +217,76 @@ describe('veronese clip --corrections', () => {
     await run([frames, '--corrections', corrections, '--out', out]);
     assert.deepEqual(labelsOf(out, 3), LABELS);
     assert.deepEqual(readdirSync(join(out, '.clip')), ['state']);
+  });
+});
+
+describe('veronese clip --masks', () => {
+  /** A corner of the ground as an object 1; nothing is said of the rest. */
+  const CORNER = Uint8Array.from({ length: PIXELS }, (_, p) => (p % SIZE.width >= 78 && p >= 58 * SIZE.width ? 1 : 255));
+  const all = (out) => Array.from({ length: COUNT }, (_, k) => labelsOf(out, k));
+
+  test('objects keep the numbers of their masks, with corrections and edits as the call has them', async (t) => {
+    const { frames, corrections, said, masks, given, out } = clip(t);
+    given('f1.png', await mask(CORNER));
+    given('f3.png', await mask(LABELS.map((label) => label && 7)));
+    given('edits.json', '{"names": {"7": "square"}, "propagate": {"f1": "none"}}');
+    const stroke = LABELS.map((label, p) => (label > 0 && p % SIZE.width < 45 ? 20 : 255));
+    said('f3.png', await mask(stroke));
+    said('edits.json', '{"locked": [3]}');
+    const { lines } = await run([frames, '--masks', masks, '--corrections', corrections, '--out', out]);
+    const options = {
+      masks: [{ frame: 1, labels: CORNER, propagate: 'none' }, { frame: 3, labels: LABELS.map((label) => label && 7) }],
+      corrections: [{ frame: 3, labels: stroke }],
+      edits: { names: { 7: 'square' }, locked: [3] },
+    };
+    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', ...options });
+    for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, index), labels);
+    assert.deepEqual(labelsOf(out, 3), LABELS.map((label, p) => (stroke[p] === 20 ? 20 : label && 7)), 'to the pixel');
+    const seen = lines.slice(0, -1).map(({ objects }) => objects);
+    assert.deepEqual(seen.map((ids) => ids.includes(1)), seen.map((_, index) => index === 1), 'it spreads nowhere');
+    const { objects, settings } = tracksOf(out);
+    assert.equal(objects.find(({ id }) => id === 7).name, 'square');
+    assert.match(settings.masks, /^[0-9a-f]{64}$/);
+    assert.match(settings.corrections, /^[0-9a-f]{64}$/);
+  });
+
+  test('other masks start anew, the same ones do not, and no pair is solved again', async (t) => {
+    const { frames, masks, given, out, path } = clip(t);
+    const args = [frames, '--masks', masks, '--out', out];
+    given('f3.png', await mask());
+    await run(args);
+    const [first, state] = [tree(out), written(join(out, '.clip', 'state'))];
+    const at = written(join(out, 'tracks.json'));
+    await run(args);
+    assert.equal(written(join(out, 'tracks.json')), at, 'nothing is done again');
+    given('f3.png', await mask(LABELS.map((label) => label && 8)));
+    const { lines } = await run(args);
+    assert.deepEqual(lines.slice(0, -1).map(({ objects }) => objects), Array(COUNT).fill([8]));
+    given('edits.json', '{"propagate": {"f3": "none"}}');
+    const spread = await run(args);
+    assert.deepEqual(spread.lines.slice(0, -1).map(({ objects }) => objects.includes(8)), [0, 1, 2, 3, 4, 5].map((k) => k === 3));
+    rmSync(join(masks, 'edits.json'));
+    given('f3.png', await mask());
+    await run(args);
+    assert.deepEqual(tree(out), first);
+    await run([frames, '--masks', masks, '--out', path('straight')]);
+    assert.deepEqual(tree(path('straight')), first);
+    assert.equal(written(join(out, '.clip', 'state')), state, 'the state was never written again');
+  });
+
+  test('locked objects do not change by a pixel', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    await run([frames, '--out', out]);
+    const before = all(out);
+    said('f3.png', await mask(LABELS.map((label, p) => (label > 0 && p % SIZE.width < 45 ? 20 : 255))));
+    const changed = async (edits) => {
+      said('edits.json', edits);
+      await run([frames, '--corrections', corrections, '--out', out]);
+      return all(out).reduce((sum, labels, k) => sum + labels.filter((label, p) => (label === 1) !== (before[k][p] === 1)).length, 0);
+    };
+    assert.ok((await changed('{}')) > 0);
+    assert.equal(await changed('{"locked": [1]}'), 0);
+    assert.equal(await changed('{"names": {"1": "square"}}'), 0);
   });
 });
 

@@ -374,7 +374,7 @@ describe('what is known beside the labels', () => {
 });
 
 describe('wrong input is refused', () => {
-  const { decodeVeronese: _, ...encoders } = formats;
+  const { decodeVeronese: _, readAnnotations: _reader, ...encoders } = formats;
   for (const [name, given] of Object.entries(encoders)) {
     test(name, () => {
       const encode = (labels, width, height) => (MANY.includes(name) ? given([{ labels, width, height }]) : given(labels, width, height));

@@ -244,6 +244,9 @@ async function all(outcomes) {
 const awaited = (value) => (value === VALUES.throwing || value === VALUES['revoked proxy'] ? undefined : value);
 const iterated = (value) => (ArrayBuffer.isView(value) ? undefined : value);
 
+/** Labels of a frame that say nothing. */
+const NOTHING = new Uint8Array(256).fill(255);
+
 /** The arguments of a clip, as those of the other calls. */
 const CLIPS = {
   frames: [(v) => [iterated(v)], ['empty text', 'empty list']],
@@ -264,8 +267,22 @@ const CLIPS = {
   markUnknown: [(v) => [[first, second], { markUnknown: v }], ['undefined', 'true', 'false']],
   corrections: [(v) => [[first, second], { corrections: v }], ['undefined', 'empty list']],
   'a correction': [(v) => [[first, second], { corrections: [v] }], []],
-  'its frame': [(v) => [[first, second], { corrections: [{ frame: v, labels: new Uint8Array(256).fill(255) }] }], ['zero', 'one']],
+  'its frame': [(v) => [[first, second], { corrections: [{ frame: v, labels: NOTHING }] }], ['zero', 'one']],
   'its labels': [(v) => [[first, second], { corrections: [{ frame: 0, labels: v }] }], []],
+  'where it spreads': [(v) => [[first, second], { corrections: [{ frame: 0, labels: NOTHING, propagate: v }] }], ['undefined']],
+  masks: [(v) => [[first, second], { masks: v }], ['undefined', 'empty list']],
+  'a mask': [(v) => [[first, second], { masks: [v] }], []],
+  'the frame of a mask': [(v) => [[first, second], { masks: [{ frame: v, labels: NOTHING }] }], ['zero', 'one']],
+  'the labels of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: v }] }], []],
+  'the pixels of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: { ...first, data: v } }] }], []],
+  'the file of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: NOTHING, png: v }] }], ['undefined']],
+  'the object of a mask': [(v) => [[first, second], { masks: [{ frame: 0, id: v, rle: { size: [16, 16], counts: [256] } }] }], ['one']],
+  'the run lengths of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: NOTHING, rle: v }] }], ['undefined']],
+  'their size': [(v) => [[first, second], { masks: [{ frame: 0, id: 1, rle: { size: v, counts: [256] } }] }], []],
+  'their counts': [(v) => [[first, second], { masks: [{ frame: 0, id: 1, rle: { size: [16, 16], counts: v } }] }], []],
+  locked: [(v) => [[first, second], { locked: v }], ['undefined', 'empty list']],
+  'a locked object': [(v) => [[first, second], { locked: [v] }], ['one']],
+  onChange: [(v) => [[first, second], { onChange: v }], ['undefined', 'function']],
   edits: [(v) => [[first, second], { edits: v }], OPTIONS],
   merge: [(v) => [[first, second], { edits: { merge: v } }], ['undefined', 'empty list']],
   'what is merged': [(v) => [[first, second], { edits: { merge: [[1, v]] } }], ['one']],

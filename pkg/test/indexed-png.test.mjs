@@ -5,7 +5,7 @@ import { test } from 'node:test';
 import { deflateSync } from 'node:zlib';
 import { encodeIndexedPng } from 'veronese/codecs';
 import { encodeDavis } from 'veronese/formats';
-import { decodeIndices } from '../build/cli/indexed-png.js';
+import { decodeIndices } from '../build/formats/indexed-png.js';
 import { png } from './support/frames.mjs';
 import { labelImages, random } from './support/masks.mjs';
 

@@ -1,6 +1,6 @@
 // Types of `veronese/element-class`: the element's class, to register under a name of your own.
 
-import type { ClipFrame, ClipProgress, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
+import type { ClipCorrection, ClipFrame, ClipProgress, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
 
 /** A frame: a URL, a file, a bitmap, or pixels. */
 export type FrameSource = string | URL | Blob | ImageBitmap | Pixels;
@@ -22,10 +22,12 @@ export interface VeroneseSegmenterEvents {
   progress: Progress | ClipProgress;
   /** Two frames are segmented. */
   result: Segmentation;
-  /** A frame of a clip is done. */
+  /** A frame of a clip is done, or has changed by a correction. */
   frame: ClipFrame;
-  /** All frames of a clip are done. */
+  /** All frames of a clip are done, or a correction has spread to them. */
   tracks: ClipTracks;
+  /** A correction is about to begin: it does not if the default of the event is prevented. */
+  'veronese-correction': ClipCorrection;
   /** Another frame of a clip is shown. */
   show: { index: number; width: number; height: number; labels: Uint8Array };
   /** A person has chosen an object, or none. */
@@ -39,6 +41,7 @@ export interface VeroneseSegmenterEventMap extends Omit<HTMLElementEventMap, key
   result: CustomEvent<Segmentation>;
   frame: CustomEvent<ClipFrame>;
   tracks: CustomEvent<ClipTracks>;
+  'veronese-correction': CustomEvent<ClipCorrection>;
   show: CustomEvent<{ index: number; width: number; height: number; labels: Uint8Array }>;
   select: CustomEvent<number | null>;
   error: CustomEvent<VeroneseError>;
@@ -51,7 +54,8 @@ export interface VeroneseSegmenterEventMap extends Omit<HTMLElementEventMap, key
  * `quality` (`fast` or `best`), `seed`, `grouped` (masks of two frames are groups of motions); `name`, `disabled` and `required`. The
  * element segments when it is connected and whenever an attribute changes, and stops when it is disconnected.
  *
- * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select` and `error`, each with a `detail`. They do not bubble.
+ * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select`, `error` and, before a correction, `veronese-correction`, each with a
+ * `detail`. They do not bubble.
  *
  * Keyboard: in the picture, Up and Down choose an object, Home and End the first and the last, Escape none; Left and Right step through
  * the frames of a clip. Below it a clip has a slider for its frames. A click chooses the object under the pointer.
@@ -93,6 +97,16 @@ export class VeroneseSegmenterElement extends HTMLElement {
    * previous one, which rejects with code `cancelled`. A stream that has ended cannot be segmented again.
    */
   segment(): Promise<Segmentation | ClipTracks>;
+  /**
+   * Says what is certain in a frame of a clip whose frames are all done and can be read again, as {@link ClipCorrection} does, and spreads it;
+   * resolves to the indices of the frames that change. The event `veronese-correction` comes first, and stops it if its default is
+   * prevented. Corrections are made one after another; the frame that is shown follows at once. When one has spread, the event `frame` comes
+   * for each frame that it has changed, then `tracks`. Where it fails or is stopped ({@link abort}), nothing has changed. To undo one, say
+   * what was said of the frame before; labels that are all 255 take everything back.
+   */
+  correct(frame: number, labels: Uint8Array, options?: { propagate?: ClipPropagation | undefined }): Promise<number[]>;
+  /** Objects of the clip that later corrections of others do not change, as the option `locked` of a clip; all others can be changed. */
+  lock(objects: readonly number[]): void;
   /** Stops at once; the last result is kept, and so are the frames of a clip that are done. */
   abort(): void;
   /** One number per pixel of what is shown: labels, or groups if the element is `grouped`; of a clip, objects. 255 is unlabelled. */

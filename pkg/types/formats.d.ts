@@ -368,3 +368,37 @@ export function encodeVeronese(labels: Uint8Array, width: number, height: number
 
 /** Reads a document of {@link encodeVeronese}. Throws `invalid-input` for anything else. */
 export function decodeVeronese(document: unknown): LabelFrame & { meta: FormatMeta };
+
+/** A file, or an archive (zip) of some. */
+export interface AnnotationFile {
+  /** Its path, divided by `/`. */
+  name: string;
+  bytes: Uint8Array;
+}
+
+/** The formats of {@link readAnnotations}: `cvat` is of images or of a video, `png` has the number of an object for each pixel. */
+export type AnnotationFormat = 'coco' | 'youtube-vis' | 'cvat' | 'labelme' | 'mots' | 'mots-png' | 'png' | 'supervisely' | 'veronese';
+
+/** One frame that was annotated. */
+export interface AnnotatedFrame {
+  width: number;
+  height: number;
+  /** Draws its labels, anew in each call: 0 is the ground, 255 where nothing is said. Throws what {@link readAnnotations} throws. */
+  read(): Uint8Array;
+}
+
+export interface Annotations {
+  format: AnnotationFormat;
+  /** By the names of their files, without folder and extension. */
+  frames: Map<string, AnnotatedFrame>;
+  /** Names of the objects, or of their classes, where there are some. */
+  names: Record<number, string>;
+}
+
+/**
+ * Reads masks from files of annotation tools, in the formats that the encoders write: corrections for `segmentClip`. The format is
+ * recognised by the content; pictures beside other annotations are ignored. `frames` are the names of a clip's frames in their order,
+ * without extension, for formats that count them (CVAT for video and MOTS); default `00000`, `00001` … Throws `invalid-input`, `unreadable-image` or
+ * `frame-size-mismatch` with the name of the file.
+ */
+export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[] }): Annotations;

@@ -218,16 +218,51 @@ export interface ClipProgress {
   stage: 'pairs' | 'corrections' | 'labels';
 }
 
+/** Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere. */
+export type ClipPropagation = 'both' | 'forward' | 'backward' | 'none';
+
 /** What a person says of one frame of a clip. */
 export interface ClipCorrection {
   /** Index of the frame, from 0. Each frame has one correction at most. */
   frame: number;
+  /** Default: `'both'`. */
+  propagate?: ClipPropagation | undefined;
   /**
    * What is certain of each pixel, row by row: 0 for the background, the number of an object, a number that no object has for a new object,
    * or 255 where nothing is said.
    */
   labels: Uint8Array;
 }
+
+/**
+ * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. A frame
+ * may have several of single objects; a later one covers an earlier one, and what is in none of them is background.
+ */
+export type ClipMask = {
+  /** Index of the frame, from 0. */
+  frame: number;
+  /** Default: `'both'`; the last one of a frame counts. */
+  propagate?: ClipPropagation | undefined;
+} & (
+  | {
+      /**
+       * One label per pixel, row by row: 0 for the background, 1 to 254 for an object, 255 where nothing is said. Or a picture, such as
+       * `ImageData`: if all its pixels are grey, the grey level is the label; otherwise all colours must be of the DAVIS palette
+       * ({@link davisPalette}), and their index is the label, the lower one where there are two. Fully transparent pixels say nothing.
+       */
+      labels: Uint8Array | Pixels;
+    }
+  | {
+      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. Read with `fflate`, a dependency of this package. */
+      png: Uint8Array;
+    }
+  | {
+      /** Number of the object, 1 to 254. */
+      id: number;
+      /** Its run lengths as COCO has them: `size` is height and width, `counts` are compressed or a list. */
+      rle: { size: readonly [height: number, width: number]; counts: string | readonly number[] };
+    }
+);
 
 /** What becomes of whole objects. Numbers that no object has change nothing; a list that begins with one merges nothing. */
 export interface ClipEdits {
@@ -237,8 +272,10 @@ export interface ClipEdits {
   delete?: readonly number[] | undefined;
   /** The same as `delete`. */
   background?: readonly number[] | undefined;
-  /** Names by number, for {@link ClipTrack.name}. */
+  /** Names by number, for {@link ClipTrack.name}. Objects with a name are locked. */
   names?: Readonly<Record<number, string>> | undefined;
+  /** As the option `locked`. */
+  locked?: readonly number[] | undefined;
 }
 
 /** Options of {@link segmentClip}; `motions` is the number of motions in each pair of consecutive frames. */
@@ -252,12 +289,24 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'before
    */
   lookAhead?: number | 'all' | undefined;
   /**
-   * What a person says of some frames, with the numbers of an earlier run. It holds there to the pixel, and spreads to the frames before
-   * and after until they contradict it; a frame follows the nearest correction.
+   * Masks of objects in some frames, with numbers of your own: they hold there to the pixel, and the objects keep their numbers and are
+   * followed through the clip. They take over what was found of them; what was found under one of their numbers gets the lowest free one.
+   * `corrections`, `edits` and `locked` have the numbers that result.
+   */
+  masks?: readonly ClipMask[] | undefined;
+  /**
+   * What a person says of some frames, with the numbers of an earlier run. It holds there to the pixel, and objects of which it speaks are
+   * followed from there through the clip. All that is said counts together, in any order. A correction of a frame that has a mask goes
+   * before it where it says anything.
    */
   corrections?: readonly ClipCorrection[] | undefined;
   /** What becomes of whole objects, after the corrections. */
   edits?: ClipEdits | undefined;
+  /**
+   * Numbers of objects that do not change when another one is corrected, as those that a mask or a correction speaks of. Where this or a
+   * name is given, it replaces what a `state` has locked.
+   */
+  locked?: readonly number[] | undefined;
   /**
    * What {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
    * `motions`, `quality`, `seed` and `lookAhead` are those of the state. A correction replaces an earlier one of its frame (one that says
@@ -265,8 +314,15 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'before
    * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
    */
   state?: Uint8Array | undefined;
-  /** Returns only the frames that `corrections` and `edits` change. Default: false. */
+  /** Returns only the frames that `masks`, `corrections` and `edits` change. Default: false. */
   changesOnly?: boolean | undefined;
+  /**
+   * Called with the index of each frame that masks, corrections and edits change, as soon as they do: the frame that is spoken of first, then
+   * those to which it spreads. A frame may change again before it is returned; the clip returns frames in order, afterwards. `segmented`
+   * gives the frame as it is now, until what the call returns is settled, and the clip waits for that. If it throws, the clip ends with that
+   * exception.
+   */
+  onChange?: ((frame: number, segmented: () => Promise<ClipFrame>) => void | Promise<void>) | undefined;
   /**
    * Called with what the pairs of each frame have told, nearly all the work, as bytes. Kept and handed back by `knownPairs` they let a run
    * that was interrupted continue with the same results.

@@ -10,8 +10,12 @@ import { must } from './run.mjs';
 /** In the project, and in the npm package. */
 export const NOTICES = ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'];
 
+/** In the package's scripts, but no dependency of theirs. */
+const BUNDLED = ['@rgrove/parse-xml'];
+
 /** What a licence's own text has, and nothing else: the first that a component offers is taken. */
 const LICENCES = {
+  ISC: /Permission to use, copy, modify, and\/or distribute/,
   MIT: /Permission is hereby granted, free of charge/,
   'BSD-3-Clause': /Redistribution and use in source and binary forms/,
   'Apache-2.0': /Apache License\s+Version 2\.0/,
@@ -76,6 +80,7 @@ function packages() {
       add(more);
     }
   };
+  add({ dependencies: Object.fromEntries(BUNDLED.map((name) => [name, ''])) });
   for (const place of ['pkg', 'www']) add(JSON.parse(projectText(`${place}/package.json`)));
   return [...found.values()].sort((a, b) => (a.name < b.name ? -1 : 1));
 }

@@ -409,6 +409,46 @@ impl SegmentedClip {
         objects.iter().for_each(|&object| self.locked[usize::from(object)] = true);
     }
 
+    /// Keeps numbers for objects of a person: what was found automatically under one of them gets the lowest number that is free. Where none
+    /// is left it becomes background and counts as [`dropped`](Self::dropped). Objects that a person has spoken of keep theirs. Returns the
+    /// indices of the frames that change.
+    pub fn reserve(&mut self, numbers: &[u8]) -> Vec<usize> {
+        let persons = self.persons();
+        let mut is_found = [false; 256];
+        for (label, _) in self.frames.iter().flat_map(|frame| frame.found.labels.each()) {
+            is_found[usize::from(label)] = true;
+        }
+        let objects = 1..NOTHING_SAID;
+        let is_taken = |k: &u8| is_found[usize::from(*k)] || persons.contains(k) || numbers.contains(k);
+        let mut free = objects.clone().filter(|k| !is_taken(k));
+        let mut now: Vec<u8> = (0..=NOTHING_SAID).collect();
+        for k in objects.clone().filter(|k| numbers.contains(k) && !persons.contains(k)) {
+            let old = usize::from(k);
+            let number = std::mem::replace(&mut self.numbers[old], k);
+            if is_found[old] {
+                now[old] = free.next().unwrap_or(0);
+                match now[old] {
+                    0 => self.dropped += 1,
+                    new => self.numbers[usize::from(new)] = number,
+                }
+                self.locked.swap(old, usize::from(now[old]));
+            }
+        }
+        // What was merged into one of them goes along.
+        for (_, number) in self.numbers.iter_mut().enumerate().filter(|(k, number)| usize::from(**number) != *k) {
+            *number = now[usize::from(*number)];
+        }
+        let mut changed = Vec::new();
+        for (index, frame) in self.frames.iter_mut().enumerate() {
+            let labels = frame.found.labels.map(|label| now[usize::from(label)]);
+            if labels != frame.found.labels {
+                frame.found.labels = labels;
+                changed.push(index);
+            }
+        }
+        changed
+    }
+
     /// Begins a correction: `labels` has for every pixel of a frame what is certain there, 0 for the background, the number of an object,
     /// a new number for a new object, or 255 where nothing is said. A correction replaces an earlier one of the same frame. Numbers are
     /// those before any [`renumber`](Self::renumber).

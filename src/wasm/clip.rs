@@ -16,7 +16,7 @@ use super::plain::{Record, list, numbers};
 use super::{Failure, entries, invalid};
 use crate::clip::{
     ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip,
-    StreamSegmenter,
+    Spread, StreamSegmenter,
 };
 use crate::{AffineMotion, Error, Frame};
 
@@ -135,19 +135,43 @@ pub fn frame_of_clip(clip: u32, index: usize, frame: &JsValue) -> Result<JsValue
     segmented(clip, &mut |clip, _| clip.frame(index, &frame).map(|frame| clip_frame(&frame)))
 }
 
-/// Begins a correction of a concluded clip: what is certain of every pixel of a frame, 255 for nothing. It first wants that frame.
-///
-/// # Errors
-/// A `VeroneseError` of code `invalid-option`.
-#[wasm_bindgen(js_name = correctClip)]
-pub fn correct_clip(clip: u32, index: usize, labels: &[u8]) -> Result<JsValue, JsValue> {
-    segmented(clip, &mut |clip, correction| {
-        *correction = Some(clip.correct(index, labels, crate::clip::Spread::Both)?);
+/// Keeps numbers of a concluded clip for objects of a person: those that were found get others. Returns the indices of the frames that
+/// change.
+#[wasm_bindgen(js_name = reserveClip)]
+pub fn reserve_clip(clip: u32, numbers: &[u8]) -> Result<JsValue, JsValue> {
+    segmented(clip, &mut |clip, _| Ok(indices(&clip.reserve(numbers))))
+}
+
+/// The objects of a concluded clip that no correction of others changes; all others can be changed from now on.
+#[wasm_bindgen(js_name = lockClip)]
+pub fn lock_clip(clip: u32, objects: &[u8]) -> Result<JsValue, JsValue> {
+    segmented(clip, &mut |clip, _| {
+        clip.lock(objects);
         Ok(JsValue::UNDEFINED)
     })
 }
 
-/// Takes the frame that the correction wants. Returns the index of the next one, or at the end the list of those that have changed.
+/// Begins a correction of a concluded clip: what is certain of every pixel of a frame, 255 for nothing. It first wants that frame. Where it
+/// spreads is `forward`, `backward`, both or neither.
+///
+/// # Errors
+/// A `VeroneseError` of code `invalid-option`.
+#[wasm_bindgen(js_name = correctClip)]
+pub fn correct_clip(clip: u32, index: usize, labels: &[u8], forward: bool, backward: bool) -> Result<JsValue, JsValue> {
+    let spread = match (forward, backward) {
+        (true, true) => Spread::Both,
+        (true, false) => Spread::Forward,
+        (false, true) => Spread::Backward,
+        (false, false) => Spread::None,
+    };
+    segmented(clip, &mut |clip, correction| {
+        *correction = Some(clip.correct(index, labels, spread)?);
+        Ok(JsValue::UNDEFINED)
+    })
+}
+
+/// Takes the frame that the correction wants. Returns `{ wanted, changed }`: the index of the next one, `undefined` at the end, and of the
+/// frames that have changed since the call before for the first time.
 ///
 /// # Errors
 /// As [`frame_of_clip`].
@@ -156,11 +180,11 @@ pub fn take_correction(clip: u32, frame: &JsValue) -> Result<JsValue, JsValue> {
     let frame = frame_from_pixels("the frame", frame)?;
     segmented(clip, &mut |clip, correction| {
         let Some(under_way) = correction else { return Ok(JsValue::NULL) };
+        let known = under_way.changed().len();
         under_way.take(clip, &frame)?;
-        Ok(match under_way.wanted() {
-            Some(index) => (index as f64).into(),
-            None => indices(under_way.changed()),
-        })
+        let wanted = under_way.wanted().map(|index| index as f64);
+        let changed = indices(&under_way.changed()[known..]);
+        Ok(Record::new().set("wanted", &wanted.into()).set("changed", &changed).into_value())
     })
 }
 

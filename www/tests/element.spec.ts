@@ -204,6 +204,91 @@ test('abort keeps what is done; other frames and removal cancel and close the so
   expect(found).toMatchObject({ stays: true, whole: 6 });
 });
 
+test('a clip takes corrections: the host may stop them, and undo them', async ({ page }) => {
+  await openEmpty(page);
+  const found = await page.evaluate(async () => {
+    const element = document.createElement('veronese-segmenter');
+    element.setAttribute('quality', 'fast');
+    document.body.append(element);
+    const done = (): Promise<void> => new Promise((resolve) => element.addEventListener('tracks', () => resolve(), { once: true }));
+    const codeOf = (promise: Promise<unknown>): Promise<string> => promise.then(() => '', ({ code }: { code: string }) => code);
+    const segmented = done();
+    element.frames = clip(6);
+    const early = await codeOf(element.correct(0, new Uint8Array(96 * 64)));
+    await segmented;
+    const frames: number[] = [];
+    element.addEventListener('frame', ({ detail }) => frames.push(detail.index));
+    const shown = (): string => String(element.labels());
+    const before = shown();
+    const mask = (label: number): Uint8Array =>
+      Uint8Array.from({ length: 96 * 64 }, (_, p) => {
+        const [x, y] = [p % 96, Math.floor(p / 96)];
+        return x >= 30 && x < 60 && y >= 20 && y < 44 ? label : 0;
+      });
+    const ids = (): number[] | undefined => element.tracks()?.objects.map(({ id }) => id);
+
+    // The frame that is shown is right before the correction has spread.
+    const labels = mask(9);
+    const spreading = element.correct(0, labels);
+    labels.fill(0);
+    let isSpread = false;
+    const spread = spreading.finally(() => (isSpread = true));
+    const first = await new Promise<[string, boolean]>((resolve) =>
+      element.addEventListener('show', () => resolve([shown(), isSpread || frames.length > 0]), { once: true }),
+    );
+    const changed = await spread;
+    const corrected = { changed, told: frames.splice(0), ids: ids(), exact: shown() === String(mask(9)), first: first[0] === String(mask(9)), late: first[1] };
+
+    // Stopped by a listener, by abort and by a mistake: nothing changes.
+    const after = shown();
+    const asked: unknown[] = [];
+    element.addEventListener('veronese-correction', (event) => (asked.push(event.detail.frame, event.detail.propagate), event.preventDefault()), { once: true });
+    const stopped = await element.correct(1, mask(5), { propagate: 'none' });
+    const aborted = codeOf(element.correct(0, mask(5)));
+    await new Promise((resolve) => element.addEventListener('progress', resolve, { once: true }));
+    element.abort();
+    const codes = [await aborted, await codeOf(element.correct(6, mask(5))), await codeOf(element.correct(0, new Uint8Array(5)))];
+    const unchanged = { asked, stopped, codes, told: frames.splice(0), ids: ids(), same: shown() === after, valid: element.checkValidity() };
+
+    // Undone by saying nothing; one after another; where they are to spread.
+    const nothing = new Uint8Array(96 * 64).fill(255);
+    await element.correct(0, nothing);
+    const back = { ids: ids(), same: shown() === before };
+    const [none, undone] = await Promise.all([element.correct(3, mask(7), { propagate: 'none' }), element.correct(3, nothing)]);
+    const alone = { none, undone };
+    element.lock([1]);
+    const pixels = (): string => String(element.mask(1));
+    const object = pixels();
+    await element.correct(0, mask(9).map((label, p) => (label > 0 && p % 96 < 45 ? label : 255)));
+    const locked = pixels() === object;
+    const again = done();
+    element.frames = clip(3).values();
+    await again;
+    const stream = await codeOf(element.correct(0, mask(9)));
+    element.remove();
+    return { early, corrected, unchanged, alone, back, locked, stream };
+  });
+  const all = [0, 1, 2, 3, 4, 5];
+  expect(found).toMatchObject({
+    early: 'invalid-input',
+    corrected: { told: all, ids: [9], exact: true, first: true, late: false },
+    unchanged: {
+      asked: [1, 'none'],
+      stopped: [],
+      codes: ['cancelled', 'invalid-option', 'invalid-option'],
+      told: [],
+      ids: [9],
+      same: true,
+      valid: true,
+    },
+    alone: { none: [3], undone: [3] },
+    back: { ids: [1], same: true },
+    locked: true,
+    stream: 'invalid-input',
+  });
+  expect(found.corrected.changed).toEqual(all);
+});
+
 test('the keyboard steps through frames and chooses objects', async ({ page }) => {
   await openEmpty(page);
   await page.evaluate(async () => {

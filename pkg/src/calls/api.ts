@@ -2,9 +2,6 @@
 
 import type {
   CallOptions,
-  Clip,
-  ClipOptions,
-  ClipSource,
   FitOptions,
   Milliseconds,
   MotionFit,
@@ -22,7 +19,6 @@ import { colourBytes, davisPalette } from '../common/palette.js';
 import type { Core, Glue } from '../module/core.js';
 import type { PointsGlue } from '../module/glue-points.js';
 import type { FramesGlue, OnStage } from '../module/glue.js';
-import { clipOf } from './clip.js';
 import type { CallTask, ClipTask, Corrected, Result } from './messages.js';
 import { taken } from './taking.js';
 import { fitCall, relabelCall, segmentCall, start } from './tasks.js';
@@ -54,9 +50,6 @@ export class Api {
 
   readonly fitMotions = (measurements: PointMeasurements, options?: FitOptions): Promise<MotionFit> =>
     start(() => fitCall(measurements, options), this.perform);
-
-  readonly segmentClip = (frames: ClipSource, options?: ClipOptions): Clip =>
-    clipOf(frames, options, async () => ({ perform: this.perform, release: () => undefined }));
 
   /** What was checked and taken, here or on the other side of a worker. */
   readonly perform = (task: CallTask, call: CallOptions): Promise<Result> => {
@@ -148,7 +141,8 @@ function stepOf(glue: FramesGlue, task: ClipTask): unknown {
   if (task.call === 'beginClip') return glue.beginClip(clip, task.whole, task.settings);
   if (task.call === 'pushClip') return glue.pushClip(clip, task.frame, task.known);
   if (task.call === 'restoreClip') return glue.restoreClip(clip, task.state, task.markUnknown);
-  if (task.call === 'correctClip') return glue.correctClip(clip, task.index, task.labels);
+  if (task.call === 'reserveClip' || task.call === 'lockClip') return glue[task.call](clip, task.objects);
+  if (task.call === 'correctClip') return glue.correctClip(clip, task.index, task.labels, task.forward, task.backward);
   if (task.call === 'takeCorrection') return glue.takeCorrection(clip, task.frame);
   if (task.call === 'renumberClip') return glue.renumberClip(clip, task.object, task.number);
   if (task.call === 'clipFrame') return glue.clipFrame(clip, task.index, task.frame);

@@ -30,7 +30,8 @@ export type CallTask =
 export type ClipStep =
   | { call: 'pushClip'; frame: Pixels; known?: Uint8Array }
   | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }
-  | { call: 'correctClip'; index: number; labels: Uint8Array }
+  | { call: 'reserveClip' | 'lockClip'; objects: Uint8Array }
+  | { call: 'correctClip'; index: number; labels: Uint8Array; forward: boolean; backward: boolean }
   | { call: 'takeCorrection'; frame: Pixels }
   | { call: 'renumberClip'; object: number; number: number }
   | { call: 'clipFrame'; index: number; frame: Pixels }
@@ -59,8 +60,14 @@ export interface ClipSummary {
   dropped: number;
 }
 
+/** What a step of a correction has changed, and the frame that it wants next. */
+export interface ClipChange {
+  wanted: number | undefined;
+  changed: number[];
+}
+
 /** The result of a task; null if its clip no longer exists. */
-export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | ClipSummary | Uint8Array | number | number[] | null | undefined;
+export type Result = Segmentation | Corrected | MotionFit | ClipFrame | ClipEnd | ClipSummary | ClipChange | Uint8Array | number[] | null | undefined;
 
 /** The compiled module that a task needs comes with the first such task of a worker. */
 export type Request<T = Task> = { task: T; module?: WebAssembly.Module };

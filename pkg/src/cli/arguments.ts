@@ -54,8 +54,11 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --motions auto|1..10   number of motions in each pair of frames (default: auto)
       --quality fast|best    speed or accuracy (default: best)
       --look-ahead N         let each frame wait for N others, 0 to 8 (default: the whole clip)
+      --masks DIR            masks of objects in some frames: DIR/NAME.png with numbers of your own, which the objects keep (0: background,
+                             255: nothing said), and DIR/edits.json
       --corrections DIR      what is certain in some frames: DIR/NAME.png with the labels of an earlier run, painted over (255: nothing said),
-                             and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"}}
+                             and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"},
+                             "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"
       --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
       --seed N               every seed gives the same masks; reports repeat it (default: 1)
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
@@ -81,6 +84,11 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --video NAME           file name of the video, for cvat-video and label-studio-video (default: the name of DIR)
       --frame-rate N         frames per second, for formats that need it (default: the clip's, else 25)
 
+  veronese convert SOURCE --to corrections --out DIR
+                                         read masks back, for --corrections of clip: NAME.png for each annotated frame, and edits.json; SOURCE
+                                         is a file, an archive or a folder: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks
+      --clip DIR             the clip's folder, which names the frames of CVAT for video and MOTS (default: 00000, 00001 ...)
+
   veronese points FILE.json [options]    fit motions to {"positions": [[x, y], ...], "derivatives": [[Ix, Iy, It], ...]}
       --motions auto|1..10   number of motions (default: auto)
       --method paper|best    the paper's own algorithm, or ours (default: best)
@@ -91,6 +99,9 @@ export const HELP = `veronese segments two video frames by motion: how many moti
 Prints one line of JSON on stdout; batch and video print one line per pair, clip one line per frame and a last one.
 Exit codes: 0 done, 1 the input could not be processed, 2 wrong usage, 130 cancelled.
 `;
+
+/** What `convert` reads masks back to. */
+const BACK = 'corrections';
 
 /** Settings of the two commands for sequences of frames. */
 export interface SequenceSettings extends PairSettings {
@@ -128,7 +139,8 @@ export type Command =
       list?: string;
       every: number;
       options: ClipSettings;
-      /** Folder of corrections. */
+      /** Folders of given masks and of corrections. */
+      masks?: string;
       corrections?: string;
       /** Of a video. */
       allowDamaged: boolean;
@@ -150,6 +162,14 @@ export type Command =
       out?: string;
     }
   | {
+      name: 'corrections';
+      /** A file or a folder of annotations. */
+      source: string;
+      /** Folder of a clip. */
+      clip?: string;
+      out: string;
+    }
+  | {
       name: 'points';
       file: string;
       options: { motions: 'auto' | number; method: 'paper' | 'best'; seed: number };
@@ -158,6 +178,7 @@ export type Command =
 export type PairCommand = Extract<Command, { name: 'pair' }>;
 export type PointsCommand = Extract<Command, { name: 'points' }>;
 export type ConvertCommand = Extract<Command, { name: 'convert' }>;
+export type CorrectionsCommand = Extract<Command, { name: 'corrections' }>;
 export type ClipCommand = Extract<Command, { name: 'clip' }>;
 export type SequenceCommand = Extract<Command, { name: 'batch' | 'video' }>;
 export type WorkCommand = PairCommand | PointsCommand;
@@ -196,7 +217,9 @@ const OPTIONS = {
   jobs: { type: 'string', short: 'j' },
   shard: { type: 'string', default: '1/1' },
   'look-ahead': { type: 'string' },
+  masks: { type: 'string' },
   corrections: { type: 'string' },
+  clip: { type: 'string' },
   'allow-damaged': { type: 'boolean', default: false },
 } as const;
 
@@ -207,8 +230,8 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: ['before', ...OF_PAIRS],
   batch: ['list', ...OF_SEQUENCES],
   video: ['allow-damaged', ...OF_SEQUENCES],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
-  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'out'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
+  convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out'],
   points: ['motions', 'method', 'seed'],
 };
 
@@ -234,6 +257,16 @@ export function parseCommand(args: string[]): Command {
   if (name === 'convert') {
     const [folder] = exactly(1, files, "'convert' takes one folder");
     if (values.to === undefined) throw usage("'convert' needs '--to FORMATS'");
+    const back = values.to.split(',').includes(BACK);
+    for (const token of tokens) {
+      if (token.kind !== 'option' || (back ? ['to', 'clip', 'out'].includes(token.name) : token.name !== 'clip')) continue;
+      throw usage(back ? `'--to ${BACK}' has no option '--${token.name}'` : `'--clip' needs '--to ${BACK}'`);
+    }
+    if (back) {
+      if (values.to !== BACK) throw usage(`'${BACK}' is read from annotations and cannot be with formats that are written`);
+      if (values.out === undefined) throw usage(`'--to ${BACK}' needs '--out DIR'`);
+      return { name: BACK, source: folder as string, out: values.out, ...(values.clip !== undefined && { clip: values.clip }) };
+    }
     return {
       name,
       folder: folder as string,
@@ -250,7 +283,7 @@ export function parseCommand(args: string[]): Command {
     };
   }
   if (name === 'clip') {
-    const { list, out, overlay, corrections, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
+    const { list, out, overlay, masks, corrections, 'look-ahead': lookAhead, 'allow-damaged': allowDamaged } = values;
     checkFrames(name, files, list);
     if (out === undefined) throw usage("'clip' needs '--out DIR'");
     const options: ClipSettings = {
@@ -259,7 +292,11 @@ export function parseCommand(args: string[]): Command {
       lookAhead: lookAhead === undefined ? 'all' : whole('look-ahead', lookAhead, 0, LONGEST_LOOK_AHEAD),
       markUnknown: values['mark-unknown'],
     };
-    const given = { ...(list !== undefined && { list }), ...(corrections !== undefined && { corrections }) };
+    const given = {
+      ...(list !== undefined && { list }),
+      ...(masks !== undefined && { masks }),
+      ...(corrections !== undefined && { corrections }),
+    };
     return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, out };
   }
   for (const name of ['overlay', 'confidence'] as const) {

@@ -1,47 +1,85 @@
-// A folder of corrections: NAME.png for some frames, edits.json for whole objects. Checked before anything is written.
+// Folders of what a person says: NAME.png for some frames, edits.json for whole objects. Checked before anything is written.
 
 import { readdirSync } from 'node:fs';
 import { extname, join } from 'node:path';
-import type { ClipCorrection, ClipEdits } from '../../types/index.js';
+import type { ClipCorrection, ClipEdits, ClipPropagation } from '../../types/index.js';
 import { editsOf } from '../calls/clip/edits.js';
+import { isPropagation, SPREADS } from '../calls/clip/said.js';
+import { isObject } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipFrames } from './clip-frames.js';
 import { readJson, readLabels } from './label-files.js';
 import { sha256 } from './files.js';
 
-const EDITS = 'edits.json';
+export const EDITS = 'edits.json';
 
-export interface Corrections {
-  corrections: ClipCorrection[];
+/** What a folder says. */
+interface Folder {
+  said: ClipCorrection[];
   edits: ClipEdits;
-  /** The files of both. */
+  /** By frame. */
+  propagate: Map<number, ClipPropagation>;
   paths: string[];
-  /** Hash of both. */
   sha256: string;
 }
 
-/** Undefined if nothing is corrected. Throws an error that names the file. */
-export async function readCorrections(folder: string, frames: ClipFrames): Promise<Corrections | undefined> {
+export interface Corrections {
+  masks: ClipCorrection[];
+  corrections: ClipCorrection[];
+  edits: ClipEdits;
+  /** The files of all. */
+  paths: string[];
+  /** Hash of the content of each folder that says something. */
+  hashes: { masks?: string; corrections?: string };
+}
+
+/** Undefined if nothing is said. Throws an error that names the file. */
+export async function readCorrections(folders: { masks?: string; corrections?: string }, frames: ClipFrames): Promise<Corrections | undefined> {
+  const masks = folders.masks === undefined ? undefined : await readFolder(folders.masks, frames);
+  const corrections = folders.corrections === undefined ? undefined : await readFolder(folders.corrections, frames);
+  const both = [masks, corrections].filter((folder) => folder !== undefined);
+  if (both.length === 0) return undefined;
+  const all = <T>(read: (edits: ClipEdits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
+  const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
+  const spread = (said: ClipCorrection[] = []) => said.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
+  return {
+    masks: spread(masks?.said),
+    corrections: spread(corrections?.said),
+    edits: {
+      merge: all(({ merge }) => merge),
+      delete: all((edits) => edits.delete),
+      background: all(({ background }) => background),
+      locked: all(({ locked }) => locked),
+      names: { ...masks?.edits.names, ...corrections?.edits.names },
+    },
+    paths: both.flatMap(({ paths }) => paths),
+    hashes: { ...(masks && { masks: masks.sha256 }), ...(corrections && { corrections: corrections.sha256 }) },
+  };
+}
+
+/** Undefined if it says nothing. */
+async function readFolder(folder: string, frames: ClipFrames): Promise<Folder | undefined> {
   const names = namesIn(folder).sort();
-  const corrections: ClipCorrection[] = [];
+  const said: ClipCorrection[] = [];
   for (const name of names.filter((name) => extname(name).toLowerCase() === '.png' && !name.startsWith('.'))) {
     const path = join(folder, name);
     const stem = name.slice(0, -extname(name).length);
     const frame = frames.files.findIndex((file) => file.stem === stem);
     if (frame < 0) throw new VeroneseError('invalid-input', `'${path}' has the name of no frame of the clip`);
-    if (corrections.some((other) => other.frame === frame)) throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
+    if (said.some((other) => other.frame === frame)) throw new VeroneseError('invalid-input', `'${path}' corrects a frame for the second time`);
     const { labels, width, height } = await readLabels(path, { foreign: true });
     const size = frames.size ?? (await frames.read(0));
     if (width !== size.width || height !== size.height) {
       throw new VeroneseError('frame-size-mismatch', `'${path}' has ${width}×${height} pixels, the frames have ${size.width}×${size.height}`);
     }
-    corrections.push({ frame, labels });
+    said.push({ frame, labels });
   }
-  corrections.sort((one, other) => one.frame - other.frame);
-  const edits = names.includes(EDITS) ? await readEdits(join(folder, EDITS)) : {};
-  if (corrections.length === 0 && Object.keys(edits).length === 0) return undefined;
-  const hashes = corrections.map(({ frame, labels }) => [frame, sha256(labels)]);
-  return { corrections, edits, paths: names.map((name) => join(folder, name)), sha256: sha256(JSON.stringify([hashes, edits])) };
+  said.sort((one, other) => one.frame - other.frame);
+  const edits = names.includes(EDITS) ? await readEdits(join(folder, EDITS), frames) : { edits: {}, propagate: new Map() };
+  if (said.length === 0 && Object.keys(edits.edits).length + edits.propagate.size === 0) return undefined;
+  const hashes = said.map(({ frame, labels }) => [frame, sha256(labels)]);
+  const content = [hashes, edits.edits, ...edits.propagate];
+  return { said, ...edits, paths: names.map((name) => join(folder, name)), sha256: sha256(JSON.stringify(content)) };
 }
 
 function namesIn(folder: string): string[] {
@@ -55,8 +93,18 @@ function namesIn(folder: string): string[] {
   }
 }
 
-async function readEdits(path: string): Promise<ClipEdits> {
-  const edits = await readJson(path);
-  editsOf(edits, (reason) => new VeroneseError('invalid-input', `'${path}': ${reason}`));
-  return edits as ClipEdits;
+/** Edits, and by frame where what is said of it spreads. Frames are called by their names. */
+async function readEdits(path: string, frames: ClipFrames): Promise<Pick<Folder, 'edits' | 'propagate'>> {
+  const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
+  const content = await readJson(path);
+  editsOf(content, wrong, ['propagate']);
+  const { propagate = {}, ...edits } = content as Record<string, unknown>;
+  if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to where what is said of them spreads");
+  const spreads = Object.entries(propagate).map(([name, way]): [number, ClipPropagation] => {
+    const frame = frames.files.findIndex(({ stem }) => stem === name);
+    if (frame < 0) throw wrong(`'propagate' has '${name}', the name of no frame of the clip`);
+    if (!isPropagation(way)) throw wrong(`'propagate' must have ${SPREADS} for '${name}'`);
+    return [frame, way];
+  });
+  return { edits, propagate: new Map(spreads) };
 }

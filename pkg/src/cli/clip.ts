@@ -25,10 +25,10 @@ export async function clip(command: ClipCommand): Promise<void> {
   const segmenter = new Segmenter();
   const progress = new Passes(frames.length);
   try {
-    const said = command.corrections === undefined ? undefined : await readCorrections(command.corrections, frames);
+    const said = await readCorrections(command, frames);
     const software = `veronese ${version}`;
     const ledger = await Ledger.open(out);
-    const store = new ClipStore(ledger, out, { ...options, every, ...(said && { corrections: said.sha256 }), overlay: wanted, software });
+    const store = new ClipStore(ledger, out, { ...options, every, ...said?.hashes, overlay: wanted, software });
     const record = await store.finished(frames.files);
     if (record) return await report(record);
 
@@ -70,9 +70,9 @@ async function corrected(
 ): Promise<Clip> {
   const state = (await known(segmenter, frames, kept)) ?? (await solved(segmenter, frames, options, kept, onProgress));
   const length = frames.failure?.index ?? frames.length;
-  const corrections = said?.corrections.filter(({ frame }) => frame < length);
+  const [masks, corrections] = [said?.masks, said?.corrections].map((list) => list?.filter(({ frame }) => frame < length));
   const { markUnknown } = options;
-  return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, corrections, edits: said?.edits, onProgress });
+  return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, masks, corrections, edits: said?.edits, onProgress });
 }
 
 /** The state that is kept, if this version can use it: asked for no changes, it is read and nothing else. */

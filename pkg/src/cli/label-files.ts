@@ -2,7 +2,7 @@
 
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { readInput } from './files.js';
-import { decodeIndices } from './indexed-png.js';
+import { decodeIndices } from '../formats/indexed-png.js';
 
 /** The labels in an indexed PNG, or in one of another program. Throws what reading and decoding throw, the file named. */
 export async function readLabels(path: string, options?: { foreign: boolean }): Promise<{ labels: Uint8Array; width: number; height: number }> {

@@ -41,6 +41,7 @@ async function answer(command: Exclude<Command, SequenceCommand | ClipCommand>, 
   if (command.name === 'help') return HELP;
   if (command.name === 'version') return `veronese ${version}\n`;
   if (command.name === 'convert') return (await import('./convert.js')).convert(command, output);
+  if (command.name === 'corrections') return (await import('./corrections-folder.js')).convertBack(command, output);
   const folder = command.name === 'pair' ? command.out : undefined;
   if (command.name === 'pair' && folder !== undefined) {
     checkFolder(folder);

@@ -3,6 +3,7 @@
 
 import type { ClipFrames, FrameSource } from '../../types/element-class.js';
 import type { Clip, ClipFrame, ClipProgress, ClipSource, ClipTracks, Pixels } from '../../types/index.js';
+import { type FoundFrame, Tracks } from '../calls/clip/tracks.js';
 import { fileOf, type Packed, packed, unpacked } from './masks.js';
 import { type Place, pixelsOf } from './sources.js';
 import { Video } from './video.js';
@@ -39,9 +40,12 @@ export class ElementClip {
   readonly timeline = part('input', 'timeline');
   readonly progress = part('progress', 'progress');
   readonly #done: Packed[] = [];
+  readonly #found: FoundFrame[] = [];
   readonly #listeners: Listeners;
   #source: Source | undefined;
   #clip: Clip | undefined;
+  /** What is known of a clip whose frames are all done and can be read again. */
+  #state: Uint8Array | undefined;
   #current = 0;
   /** Until the frame that is wanted is shown. */
   #showing: Promise<void> | undefined;
@@ -82,12 +86,39 @@ export class ElementClip {
   /** Yields each frame when it can be shown. `begin` begins to segment frames. */
   async *segment(begin: (frames: ClipSource) => Clip): AsyncGenerator<ClipFrame, void, undefined> {
     const { frames, size } = this.#source as Source;
-    this.#clip = begin(frames);
-    for await (const frame of this.#clip) {
-      this.#done.push(await packed(frame.labels, size.width, size.height));
+    const clip = begin(frames);
+    this.#clip = clip;
+    for await (const frame of clip) {
+      const { labels, ...found } = frame;
+      this.#done.push(await packed(labels, size.width, size.height));
+      this.#found.push(found);
       this.#mark();
       yield frame;
     }
+    this.#state = await clip.state();
+  }
+
+  /** Whether all frames are done and can be read again. */
+  get takesCorrections(): boolean {
+    return this.#state !== undefined;
+  }
+
+  /** Yields the frames that change, when all of them have: before, the clip stays as it was. `begin` begins to correct frames. */
+  async *correct(begin: (frames: ClipSource, state: Uint8Array) => Clip): AsyncGenerator<ClipFrame, void, undefined> {
+    const { frames, size } = this.#source as Source;
+    const clip = begin(frames, this.#state as Uint8Array);
+    const changed: [FoundFrame, Packed][] = [];
+    for await (const { labels, ...found } of clip) changed.push([found, await packed(labels, size.width, size.height)]);
+    this.#state = (await clip.state()) as Uint8Array;
+    for (const [found, done] of changed) [this.#found[found.index], this.#done[found.index]] = [found, done];
+    for (const [found, done] of changed) yield { ...found, labels: await unpacked(done) };
+  }
+
+  /** Shows the labels that a frame has while a correction spreads, if it is the frame that is wanted. */
+  async preview({ index, labels }: ClipFrame): Promise<void> {
+    const { length = this.length, picture } = this.#source as Source;
+    const shown = await picture(index);
+    if (index === this.#current && !this.#closed) this.#listeners.show({ index, of: length, picture: shown, labels });
   }
 
   report({ frame, of, stage }: ClipProgress): void {
@@ -97,7 +128,12 @@ export class ElementClip {
 
   /** The objects of the frames that are done. */
   tracks(): ClipTracks {
-    return this.#clip?.tracks() ?? { objects: [], background: [], dropped: 0 };
+    const told = this.#clip?.tracks() ?? { objects: [], background: [], dropped: 0 };
+    if (!this.takesCorrections) return told;
+    const tracks = new Tracks();
+    tracks.dropped = told.dropped;
+    for (const found of this.#found) tracks.add(found);
+    return tracks.value();
   }
 
   /** Index of the frame that is shown, or will be once it is read. */

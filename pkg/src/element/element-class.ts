@@ -2,7 +2,7 @@
 // file registers nothing.
 
 import type { ClipFrames, FrameSource, VeroneseSegmenterEvents } from '../../types/element-class.js';
-import type { ClipProgress, ClipTracks, Pixels, Progress, Segmentation } from '../../types/index.js';
+import type { ClipCorrection, ClipFrame, ClipProgress, ClipTracks, Pixels, Progress, Segmentation } from '../../types/index.js';
 import { groupLabels, maskOf } from '../calls/labels.js';
 import { UNLABELLED } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
@@ -30,6 +30,10 @@ export class VeroneseSegmenterElement extends Base {
   /** The labels of the clip's frame that is shown. */
   #shown: Uint8Array | undefined;
   #failure: VeroneseError | undefined;
+  /** Objects of the clip that no correction of others changes. */
+  #locked: readonly number[] | undefined;
+  /** Settled when the corrections so far have spread. */
+  #corrected: Promise<unknown> = Promise.resolve();
   #carries = 0;
   #planned = false;
 
@@ -99,6 +103,23 @@ export class VeroneseSegmenterElement extends Base {
    */
   segment(): Promise<Segmentation | ClipTracks> {
     return this.#run<Segmentation | ClipTracks>((signal) => (this.#isClip() ? this.#segmentClip(signal) : this.#segmentPair(signal)));
+  }
+
+  /**
+   * Corrects a frame of a clip whose frames are all done, when earlier corrections have spread; returns the indices of the frames that
+   * change.
+   */
+  async correct(frame: number, labels: Uint8Array, { propagate }: Pick<ClipCorrection, 'propagate'> = {}): Promise<number[]> {
+    const correction = { frame, labels: labels instanceof Uint8Array ? labels.slice() : labels, propagate };
+    if (!this.#tell('veronese-correction', correction, true)) return [];
+    const turn = this.#corrected.then(() => this.#correct(correction));
+    this.#corrected = turn.catch(() => undefined);
+    return turn;
+  }
+
+  /** No later correction of others changes these objects of the clip. */
+  lock(objects: readonly number[]): void {
+    this.#locked = [...objects];
   }
 
   /** Stops at once; the last result stays, as do the frames of a clip that are done. */
@@ -314,6 +335,42 @@ export class VeroneseSegmenterElement extends Base {
     }
   }
 
+  async #correct(correction: ClipCorrection): Promise<number[]> {
+    const clip = this.#clip;
+    if (!clip?.takesCorrections || this.#request !== undefined) {
+      throw new VeroneseError('invalid-input', 'corrections are for clips whose frames are all done and can be read again');
+    }
+    const request = new AbortController();
+    const { signal } = request;
+    this.#request = request;
+    this.#validate();
+    const changed: number[] = [];
+    try {
+      const options = { ...this.#options(signal), corrections: [correction], locked: this.#locked, changesOnly: true };
+      const onChange = async (index: number, segmented: () => Promise<ClipFrame>) => {
+        if (index === clip.current) await clip.preview(await segmented());
+      };
+      for await (const frame of clip.correct((frames, state) => this.#worker().segmentClip(frames, { ...options, state, onChange }))) {
+        changed.push(frame.index);
+        this.#tell('frame', frame);
+      }
+      clip.show(clip.current);
+      await clip.shown();
+      await this.#carry();
+      signal.throwIfAborted();
+      this.#end();
+      this.#tell('tracks', clip.tracks());
+      return changed;
+    } catch (thrown) {
+      if (this.#clip === clip) clip.show(clip.current);
+      if (this.#request === request) {
+        this.#request = undefined;
+        this.#validate();
+      }
+      throw signal.aborted ? new VeroneseError('cancelled', 'the call was cancelled') : veroneseError(thrown);
+    }
+  }
+
   /** Asked for before the frames are decoded: a new worker warms up meanwhile. */
   #worker(): InstanceType<typeof Segmenter> {
     if (this.#segmenter === undefined) {
@@ -340,6 +397,7 @@ export class VeroneseSegmenterElement extends Base {
   #leaveClip(): void {
     this.#clip?.close();
     this.#clip = undefined;
+    this.#locked = undefined;
     this.#shown = undefined;
   }
 
@@ -399,8 +457,9 @@ export class VeroneseSegmenterElement extends Base {
     this.#tell('error', error);
   }
 
-  #tell(type: keyof VeroneseSegmenterEvents, detail: unknown): void {
-    this.dispatchEvent(new CustomEvent(type, { detail }));
+  /** Returns whether it goes on: a listener can prevent what is `cancelable`. */
+  #tell(type: keyof VeroneseSegmenterEvents, detail: unknown, cancelable = false): boolean {
+    return this.dispatchEvent(new CustomEvent(type, { detail, cancelable }));
   }
 }
 

@@ -3,7 +3,9 @@
 // First in the file as well, where gzip packs it best: measured, 1 % of the whole.
 import { glue } from '../module/glue.js';
 import { glue as pointsGlue } from '../module/glue-points.js';
+import type { Clip, ClipOptions, ClipSource } from '../../types/index.js';
 import { Api } from '../calls/api.js';
+import { clipOf } from '../calls/clip.js';
 import { VeroneseError } from '../common/errors.js';
 import { Core } from '../module/core.js';
 import type { Read } from '../module/loading.js';
@@ -27,7 +29,11 @@ interface Entry extends Partial<Pick<Host, 'worker' | 'jobs'>> {
 export function packageFor({ read = (place) => fetch(place), frames, points, worker = noWorker, jobs = processors }: Entry) {
   const newCore = () => new Core(glue, read, frames);
   const newPoints = () => new Core(pointsGlue, read, points);
-  return { ...new Api(newCore(), newPoints()), ...segmenters({ newCore, newPoints, worker, jobs }) };
+  const api = new Api(newCore(), newPoints());
+  // Not one of `Api`: workers have that, and none of the code that takes frames to them.
+  const segmentClip = (frames: ClipSource, options?: ClipOptions): Clip =>
+    clipOf(frames, options, async () => ({ perform: api.perform, release: () => undefined }));
+  return { ...api, segmentClip, ...segmenters({ newCore, newPoints, worker, jobs }) };
 }
 
 function noWorker(): never {

@@ -1,4 +1,6 @@
-// Base64 without the host's help: Node and browsers have different calls for it.
+// Base64. Written without the host's help: Node and browsers have different calls for it.
+
+import { invalidInput } from '../common/checks.js';
 
 const DIGITS = 'ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/';
 
@@ -12,4 +14,13 @@ export function base64(bytes: Uint8Array): string {
     parts.push(digits.slice(0, 4 - padding) + '='.repeat(padding));
   }
   return parts.join('');
+}
+
+/** Throws `invalid-input`. */
+export function fromBase64(text: string): Uint8Array {
+  try {
+    return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
+  } catch {
+    throw invalidInput('a text is not base64');
+  }
 }

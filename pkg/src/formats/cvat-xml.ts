@@ -1,7 +1,7 @@
-// "CVAT for images 1.1": images with a <mask> or <polygon> per part.
+// "CVAT for images 1.1": images with a <mask> or <polygon> per part. Objects of a clip are groups, because images have no tracks.
 
 import type { ClipMeta, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
-import { type Frame, gathered, type Gathering } from './frames.js';
+import { type Frame, gathered, type Gathering, idOf } from './frames.js';
 import { checkedOptions, classNames, imageOf, type Mask, masksOf } from './input.js';
 import { Outlines, points, type Ring } from './outline.js';
 import { rowRuns } from './runs.js';
@@ -14,7 +14,7 @@ export function encodeCvatXml(
   meta: FormatMeta = {},
   options?: FormatOptions<'mask' | 'polygon'>,
 ): string {
-  const images = new Images(options, 'image');
+  const images = new Images(options, 'image', false);
   const masks = masksOf(labels, width, height, meta);
   images.add({ index: 0, image: imageOf(meta), width, height, masks });
   return images.finish();
@@ -25,27 +25,32 @@ export function encodeCvatImages<Frames extends LabelFrames>(
   meta?: ClipMeta,
   options?: FormatOptions<'mask' | 'polygon'>,
 ): Encoded<Frames, string> {
-  return gathered(frames, meta, () => new Images(options, 'clip'));
+  return gathered(frames, meta, ({ tracked }) => new Images(options, 'clip', tracked));
 }
 
 class Images implements Gathering<string> {
   readonly #shape: 'mask' | 'polygon';
   readonly #outlines: Outlines;
+  readonly #tracked: boolean;
   readonly #names = new Set<string>();
   readonly #elements: string[] = [];
   #count = 0;
 
-  constructor(options: unknown, kind: 'image' | 'clip') {
+  constructor(options: unknown, kind: 'image' | 'clip', tracked: boolean) {
     const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
     this.#shape = shape;
     this.#outlines = new Outlines(tolerance, kind);
+    this.#tracked = tracked;
   }
 
   add({ index, image, width, height, masks }: Frame): void {
     this.#count++;
     for (const name of classNames(masks)) this.#names.add(name);
     this.#elements.push(`  <image id="${index}" name="${escaped(image)}" width="${width}" height="${height}">`);
-    const elements = this.#shape === 'mask' ? masks.map(maskElement) : polygonElements(masks, this.#outlines.bridged({ masks, width, height }));
+    const elements =
+      this.#shape === 'mask'
+        ? masks.map((mask) => maskElement(mask, this.#tracked))
+        : polygonElements(masks, this.#outlines.bridged({ masks, width, height }), this.#tracked);
     for (const element of elements) this.#elements.push(element);
     this.#elements.push('  </image>');
   }
@@ -74,21 +79,27 @@ export function cvatHead(mode: 'annotation' | 'interpolation', size: number, nam
   ];
 }
 
-function maskElement({ name, left, top, width, height, pixels }: Mask): string {
+function maskElement({ label, name, left, top, width, height, pixels }: Mask, grouped: boolean): string {
   const box = `left="${left}" top="${top}" width="${width}" height="${height}"`;
-  return `    <mask label="${escaped(name)}" source="auto" occluded="0" rle="${rowRuns(pixels).join(', ')}" ${box} z_order="0"></mask>`;
+  const rest = `source="auto" occluded="0" rle="${rowRuns(pixels).join(', ')}" ${box} z_order="0"${groupOf(label, grouped)}`;
+  return `    <mask label="${escaped(name)}" ${rest}></mask>`;
 }
 
 /** One polygon for each connected part, all of one group. */
-function polygonElements(masks: readonly Mask[], rings: readonly Ring[][]): string[] {
+function polygonElements(masks: readonly Mask[], rings: readonly Ring[][], grouped: boolean): string[] {
   return masks.flatMap(({ label, name }, at) => {
     const parts = rings[at] as Ring[];
-    const group = parts.length > 1 ? ` group_id="${label + 1}"` : '';
+    const group = groupOf(label, grouped || parts.length > 1);
     return parts.map((ring) => {
       const rest = `source="auto" occluded="0" points="${cvatPoints(ring)}" z_order="0"${group}`;
       return `    <polygon label="${escaped(name)}" ${rest}></polygon>`;
     });
   });
+}
+
+/** 0 would be no group. */
+function groupOf(label: number, grouped: boolean): string {
+  return grouped ? ` group_id="${idOf(label)}"` : '';
 }
 
 /** The vertices of a polygon. */

@@ -1,4 +1,4 @@
-// The entry `veronese/formats`: masks in the forms that annotation tools read. Pure functions; nothing is loaded.
+// The entry `veronese/formats`: masks in the forms that annotation tools read and write. Pure functions; nothing is loaded.
 
 export { encodeCoco, encodeCocoImages } from './coco.js';
 export { encodeCocoRle, encodeCocoRleCounts } from './coco-rle.js';
@@ -13,6 +13,7 @@ export { encodeLabelStudio } from './label-studio.js';
 export { encodeLabelStudioVideo } from './label-studio-video.js';
 export { encodeMotChallenge } from './mot-challenge.js';
 export { encodeMots } from './mots.js';
+export { readAnnotations } from './reading/annotations.js';
 export { encodeSupervisely } from './supervisely.js';
 export { decodeVeronese, encodeVeronese } from './veronese-json.js';
 export { encodeWebAnnotation } from './web-annotation.js';

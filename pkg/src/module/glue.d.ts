@@ -28,7 +28,9 @@ export interface FramesGlue extends Glue {
   restoreClip(clip: number, state: Uint8Array, markUnknown: boolean): unknown;
   saveClip(clip: number): unknown;
   clipFrame(clip: number, index: number, frame: unknown): unknown;
-  correctClip(clip: number, index: number, labels: Uint8Array): unknown;
+  reserveClip(clip: number, numbers: Uint8Array): unknown;
+  lockClip(clip: number, objects: Uint8Array): unknown;
+  correctClip(clip: number, index: number, labels: Uint8Array, forward: boolean, backward: boolean): unknown;
   takeCorrection(clip: number, frame: unknown): unknown;
   renumberClip(clip: number, object: number, number: number): unknown;
   endClip(clip: number): void;

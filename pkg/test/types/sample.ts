@@ -4,6 +4,7 @@ import {
   type ClipCorrection,
   type ClipEdits,
   type ClipFrame,
+  type ClipMask,
   type ClipOptions,
   type ClipTracks,
   davisPalette,
@@ -25,7 +26,7 @@ import {
   version,
 } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
-import { type CocoVideoDocument, encodeCocoVideo, encodeCvatVideo, type LabelFrame } from 'veronese/formats';
+import { type CocoVideoDocument, encodeCocoRle, encodeCocoVideo, encodeCvatVideo, type LabelFrame } from 'veronese/formats';
 import { Segmenter as SlimSegmenter } from 'veronese/slim';
 
 export async function browser(canvas: HTMLCanvasElement, first: ImageData, second: ImageData): Promise<string> {
@@ -78,7 +79,17 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const first: IteratorResult<ClipFrame, void> = await whole.next();
   if (!first.done) console.log(first.value.index);
   const state: Uint8Array | undefined = await whole.state();
-  const corrections: ClipCorrection[] = [{ frame: 3, labels: new Uint8Array(64 * 48) }];
+  const corrections: ClipCorrection[] = [{ frame: 3, labels: new Uint8Array(64 * 48), propagate: 'forward' }];
+  const masks: ClipMask[] = [
+    { frame: 0, labels: new Uint8Array(64 * 48) },
+    { frame: 1, labels: new ImageData(64, 48), propagate: 'none' },
+    { frame: 1, png: new Uint8Array(99) },
+    { frame: 2, id: 7, rle: encodeCocoRle(new Uint8Array(64 * 48), 64, 48) },
+  ];
+  const onChange = async (index: number, segmented: () => Promise<ClipFrame>) => console.log(index, (await segmented()).labels.length);
+  void segmentClip({ length: 32, read }, { masks, locked: [2], onChange });
+  // @ts-expect-error run lengths are of an object with a number
+  void segmentClip({ length: 32, read }, { masks: [{ frame: 2, rle: { size: [48, 64], counts: '' } }] });
   const edits: ClipEdits = { merge: [[2, 5]], delete: [3], background: [4], names: { 1: 'car' } };
   const pairs = new Map<number, Uint8Array>();
   const kept: ClipOptions = { onPairs: (index, bytes) => void pairs.set(index, bytes), knownPairs: async (index) => pairs.get(index) };

@@ -1,4 +1,5 @@
-//! Every text that the code shows, in one place. Static text is in `index.html`.
+//! Every text that the code shows, in one place, but for those of masks that are imported, which are loaded with what reads them. Static
+//! text is in `index.html`.
 
 import type { MotionParts } from '../result/describe.js';
 import type { Kind } from '../result/masks.js';

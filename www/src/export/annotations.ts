@@ -1,11 +1,8 @@
 //! Formats of annotation tools. The encoders are the package's.
 
-import * as encoders from 'veronese/formats';
-import type { FormatMeta } from 'veronese/formats';
+import { encodeCoco, encodeCvatXml, encodeLabelMe, encodeLabelStudio, encodeYolo, type FormatMeta } from 'veronese/formats';
 import { type Export, type Format, TOLERANCE } from './format.js';
 import { zipped } from './zip.js';
-
-type Encoders = typeof encoders;
 
 /** The arguments of the encoders. */
 function argumentsFor({ labels, segmentation: { width, height }, masks, annotated, image }: Export): readonly [Uint8Array, number, number, FormatMeta] {
@@ -19,7 +16,7 @@ function entry(
   title: string,
   file: string,
   hint: string,
-  encode: (encoders: Encoders, exported: Export) => unknown,
+  encode: (exported: Export) => unknown,
 ): Format {
   const type = file.endsWith('.json') ? 'application/json' : file.endsWith('.xml') ? 'application/xml' : 'application/zip';
   return {
@@ -29,7 +26,7 @@ function entry(
     type,
     hint,
     async make(exported) {
-      const made = await encode(encoders, exported);
+      const made = await encode(exported);
       if (typeof made === 'string') return made;
       return made instanceof Uint8Array ? new Uint8Array(made) : `${JSON.stringify(made)}\n`;
     },
@@ -37,22 +34,22 @@ function entry(
 }
 
 export const ANNOTATIONS: readonly Format[] = [
-  entry('coco-rle', 'COCO, RLE', 'coco.json', 'Instances as compressed run lengths: exact, holes included.', ({ encodeCoco }, exported) =>
+  entry('coco-rle', 'COCO, RLE', 'coco.json', 'Instances as compressed run lengths: exact, holes included.', (exported) =>
     encodeCoco(...argumentsFor(exported), { shape: 'rle' }),
   ),
-  entry('coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances as polygons.', ({ encodeCoco }, exported) =>
+  entry('coco-polygons', 'COCO, polygons', 'coco-polygons.json', 'Instances as polygons.', (exported) =>
     encodeCoco(...argumentsFor(exported), { shape: 'polygon', tolerance: TOLERANCE }),
   ),
-  entry('cvat', 'CVAT', 'annotations.xml', 'CVAT for images 1.1, with masks.', ({ encodeCvatXml }, exported) =>
+  entry('cvat', 'CVAT', 'annotations.xml', 'CVAT for images 1.1, with masks.', (exported) =>
     encodeCvatXml(...argumentsFor(exported), { shape: 'mask' }),
   ),
-  entry('label-studio', 'Label Studio', 'label-studio.json', 'A task with brush labels as predictions, to import into a project.', ({ encodeLabelStudio }, exported) => [
+  entry('label-studio', 'Label Studio', 'label-studio.json', 'A task with brush labels as predictions, to import into a project.', (exported) => [
     encodeLabelStudio(...argumentsFor(exported), { shape: 'brush' }),
   ]),
-  entry('labelme', 'LabelMe', 'labelme.json', 'Mask shapes; save the file next to the image.', ({ encodeLabelMe }, exported) =>
+  entry('labelme', 'LabelMe', 'labelme.json', 'Mask shapes; save the file next to the image.', (exported) =>
     encodeLabelMe(...argumentsFor(exported), { shape: 'mask' }),
   ),
-  entry('yolo', 'YOLO segmentation', 'yolo.zip', 'A text file with one line per mask, and the class names.', ({ encodeYolo }, exported) => {
+  entry('yolo', 'YOLO segmentation', 'yolo.zip', 'A text file with one line per mask, and the class names.', (exported) => {
     const { text, names } = encodeYolo(...argumentsFor(exported), { tolerance: TOLERANCE });
     const list = names.map((name, k) => `  ${k}: ${JSON.stringify(name)}\n`).join('');
     const bytes = (content: string): Uint8Array => new TextEncoder().encode(content);

@@ -8,7 +8,7 @@ function isVideo(file: File): boolean {
 }
 
 /** The path of a file, from the folder that was given. */
-function pathOf({ webkitRelativePath, name }: File): string[] {
+export function pathOf({ webkitRelativePath, name }: File): string[] {
   return webkitRelativePath === '' ? [name] : webkitRelativePath.split('/');
 }
 

@@ -76,15 +76,28 @@ export class Session {
   /**
    * Opens files. A video or more than two images is a clip to choose frames from. Two images make a new pair, in the order of their
    * names. One image goes into `slot`; without a slot, it becomes the missing second frame or the first of a new pair. A project continues
-   * with its frames: those given with it, those on screen, or whenever they are opened.
+   * with its frames: those given with it, those on screen, or whenever they are opened. Masks are imported.
    */
-  openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+  async openFiles(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+    try {
+      const given = [...(await files)];
+      const isOfClip = slot === null && this.#store.get().tracked !== null;
+      const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
+      const importing = maybe ? await loaded(import('./importing.js')) : null;
+      if (importing === null || !(await importing.areMasks(given, this.#store.get()))) await this.#openGiven(given, slot);
+      else await importing.importMasks(given, this.#store, this);
+    } catch (error) {
+      this.say(sentenceOf(error), codeOf(error));
+    }
+  }
+
+  #openGiven(files: readonly File[], slot: Slot | null): Promise<void> {
     let opened: Project | null = null;
     let leftOut = '';
     let folder: Clip | null = null;
     return this.#openFrames(
       async () => {
-        const { project, video, images: all } = selectOpenable(await files);
+        const { project, video, images: all } = selectOpenable(files);
         if (project !== null) opened = await this.projects.open(project);
         if (video !== null) return this.#startOf(await openClip(video));
         const folders = foldersOf(all);

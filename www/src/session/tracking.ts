@@ -173,7 +173,7 @@ export class Tracking {
         if (tool === 'brush') said[p] = own;
         else if (labels[p] === own) said[p] = 0;
       });
-      void this.#correct({ frame, labels: said });
+      void this.correct({ painted: new Map([[frame, said]]) });
     };
   }
 
@@ -199,7 +199,7 @@ export class Tracking {
     if (number === null) return;
     const labels = new Uint8Array(masks.width * masks.height).fill(UNLABELLED);
     for (const p of pieces) labels[p] = number;
-    void this.#correct({ frame, labels });
+    void this.correct({ painted: new Map([[frame, labels]]) });
   }
 
   /** Selects the number of a new object, to be painted. Returns whether there can be one. */
@@ -266,11 +266,11 @@ export class Tracking {
   }
 
   #edit(edits: NonNullable<ClipOptions['edits']>): void {
-    if (this.#takesCorrections()) void this.#correct({ edits });
+    if (this.#takesCorrections()) void this.correct({ edits });
   }
 
   /** Shows what is said at once in its own frame, and carries it through the clip after what was said before. */
-  async #correct(said: Said): Promise<void> {
+  async correct(said: Said): Promise<void> {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     const under = this.#carrying;
@@ -300,8 +300,15 @@ export class Tracking {
       const objects = new Set([...(said.edits.merge ?? []), said.edits.delete ?? []].flat());
       for (const span of before.spans) if ([...span.numbers.values()].some((id) => objects.has(id))) after = await this.#applied(after, span, [], signal);
     } else {
-      const painted = paintedOver(before.painted.get(said.frame), said.labels, before.frames[said.frame]!.runs);
-      after = await this.#applied({ ...before, painted: new Map(before.painted).set(said.frame, painted) }, spanAt(before.spans, said.frame)!, [said.frame], signal);
+      const painted = new Map(before.painted);
+      for (const [index, labels] of said.painted) {
+        painted.set(index, paintedOver(before.painted.get(index), labels, before.frames[index]!.runs));
+      }
+      after = { ...before, painted };
+      for (const span of before.spans) {
+        const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
+        if (own.length > 0) after = await this.#applied(after, span, own, signal);
+      }
     }
     const now = this.#store.get().tracked;
     if (signal.aborted || now === null) return;

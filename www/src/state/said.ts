@@ -6,8 +6,8 @@ import { UNLABELLED } from '../result/masks.js';
 import { becameAfter } from './spans.js';
 import type { Version } from './tracked.js';
 
-/** What a person says: pixels of one frame, or what becomes of whole objects. */
-export type Said = { readonly frame: number; readonly labels: Uint8Array } | { readonly edits: NonNullable<ClipOptions['edits']> };
+/** What a person says: pixels of frames, by index, or what becomes of whole objects. */
+export type Said = { readonly painted: ReadonlyMap<number, Uint8Array> } | { readonly edits: NonNullable<ClipOptions['edits']> };
 
 /** What was painted before in a frame, with this over it. */
 export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
@@ -15,16 +15,20 @@ export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: 
   return packed(all, size.width, size.height);
 }
 
-/** The masks with what is painted in its own frame. The motions and certainties of that frame follow later, and the masks of whole objects. */
+/** The masks with what is painted in its own frames. The motions and certainties there follow later, and the masks of whole objects. */
 export function withSaid<V extends Version>(version: V, said: Said): V {
   if ('edits' in said) return { ...version, became: becameAfter(version.became, said.edits) };
-  const masks = version.frames[said.frame];
+  return [...said.painted].reduce((before, [index, labels]) => withPainted(before, index, labels), version);
+}
+
+function withPainted<V extends Version>(version: V, index: number, said: Uint8Array): V {
+  const masks = version.frames[index];
   if (!masks) return version;
   const { width, height } = masks.runs;
   const labels = unpacked(masks.runs);
   const painted = new Set<number>();
   for (let p = 0; p < labels.length; p++) {
-    const label = said.labels[p]!;
+    const label = said[p]!;
     if (label === UNLABELLED) continue;
     labels[p] = label;
     painted.add(label);
@@ -32,6 +36,6 @@ export function withSaid<V extends Version>(version: V, said: Said): V {
   const own = new Set(masks.objects.map(({ id }) => id));
   const added = [...painted].filter((id) => id !== 0 && !own.has(id));
   const objects = [...masks.objects, ...added.map((id) => ({ id, pixels: 0, bbox: [0, 0, width, height] as ClipFrame['objects'][number]['bbox'], confidence: 1, matrix: null }))];
-  const frames = version.frames.with(said.frame, { ...masks, runs: packed(labels, width, height), objects });
+  const frames = version.frames.with(index, { ...masks, runs: packed(labels, width, height), objects });
   return { ...version, frames, largest: Math.max(version.largest, ...added) };
 }

@@ -38,6 +38,18 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
     }
   });
 
+  const masks = find(root, '#import-masks', HTMLInputElement);
+  masks.addEventListener('change', () => {
+    const files = [...(masks.files ?? [])];
+    masks.value = ''; // so that choosing the same file again is a change
+    if (files.length === 0) return;
+    import('../session/importing.js').then(
+      ({ importMasks }) => importMasks(files, store, session),
+      () => session.say(strings.errors.notLoaded, 'not-loaded'),
+    );
+  });
+  masks.disabled = false;
+
   const render = ({ look, tracked }: State, before: State | null): void => {
     root.hidden = look.kind !== 'objects';
     if (tracked?.frames !== before?.tracked?.frames || look.hidden !== before?.look.hidden) told.textContent = '';

@@ -1,29 +1,20 @@
 // What is asked of a clip: its frames and options, checked.
 
 import type { ClipOptions, ClipProgress } from '../../../types/index.js';
-import {
-  checkAttached,
-  checkedBytes,
-  entriesOf,
-  invalidInput,
-  invalidOption,
-  isArrayOf,
-  isListOf,
-  isObject,
-  isWhole,
-} from '../../common/checks.js';
+import { checkedBytes, entriesOf, invalidInput, invalidOption, isListOf, isWhole } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import type { Settings } from '../messages.js';
 import { taken } from '../taking.js';
 import { parted } from '../tasks.js';
-import { type Edits, editsOf } from './edits.js';
+import { type Edits, editsOf, isObjectNumber, RANGE } from './edits.js';
+import { checkedCorrections, type Said } from './said.js';
 
 /** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
 
 const OF_ALL = ['motions', 'quality', 'markUnknown', 'seed', 'lookAhead'];
 /** Options that need frames which can be read again. */
-const OF_WHOLE = ['corrections', 'edits', 'state', 'changesOnly', 'knownPairs', 'onPairs'] as const;
+const OF_WHOLE = ['masks', 'corrections', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs'] as const;
 
 /** Frames that come once. */
 export interface Stream {
@@ -38,43 +29,45 @@ export interface Whole {
   length: number;
 }
 
-/** What is said of a frame. */
-interface Correction {
-  frame: number;
-  labels: Uint8Array;
-}
-
-export interface Asked extends Pick<ClipOptions, 'signal' | 'knownPairs' | 'onPairs'> {
+export interface Asked extends Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs'> {
   source: Stream | Whole;
   onProgress: ((progress: ClipProgress) => void) | undefined;
   transfer: boolean;
   settings: Settings;
-  corrections: Correction[];
+  /** Not looked at yet, but the call's own. */
+  masks: unknown;
+  corrections: Said[];
   edits: Edits;
+  /** Undefined if nobody says. */
+  locked: Uint8Array | undefined;
   state: Uint8Array | undefined;
   changesOnly: boolean;
 }
 
 export function asked(frames: unknown, options: unknown): Asked {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
-  const { corrections = [], edits = {}, state, changesOnly = false, knownPairs, onPairs, ...rest } = given;
+  const { masks, corrections = [], edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, ...rest } = given;
   const { call, transfer, settings } = parted(rest, OF_ALL);
-  const name = OF_WHOLE.find((name) => given[name] !== undefined && given[name] !== false);
+  const name = OF_WHOLE.find((name) => given[name] !== undefined && (name !== 'changesOnly' || changesOnly !== false));
   const source = sourceOf(frames, settings['lookAhead'], name);
   if (typeof changesOnly !== 'boolean') throw invalidOption('changesOnly', 'true or false', changesOnly);
-  for (const [name, listener] of Object.entries({ knownPairs, onPairs })) {
+  for (const [name, listener] of Object.entries({ onChange, knownPairs, onPairs })) {
     if (listener !== undefined && typeof listener !== 'function') throw invalidOption(name, 'a function', listener);
   }
+  const known = editsOf(edits, (reason) => new VeroneseError('invalid-option', `option 'edits': ${reason}`));
   return {
     source,
     signal: call.signal,
     onProgress: call.onProgress as Asked['onProgress'],
     transfer,
     settings: { lookAhead: 'read' in source ? 'all' : LOOK_AHEAD_OF_STREAMS, ...settings },
+    masks: structuredClone(masks),
     corrections: checkedCorrections(corrections, source.length ?? 0),
-    edits: editsOf(edits, (reason) => new VeroneseError('invalid-option', `option 'edits': ${reason}`)),
+    edits: known,
+    locked: lockedOf(locked, known),
     state: state === undefined ? undefined : (taken([checkedBytes('the state', state)], false)[0] as Uint8Array),
     changesOnly,
+    onChange: onChange as Asked['onChange'],
     knownPairs: knownPairs as Asked['knownPairs'],
     onPairs: onPairs as Asked['onPairs'],
   };
@@ -104,16 +97,10 @@ function* readEach(frames: { read: (index: number) => unknown }, length: number)
   for (let index = 0; index < length; index++) yield frames.read(index);
 }
 
-function checkedCorrections(corrections: unknown, length: number): Correction[] {
-  if (!isListOf(corrections, isObject)) throw invalidOption('corrections', 'a list of { frame, labels }', corrections);
-  const seen = new Set<unknown>();
-  return corrections.map(({ frame, labels }, at) => {
-    const wrong = (reason: string) => new VeroneseError('invalid-option', `option 'corrections': number ${at} ${reason}`);
-    if (!isWhole(frame, 0, length - 1)) throw wrong(`must have a frame from 0 to ${length - 1}`);
-    if (seen.has(frame)) throw wrong(`corrects frame ${frame}, as one before does`);
-    seen.add(frame);
-    if (!isArrayOf(labels, 'Uint8Array', 'Uint8ClampedArray')) throw wrong('must have labels, a Uint8Array');
-    checkAttached(`the labels of correction ${at}`, labels);
-    return { frame, labels: taken([labels], false)[0] as Uint8Array };
-  });
+/** Objects that are named, and what is merged into one of these, are locked as well. */
+function lockedOf(option: unknown, { numbers, names, locked }: Edits): Uint8Array | undefined {
+  if (option !== undefined && !isListOf(option, isObjectNumber)) throw invalidOption('locked', `a list of objects, ${RANGE}`, option);
+  const all = new Set([...(option ?? []), ...locked, ...names.keys()]);
+  for (const [object, number] of numbers) if (all.has(number)) all.add(object);
+  return option === undefined && all.size === 0 ? undefined : Uint8Array.from(all);
 }

@@ -1,4 +1,4 @@
-// Edits of whole objects: merged, made background, named.
+// Edits of whole objects: merged, made background, named, locked.
 
 import { isListOf, isObject, isWhole, UNLABELLED, unknownOf } from '../../common/checks.js';
 import type { VeroneseError } from '../../common/errors.js';
@@ -7,16 +7,17 @@ export interface Edits {
   /** Each object that gets another number, 0 for the background, and that number. */
   numbers: Map<number, number>;
   names: Map<number, string>;
+  locked: number[];
 }
 
-/** Checks edits; `wrong` makes the error. Numbers that no object has are no mistake: they change nothing. */
-export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError): Edits {
+/** Checks edits; `wrong` makes the error. Numbers that no object has are no mistake: they change nothing. `more` may be there as well. */
+export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError, more: readonly string[] = []): Edits {
   if (!isObject(value)) throw wrong('must be an object');
-  const unknown = unknownOf(value, ['merge', 'delete', 'background', 'names']);
+  const unknown = unknownOf(value, ['merge', 'delete', 'background', 'names', 'locked', ...more]);
   if (unknown !== undefined) throw wrong(`there is no edit ${unknown}`);
   // What an object inherits, such as the methods of a map, was not given.
   const given: Record<string, unknown> = { ...value };
-  const { merge = [], names = {} } = given;
+  const { merge = [], names = {}, locked = [] } = given;
   const isMerged = (list: unknown): list is number[] => isListOf(list, isObjectNumber) && list.length >= 2;
   if (!isListOf(merge, isMerged)) throw wrong(`'merge' must be lists of two or more objects, ${RANGE}`);
   const numbers = new Map<number, number>();
@@ -37,12 +38,13 @@ export function editsOf(value: unknown, wrong: (reason: string) => VeroneseError
     if (!/^[1-9]\d*$/.test(number) || !isObjectNumber(Number(number))) throw wrong(`'names' has a name for '${number}', and objects are ${RANGE}`);
     if (typeof name !== 'string' || name === '') throw wrong(`'names' must have a text for object ${number}`);
   }
-  return { numbers, names: new Map(named.map(([number, name]) => [Number(number), name as string])) };
+  if (!isListOf(locked, isObjectNumber)) throw wrong(`'locked' must be a list of objects, ${RANGE}`);
+  return { numbers, names: new Map(named.map(([number, name]) => [Number(number), name as string])), locked };
 }
 
-const RANGE = `numbers from 1 to ${UNLABELLED - 1}`;
+export const RANGE = `numbers from 1 to ${UNLABELLED - 1}`;
 
-function isObjectNumber(value: unknown): value is number {
+export function isObjectNumber(value: unknown): value is number {
   return isWhole(value, 1, UNLABELLED - 1);
 }
 

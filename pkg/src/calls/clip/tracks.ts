@@ -10,6 +10,9 @@ export interface Told {
   clip?: PlacedClip;
 }
 
+/** What there is in a frame. */
+export type FoundFrame = Omit<ClipFrame, 'labels'>;
+
 export class Tracks {
   readonly #objects = new Map<number, ClipTrack>();
   readonly #background: ClipTracks['background'] = [];
@@ -18,7 +21,7 @@ export class Tracks {
   names: ReadonlyMap<number, string> = new Map();
 
   /** Adds the next frame and returns it. */
-  add(frame: ClipFrame): ClipFrame {
+  add<Frame extends FoundFrame>(frame: Frame): Frame {
     const { index, objects, background } = frame;
     for (const { id, ...seen } of objects) {
       const track = this.#objects.get(id) ?? { id, first: index, last: index, frames: [] };

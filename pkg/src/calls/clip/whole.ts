@@ -1,18 +1,23 @@
 // A clip whose frames can be read again: once for their pairs, where corrections want them, and once for their labels.
 
 import type { ClipFrame } from '../../../types/index.js';
-import { checkedBytes } from '../../common/checks.js';
+import { checkedBytes, invalidInput } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
-import type { ClipSummary } from '../messages.js';
+import type { ClipChange, ClipSummary } from '../messages.js';
 import { taken } from '../taking.js';
 import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
+import { type Said, together } from './said.js';
 import type { Told } from './tracks.js';
 
+/** What is asked, with masks that are checked as well. */
+type Task = Omit<Asked, 'masks'> & { masks: readonly Said[] };
+
 /** If the source fails, the frames before come first. */
-export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: Asked, told: Told): AsyncGenerator<ClipFrame, void, undefined> {
-  const { transfer, onProgress } = task;
+export async function* segmentedTwice(clip: PlacedClip, frames: Frames, asked: Asked, told: Told): AsyncGenerator<ClipFrame, void, undefined> {
+  const { transfer, onProgress } = asked;
+  const task = { ...asked, masks: asked.masks === undefined ? [] : await masksOf(asked) };
   const { read, length: of } = task.source as Whole;
   const { length, dropped } = task.state ? await restored(clip, frames, task, task.state) : await solved(clip, frames, task);
   const { failure } = frames;
@@ -33,8 +38,13 @@ export async function* segmentedTwice(clip: PlacedClip, frames: Frames, task: As
   if (failed) throw failed.thrown;
 }
 
+async function masksOf({ masks, source }: Asked): Promise<Said[]> {
+  const { checkedMasks } = await import('./given-masks.js');
+  return checkedMasks(masks, source.length as number);
+}
+
 /** Solves the pairs that are not known. */
-async function solved(clip: PlacedClip, frames: Frames, task: Asked): Promise<ClipSummary> {
+async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<ClipSummary> {
   const { read, length: of } = task.source as Whole;
   let index = 0;
   for await (const frame of frames.each(reads(read, upTo(of)))) {
@@ -51,7 +61,7 @@ async function solved(clip: PlacedClip, frames: Frames, task: Asked): Promise<Cl
   return clip.step({ call: 'concludeClip' });
 }
 
-async function restored(clip: PlacedClip, frames: Frames, task: Asked, state: Uint8Array): Promise<ClipSummary> {
+async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uint8Array): Promise<ClipSummary> {
   const summary = await clip.step<ClipSummary>({ call: 'restoreClip', state, markUnknown: task.settings['markUnknown'] === true });
   const { length } = task.source;
   if (summary.length !== length) {
@@ -64,24 +74,40 @@ async function restored(clip: PlacedClip, frames: Frames, task: Asked, state: Ui
   return summary;
 }
 
-/** Applies corrections and edits; returns the indices of the frames that they change. */
-async function edited(clip: PlacedClip, frames: Frames, { source, corrections, edits, onProgress }: Asked, length: number): Promise<Set<number>> {
+/** Applies masks, corrections and edits; returns the indices of the frames that they change. */
+async function edited(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<Set<number>> {
+  const { source, masks, corrections, edits, locked, onProgress, onChange } = task;
+  const { read } = source as Whole;
   const changed = new Set<number>();
-  // The source may have failed before it came to a corrected frame.
-  for (const { frame: index, labels } of corrections.filter(({ frame }) => frame < length)) {
-    await clip.step({ call: 'correctClip', index, labels });
-    let next: number | number[] = index;
-    while (typeof next === 'number') {
-      onProgress?.({ frame: next, of: source.length, stage: 'corrections' });
-      const frame = await frames.one((source as Whole).read, next);
-      next = await clip.step<number | number[]>({ call: 'takeCorrection', frame });
+  const tell = async (indices: readonly number[]) => {
+    for (const index of indices) {
+      changed.add(index);
+      if (!onChange) continue;
+      let isCalled = true;
+      const segmented = async () => {
+        if (!isCalled) throw invalidInput(`frame ${index} was asked for when 'onChange' had ended`);
+        return clip.step<ClipFrame>({ call: 'clipFrame', index, frame: await frames.one(read, index) });
+      };
+      await clip.wait(onChange(index, segmented));
+      isCalled = false;
     }
-    for (const index of next) changed.add(index);
+  };
+  const numbers = new Set(masks.flatMap(({ labels }) => [...new Set(labels)]));
+  if (numbers.size > 0) await tell(await clip.step<number[]>({ call: 'reserveClip', objects: Uint8Array.from(numbers) }));
+  if (locked) await clip.step({ call: 'lockClip', objects: locked });
+  // The source may have failed before it came to a corrected frame.
+  for (const { frame: index, labels, propagate = 'both' } of together(masks, corrections).filter(({ frame }) => frame < length)) {
+    const [forward, backward] = ['forward', 'backward'].map((way) => propagate === 'both' || propagate === way) as [boolean, boolean];
+    await clip.step({ call: 'correctClip', index, labels, forward, backward });
+    for (let next: number | undefined = index; next !== undefined; ) {
+      onProgress?.({ frame: next, of: source.length, stage: 'corrections' });
+      const frame = await frames.one(read, next);
+      const { wanted, changed }: ClipChange = await clip.step<ClipChange>({ call: 'takeCorrection', frame });
+      await tell(changed);
+      next = wanted;
+    }
   }
-  for (const [object, number] of edits.numbers) {
-    const seen = await clip.step<number[]>({ call: 'renumberClip', object, number });
-    for (const index of seen) changed.add(index);
-  }
+  for (const [object, number] of edits.numbers) await tell(await clip.step<number[]>({ call: 'renumberClip', object, number }));
   return changed;
 }
 
@@ -90,10 +116,12 @@ function* upTo(length: number): Generator<number, void, undefined> {
   for (let index = 0; index < length; index++) yield index;
 }
 
-function checkSizes({ corrections }: Asked, { width, height }: { width: number; height: number }): void {
-  for (const { frame, labels } of corrections) {
-    if (labels.length === width * height) continue;
-    const sentence = `that of frame ${frame} has ${labels.length} labels, a frame has ${width}×${height} pixels`;
-    throw new VeroneseError('invalid-option', `option 'corrections': ${sentence}`);
+function checkSizes({ masks, corrections }: Task, size: { width: number; height: number }): void {
+  for (const [option, said] of Object.entries({ masks, corrections })) {
+    for (const { frame, labels, width = size.width } of said) {
+      if (labels.length === size.width * size.height && width === size.width) continue;
+      const sentence = `that of frame ${frame} has ${labels.length} labels, a frame has ${size.width}×${size.height} pixels`;
+      throw new VeroneseError('invalid-option', `option '${option}': ${sentence}`);
+    }
   }
 }

@@ -1,0 +1,59 @@
+// `veronese convert SOURCE --to corrections`: annotations, read back into a folder for `clip`.
+
+import { readdirSync, statSync } from 'node:fs';
+import { join } from 'node:path';
+import type { AnnotationFile } from '../../types/formats.js';
+import { VeroneseError } from '../common/errors.js';
+import { encodeDavis, readAnnotations } from '../formats/index.js';
+import type { CorrectionsCommand } from './arguments.js';
+import { EDITS } from './clip-corrections.js';
+import { TRACKS, tracksOf } from './clip-folder.js';
+import { checkFolder, readInput } from './files.js';
+import { readJson } from './label-files.js';
+import { Ledger } from './ledger.js';
+import type { Output } from './output.js';
+
+/** Of files in a folder those that can be annotations, or name their classes. */
+const POSSIBLE = /\.(json|xml|png|txt|zip)$/i;
+
+/** Writes NAME.png for each frame that is annotated, and edits.json; returns one line of JSON. */
+export async function convertBack({ source, clip, out }: CorrectionsCommand, output: Output): Promise<string> {
+  checkFolder(out);
+  await (await Ledger.open(out)).check([EDITS]);
+  const frames = clip === undefined ? undefined : await framesOf(clip);
+  const files: AnnotationFile[] = [];
+  for (const path of pathsOf(source)) files.push({ name: path.replaceAll('\\', '/'), bytes: await readInput(path) });
+  const { format, frames: annotated, names } = readAnnotations(files, frames && { frames });
+  const written = await output.stage(
+    out,
+    async (write) => {
+      for (const [name, frame] of annotated) await write(`${name}.png`, encodeDavis(frame.read(), frame.width, frame.height));
+      await write(EDITS, `${JSON.stringify({ names })}\n`);
+    },
+    (path) => /^[^/]+\.png$/.test(path),
+  );
+  return `${JSON.stringify({ version: 1, folder: out, format, files: written, frames: annotated.size })}\n`;
+}
+
+/** The names of a clip's frames. */
+async function framesOf(folder: string): Promise<string[]> {
+  const path = join(folder, TRACKS);
+  return tracksOf(await readJson(path), path).frames;
+}
+
+/** The file, or those in the folder and the folders in it, by name. */
+function pathsOf(source: string): string[] {
+  if (!statSync(source, { throwIfNoEntry: false })?.isDirectory()) return [source];
+  try {
+    return readdirSync(source, { withFileTypes: true })
+      .filter(({ name }) => !name.startsWith('.'))
+      .sort((a, b) => (a.name < b.name ? -1 : 1))
+      .flatMap((entry) => {
+        const path = join(source, entry.name);
+        if (entry.isDirectory()) return pathsOf(path);
+        return POSSIBLE.test(entry.name) ? [path] : [];
+      });
+  } catch (thrown) {
+    throw new VeroneseError('unreadable-file', `'${source}' cannot be read: ${(thrown as Error).message}`);
+  }
+}

@@ -1,0 +1,163 @@
+// The samples of a PNG, which its colours do not tell: in the DAVIS palette 7 and 128 are the same grey. Inflated by fflate and not by the
+// host: Node and browsers have different calls for it, and those of browsers are asynchronous.
+
+import { Unzlib } from 'fflate';
+import { LONGEST_SIDE } from '../common/checks.js';
+import { VeroneseError } from '../common/errors.js';
+
+const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
+const [GREY, INDEXED] = [0, 3];
+/** Compressed data are taken in pieces of this size, bytes: what is longer than the picture is noticed before it fills the memory. */
+const PIECE = 65_536;
+
+interface Size {
+  width: number;
+  height: number;
+}
+
+export interface Indices extends Size {
+  indices: Uint8Array;
+}
+
+/**
+ * Throws `unreadable-image`, or `invalid-input` where it is a picture of another kind. The sentences follow the file's name. `foreign`:
+ * other programs write labels with fewer bits or as grey levels too.
+ */
+export function decodeIndices(file: Uint8Array, { foreign = false } = {}): Indices {
+  const png = opened(file);
+  const { depth, type, width, height } = png;
+  const fits = foreign ? [1, 2, 4, 8].includes(depth) && [GREY, INDEXED].includes(type) : depth === 8 && type === INDEXED;
+  if (!fits || !png.isPlain) {
+    const kind = foreign ? 'an indexed or grey PNG of up to 8 bits without interlacing' : 'an 8-bit indexed PNG';
+    throw new VeroneseError('invalid-input', `has no labels: it is not ${kind}`);
+  }
+  const rows = rowsOf(png);
+  return { indices: depth === 8 ? rows : unpacked(rows, depth, width, height), width, height };
+}
+
+/** The size, and whether the samples have 16 bits. Throws as {@link decodeIndices} does. */
+export function headOf(file: Uint8Array): Size & { isDeep: boolean } {
+  const { width, height, depth } = opened(file);
+  return { width, height, isDeep: depth === 16 };
+}
+
+/** The levels of a grey PNG of 16 bits. Throws as {@link decodeIndices} does. */
+export function decodeDeep(file: Uint8Array): Size & { levels: Uint16Array } {
+  const png = opened(file);
+  if (png.depth !== 16 || png.type !== GREY || !png.isPlain) {
+    throw new VeroneseError('invalid-input', 'is not a grey PNG of 16 bits without interlacing');
+  }
+  const rows = rowsOf(png);
+  const levels = new Uint16Array(rows.length / 2);
+  for (let at = 0; at < levels.length; at++) levels[at] = ((rows[2 * at] as number) << 8) | (rows[2 * at + 1] as number);
+  return { levels, width: png.width, height: png.height };
+}
+
+interface Png extends Size {
+  depth: number;
+  type: number;
+  /** Deflated, filtered row by row, not interlaced. */
+  isPlain: boolean;
+  data: Uint8Array[];
+}
+
+function opened(file: Uint8Array): Png {
+  if (!SIGNATURE.every((byte, at) => file[at] === byte)) throw unreadable('is not a PNG');
+  let header: Uint8Array | undefined;
+  const data: Uint8Array[] = [];
+  for (const { name, content } of chunks(file)) {
+    if (name === 'IHDR') header = content;
+    if (name === 'IDAT') data.push(content);
+  }
+  if (header?.length !== 13) throw unreadable('has no header');
+  const view = viewOf(header);
+  const [width, height] = [view.getUint32(0), view.getUint32(4)];
+  if (width < 1 || height < 1 || Math.max(width, height) > LONGEST_SIDE) throw unreadable(`has ${width} × ${height} pixels`);
+  const isPlain = header.subarray(10).every((value) => value === 0);
+  return { width, height, depth: view.getUint8(8), type: view.getUint8(9), isPlain, data };
+}
+
+function viewOf({ buffer, byteOffset, byteLength }: Uint8Array): DataView {
+  return new DataView(buffer, byteOffset, byteLength);
+}
+
+/** Pixels of fewer than 8 bits, the first in the highest bits; every row begins with a byte of its own. */
+function unpacked(rows: Uint8Array, depth: number, width: number, height: number): Uint8Array {
+  const perByte = 8 / depth;
+  const row = rows.length / height;
+  return Uint8Array.from({ length: width * height }, (_, at) => {
+    const x = at % width;
+    const byte = rows[Math.floor(at / width) * row + Math.floor(x / perByte)] as number;
+    return (byte >> (8 - depth * ((x % perByte) + 1))) & ((1 << depth) - 1);
+  });
+}
+
+function unreadable(reason: string): VeroneseError {
+  return new VeroneseError('unreadable-image', reason);
+}
+
+/** Each is its length, its name, as many bytes, and a checksum; the data have one of their own. */
+function* chunks(file: Uint8Array): Generator<{ name: string; content: Uint8Array }, void, undefined> {
+  const view = viewOf(file);
+  for (let at = SIGNATURE.length; at + 12 <= file.length; ) {
+    const length = view.getUint32(at);
+    yield { name: String.fromCharCode(...file.subarray(at + 4, at + 8)), content: file.subarray(at + 8, at + 8 + length) };
+    at += 12 + length;
+  }
+}
+
+/** The bytes of all rows, as many as a pixel of this depth and width needs. */
+function rowsOf({ data, width, height, depth }: Png): Uint8Array {
+  const row = Math.ceil((width * depth) / 8);
+  const length = (row + 1) * height;
+  const rows = inflated(data, length);
+  if (rows.length !== length) throw unreadable('is damaged');
+  return unfiltered(rows, row, height, Math.ceil(depth / 8));
+}
+
+/** What a zlib stream in pieces holds. Throws `unreadable-image` where that is more than `most` bytes, or damaged. */
+export function inflated(data: readonly Uint8Array[], most: number): Uint8Array {
+  const whole = new Uint8Array(most);
+  let filled = 0;
+  const inflater = new Unzlib((piece) => {
+    whole.set(piece, filled);
+    filled += piece.length;
+  });
+  try {
+    for (const content of data) for (let at = 0; at < content.length; at += PIECE) inflater.push(content.subarray(at, at + PIECE));
+    inflater.push(new Uint8Array(), true);
+  } catch {
+    // Cut off, damaged, or longer than the place for it.
+    throw unreadable('is damaged');
+  }
+  return whole.subarray(0, filled);
+}
+
+/** Every row begins with the number of its filter, which adds what stands to the left, above or both; `step` bytes are a pixel. */
+function unfiltered(rows: Uint8Array, width: number, height: number, step: number): Uint8Array {
+  const indices = new Uint8Array(width * height);
+  for (let y = 0; y < height; y++) {
+    const from = y * (width + 1);
+    const filter = rows[from] as number;
+    if (filter > 4) throw unreadable('is damaged');
+    const start = y * width;
+    for (let x = 0; x < width; x++) {
+      const left = x >= step ? (indices[start + x - step] as number) : 0;
+      const above = y > 0 ? (indices[start + x - width] as number) : 0;
+      const corner = x >= step && y > 0 ? (indices[start + x - width - step] as number) : 0;
+      // Assignment keeps the lowest eight bits.
+      indices[start + x] = (rows[from + 1 + x] as number) + predicted(filter, left, above, corner);
+    }
+  }
+  return indices;
+}
+
+function predicted(filter: number, left: number, above: number, corner: number): number {
+  if (filter === 0) return 0;
+  if (filter === 1) return left;
+  if (filter === 2) return above;
+  if (filter === 3) return (left + above) >> 1;
+  const [toLeft, toAbove, toCorner] = [Math.abs(above - corner), Math.abs(left - corner), Math.abs(left + above - 2 * corner)];
+  if (toLeft <= toAbove && toLeft <= toCorner) return left;
+  return toAbove <= toCorner ? above : corner;
+}

@@ -1,0 +1,228 @@
+// Annotations of frames, read back as labels. The format is recognised by the content, and each frame is drawn when it is asked for.
+
+import { unzipSync } from 'fflate';
+import type { AnnotatedFrame, AnnotationFile, AnnotationFormat, Annotations } from '../../../types/formats.js';
+import {
+  checkedBytes,
+  entriesOf,
+  invalidInput,
+  invalidOption,
+  isListOf,
+  isObject,
+  keyOf,
+  reading,
+  UNLABELLED,
+} from '../../common/checks.js';
+import { VeroneseError } from '../../common/errors.js';
+import { decodeIndices, headOf } from '../indexed-png.js';
+import { checkPath } from '../names.js';
+import { decodeVeronese } from '../veronese-json.js';
+import { Canvas } from './canvas.js';
+import { readCoco, readYouTubeVis } from './coco.js';
+import { readCvat } from './cvat.js';
+import { type Context, decoding, isObjectNumber, known, naming, type ReadFrame, type Source, stemOf, wrong } from './frame.js';
+import { readLabelMe } from './labelme.js';
+import { isMots, readMots, readMotsPng } from './mots.js';
+import { readSupervisely } from './supervisely.js';
+
+/** Most bytes in an archive: more than the annotations of any clip. */
+const LARGEST = 2 ** 30;
+/** Byte order mark and white space, which may stand before text. */
+const BEFORE = [0xef, 0xbb, 0xbf, 0x20, 0x09, 0x0a, 0x0d];
+/** The class of what is no object. */
+const BACKGROUND = 'background';
+
+interface Recognised {
+  source: Source;
+  format: AnnotationFormat;
+  read: (context: Context) => ReadFrame[];
+}
+
+export function readAnnotations(files: Iterable<AnnotationFile>, options?: { frames?: readonly string[] }): Annotations {
+  const { names, sources } = reading(() => ({ names: namesOf(options), sources: [...files].map(checkedSource) }));
+  const all = sources.flatMap((source) => (isArchive(source.bytes) ? naming(source.name, () => unpacked(source)) : [source]));
+  // Images beside a document are the frames that it is about.
+  const documents = all.flatMap((source) => (isPng(source.bytes) ? [] : naming(source.name, () => recognised(source))));
+  const pictures = (): Recognised[] =>
+    all.filter(({ bytes }) => isPng(bytes)).map((source) => naming(source.name, () => recognisedPng(source)));
+  const [first, ...others] = documents.length > 0 ? documents : pictures();
+  if (!first) throw invalidInput(nothingIn(all));
+  const other = others.find(({ format }) => format !== first.format);
+  if (other) {
+    const sentence = `'${first.source.name}' is ${first.format} and '${other.source.name}' is ${other.format}: give one of them`;
+    throw invalidInput(sentence);
+  }
+  const context = contextOf(all, names);
+  const frames = [first, ...others].flatMap(({ source, read }) => naming(source.name, () => read(context)));
+  if (frames.length === 0) throw invalidInput(`'${first.source.name}' annotates no frame`);
+  return { format: first.format, ...numbered(frames) };
+}
+
+function namesOf(options: unknown): readonly string[] | undefined {
+  const { frames } = entriesOf(options, ['frames']);
+  const isName = (name: unknown): name is string => typeof name === 'string';
+  if (frames === undefined || isListOf(frames, isName)) return frames;
+  throw invalidOption('frames', 'a list of names', frames);
+}
+
+function checkedSource(file: unknown): Source {
+  if (!isObject(file) || typeof file['name'] !== 'string') throw invalidInput('a file must have a name, and its bytes');
+  return { name: file['name'], bytes: checkedBytes(`'${file['name']}'`, file['bytes']) };
+}
+
+function contextOf(all: readonly Source[], names: readonly string[] | undefined): Context {
+  const folderOf = (name: string) => name.slice(0, name.lastIndexOf('/') + 1);
+  return {
+    nameOf(index) {
+      const name = names ? names[index] : String(index).padStart(5, '0');
+      if (name === undefined) throw invalidInput(`it has a frame ${index}, and the clip has ${names?.length}`);
+      checkPath(name);
+      return name;
+    },
+    classesOf({ name }) {
+      const list = all.find((other) => other.name === `${folderOf(name)}labels.txt`);
+      return list ? textOf(list.bytes).split('\n').map((line) => line.trim()) : [];
+    },
+  };
+}
+
+/** What the file is, unless it is none of the formats. Throws `invalid-input` where it begins like one and is damaged. */
+function recognised(source: Source): Recognised[] {
+  const { name, bytes } = source;
+  const start = bytes.find((byte) => !BEFORE.includes(byte));
+  if (start === 0x3c) return [{ source, format: 'cvat', read: (context) => readCvat(textOf(bytes), name, context) }];
+  if (start === 0x7b || start === 0x5b) return recognisedJson(source);
+  const text = start !== undefined && start >= 0x30 && start <= 0x39 ? textOf(bytes) : '';
+  return isMots(text) ? [{ source, format: 'mots', read: (context) => readMots(source, text, context) }] : [];
+}
+
+function recognisedPng(source: Source): Recognised {
+  const { isDeep } = decoding('it', () => headOf(source.bytes));
+  return { source, format: isDeep ? 'mots-png' : 'png', read: (context) => [isDeep ? readMotsPng(source, context) : readPng(source)] };
+}
+
+function recognisedJson(source: Source): Recognised[] {
+  const { name, bytes } = source;
+  const text = textOf(bytes);
+  let document: unknown;
+  try {
+    document = JSON.parse(text);
+  } catch {
+    throw invalidInput('it is not JSON');
+  }
+  if (!isObject(document)) return [];
+  const json = document;
+  const found = (format: AnnotationFormat, read: () => ReadFrame[]): Recognised[] => [{ source, format, read }];
+  if ('annotations' in json && 'videos' in json && !('images' in json)) return found('youtube-vis', () => readYouTubeVis(json, name));
+  if ('annotations' in json && 'images' in json) return found('coco', () => readCoco(json, name));
+  if ('shapes' in json && 'imagePath' in json) return found('labelme', () => [readLabelMe(json, name)]);
+  if (json['format'] === 'veronese') return found('veronese', () => [readVeronese(json, name)]);
+  if ('size' in json && 'objects' in json) return found('supervisely', () => [readSupervisely(json, name)]);
+  return [];
+}
+
+function nothingIn(files: readonly Source[]): string {
+  const which = files.length === 1 ? `'${files[0]?.name}' is not an annotation` : 'no file is an annotation';
+  return `${which} in a format that is read: COCO, YouTube-VIS, CVAT, LabelMe, MOTS, Supervisely, PNG masks, veronese`;
+}
+
+/** The index is the number of the object, and 255 says nothing. */
+function readPng({ name, bytes }: Source): ReadFrame {
+  const { width, height } = decoding('it', () => headOf(bytes));
+  const indices = () => decoding('it', () => decodeIndices(bytes, { foreign: true })).indices;
+  return { name: stemOf(name), file: name, width, height, objects: [], draw: ({ labels }) => labels.set(indices()) };
+}
+
+function readVeronese(document: Record<string, unknown>, file: string): ReadFrame {
+  const { width, height, image, meta } = decodeVeronese(document);
+  const named = Object.entries(meta.names ?? {}).filter(([label]) => isObjectNumber(Number(label)));
+  const objects = named.map(([label, name]) => known(label, Number(label), name));
+  return { name: stemOf(image), file, width, height, objects, draw: ({ labels }) => labels.set(decodeVeronese(document).labels) };
+}
+
+/** Objects keep the numbers that they have in the file, where that is possible; the others get those that are free, in their order. */
+function numbered(read: readonly ReadFrame[]): Pick<Annotations, 'frames' | 'names'> {
+  const objects = new Map<string, { number?: number; name?: string }>();
+  for (const { objects: some } of read) {
+    for (const { key, number, name } of some) {
+      const { number: before = number, name: called = name } = objects.get(key) ?? {};
+      objects.set(key, { ...(before !== undefined && { number: before }), ...(called !== undefined && { name: called }) });
+    }
+  }
+  const labels = new Map<string, number>();
+  const taken = new Set<number>();
+  const give = (key: string, label: number) => void (labels.set(key, label), taken.add(label));
+  for (const [key, { number, name }] of objects) {
+    if (name === BACKGROUND) labels.set(key, 0);
+    else if (number !== undefined && !taken.has(number)) give(key, number);
+  }
+  let free = 1;
+  for (const key of objects.keys()) {
+    if (labels.has(key)) continue;
+    while (taken.has(free)) free++;
+    if (free >= UNLABELLED) throw wrong(read[0]?.file ?? '', `has more than ${UNLABELLED - 1} objects`);
+    give(key, free);
+  }
+  const names: Record<number, string> = {};
+  for (const [key, label] of labels) {
+    const name = objects.get(key)?.name;
+    if (label !== 0 && name) names[label] = name;
+  }
+  const frames = new Map<string, AnnotatedFrame>();
+  const files = new Map<string, string>();
+  for (const { name, file, width, height, draw } of read) {
+    const before = files.get(keyOf(name));
+    if (before === file) throw wrong(file, `has two frames called '${name}'`);
+    if (before !== undefined) throw wrong(file, `and '${before}' are both of the frame '${name}'`);
+    files.set(keyOf(name), file);
+    const [one = { width, height }] = frames.values();
+    if (one.width !== width || one.height !== height) {
+      const sentence = `'${file}': frame '${name}' has ${width}×${height} pixels, others have ${one.width}×${one.height}`;
+      throw new VeroneseError('frame-size-mismatch', sentence);
+    }
+    frames.set(name, {
+      width,
+      height,
+      read: () =>
+        naming(file, () => {
+          const canvas = new Canvas(width, height);
+          draw(canvas, (key) => labels.get(key) as number);
+          return canvas.labels;
+        }),
+    });
+  }
+  return { frames, names };
+}
+
+function isPng(bytes: Uint8Array): boolean {
+  return bytes[0] === 0x89 && bytes[1] === 0x50;
+}
+
+function isArchive(bytes: Uint8Array): boolean {
+  return bytes[0] === 0x50 && bytes[1] === 0x4b;
+}
+
+/** The files in an archive that may be annotations, called by their paths in it. */
+function unpacked({ bytes }: Source): Source[] {
+  let size = 0;
+  const filter = ({ name, originalSize }: { name: string; originalSize: number }) => {
+    if (!/\.(json|xml|png|txt)$/i.test(name) || /(^|\/)(\.|__MACOSX\/)/.test(name)) return false;
+    size += originalSize;
+    if (size > LARGEST) throw invalidInput('the archive is too large');
+    return true;
+  };
+  try {
+    return Object.entries(unzipSync(bytes, { filter })).map(([name, content]) => ({ name, bytes: content }));
+  } catch (thrown) {
+    if (size > LARGEST) throw thrown;
+    throw invalidInput('the archive is damaged');
+  }
+}
+
+function textOf(bytes: Uint8Array): string {
+  try {
+    return new TextDecoder('utf-8', { fatal: true }).decode(bytes);
+  } catch {
+    throw invalidInput('its text is not in UTF-8, or too long');
+  }
+}

@@ -1,0 +1,138 @@
+// What shapes are drawn on: the labels of one frame. A pixel is in a polygon if its centre is, by the even-odd rule; of shapes that overlap
+// the later one is on top. Files may come from anywhere, so the work is bounded: it is counted in borders crossed and pixels filled.
+
+import { invalidInput } from '../../common/checks.js';
+
+/** Shapes may cover the whole frame so many times over, and small frames more often. Real ones overlap a few times in some places. */
+const LAYERS = 16;
+const LEAST = 1_000_000;
+/** Farther away than this, pixels, no vertex is meant. */
+const FARTHEST = 1e6;
+
+/** A rectangle of whole pixels inside the frame. */
+export interface Box {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
+export class Canvas {
+  readonly width: number;
+  readonly height: number;
+  /** Row by row; what is not drawn is ground. */
+  readonly labels: Uint8Array;
+  #left: number;
+
+  constructor(width: number, height: number) {
+    this.width = width;
+    this.height = height;
+    this.labels = new Uint8Array(width * height);
+    this.#left = Math.max(LEAST, LAYERS * (width + 1) * (height + 1));
+  }
+
+  /** x, y of one vertex after another; (0, 0) is the corner of the first pixel. Throws `invalid-input`, as all methods do. */
+  polygon(ring: readonly unknown[], label: number): void {
+    if (ring.length < 6 || ring.length % 2 !== 0) throw invalidInput('a polygon must have three vertices or more, x and y each');
+    if (!ring.every(isCoordinate)) throw invalidInput(`a polygon has a vertex that is no pair of numbers up to ±${FARTHEST}`);
+    const spans = crossings(ring, this.width, this.height, (count) => this.#spend(count));
+    for (let y = 0; y < this.height; y++) {
+      const [from, until] = [spans.from[y] as number, spans.from[y + 1] as number];
+      const row = spans.at.subarray(from, until).sort();
+      const start = y * this.width;
+      for (let k = 0; k + 1 < row.length; k += 2) this.#fill(start + (row[k] as number), start + (row[k + 1] as number), label);
+    }
+  }
+
+  /** Runs column by column over the whole frame, alternating 0s and 1s. */
+  columns(counts: readonly unknown[], label: number): void {
+    this.#runs(counts, this.labels.length, (at, end) => {
+      for (; at < end; at++) this.labels[(at % this.height) * this.width + Math.floor(at / this.height)] = label;
+    });
+  }
+
+  /** Runs row by row over a box. */
+  rows(counts: readonly unknown[], box: Box, label: number): void {
+    this.#runs(counts, box.width * box.height, (at, end) => {
+      for (; at < end; at++) this.labels[(box.top + Math.floor(at / box.width)) * this.width + box.left + (at % box.width)] = label;
+    });
+  }
+
+  /** The pixels of a box that are not 0. */
+  stamp(pixels: Uint8Array, box: Box, label: number): void {
+    this.#spend(pixels.length);
+    for (let y = 0, at = 0; y < box.height; y++) {
+      const start = (box.top + y) * this.width + box.left;
+      for (let x = 0; x < box.width; x++) if (pixels[at++]) this.labels[start + x] = label;
+    }
+  }
+
+  #runs(counts: readonly unknown[], size: number, draw: (at: number, end: number) => void): void {
+    if (!counts.every(isCount)) throw invalidInput('run lengths must be whole numbers from 0');
+    const sum = counts.reduce((sum, count) => sum + count, 0);
+    if (sum !== size) throw invalidInput(`run lengths must be of ${size} pixels, not ${sum}`);
+    for (let k = 0, at = 0; k < counts.length; k++) {
+      const end = at + (counts[k] as number);
+      if (k % 2 === 1) {
+        this.#spend(end - at);
+        draw(at, end);
+      }
+      at = end;
+    }
+  }
+
+  #fill(from: number, until: number, label: number): void {
+    this.#spend(until - from);
+    this.labels.fill(label, from, until);
+  }
+
+  #spend(count: number): void {
+    this.#left -= count;
+    if (this.#left < 0) throw invalidInput('its shapes overlap too often to be masks of objects');
+  }
+}
+
+function isCount(value: unknown): value is number {
+  return Number.isSafeInteger(value) && (value as number) >= 0;
+}
+
+function isCoordinate(value: unknown): value is number {
+  return typeof value === 'number' && Math.abs(value) <= FARTHEST;
+}
+
+/** The first pixels behind where a ring crosses the rows of pixel centres: those of row y are `from[y]` to `from[y + 1]`, exclusive. */
+interface Crossings {
+  from: Uint32Array;
+  at: Uint16Array;
+}
+
+function crossings(ring: readonly number[], width: number, height: number, spend: (count: number) => void): Crossings {
+  const from = new Uint32Array(height + 1);
+  eachEdge(ring, height, (first, last) => {
+    spend(Math.max(0, last - first + 1));
+    for (let y = first; y <= last; y++) (from[y + 1] as number)++;
+  });
+  for (let y = 0; y < height; y++) (from[y + 1] as number) += from[y] as number;
+  const next = from.slice();
+  const at = new Uint16Array(from[height] as number);
+  eachEdge(ring, height, (first, last, x, y, slope) => {
+    for (let row = first; row <= last; row++) {
+      const crossing = x + (row + 0.5 - y) * slope;
+      at[(next[row] as number)++] = Math.min(Math.max(Math.ceil(crossing - 0.5), 0), width);
+    }
+  });
+  return { from, at };
+}
+
+/** The first and the last row whose centres an edge passes, and the edge from its upper end: the same line whichever way it is taken. */
+type TakeEdge = (first: number, last: number, x: number, y: number, slope: number) => void;
+
+function eachEdge(ring: readonly number[], height: number, take: TakeEdge): void {
+  for (let at = 0; at < ring.length; at += 2) {
+    const next = (at + 2) % ring.length;
+    const [upper, lower] = (ring[at + 1] as number) <= (ring[next + 1] as number) ? [at, next] : [next, at];
+    const [x, y, endX, endY] = [ring[upper], ring[upper + 1], ring[lower], ring[lower + 1]] as [number, number, number, number];
+    const [first, last] = [Math.max(0, Math.ceil(y - 0.5)), Math.min(height - 1, Math.ceil(endY - 0.5) - 1)];
+    if (first <= last) take(first, last, x, y, (endX - x) / (endY - y));
+  }
+}

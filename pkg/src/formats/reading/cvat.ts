@@ -1,0 +1,116 @@
+// CVAT 1.1: images with their shapes, or a video's tracks, whose shapes have the number of a frame and no image.
+
+import { parseXml, XmlElement } from '@rgrove/parse-xml';
+import { invalidInput } from '../../common/checks.js';
+import type { Canvas } from './canvas.js';
+import {
+  checkBox,
+  checkSize,
+  type Context,
+  frameOfShapes,
+  isObjectNumber,
+  known,
+  type ReadFrame,
+  type Shape,
+  stemOf,
+  Unnumbered,
+} from './frame.js';
+
+type Draw = (canvas: Canvas, label: number) => void;
+
+/** Elements that say nothing of pixels. */
+const REMARKS = ['attribute', 'tag'];
+
+/** Images, and frames of a video, without shapes are left out: files also list those at which nobody has looked. */
+export function readCvat(text: string, file: string, context: Context): ReadFrame[] {
+  const root = parsed(text);
+  if (root.name !== 'annotations') throw invalidInput('it is no annotation of CVAT: its element is not <annotations>');
+  const tracks = childrenOf(root, 'track');
+  const images = childrenOf(root, 'image').flatMap((image) => framesOf(image, file));
+  return tracks.length > 0 ? [...images, ...videoOf(root, tracks, file, context)] : images;
+}
+
+function parsed(text: string): XmlElement {
+  let root: XmlElement | null;
+  try {
+    ({ root } = parseXml(text));
+  } catch (thrown) {
+    if (thrown instanceof RangeError) throw thrown;
+    throw invalidInput(`it is not XML: ${(thrown as Error).message.split('\n')[0]}`);
+  }
+  if (!root) throw invalidInput('it has no element');
+  return root;
+}
+
+function childrenOf({ children }: XmlElement, name?: string): XmlElement[] {
+  return children.filter((child): child is XmlElement => child instanceof XmlElement && (name === undefined || child.name === name));
+}
+
+interface Layered extends Shape {
+  z: number;
+}
+
+function framesOf(image: XmlElement, file: string): ReadFrame[] {
+  const unnumbered = new Unnumbered();
+  const identityOf = ({ attributes }: XmlElement, track: string | undefined): [key: string, id?: string] => {
+    const { label, group_id: group = '0' } = attributes;
+    if (track !== undefined) return [`track ${track}`, track];
+    return group === '0' ? [unnumbered.keyOf(label)] : [`group ${group} ${label}`, group];
+  };
+  const shapes = childrenOf(image).flatMap((element): Layered[] => {
+    if (REMARKS.includes(element.name)) return [];
+    const track = childrenOf(element, 'attribute').find(({ attributes }) => attributes['name'] === 'track_id');
+    return [shapeOf(element, element.attributes['label'], ...identityOf(element, track?.text))];
+  });
+  if (shapes.length === 0) return [];
+  const { name, width, height } = image.attributes;
+  return [frameOf({ name: stemOf(name), file, ...checkSize(number(width), number(height), 'an image') }, shapes)];
+}
+
+function videoOf(root: XmlElement, tracks: readonly XmlElement[], file: string, { nameOf }: Context): ReadFrame[] {
+  const [extent] = childrenOf(root, 'meta').flatMap((meta) => descendantsOf(meta, 'original_size'));
+  const [width, height] = ['width', 'height'].map((side) => number(extent && childrenOf(extent, side)[0]?.text));
+  const size = checkSize(width, height, 'the video, in <original_size>,');
+  const frames = new Map<number, Layered[]>();
+  for (const track of tracks) {
+    const { id, label } = track.attributes;
+    for (const element of childrenOf(track)) {
+      if (REMARKS.includes(element.name) || element.attributes['outside'] === '1') continue;
+      const index = number(element.attributes['frame']);
+      if (!Number.isInteger(index) || index < 0) throw invalidInput('the frame of a shape must be a whole number from 0');
+      const shapes = frames.get(index) ?? [];
+      frames.set(index, shapes);
+      shapes.push(shapeOf(element, label, `track ${id}`, id));
+    }
+  }
+  return [...frames].sort(([a], [b]) => a - b).map(([index, shapes]) => frameOf({ name: nameOf(index), file, ...size }, shapes));
+}
+
+/** Of a task, a job, or the tasks of a project. */
+function descendantsOf(element: XmlElement, name: string): XmlElement[] {
+  return childrenOf(element).flatMap((child) => (child.name === name ? [child] : descendantsOf(child, name)));
+}
+
+function frameOf(frame: Omit<ReadFrame, 'objects' | 'draw'>, shapes: readonly Layered[]): ReadFrame {
+  return frameOfShapes(frame, [...shapes].sort((a, b) => a.z - b.z));
+}
+
+function shapeOf(element: XmlElement, name: string | undefined, key: string, id?: string): Layered {
+  const given = number(id);
+  const object = known(key, isObjectNumber(given) ? given : undefined, name);
+  return { ...object, z: number(element.attributes['z_order']) || 0, draw: drawing(element) };
+}
+
+function drawing({ name, attributes }: XmlElement): Draw {
+  const { points = '', rle = '', left, top, width, height } = attributes;
+  if (name === 'polygon') return (canvas, label) => canvas.polygon(points.split(/[,;]/).map(number), label);
+  if (name === 'mask') {
+    return (canvas, label) => canvas.rows(rle.split(',').map(number), checkBox([left, top, width, height].map(number), canvas), label);
+  }
+  throw invalidInput(`it has a <${name}>, and only masks and polygons say which pixels an object has`);
+}
+
+/** Not a number where there is none; `Number` takes empty text for 0. */
+function number(text: string | undefined): number {
+  return text?.trim() ? Number(text) : NaN;
+}

@@ -1,0 +1,82 @@
+// MOTS, as lines of text and as images of 16 bits. Numbers are 1000 × class + instance; instance 0 is a region to ignore.
+
+import { invalidInput, isWhole, UNLABELLED } from '../../common/checks.js';
+import { decodeDeep } from '../indexed-png.js';
+import { decompressed } from './coco-rle.js';
+import {
+  checkSize,
+  type Context,
+  decoding,
+  frameOfShapes,
+  isObjectNumber,
+  type Known,
+  known,
+  type ReadFrame,
+  type Shape,
+  type Source,
+  stemOf,
+} from './frame.js';
+
+const CLASS = 1000;
+const LINE = /^(\d+) (\d+) (\d+) (\d+) (\d+) (\S+)$/;
+
+/** Whether text begins as MOTS does. */
+export function isMots(text: string): boolean {
+  return LINE.test(/^.*/.exec(text)?.[0].trimEnd() ?? '');
+}
+
+/** Frames without objects are left out: nothing tells whether anybody has looked at them. */
+export function readMots(source: Source, text: string, { nameOf, classesOf }: Context): ReadFrame[] {
+  const names = classesOf(source);
+  const frames = new Map<number, { width: number; height: number; shapes: Shape[] }>();
+  for (const [k, line] of text.split('\n').entries()) {
+    if (line.trim() === '') continue;
+    const [, frame, id, , height, width, runs] = LINE.exec(line.trimEnd()) ?? [];
+    if (runs === undefined) throw invalidInput(`line ${k + 1} is not "frame id class height width run-lengths"`);
+    const size = checkSize(Number(width), Number(height), `line ${k + 1}`);
+    if (!isWhole(Number(frame), 1, Number.MAX_SAFE_INTEGER)) throw invalidInput(`line ${k + 1}: frames count from 1`);
+    const entry = frames.get(Number(frame)) ?? { ...size, shapes: [] };
+    frames.set(Number(frame), entry);
+    if (entry.width !== size.width || entry.height !== size.height) throw invalidInput(`line ${k + 1}: the frame has had another size`);
+    const labelOf = (label: number) => (isIgnored(Number(id)) ? UNLABELLED : label);
+    entry.shapes.push({ ...objectOf(Number(id), names), draw: (canvas, label) => canvas.columns(decompressed(runs), labelOf(label)) });
+  }
+  return [...frames]
+    .sort(([a], [b]) => a - b)
+    .map(([frame, { shapes, ...size }]) => frameOfShapes({ name: nameOf(frame - 1), file: source.name, ...size }, shapes));
+}
+
+export function readMotsPng(source: Source, { classesOf }: Context): ReadFrame {
+  const names = classesOf(source);
+  const { levels, width, height } = decoding('it', () => decodeDeep(source.bytes));
+  const seen = new Set<number>();
+  // Level by level a set would take most of the time.
+  for (let at = 0; at < levels.length; at++) if (levels[at] !== levels[at - 1]) seen.add(levels[at] as number);
+  const values = [...seen].filter((value) => value !== 0);
+  return {
+    name: stemOf(source.name),
+    file: source.name,
+    width,
+    height,
+    objects: values.filter((value) => !isIgnored(value)).map((value) => objectOf(value, names)),
+    draw: ({ labels }, labelOf) => {
+      const numbers = new Uint8Array(2 ** 16);
+      for (const value of values) numbers[value] = isIgnored(value) ? UNLABELLED : labelOf(keyOf(value));
+      const { levels } = decodeDeep(source.bytes);
+      for (let at = 0; at < levels.length; at++) labels[at] = numbers[levels[at] as number] as number;
+    },
+  };
+}
+
+function isIgnored(id: number): boolean {
+  return id % CLASS === 0;
+}
+
+function keyOf(id: number): string {
+  return `track ${id}`;
+}
+
+function objectOf(id: number, names: readonly string[]): Known {
+  const instance = id % CLASS;
+  return known(keyOf(id), isObjectNumber(instance) ? instance : undefined, names[Math.floor(id / CLASS) - 1]);
+}

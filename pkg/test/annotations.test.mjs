@@ -1,0 +1,456 @@
+// Annotations read back: what the encoders write gives the same labels again, files of other programs are understood, and whatever else
+// comes ends with a sentence.
+
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { deflateSync, gzipSync } from 'node:zlib';
+import { zipSync } from 'fflate';
+import * as formats from 'veronese/formats';
+import { drawnClip } from './support/clip.mjs';
+import { drawn, labelImages, random } from './support/masks.mjs';
+
+const { readAnnotations } = formats;
+const encoder = new TextEncoder();
+const bytesOf = (content) => {
+  if (content instanceof Uint8Array) return content;
+  return encoder.encode(typeof content === 'string' ? content : JSON.stringify(content));
+};
+const file = (name, content) => ({ name, bytes: bytesOf(content) });
+const read = (...contents) => readAnnotations(contents.map((content, k) => file(`file-${k}`, content)));
+const motsFiles = ({ gt, names }) => [file('mots/gt/gt.txt', gt), file('mots/gt/labels.txt', names.map((name) => `${name}\n`).join(''))];
+
+/** The formats of one image: files by labels, width, height and what is known. */
+const IMAGES = {
+  coco: (...all) => [file('coco.json', formats.encodeCoco(...all))],
+  'coco-polygon': (...all) => [file('coco.json', formats.encodeCoco(...all, { shape: 'polygon' }))],
+  cvat: (...all) => [file('cvat.xml', formats.encodeCvatXml(...all))],
+  'cvat-polygon': (...all) => [file('cvat.xml', formats.encodeCvatXml(...all, { shape: 'polygon' }))],
+  labelme: (...all) => [file('labelme.json', formats.encodeLabelMe(...all))],
+  'labelme-polygon': (...all) => [file('labelme.json', formats.encodeLabelMe(...all, { shape: 'polygon' }))],
+  supervisely: (...all) => [file('ann/first.png.json', formats.encodeSupervisely(...all))],
+  davis: (labels, width, height) => [file('first.png', formats.encodeDavis(labels, width, height))],
+  veronese: (...all) => [file('veronese.json', formats.encodeVeronese(...all))],
+};
+
+/** Those of many frames. */
+const CLIPS = {
+  coco: (frames, meta) => [file('coco.json', formats.encodeCocoImages(frames, meta))],
+  'coco-polygon': (frames, meta, tolerance) => [file('coco.json', formats.encodeCocoImages(frames, meta, { shape: 'polygon', tolerance }))],
+  'youtube-vis': (frames, meta) => [file('youtube-vis.json', formats.encodeCocoVideo(frames, meta))],
+  cvat: (frames, meta) => [file('cvat.xml', formats.encodeCvatImages(frames, meta))],
+  'cvat-polygon': (frames, meta, tolerance) => [file('cvat.xml', formats.encodeCvatImages(frames, meta, { shape: 'polygon', tolerance }))],
+  'cvat-video': (frames, meta, tolerance) => [file('video.xml', formats.encodeCvatVideo(frames, meta, { shape: 'polygon', tolerance }))],
+  'cvat-mots': (frames, meta) => [file('cvat-mots.zip', formats.encodeCvatMots(frames, meta))],
+  mots: (frames, meta) => motsFiles(formats.encodeMots(frames, meta)),
+  labelme: (frames, meta) => frames.map((one) => file(`${one.image}.json`, formats.encodeLabelMe(...given(one, meta)))),
+  'labelme-polygon': (frames, meta, tolerance) =>
+    frames.map((one) => file(`${one.image}.json`, formats.encodeLabelMe(...given(one, meta), { shape: 'polygon', tolerance }))),
+  davis: (frames) => frames.map((one) => file(`davis/480p/a/${one.image}`, formats.encodeDavis(one.labels, one.width, one.height))),
+  veronese: (frames, meta) => frames.map((one) => file(`${one.image}.json`, formats.encodeVeronese(...given(one, meta)))),
+};
+/** Unlabelled pixels are in these alone; in the others they become ground. */
+const COMPLETE = ['davis', 'veronese'];
+
+function given({ labels, width, height, image }, { tracked: _, ...meta }) {
+  return [labels, width, height, { ...meta, image }];
+}
+
+const ground = (labels) => labels.map((label) => (label === 255 ? 0 : label));
+
+describe('one image', () => {
+  for (const [name, encode] of Object.entries(IMAGES)) {
+    test(`${name}: every pixel`, () => {
+      const names = Object.fromEntries(Array.from({ length: 10 }, (_, label) => [label, label === 0 ? 'background' : `thing ${label}`]));
+      for (const { labels, width, height } of labelImages(80)) {
+        const complete = COMPLETE.includes(name);
+        const all = [...new Set(labels)].sort((a, b) => a - b);
+        const present = all.filter((label) => label !== 255 && label !== 0);
+        if (!complete && all.every((label) => label === 255)) continue; // Nothing is annotated.
+        const { frames, names: called } = readAnnotations(encode(labels, width, height, { image: 'first.png', names }));
+        assert.deepEqual([...frames.keys()], ['first']);
+        const found = frames.get('first');
+        assert.deepEqual([found.width, found.height], [width, height]);
+        // Without numbers of their own, objects are counted in their order.
+        const counted = ['coco', 'coco-polygon', 'cvat', 'cvat-polygon', 'supervisely'].includes(name);
+        if (name.startsWith('cvat-poly')) {
+          const numbers = new Map([[0, 0], ...Object.entries(called).map(([number, name]) => [Number(name.slice(6)), Number(number)])]);
+          assert.deepEqual(found.read(), ground(labels).map((label) => numbers.get(label)));
+          continue;
+        }
+        const numberOf = counted ? (label) => present.indexOf(label) + 1 : (label) => label;
+        assert.deepEqual(found.read(), complete ? labels : ground(labels).map(numberOf));
+        if (name === 'davis') continue;
+        for (const label of present) assert.equal(called[numberOf(label)], names[label]);
+      }
+    });
+  }
+});
+
+/** Things of some size that wander, leave and come back: 160 × 120. */
+function wandering(seed) {
+  const next = random(seed);
+  const [width, height] = [160, 120];
+  const things = Array.from({ length: 5 }, (_, k) => ({
+    label: 3 * k + 1,
+    at: [20 + next() * 120, 20 + next() * 80],
+    by: [next() * 16 - 8, next() * 16 - 8],
+    size: [10 + next() * 22, 10 + next() * 22],
+    turn: next() * 3,
+    gone: Math.floor(next() * 6),
+  }));
+  return Array.from({ length: 6 }, (_, frame) => {
+    const labels = new Uint8Array(width * height);
+    for (const { label, at, by, size, turn, gone } of things) {
+      if (frame === gone) continue;
+      labels.forEach((_, pixel) => {
+        const [x, y] = [(pixel % width) - at[0] - frame * by[0], Math.floor(pixel / width) - at[1] - frame * by[1]];
+        const [u, v] = [(x * Math.cos(turn) + y * Math.sin(turn)) / size[0], (y * Math.cos(turn) - x * Math.sin(turn)) / size[1]];
+        if (u * u + v * v < 1) labels[pixel] = label;
+      });
+    }
+    return { labels, width, height, image: `${String(frame).padStart(5, '0')}.png` };
+  });
+}
+
+function intersectionOverUnion(one, other, label) {
+  let [both, either] = [0, 0];
+  one.forEach((value, at) => {
+    both += Number(value === label && other[at] === label);
+    either += Number(value === label || other[at] === label);
+  });
+  return both / either;
+}
+
+describe('a clip', () => {
+  const small = drawnClip().map((labels, k) => ({ labels, width: 37, height: 23, image: `${String(k).padStart(5, '0')}.jpg` }));
+  for (const [name, encode] of Object.entries(CLIPS)) {
+    test(`${name}: every pixel, the numbers and the names of the objects`, () => {
+      for (const frames of [small, wandering(1), wandering(2)]) {
+        const numbers = [...new Set(frames.flatMap(({ labels }) => [...labels]))].filter((label) => label > 0 && label < 255);
+        for (const background of [false, true]) {
+          const nameOf = (number, k) => (k % 2 === 0 ? 'car' : `<thing> "${number}" & Boot 🚗`);
+          const called = Object.fromEntries(numbers.map((number, k) => [number, nameOf(number, k)]));
+          const meta = { names: { 0: 'background', ...called }, labels: [...(background ? [0] : []), ...numbers], tracked: true };
+          const found = readAnnotations(encode(frames, meta, 0));
+          assert.deepEqual([...found.frames.keys()], frames.map(({ image }) => image.slice(0, 5)));
+          frames.forEach(({ labels, width, height }, k) => {
+            const one = [...found.frames.values()][k];
+            assert.deepEqual([one.width, one.height], [width, height]);
+            assert.deepEqual(one.read(), COMPLETE.includes(name) ? labels : ground(labels));
+          });
+          if (name !== 'davis') assert.deepEqual(found.names, called);
+        }
+      }
+    });
+  }
+
+  for (const name of Object.keys(CLIPS).filter((name) => name.includes('polygon') || name === 'cvat-video')) {
+    test(`${name}: thinned as convert does it, IoU of each object above .97`, () => {
+      for (const seed of [3, 4, 5]) {
+        const frames = wandering(seed);
+        const found = [...readAnnotations(CLIPS[name](frames, { tracked: true, labels: [1, 4, 7, 10, 13] }, 0.5)).frames.values()];
+        frames.forEach(({ labels }, k) => {
+          const drawn = found[k].read();
+          for (const label of new Set(labels)) {
+            const overlap = intersectionOverUnion(labels, drawn, label);
+            const pixels = labels.filter((one) => one === label).length;
+            // Of what is nearly covered there is little to compare.
+            if (pixels >= 100) assert.ok(overlap >= 0.97, `${name}, frame ${k}, object ${label} of ${pixels} pixels: ${overlap}`);
+          }
+        });
+      }
+    });
+  }
+
+  test('frames without an object are left out where a document lists all frames, and said where each has a file', () => {
+    const frames = [drawn('00', '00'), drawn('01', '00')].map((one, k) => ({ ...one, image: `f${k}.png` }));
+    for (const [name, encode] of Object.entries(CLIPS)) {
+      const { frames: found } = readAnnotations(encode(frames, { labels: [1], tracked: true }, 0), { frames: ['f0', 'f1'] });
+      const each = ['labelme', 'labelme-polygon', 'davis', 'veronese', 'cvat-mots'].includes(name);
+      assert.deepEqual([...found.keys()], each ? ['f0', 'f1'] : ['f1'], name);
+    }
+  });
+
+  test('names of frames, for formats that count them', () => {
+    const frames = [drawn('11'), drawn('01')];
+    const video = file('video.xml', formats.encodeCvatVideo(frames, { labels: [1] }));
+    assert.deepEqual([...readAnnotations([video]).frames.keys()], ['00000', '00001']);
+    assert.deepEqual([...readAnnotations([video], { frames: ['a.1', 'a.2', 'c'] }).frames.keys()], ['a.1', 'a.2']);
+    const message = "'video.xml': it has a frame 1, and the clip has 1";
+    assert.throws(() => readAnnotations([video], { frames: ['a'] }), { code: 'invalid-input', message });
+    assert.throws(() => readAnnotations([video], { frames: 3 }), { code: 'invalid-option' });
+    assert.throws(() => readAnnotations([video], { names: [] }), { code: 'invalid-option' });
+  });
+});
+
+describe('numbers', () => {
+  const image = (id, name = `f${id}.jpg`) => ({ id, file_name: name, width: 4, height: 1 });
+  const rle = (at) => ({ size: [1, 4], counts: at < 3 ? [at, 1, 3 - at] : [3, 1] });
+  const coco = (images, annotations, categories = [{ id: 1, name: 'cow' }, { id: 2, name: 'dog' }]) => ({ images, annotations, categories });
+
+  test('without numbers the second cow of one frame is the second cow of the next', () => {
+    const annotations = [[1, 1, 0], [1, 2, 1], [1, 1, 2], [2, 2, 0], [2, 1, 1], [2, 1, 2]];
+    const all = annotations.map(([of, category, at]) => ({ image_id: of, category_id: category, segmentation: rle(at) }));
+    const { frames, names } = read(coco([image(1), image(2)], all));
+    assert.deepEqual([...frames.get('f1').read()], [1, 2, 3, 0]);
+    assert.deepEqual([...frames.get('f2').read()], [2, 1, 3, 0]);
+    assert.deepEqual(names, { 1: 'cow', 2: 'dog', 3: 'cow' });
+  });
+
+  test('tracks keep theirs; those that cannot be kept, and 0, give way', () => {
+    const tracks = [7, 1000, 0, 'x'];
+    const annotations = tracks.map((track, at) => ({ image_id: 1, category_id: 1, segmentation: rle(at), attributes: { track_id: track } }));
+    const { frames, names } = read(coco([image(1)], annotations));
+    assert.deepEqual([...frames.get('f1').read()], [7, 1, 2, 3]);
+    assert.deepEqual(Object.keys(names), ['1', '2', '3', '7']);
+  });
+
+  test('more objects than numbers', () => {
+    const annotations = Array.from({ length: 255 }, () => ({ image_id: 1, category_id: 1, segmentation: rle(0) }));
+    assert.throws(() => read(coco([image(1)], annotations)), { code: 'invalid-input', message: "'file-0' has more than 254 objects" });
+    assert.equal(read(coco([image(1)], annotations.slice(1))).frames.get('f1').read()[0], 254);
+  });
+
+  test('instances of MOTS that have one number in two classes', () => {
+    const { frames, names } = read('1 1001 1 1 4 013\n1 2001 2 1 4 112\n1 10000 10 1 4 31\n2 1001 1 1 4 31\n');
+    assert.deepEqual([...frames.get('00000').read()], [1, 2, 0, 255]);
+    assert.deepEqual([...frames.get('00001').read()], [0, 0, 0, 1]);
+    assert.deepEqual(names, {});
+  });
+});
+
+describe('files of other programs', () => {
+  test("CVAT: tracks from 0 that leave, shapes by their order, tags, tasks of a project", () => {
+    const text = `<?xml version="1.0" encoding="utf-8"?>
+      <annotations><version>1.1</version><meta><project><tasks><task>
+        <original_size><width>6</width><height>2</height></original_size>
+      </task></tasks></project></meta>
+      <track id="0" label="cow" source="manual">
+        <polygon frame="3" keyframe="1" outside="0" occluded="0" points="0.00,0.00;4.00,0.00;4.00,1.00;0.00,1.00" z_order="1">
+          <attribute name="age">3</attribute>
+        </polygon>
+        <polygon frame="4" keyframe="1" outside="1" occluded="0" points="0.00,0.00;4.00,0.00;4.00,1.00;0.00,1.00" z_order="1"></polygon>
+      </track>
+      <track id="1" label="dog"><mask frame="3" outside="0" rle="0, 3, 1, 2" left="2" top="0" width="3" height="2" z_order="0"/></track></annotations>`;
+    const { frames, names, format } = read(text);
+    assert.equal(format, 'cvat');
+    assert.deepEqual([...frames.keys()], ['00003']);
+    assert.deepEqual([...frames.get('00003').read()], [2, 2, 2, 2, 1, 0, 0, 0, 0, 1, 1, 0]);
+    assert.deepEqual(names, { 1: 'dog', 2: 'cow' });
+    const images = `<annotations><image id="9" name="task/cam 1/f.0001.png" width="3" height="1"><tag label="night"/>
+      <polygon label="cow" points="0,0;2,0;2,1;0,1" z_order="2"/><polygon label="cow" points="1,0;3,0;3,1;1,1" z_order="1" group_id="0"/></image>
+      <image id="10" name="g.png" width="3" height="1"/></annotations>`;
+    const found = read(images);
+    assert.deepEqual([...found.frames.keys()], ['f.0001']);
+    assert.deepEqual([...found.frames.get('f.0001').read()], [2, 2, 1]);
+  });
+
+  test('COCO: plain counts of a crowd, polygons in parts and beyond the image, no categories', () => {
+    const images = [{ id: 'a', file_name: 'data\\train\\x.jpeg', width: 3, height: 2 }];
+    const annotations = [
+      { image_id: 'a', iscrowd: 1, segmentation: { size: [2, 3], counts: [0, 1, 5] } },
+      { image_id: 'a', segmentation: [[1, -5, 9, -5, 9, 1, 1, 1], [2, 1, 3, 1, 3, 2, 2, 2]] },
+    ];
+    const { frames, names } = read({ images, annotations });
+    assert.deepEqual([...frames.get('x').read()], [1, 2, 2, 0, 0, 2]);
+    assert.deepEqual(names, {});
+  });
+
+  test('LabelMe: no type, no groups, a path of Windows, corners in fractions', () => {
+    const square = [[0, 0], [1, 0], [1, 1], [0, 1]];
+    const { mask } = formats.encodeLabelMe(Uint8Array.of(0, 1), 2, 1, { labels: [1] }).shapes[0];
+    const shapes = [
+      { label: 'cow', points: square, group_id: null },
+      { label: 'cow', points: [[1.2, 0.1], [0.9, 0.2]], shape_type: 'mask', mask },
+    ];
+    const { frames, names } = read({ imagePath: '..\\images\\0001.jpg', imageData: 'AAAA', imageWidth: 3, imageHeight: 1, shapes });
+    assert.deepEqual([...frames.get('0001').read()], [1, 2, 0]);
+    assert.deepEqual(names, { 1: 'cow', 2: 'cow' });
+  });
+
+  test('archives, with the frames beside the annotation', () => {
+    const document = formats.encodeCoco(Uint8Array.of(0, 1), 2, 1, { image: 'a.png', labels: [1] });
+    const others = { 'images/a.png': Uint8Array.of(137, 80, 78, 71), '__MACOSX/a.json': bytesOf('{'), 'info.txt': bytesOf('1 2') };
+    const archive = { 'annotations/instances.json': bytesOf(document), ...others };
+    assert.deepEqual([...read(zipSync(archive)).frames.get('a').read()], [0, 1]);
+    const bom = Uint8Array.of(0xef, 0xbb, 0xbf, ...bytesOf(document));
+    assert.deepEqual([...read(bom).frames.get('a').read()], [0, 1]);
+  });
+});
+
+describe('what is none of that', () => {
+  const image = { id: 1, file_name: 'f.jpg', width: 4, height: 4 };
+  const coco = (change = {}, annotation = {}) => ({
+    images: [image],
+    categories: [{ id: 1, name: 'cow' }],
+    annotations: [{ image_id: 1, category_id: 1, segmentation: { size: [4, 4], counts: [0, 16] }, ...annotation }],
+    ...change,
+  });
+  const segmentation = (value) => coco({}, { segmentation: value });
+  const rle = (counts, size = [4, 4]) => segmentation({ size, counts });
+  const vis = (change = {}, annotation = {}) => ({
+    videos: [{ id: 1, width: 4, height: 4, file_names: ['a.jpg', 'b.jpg'] }],
+    annotations: [{ id: 1, video_id: 1, segmentations: [null, { size: [4, 4], counts: [0, 16] }], ...annotation }],
+    ...change,
+  });
+  const cvat = (inside, attributes = 'name="f.jpg" width="4" height="4"') => `<annotations><image ${attributes}>${inside}</image></annotations>`;
+  const mask = (attributes) => cvat(`<mask label="a" ${attributes}/>`);
+  const track = (inside, size = '<width>4</width><height>4</height>') =>
+    `<annotations><meta><task><original_size>${size}</original_size></task></meta><track id="1" label="a">${inside}</track></annotations>`;
+  const polygon = (points) => cvat(`<polygon label="a" points="${points}"/>`);
+  const labelMe = (shape, change = {}) => ({ imagePath: 'f.jpg', imageWidth: 4, imageHeight: 4, shapes: [{ label: 'a', ...shape }], ...change });
+  const { mask: stamp } = formats.encodeLabelMe(Uint8Array.of(0, 1, 1, 1), 2, 2, { labels: [1] }).shapes[0];
+  const corners = [[0, 0], [1, 1]];
+  const supervisely = (object, size = { width: 4, height: 4 }) => ({ size, objects: [{ classTitle: 'a', geometryType: 'bitmap', ...object }] });
+
+  const png = formats.encodeDavis(new Uint8Array(16), 4, 4);
+  const WRONG = {
+    'nothing at all': ['', /is not an annotation in a format that is read/],
+    'a text': ['hello', /is not an annotation/],
+    'a list': ['[1, 2]', /is not an annotation/],
+    'half of a document': ['{"images": [', /is not JSON/],
+    'bytes that are no text': [Uint8Array.of(0x7b, 0xff, 0xfe), /is not in UTF-8/],
+    'an archive of something else': [gzipSync(Buffer.from('{}')), /is not an annotation/],
+    'half of an archive': [zipSync({ 'a.json': bytesOf(coco()) }).slice(0, 40), /archive is damaged/],
+
+    'no image': [coco({ images: {} }), /"images" must be a list of objects/],
+    'an image of no size': [coco({ images: [{ ...image, width: 0 }] }), /width and height of an image must be whole numbers from 1 to 4096/],
+    'an image too large': [coco({ images: [{ ...image, height: 4097 }] }), /from 1 to 4096/],
+    'an image of half pixels': [coco({ images: [{ ...image, height: 3.5 }] }), /from 1 to 4096/],
+    'an image without a name': [coco({ images: [{ id: 1, width: 4, height: 4 }] }), /image must be text/],
+    'an image that leads elsewhere': [coco({ images: [{ ...image, file_name: '..' }] }), /cannot be the name of a file/],
+    'an image without an id': [coco({ images: [{ ...image, id: undefined }] }), /an image must have an id/],
+    'an image twice': [coco({ images: [image, image] }), /two images have the id 1/],
+    'two images of one name': [coco({ images: [image, { ...image, id: 2, file_name: 'x/F.png' }], annotations: [1, 2].map((id) => ({ image_id: id, segmentation: [[0, 0, 1, 0, 1, 1]] })) }), /has two frames called 'F'/],
+    'no annotation': [coco({ annotations: [] }), /annotates no frame/],
+    'annotations that are none': [coco({ annotations: [1] }), /"annotations" must be a list of objects/],
+    'an annotation of no image': [coco({}, { image_id: 2 }), /of the image 2, and there is none/],
+    'a category without a name': [coco({ categories: [{ id: 1, name: 3 }] }), /name of a category must be text/],
+    'a box alone': [segmentation([]), /has no mask/],
+    'no mask': [segmentation(null), /has no mask/],
+    'too few counts': [rle([0, 15]), /must be of 16 pixels, not 15/],
+    'too many': [rle([0, 17]), /must be of 16 pixels, not 17/],
+    'a negative count': [rle([0, 17, -1]), /whole numbers from 0/],
+    'half a count': [rle([0.5, 15.5]), /whole numbers from 0/],
+    'a count that is text': [rle(['0', '16']), /whole numbers from 0/],
+    'counts of another frame': [rle([0, 16], [2, 8]), /of the frame's size, \[4, 4\], not \[2,8\]/],
+    'counts of no frame': [rle([0, 16], null), /of the frame's size/],
+    'counts that are nothing': [rle({}), /text or a list/],
+    'damaged text': [rle('0é'), /run lengths is damaged/],
+    'text that ends early': [rle('P'), /run lengths is damaged/],
+    'text without end': [rle('o'.repeat(100_000)), /run lengths is damaged/],
+    'text of negative counts': [rle('0O'), /whole numbers from 0/],
+    'a polygon of a list': [segmentation([3]), /three vertices or more/],
+    'a polygon of two vertices': [segmentation([[0, 0, 1, 1]]), /three vertices or more/],
+    'a polygon of an odd number': [segmentation([[0, 0, 1, 1, 2, 2, 3]]), /three vertices or more/],
+    'a polygon far away': [segmentation([[0, 0, 1e9, 1, 2, 2]]), /no pair of numbers up to/],
+    'a polygon at infinity': ['{"images":[{"id":1,"file_name":"f","width":4,"height":4}],"annotations":[{"image_id":1,"segmentation":[[0,0,1e999,1,2,2]]}]}', /no pair of numbers up to/],
+    'a polygon of texts': [segmentation([['0', '0', '1', '1', '2', '2']]), /no pair of numbers up to/],
+
+    'a video without frames': [vis({ videos: [{ id: 1, width: 4, height: 4 }] }), /"file_names" must be a list/],
+    'an annotation of no video': [vis({}, { video_id: 2 }), /of the video 2, and there is none/],
+    'masks of too few frames': [vis({}, { segmentations: [null] }), /an entry for each frame/],
+    'a video that is seen nowhere': [vis({}, { segmentations: [null, null] }), /annotates no frame/],
+    'frames without names': [vis({ videos: [{ id: 1, width: 4, height: 4, file_names: [null, 3] }] }), /image must be text/],
+
+    'XML that is not well-formed': ['<annotations><image></annotations>', /is not XML: Missing end tag for element image/],
+    'another XML': ['<html></html>', /is no annotation of CVAT/],
+    'entities that grow': [`<!DOCTYPE a [<!ENTITY b "bbbbbbbbbb"><!ENTITY c "&b;&b;&b;&b;&b;&b;">]>${cvat('<mask label="&c;"/>')}`, /is not XML: Named entity isn't defined/],
+    'an entity from a file': [`<!DOCTYPE a [<!ENTITY b SYSTEM "file:///etc/hostname">]>${cvat('<mask label="&b;"/>')}`, /is not XML: Named entity isn't defined/],
+    'a box in CVAT': [cvat('<box label="a" xtl="0" ytl="0" xbr="2" ybr="2"/>'), /has a <box>, and only masks and polygons/],
+    'an image of CVAT without size': [cvat('<polygon label="a" points="0,0;1,0;1,1"/>', 'name="f.jpg"'), /width and height of an image/],
+    'no points': [polygon(''), /three vertices or more/],
+    'points that are no numbers': [polygon('0,0;NaN,1;2,2'), /no pair of numbers/],
+    'points with gaps': [polygon('0,0;,1;2,2'), /no pair of numbers/],
+    'a mask outside': [mask('rle="0, 4" left="3" top="0" width="2" height="2"'), /must lie inside the frame/],
+    'a mask of no place': [mask('rle="0, 4"'), /must lie inside the frame/],
+    'a mask of another size': [mask('rle="0, 5" left="0" top="0" width="2" height="2"'), /must be of 4 pixels, not 5/],
+    'a mask of negative runs': [mask('rle="5, -1" left="0" top="0" width="2" height="2"'), /whole numbers from 0/],
+    'a mask of no runs': [mask('left="0" top="0" width="2" height="2"'), /whole numbers from 0/],
+    'a track of no size': [track('<polygon frame="0" points="0,0;1,0;1,1"/>', ''), /width and height of the video, in <original_size>,/],
+    'a track of no frame': [track('<polygon points="0,0;1,0;1,1"/>'), /frame of a shape must be a whole number/],
+    'a track before the first frame': [track('<polygon frame="-1" points="0,0;1,0;1,1"/>'), /frame of a shape must be a whole number/],
+    'boxes on a video': [formats.encodeCvatVideo([drawn('01')], {}, { shape: 'box' }), /has a <box>/],
+
+    'a rectangle in LabelMe': [labelMe({ points: corners, shape_type: 'rectangle' }), /shape of type "rectangle"/],
+    'a shape without a label': [labelMe({ label: 3, points: corners }), /label of a shape must be text/],
+    'points of LabelMe that are none': [labelMe({ points: [1, 2, 3] }), /must each be x and y/],
+    'a mask that is no PNG': [labelMe({ points: corners, shape_type: 'mask', mask: 'AAAA' }), /a mask is not a PNG/, 'unreadable-image'],
+    'a mask that is no base64': [labelMe({ points: corners, shape_type: 'mask', mask: '§' }), /not base64/],
+    'a mask without pixels': [labelMe({ points: corners, shape_type: 'mask', mask: null }), /shape of type "mask"/],
+    'a mask with other corners': [labelMe({ points: [[0, 0], [2, 1]], shape_type: 'mask', mask: stamp }), /2 × 2 pixels, and its corners are those of 3 × 2/],
+    'a mask out of the image': [labelMe({ points: [[3, 3], [4, 4]], shape_type: 'mask', mask: stamp }), /must lie inside the frame/],
+    'LabelMe without a size': [labelMe({ points: corners }, { imageWidth: null }), /width and height of the image/],
+
+    'lines of MOTS that end early': ['1 1001 1 4 4 0<\n2 1001', /line 2 is not "frame id class height width run-lengths"/],
+    'frames of MOTS from 0': ['0 1001 1 1 4 04', /line 1: frames count from 1/],
+    'sizes of MOTS that differ': ['1 1001 1 1 4 04\n1 1002 1 1 5 05', /line 2: the frame has had another size/],
+    'a large frame of MOTS': ['1 1001 1 1 5000 0', /width and height of line 1/],
+
+    'a bitmap that is none': [supervisely({ bitmap: { data: 'AAAA', origin: [0, 0] } }), /a bitmap is damaged/, 'unreadable-image'],
+    'a polygon of Supervisely': [supervisely({ geometryType: 'polygon' }), /object that is no bitmap/],
+    'a bitmap outside': [supervisely({ bitmap: { data: deflateSync(png).toString('base64'), origin: [1, 0] } }), /must lie inside the frame/],
+
+    'a PNG of colours': [Uint8Array.from(png).fill(2, 25, 26), /has no labels: it is not an indexed or grey PNG/],
+    'half of a PNG': [png.slice(0, png.length - 30), /it is damaged/, 'unreadable-image'],
+    'the beginning of a PNG': [png.slice(0, 20), /it has no header/, 'unreadable-image'],
+    'a large PNG': [Uint8Array.from(png).fill(255, 18, 20), /it has 65535 × 4 pixels|it has \d+ × 4 pixels/, 'unreadable-image'],
+    'a document of ours that is damaged': [{ format: 'veronese', version: 1 }, /document cannot be read/],
+  };
+  for (const [name, [content, sentence, code = 'invalid-input']] of Object.entries(WRONG)) {
+    test(name, () => {
+      const began = performance.now();
+      const all = () => [...readAnnotations([file('folder/a.file', content)]).frames.values()].map((one) => one.read());
+      assert.throws(all, (error) => {
+        assert.equal(error.name, 'VeroneseError', error.stack);
+        assert.equal(error.code, code, error.message);
+        assert.match(error.message, /^'folder\/a\.file'/, 'the file is named');
+        assert.match(error.message, sentence);
+        assert.ok(error.message.length < 300, 'a sentence');
+        return true;
+      });
+      assert.ok(performance.now() - began < 2000);
+    });
+  }
+
+  test('files that contradict each other', () => {
+    const [one, other] = [file('a.png', png), file('b.png', formats.encodeDavis(new Uint8Array(8), 4, 2))];
+    assert.throws(() => readAnnotations([one, other]), { code: 'frame-size-mismatch', message: "'b.png': frame 'b' has 4×2 pixels, others have 4×4" });
+    assert.throws(() => readAnnotations([one, file('x/A.png', png)]), { message: "'x/A.png' and 'a.png' are both of the frame 'A'" });
+    const both = [file('a.json', coco()), file('a.xml', polygon('0,0;1,0;1,1'))];
+    assert.throws(() => readAnnotations(both), { code: 'invalid-input', message: "'a.json' is coco and 'a.xml' is cvat: give one of them" });
+    assert.throws(() => readAnnotations([]), { code: 'invalid-input', message: /^no file is an annotation/ });
+    for (const wrong of [undefined, 3, [3], [{ name: 3, bytes: png }], [{ name: 'a', bytes: 'text' }], { get 0() { throw new Error('boo'); } }]) {
+      assert.throws(() => readAnnotations(wrong), { name: 'VeroneseError', code: 'invalid-input' });
+    }
+  });
+
+  describe('work without end', () => {
+    const [width, height] = [4096, 4096];
+    const large = (annotations) => ({ images: [{ id: 1, file_name: 'f', width, height }], annotations });
+    const full = { size: [height, width], counts: [0, width * height] };
+    const HOSTILE = {
+      'one mask over another': large(Array.from({ length: 100_000 }, () => ({ image_id: 1, track_id: 1, segmentation: full }))),
+      'a polygon that goes up and down': large([{ image_id: 1, segmentation: [Array.from({ length: 2_000_000 }, (_, k) => (k % 4 === 1 ? -1 : k % 4 === 3 ? 5000 : k % 3000))] }]),
+      'many polygons': large(Array.from({ length: 50_000 }, () => ({ image_id: 1, track_id: 1, segmentation: [[0, 0, 9999, 0, 9999, 9999, 0, 9999]] }))),
+      'a tower of elements': `${'<annotations>'.repeat(100_000)}${'</annotations>'.repeat(100_000)}`,
+      'an archive that grows': zipSync({ 'a.json': new Uint8Array(2 ** 27), 'b.json': new Uint8Array(1) }),
+      'a PNG that grows': Buffer.concat([png.subarray(0, 33), chunk('IDAT', deflateSync(Buffer.alloc(2 ** 28)))]),
+    };
+    for (const [name, content] of Object.entries(HOSTILE)) {
+      test(name, { timeout: 60_000 }, () => {
+        const source = file('a.file', content);
+        const began = performance.now();
+        assert.throws(() => [...readAnnotations([source]).frames.values()].map((one) => one.read()), { name: 'VeroneseError' });
+        const seconds = (performance.now() - began) / 1000;
+        assert.ok(seconds < 20, `${seconds} s`);
+      });
+    }
+
+    function chunk(name, content) {
+      const length = Buffer.alloc(4);
+      length.writeUInt32BE(content.length);
+      return Buffer.concat([length, Buffer.from(name), content, Buffer.alloc(4)]);
+    }
+  });
+});

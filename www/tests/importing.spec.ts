@@ -1,0 +1,121 @@
+//! Masks of annotation tools, imported into a clip as corrections of its frames.
+
+import { type Page } from '@playwright/test';
+import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe } from 'veronese/formats';
+
+import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, test, upload } from './support.js';
+import { HEIGHT, WIDTH, video } from './video.js';
+
+const SIZE = { width: 200, height: 140 };
+
+/** A clip of six frames, segmented, at its first frame. */
+async function openClip(page: Page): Promise<Uint8Array[]> {
+  const files = await clipFrames(6);
+  await open(page, 'groups');
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText('6 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  return clipInNode(files);
+}
+
+async function goTo(page: Page, index: number): Promise<void> {
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  await track.press('Home');
+  for (let k = 0; k < index; k++) await track.press('ArrowRight');
+  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
+  await done(page);
+}
+
+const corrected = (page: Page): Promise<void> => expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \w+ frames have changed\.$/);
+const json = (name: string, value: unknown): Upload => ({ name, mimeType: 'application/json', buffer: Buffer.from(JSON.stringify(value)) });
+
+/** The labels with a rectangle as another object. */
+function withBox(labels: Uint8Array, id: number, left: number): Uint8Array {
+  return labels.map((label, p) => {
+    const [x, y] = [p % SIZE.width, Math.floor(p / SIZE.width)];
+    return x >= left && x < left + 30 && y >= 90 && y < 120 ? id : label;
+  });
+}
+
+test('a file of annotations corrects the frames that it is of, in one step that can be undone', async ({ page }) => {
+  const found = await openClip(page);
+  // Objects 1 and 2 are gone in frames 2 and 3; there is a third one, and a frame that the clip does not have.
+  const nothing = new Uint8Array(SIZE.width * SIZE.height);
+  const said = [2, 3].map((index) => withBox(nothing, 7, 20 + 4 * index));
+  const frames = [...said, withBox(nothing, 7, 0)].map((labels, k) => ({ labels, ...SIZE, image: `data/${['f02', 'f03', 'f99'][k]}.jpg` }));
+  const document = encodeCocoImages(frames, { names: { 7: 'Plate' }, labels: [7], tracked: true });
+  await openExport(page);
+  await expect(page.locator('#import-masks')).toBeEnabled();
+  await page.locator('#import-masks').setInputFiles([json('instances.json', document)]);
+  await corrected(page);
+  await expect(page.locator('#notice-sentence')).toHaveText('Took the masks of 2 of 3 frames. No frame with masks here is called f99.');
+  await page.keyboard.press('Escape');
+  for (const [k, index] of [2, 3].entries()) {
+    await goTo(page, index);
+    expect(differences(await labelsOnCanvas(page), said[k]!)).toBe(0);
+  }
+  await expect(page.locator('#lane-names button')).toContainText(['Plate']);
+
+  await page.locator('#undo').click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  for (const index of [2, 3]) {
+    await goTo(page, index);
+    expect(differences(await labelsOnCanvas(page), found[index]!)).toBe(0);
+  }
+  await expect(page.locator('#undo')).toBeDisabled();
+});
+
+test('the frames of a video are known by their numbers', async ({ page }) => {
+  await open(page, 'groups');
+  await upload(page, [await video(page, 6, 'webm', 'vp8')]);
+  await expect(page.locator('#clip-name')).toContainText('6 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  // Frames without a shape are not said: the first that is, is number 4.
+  const said = Uint8Array.from({ length: WIDTH * HEIGHT }, (_, p) => (p % WIDTH < 40 ? 9 : 0));
+  const frames = Array.from({ length: 5 }, (_, k) => ({ labels: k < 4 ? new Uint8Array(said.length) : said, width: WIDTH, height: HEIGHT }));
+  const xml = encodeCvatVideo(frames, { names: { 9: 'Strip' }, labels: [9] });
+  await upload(page, [{ name: 'annotations.xml', mimeType: 'application/xml', buffer: Buffer.from(xml) }]);
+  await corrected(page);
+  await goTo(page, 4);
+  expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+  await expect(page.locator('#notice')).toBeHidden();
+});
+
+test('masks that are dropped on the clip are no frames, and frames are', async ({ page }) => {
+  const found = await openClip(page);
+  const drop = (files: Upload[]): Promise<void> =>
+    page.evaluate(
+      (all) => {
+        const transfer = new DataTransfer();
+        for (const { name, type, bytes } of all) transfer.items.add(new File([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))], name, { type }));
+        document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+      },
+      files.map(({ name, mimeType, buffer }) => ({ name, type: mimeType, bytes: buffer.toString('base64') })),
+    );
+  const said = withBox(found[1]!, 3, 100);
+  await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(said, SIZE.width, SIZE.height)) }]);
+  await corrected(page);
+  await goTo(page, 1);
+  expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+
+  // What cannot be taken says why, and changes nothing.
+  const notice = page.locator('#notice-sentence');
+  await drop([json('f01.json', encodeLabelMe(new Uint8Array(4).fill(1), 2, 2, { image: 'f01.png' }))]);
+  await expect(notice).toHaveText('The masks of “f01” are 2 × 2, the frames 200 × 140.');
+  await drop([json('f01.json', encodeLabelMe(said, SIZE.width, SIZE.height, { image: 'other.png' }))]);
+  await expect(notice).toHaveText('No frame with masks here is called other.');
+  await drop([json('f01.json', { shapes: [] })]);
+  await expect(notice).toHaveText(/^'f01\.json' is not an annotation in a format that is read/);
+  await drop([{ name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('1 2') }, { name: 'b.csv', mimeType: 'text/csv', buffer: Buffer.from('') }]);
+  await expect(notice).toHaveText('“b.csv” is not an image that this browser can read.');
+  expect(differences(await labelsOnCanvas(page), said)).toBe(0);
+
+  await drop((await clipFrames(4)).slice(0, 3));
+  await expect(page.locator('#clip-name')).toContainText('3 frames');
+  await drop([json('f01.json', {})]);
+  await expect(notice).toHaveText('Segment the clip first.');
+});
