@@ -46,7 +46,7 @@ impl Evidence {
         }
         let [mut old, mut new] = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
         if begins && let Some(own) = own {
-            let t: f32 = std::env::var("OWN").map_or(0.5, |t| t.parse().unwrap());
+            let t: f32 = std::env::var("OWN").map_or(0.0, |t| t.parse().unwrap());
             [old, new] = [t, 1.0 - t];
             let sum = |side: usize| counts.iter().map(|count| count[side]).sum::<f32>();
             let [object, ground] = [sum(0), sum(1)];

@@ -17,18 +17,26 @@ const COARSE: usize = 4;
 /// Pixels of an object below which it is not searched.
 const FEWEST: usize = 80;
 
-/// The shift in pixels of the working size, or none for an object that is too small.
-pub(super) fn shift_of(mask: &Plane, before: &[Plane; 3], here: &[Plane; 3], from: &Flow, constants: &Constants) -> Option<[f32; 2]> {
+/// A shift of an object, pixels of the working size.
+pub(super) type Shift = [f32; 2];
+
+/// The median displacement of an object's pixels, if there are enough of them.
+pub(super) fn middle(mask: &Plane, flow: &Flow) -> Option<Shift> {
     let inside: Vec<usize> = (0..mask.values().len()).filter(|&p| mask.values()[p] > 0.5).collect();
     if inside.len() < FEWEST {
         return None;
     }
-    let flows: Vec<[f64; 2]> = inside.iter().map(|&p| from.at(p % mask.width(), p / mask.width())).collect();
-    let middle = [0, 1].map(|k| {
+    let flows: Vec<[f64; 2]> = inside.iter().map(|&p| flow.at(p % mask.width(), p / mask.width())).collect();
+    Some([0, 1].map(|k| {
         let mut along: Vec<f64> = flows.iter().map(|flow| flow[k]).collect();
         along.sort_unstable_by(f64::total_cmp);
-        libm::round(along[along.len() / 2] / COARSE as f64) as isize
-    });
+        along[along.len() / 2] as f32
+    }))
+}
+
+/// The shift near the expected one by which the object's pixels are found again, with what it costs a pixel, 0…1.
+pub(super) fn shift_of(mask: &Plane, before: &[Plane; 3], here: &[Plane; 3], expected: Shift, constants: &Constants) -> (Shift, f32) {
+    let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) as isize);
     let (width, height) = (before[0].width(), before[0].height());
     let coarse: Vec<usize> = (0..width * height)
         .filter(|&p| {
@@ -38,7 +46,7 @@ pub(super) fn shift_of(mask: &Plane, before: &[Plane; 3], here: &[Plane; 3], fro
         .collect();
     let step = (coarse.len() / COMPARED).max(1);
     let chosen: Vec<usize> = coarse.into_iter().step_by(step).collect();
-    let mut best = (f32::INFINITY, middle);
+    let mut best = (f32::INFINITY, middle, f32::INFINITY);
     for dy in -SEARCH..=SEARCH {
         for dx in -SEARCH..=SEARCH {
             let [sx, sy] = [middle[0] + dx, middle[1] + dy];
@@ -57,11 +65,12 @@ pub(super) fn shift_of(mask: &Plane, before: &[Plane; 3], here: &[Plane; 3], fro
                 sum += squares.sum::<f32>().min(TRUNCATION);
             }
             let far = libm::sqrtf((dx * dx + dy * dy) as f32) * COARSE as f32;
-            let cost = sum / chosen.len().max(1) as f32 + constants.shift * far;
+            let misfit = sum / chosen.len().max(1) as f32;
+            let cost = misfit + constants.shift * far;
             if cost < best.0 {
-                best = (cost, [sx, sy]);
+                best = (cost, [sx, sy], misfit / TRUNCATION);
             }
         }
     }
-    Some(best.1.map(|shift| (shift * COARSE as isize) as f32))
+    (best.1.map(|shift| (shift * COARSE as isize) as f32), best.2)
 }

@@ -10,7 +10,7 @@ use super::constants::Constants;
 use super::evidence::Evidence;
 use super::look::Look;
 use super::memory::{Memory, Part};
-use super::placing::shift_of;
+use super::placing::{Shift, middle, shift_of};
 use crate::clip::evidence::Flow;
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -54,8 +54,23 @@ pub(super) struct Claim {
 struct Front {
     /// 1 at the object's pixels.
     mask: Plane,
+    centre: [f32; 2],
+    whole: Whole,
+}
+
+/// The object where it was last seen whole.
+#[derive(Clone, Debug)]
+struct Whole {
+    mask: Plane,
     coarse: [Plane; 3],
     centre: [f32; 2],
+    /// From there to the frame that the sweep has reached, and the last step of it.
+    shift: Shift,
+    step: Shift,
+    /// Whether it is seen whole in that frame.
+    now: bool,
+    /// Pixels that it has.
+    pixels: f32,
 }
 
 #[derive(Clone, Debug, Default)]
@@ -103,7 +118,7 @@ impl Sweep {
         let mask = Plane::from_fn(width, height, |x, y| f32::from(u8::from(inside(y * width + x))));
         let Some(centre) = centre_of(&mask) else { return };
         let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
-        let weight: f32 = std::env::var("SURVEY").map_or(0.03, |t| t.parse().unwrap());
+        let weight: f32 = std::env::var("SURVEY").map_or(0.3, |t| t.parse().unwrap());
         memory.learn(look, centre, Part::Surveyed, weight, |p| usize::from(mask.values()[p] < 0.5));
     }
 
@@ -125,7 +140,7 @@ impl Sweep {
             let memory = self.memory.get_or_insert_with(|| Memory::of(&here, constants));
             memory.learn_said(look, centre, given.said);
             let area = Area::whole(width, height);
-            let w: f32 = std::env::var("BEG").map_or(0.5, |t| t.parse().unwrap());
+            let w: f32 = std::env::var("BEG").map_or(1.0, |t| t.parse().unwrap());
             for ((odds, p), &colour) in odds.iter_mut().zip(memory.read(look, &area, centre, constants)).zip(&look.colours) {
                 let trust = memory.trust(colour)[usize::from(*odds < 0.0)];
                 *odds = w * trust * *odds + constants.bias + constants.memory * logit(p);
@@ -138,7 +153,7 @@ impl Sweep {
         if !partly {
             memory.learn_said(look, centre, given.said);
         }
-        self.arrive(look, given, mask, centre, !partly, true, constants);
+        self.arrive(look, given, mask, centre, None, !partly, true, constants);
         claim
     }
 
@@ -148,14 +163,24 @@ impl Sweep {
         let [width, height] = look.size;
         let still = Flow::still(look.size);
         let [to, from] = given.flows.unwrap_or([&still, &still]);
-        let shift = shift_of(&front.mask, &front.coarse, &look.coarse, from, constants);
+        let whole = front.whole;
+        let lost = !whole.now;
+        let expected = if lost { Some([0, 1].map(|k| whole.shift[k] + whole.step[k])) } else { middle(&whole.mask, from) };
+        let accept: f32 = std::env::var("ACCEPT").map_or(0.4, |t| t.parse().unwrap());
+        let shift = expected.map(|expected| {
+            let (shift, misfit) = shift_of(&whole.mask, &whole.coarse, &look.coarse, expected, constants);
+            if lost && misfit > accept { expected } else { shift }
+        });
         let soft = gaussian(&front.mask, BLUR);
+        let all = if lost { gaussian(&whole.mask, BLUR) } else { soft.clone() };
         let place = |x: f32, y: f32| Footprint::new(x, y, width, height).sample(soft.values());
+        let inside = |x: f32, y: f32| x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+        let place_all = |x: f32, y: f32| if inside(x, y) { Footprint::new(x, y, width, height).sample(all.values()) } else { 0.0 };
         let near = |p: usize| {
             let (x, y) = (p % width, p / width);
             let [u, v] = to.at(x, y);
             let along = place(x as f32 + u as f32, y as f32 + v as f32);
-            let with_all = shift.map(|[dx, dy]| place(x as f32 - dx, y as f32 - dy));
+            let with_all = shift.map(|[dx, dy]| place_all(x as f32 - dx, y as f32 - dy));
             (along, with_all)
         };
         let reached = (0..width * height).filter(|&p| {
@@ -177,7 +202,9 @@ impl Sweep {
                 carried.push(share);
             }
         }
-        let centre = if moments[0] > 3.0 { [1, 2].map(|k| (moments[k] / moments[0]) as f32) } else { front.centre };
+        let centre = if let Some([dx, dy]) = shift.filter(|_| lost) {
+            [whole.centre[0] + dx, whole.centre[1] + dy]
+        } else if moments[0] > 3.0 { [1, 2].map(|k| (moments[k] / moments[0]) as f32) } else { front.centre };
         let learned = given.speaks && learns;
         if let Some(memory) = self.memory.as_mut().filter(|_| learned) {
             memory.learn_said(look, centre, given.said);
@@ -212,17 +239,35 @@ impl Sweep {
             }
         };
         let mask = goes_on.as_ref().unwrap_or(&claim).plane(look);
-        let here = centre_of(&mask).unwrap_or(centre);
+        let here = if lost { centre } else { centre_of(&mask).unwrap_or(centre) };
+        let before = Some((whole, shift));
         if let Some(memory) = self.memory.as_mut().filter(|_| contradicted) {
             memory.learn_said(look, here, given.said);
         }
-        self.arrive(look, given, mask, here, false, false, constants);
+        self.arrive(look, given, mask, here, before, false, false, constants);
         Some(claim)
     }
 
     /// Learns from a frame and goes on from there.
-    fn arrive(&mut self, look: &Look, given: &Given<'_>, mask: Plane, centre: [f32; 2], known: bool, begins: bool, constants: &Constants) {
-        let front = Front { mask, coarse: look.coarse.clone(), centre };
+    fn arrive(&mut self, look: &Look, given: &Given<'_>, mask: Plane, centre: [f32; 2], before: Option<(Whole, Option<Shift>)>, known: bool, begins: bool, constants: &Constants) {
+        let pixels: f32 = mask.values().iter().sum();
+        let shrink: f32 = std::env::var("SHRINK").map_or(0.99, |t| t.parse().unwrap());
+        let part: f32 = std::env::var("PART").map_or(0.6, |t| t.parse().unwrap());
+        let seen = |whole: &Whole| pixels < part * shrink * whole.pixels;
+        let whole = match before {
+            Some((whole, shift)) if seen(&whole) => {
+                let next = shift.unwrap_or(whole.shift);
+                let from = if whole.now { [0.0; 2] } else { whole.shift };
+                let step = if whole.now { shift.unwrap_or(whole.step) } else { [0, 1].map(|k| next[k] - from[k]) };
+                Whole { shift: next, step, now: false, pixels: shrink * whole.pixels, ..whole }
+            }
+            before => {
+                let most = before.as_ref().map_or(pixels, |(whole, _)| pixels.max(shrink * whole.pixels));
+                let step = before.and_then(|(_, shift)| shift).unwrap_or([0.0; 2]);
+                Whole { mask: mask.clone(), coarse: look.coarse.clone(), centre, shift: [0.0; 2], step, now: true, pixels: most }
+            }
+        };
+        let front = Front { mask, centre, whole };
         if let Some(memory) = &mut self.memory {
             memory.fade(constants.decay);
             if !known {
