@@ -34,6 +34,9 @@ use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
 
 pub use correction::ClipCorrection;
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub use correction::{propagation_constants, vary_propagation};
 pub use layer::Spread;
 pub use stream::StreamSegmenter;
 #[doc(hidden)]

@@ -28,6 +28,7 @@ use std::path::{Path, PathBuf};
 use cases::Case;
 use parallel::{in_parallel, on_threads};
 use veronese::Quality;
+use veronese::clip::{propagation_constants, vary_propagation};
 
 const HELP: &str = "\
 Measures what an annotator gets for what he says of a clip, in steps:
@@ -44,6 +45,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --jobs N           clips at once; default one for each core
   --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
   --dump DIR         also write the labels of every stage as indexed images, and strips of small ones
+  --set NAME=VALUE   another value of a constant of the propagation, as often as needed
   --write-docs       also write docs/annotating.md
 ";
 
@@ -59,6 +61,7 @@ pub(crate) struct Options {
     pub(crate) out: PathBuf,
     pub(crate) dump: Option<PathBuf>,
     write_docs: bool,
+    pub(crate) constants: [f32; 10],
 }
 
 fn main() {
@@ -77,6 +80,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         out: "out/annotator".into(),
         dump: None,
         write_docs: false,
+        constants: propagation_constants().map(|(_, value)| value),
     };
     while let Some(name) = arguments.next() {
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
@@ -96,6 +100,13 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--rounds" => options.rounds = number(value()?)?,
             "--jobs" => options.jobs = Some(number(value()?)?.max(1)),
             "--out" => options.out = value()?.into(),
+            "--set" => {
+                let text = value()?;
+                let (name, value) = text.split_once('=').ok_or(format!("--set needs NAME=VALUE, not '{text}'."))?;
+                let place = propagation_constants().iter().position(|(known, _)| *known == name);
+                options.constants[place.ok_or(format!("There is no constant '{name}'."))?] =
+                    value.parse().map_err(|_| format!("'{value}' is no number."))?;
+            }
             "--write-docs" => options.write_docs = true,
             "--dump" => options.dump = Some(value()?.into()),
             _ => return Err(format!("There is no option '{name}'.")),

@@ -14,8 +14,7 @@ mod memory;
 mod placing;
 mod sweep;
 mod track;
-
-use std::collections::BTreeMap;
+mod world;
 
 use super::evidence::{Flow, KeptOdds};
 use super::layer::{Layer, SaidFrame, Spread};
@@ -26,12 +25,17 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::resolution::upsampling::upsample;
 use crate::workspace::{self, Buffer};
 use constants::Constants;
+#[cfg(feature = "ablation")]
+pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
-use sweep::{Claim, Said};
-use track::{Scene, Start, Track};
+use sweep::Claim;
+use track::{Start, Track, Way};
+use world::{Known, World};
 
 /// Odds of what is said, nats.
 const CERTAIN: f32 = 8.0;
+/// Frames that are surveyed at most.
+const SURVEYED: usize = 8;
 
 /// A correction that spreads through a [`SegmentedClip`]. It asks for the frames that it needs:
 ///
@@ -63,18 +67,17 @@ pub struct ClipCorrection {
     index: usize,
     /// What is said, until the frame has come.
     said: Option<(Runs, Spread)>,
-    /// Frames of the scene.
+    /// First and last frame of the scene.
     scene: [usize; 2],
-    tracks: Vec<Track>,
+    worlds: Vec<World>,
     /// The frame that is wanted, and what for.
     next: Option<(usize, Pass)>,
     /// Frames that are still to be surveyed.
     survey: Vec<usize>,
-    /// Frames whose layer is up to date.
+    /// Whether the layer of each frame of the scene is up to date.
     done: Vec<bool>,
-    /// What there was before, of every frame that has changed.
-    before: BTreeMap<usize, Option<Layer>>,
-    said_before: Option<SaidFrame>,
+    /// What there was of each frame of the scene.
+    before: Vec<(Option<SaidFrame>, Option<Layer>)>,
     changed: Vec<usize>,
 }
 
@@ -83,15 +86,11 @@ pub struct ClipCorrection {
 enum Pass {
     /// To learn what objects look like that were found automatically.
     Survey,
-    Forward,
-    Backward,
+    Sweep(Way),
 }
 
-/// Frames that are surveyed at most.
-const SURVEYED: usize = 8;
-
 impl ClipCorrection {
-    pub(super) fn new(clip: &mut SegmentedClip, index: usize, labels: &[u8], spread: Spread) -> ClipCorrection {
+    pub(super) fn new(clip: &SegmentedClip, index: usize, labels: &[u8], spread: Spread) -> ClipCorrection {
         let (mut first, mut last) = (index, index);
         while clip.frames[first].back.is_some() && first > 0 {
             first -= 1;
@@ -103,12 +102,11 @@ impl ClipCorrection {
             index,
             said: Some((Runs::of(labels), spread)),
             scene: [first, last],
-            tracks: Vec::new(),
-            next: Some((index, Pass::Forward)),
+            worlds: Vec::new(),
+            next: Some((index, Pass::Sweep(Way::Forward))),
             survey: Vec::new(),
             done: vec![false; last + 1 - first],
-            before: BTreeMap::new(),
-            said_before: clip.frames[index].said.clone(),
+            before: clip.frames[first..=last].iter().map(|frame| (frame.said.clone(), frame.layer.clone())).collect(),
             changed: Vec::new(),
         }
     }
@@ -118,15 +116,16 @@ impl ClipCorrection {
         self.next.map(|(index, _)| index)
     }
 
-    /// The frames changed so far, in the order in which they changed.
+    /// The frames changed so far, in the order in which they changed: first the corrected one.
     pub fn changed(&self) -> &[usize] {
         &self.changed
     }
 
-    /// Number of frames that are still to be taken, and of those that there were.
-    pub fn progress(&self) -> [usize; 2] {
-        let done = self.done.iter().filter(|done| **done).count();
-        [done, self.done.len()]
+    /// Takes everything back that the correction has changed so far.
+    pub fn cancel(self, clip: &mut SegmentedClip) {
+        for (frame, (said, layer)) in clip.frames[self.scene[0]..].iter_mut().zip(self.before) {
+            (frame.said, frame.layer) = (said, layer);
+        }
     }
 
     /// Takes the frame that is [`wanted`](Self::wanted).
@@ -138,278 +137,293 @@ impl ClipCorrection {
         let Some((index, pass)) = self.next else { return Ok(()) };
         clip.check(index, frame)?;
         let _call = workspace::begin(clip.size());
-        let constants = Constants::current();
+        let constants = constants::constants();
         let look = Look::new(frame);
+        let mut is_wanted = true;
         if let Some((said, spread)) = self.said.take() {
             self.begin(clip, frame, said, spread);
-            self.first_look(clip, frame, &look, &constants);
-            self.survey = self.surveyed(clip);
+            self.at_once(clip, frame, &look, &constants);
             self.next = self.after_survey();
-            if self.next != Some((index, pass)) {
-                self.finish_if_done(clip);
-                return Ok(());
+            is_wanted = self.next == Some((index, pass));
+        }
+        match pass {
+            _ if !is_wanted => {}
+            Pass::Survey => {
+                let found = clip.found_at(index, look.size);
+                let tracks = self.worlds.iter_mut().flat_map(|world| &mut world.tracks);
+                tracks.filter(|track| found.contains(&track.number)).for_each(|track| track.survey(&look, &found, &constants));
+                self.next = self.after_survey();
             }
+            Pass::Sweep(way) => self.visit(clip, frame, &look, index, way, &constants),
         }
-        if pass == Pass::Survey {
-            let found = clip.found_at(index, look.size);
-            self.tracks.iter_mut().filter(|track| found.contains(&track.number)).for_each(|track| track.survey(&look, &found, &constants));
-            self.next = self.after_survey();
-        } else {
-            self.visit(clip, frame, &look, index, pass == Pass::Backward, &constants);
+        if self.next.is_none() {
+            self.finish(clip);
         }
-        self.finish_if_done(clip);
         Ok(())
     }
 
-    /// Frames in which objects were found that a person speaks of now, in even steps.
-    fn surveyed(&self, clip: &SegmentedClip) -> Vec<usize> {
+    /// Which objects the correction is about, and what is said of each.
+    fn begin(&mut self, clip: &mut SegmentedClip, frame: &Frame, said: Runs, spread: Spread) {
         let [first, last] = self.scene;
-        let shows = |t: &usize| clip.finds_any(*t, &|label| self.tracks.iter().any(|track| track.number == label));
-        let there: Vec<usize> = (first..=last).rev().filter(shows).collect();
+        let values = said.values();
+        let says = values.iter().any(|&label| label != NOTHING_SAID);
+        let mut touched: Vec<u8> = values.iter().copied().filter(|&label| label > 0 && label != NOTHING_SAID).collect();
+        let persons = clip.persons();
+        let now = clip.layered(self.index, frame.luminance());
+        let mut loses = [false; 256];
+        for (&said, &now) in values.iter().zip(&now) {
+            loses[usize::from(now)] |= said != NOTHING_SAID && said != now;
+        }
+        let takes = |person: &u8| loses[usize::from(*person)] && !clip.locked[usize::from(*person)];
+        let takes_from: Vec<u8> = persons.into_iter().filter(takes).collect();
+        touched.extend(&takes_from);
+        if let Some(before) = &clip.frames[self.index].said {
+            touched.extend(before.speaks_of.iter().chain(&before.takes_from));
+        }
+        let starts_before: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
+        clip.frames[self.index].said =
+            says.then_some(SaidFrame { labels: said, spread, speaks_of: Vec::new(), takes_from });
+        self.speak(clip);
+        let starts: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
+        touched.extend((1..NOTHING_SAID).filter(|&n| starts[usize::from(n)] != starts_before[usize::from(n)]));
+        touched.sort_unstable();
+        touched.dedup();
+        for &number in &touched {
+            let frames: Vec<usize> = starts[usize::from(number)].iter().map(|(t, _)| *t).collect();
+            let of_these = |world: &&mut World| {
+                world.decides.first().is_some_and(|&other| starts[usize::from(other)] == starts[usize::from(number)])
+            };
+            if let Some(world) = self.worlds.iter_mut().find(of_these) {
+                world.decides.push(number);
+                continue;
+            }
+            let mut tracks = Vec::new();
+            for other in 1..NOTHING_SAID {
+                let own: Vec<Start> =
+                    starts[usize::from(other)].iter().copied().filter(|(t, _)| frames.contains(t)).collect();
+                if other == number || !own.is_empty() {
+                    tracks.push(Track::new(other, own, last + 1));
+                }
+            }
+            self.worlds.push(World { tracks, decides: vec![number] });
+        }
+        let is_followed = |label: u8| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.number == label);
+        let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds_any(t, &is_followed)).collect();
         let count = there.len().min(SURVEYED);
-        (0..count).map(|k| there[k * there.len() / count]).collect()
+        self.survey = (0..count).map(|k| there[k * there.len() / count]).collect();
+    }
+
+    /// The frames of the scene that speak of an object.
+    fn starts(&self, clip: &SegmentedClip, number: u8) -> Vec<Start> {
+        let start = |t: usize| {
+            let said = clip.frames[t].said.as_ref()?;
+            said.speaks_of.contains(&number).then_some((t, said.spread))
+        };
+        (self.scene[0]..=self.scene[1]).filter_map(start).collect()
+    }
+
+    /// Which objects each frame of the scene speaks of: those named there, and those found automatically of which part is said to be ground.
+    /// Of one that another object takes over in some frame nothing needs to be said.
+    fn speak(&self, clip: &mut SegmentedClip) {
+        let size @ [width, height] = clip.working_size();
+        let step = clip.size()[0].div_ceil(width).next_power_of_two();
+        let mut named: Vec<[bool; 256]> = Vec::new();
+        let mut erased: Vec<[bool; 256]> = Vec::new();
+        let mut taken = [false; 256];
+        for t in self.scene[0]..=self.scene[1] {
+            let (mut names, mut erases) = ([false; 256], [false; 256]);
+            if let Some(said) = &clip.frames[t].said {
+                said.labels.each().for_each(|(label, _)| names[usize::from(label)] = true);
+                let values = at_size(&said.labels.values(), clip.size()[0], size, step);
+                let (found, _) = clip.found(t);
+                let mut sizes = [[0usize; 3]; 256];
+                for p in 0..width * height {
+                    let [all, ground, other] = &mut sizes[usize::from(found[p])];
+                    *all += 1;
+                    *ground += usize::from(values[p] == 0);
+                    *other += usize::from(values[p] != 0 && values[p] != NOTHING_SAID && values[p] != found[p]);
+                }
+                for (label, &[all, ground, other]) in sizes.iter().enumerate().skip(1) {
+                    taken[label] |= 2 * other > all;
+                    erases[label] = ground > 0 && ground + other < all && !clip.locked[label];
+                }
+            }
+            named.push(names);
+            erased.push(erases);
+        }
+        let is_named = |label: usize| named.iter().any(|names| names[label]);
+        for (k, t) in (self.scene[0]..=self.scene[1]).enumerate() {
+            let speaks = |label: usize| named[k][label] || erased[k][label] && (!taken[label] || is_named(label));
+            if let Some(said) = &mut clip.frames[t].said {
+                said.speaks_of = (1..NOTHING_SAID).filter(|&label| speaks(usize::from(label))).collect();
+            }
+        }
+    }
+
+    /// The corrected frame at once, from what it shows now.
+    fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, constants: &Constants) {
+        let now = at_size(&clip.layered(self.index, frame.luminance()), clip.size()[0], look.size, look.step);
+        let said = clip.said_at(self.index, look.size, look.step);
+        let known = Known { said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())), found: &now, flows: None };
+        let mut claims = Vec::new();
+        for &number in self.worlds.iter().flat_map(|world| &world.decides) {
+            let alone = Track::new(number, vec![(self.index, Spread::Both)], self.index + 1);
+            let mut world = World { tracks: vec![alone], decides: vec![number] };
+            claims.append(&mut world.visit(self.index, Way::Forward, look, &known, constants));
+        }
+        self.compose(clip, frame, look, self.index, &claims);
     }
 
     fn after_survey(&mut self) -> Option<(usize, Pass)> {
         if let Some(t) = self.survey.pop() {
             return Some((t, Pass::Survey));
         }
-        let first = self.tracks.iter().filter_map(Track::first).min();
-        let last = self.tracks.iter().filter_map(Track::last).max();
-        first.map(|t| (t, Pass::Forward)).or(last.map(|t| (t, Pass::Backward)))
+        let forward = self.first(Way::Forward).map(|t| (t, Pass::Sweep(Way::Forward)));
+        forward.or(self.first(Way::Backward).map(|t| (t, Pass::Sweep(Way::Backward))))
     }
 
-    /// Takes everything back that the correction has changed so far.
-    pub fn cancel(self, clip: &mut SegmentedClip) {
-        for (index, layer) in self.before {
-            clip.frames[index].layer = layer;
-        }
-        clip.frames[self.index].said = self.said_before;
+    fn first(&self, way: Way) -> Option<usize> {
+        let firsts = self.worlds.iter().filter_map(|world| world.first(way));
+        if way == Way::Forward { firsts.min() } else { firsts.max() }
     }
 
-    /// Which objects the correction is about.
-    fn begin(&mut self, clip: &mut SegmentedClip, frame: &Frame, said: Runs, spread: Spread) {
-        let values = said.values();
-        let now = clip.layered(self.index, frame.luminance());
-        let mut sizes = [0usize; 256];
-        let mut ground = [0usize; 256];
-        let mut others = [0usize; 256];
-        let mut named = [false; 256];
-        for (&said, &now) in values.iter().zip(&now) {
-            let now = usize::from(now);
-            sizes[now] += 1;
-            if said != NOTHING_SAID {
-                named[usize::from(said)] = true;
-                if usize::from(said) != now {
-                    others[now] += 1;
-                    ground[now] += usize::from(said == 0);
-                }
-            }
-        }
-        let persons = clip.persons();
-        let speaks_of: Vec<u8> = (1..NOTHING_SAID)
-            .filter(|&k| {
-                let n = usize::from(k);
-                // Part of an object found automatically is taken from it: the rest is what it is.
-                named[n] || (!persons.contains(&k) && !clip.locked[n] && ground[n] > 0 && others[n] < sizes[n])
-            })
-            .collect();
-        let takes_from: Vec<u8> =
-            persons.iter().copied().filter(|&k| others[usize::from(k)] > 0 && !speaks_of.contains(&k)).collect();
-        let mut touched: Vec<u8> = speaks_of.iter().chain(&takes_from).copied().collect();
-        if let Some(before) = &clip.frames[self.index].said {
-            touched.extend(before.speaks_of.iter().chain(&before.takes_from));
-        }
-        touched.sort_unstable();
-        touched.dedup();
-        let says = values.iter().any(|&label| label != NOTHING_SAID);
-        clip.frames[self.index].said = says.then_some(SaidFrame { labels: said, spread, speaks_of, takes_from });
+    fn visit(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, way: Way, constants: &Constants) {
         let [first, last] = self.scene;
-        self.tracks = touched
-            .into_iter()
-            .map(|number| {
-                let starts: Vec<Start> = (first..=last)
-                    .filter_map(|t| {
-                        let said = clip.frames[t].said.as_ref()?;
-                        said.speaks_of.contains(&number).then_some((t, said.spread))
-                    })
-                    .collect();
-                Track::new(number, starts)
-            })
-            .collect();
-    }
-
-    /// The corrected frame at once, from what it shows now.
-    fn first_look(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, constants: &Constants) {
-        let said = clip.frames[self.index].said.as_ref().map(|said| said.labels.values());
-        let now = at_working_size(&clip.layered(self.index, frame.luminance()), clip.size()[0], look);
-        let claims: Vec<Option<Claim>> = self
-            .tracks
-            .iter()
-            .map(|track| {
-                let said = said.as_ref().map(|said| of_object(said, track.number, clip.size()[0], look));
-                track.at_once(look, &now, said.as_deref(), constants)
-            })
-            .collect();
-        self.compose(clip, frame, look, self.index, &claims);
-    }
-
-    fn visit(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, backward: bool, constants: &Constants) {
         let found = clip.found_at(t, look.size);
         let flow = |kept: Option<Flow>| kept.map(|flow| flow.enlarged(look.size));
-        let [first, last] = self.scene;
-        let [onward, back] = [flow(clip.onward(t)), flow(clip.back(t))];
-        let from_before = if t > first { flow(clip.onward(t - 1)) } else { None };
-        let from_after = if t < last { flow(clip.back(t + 1)) } else { None };
-        let scene = Scene {
-            look,
-            found: &found,
-            onward: onward.as_ref(),
-            back: back.as_ref(),
-            from_before: from_before.as_ref(),
-            from_after: from_after.as_ref(),
+        let [to, from] = match way {
+            Way::Forward => [flow(clip.back(t)), if t > first { flow(clip.onward(t - 1)) } else { None }],
+            Way::Backward => [flow(clip.onward(t)), if t < last { flow(clip.back(t + 1)) } else { None }],
         };
-        let said = clip.frames[t].said.as_ref().map(|said| said.labels.values());
-        let furthest = self.tracks.iter().filter_map(Track::last).max();
-        let again = furthest.is_some_and(|last| t < last);
-        let mut claims = Vec::with_capacity(self.tracks.len());
-        for track in &mut self.tracks {
-            let said = said.as_ref().map(|said| of_object(said, track.number, clip.size()[0], look));
-            claims.push(if backward {
-                track.backward(t, &scene, said.as_deref(), constants)
-            } else {
-                track.onward(t, &scene, said.as_deref(), again, constants)
-            });
+        let said = clip.said_at(t, look.size, look.step);
+        let known = Known {
+            said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())),
+            found: &found,
+            flows: to.as_ref().zip(from.as_ref()).map(|(to, from)| [to, from]),
+        };
+        let mut claims = Vec::new();
+        for world in &mut self.worlds {
+            claims.append(&mut world.visit(t, way, look, &known, constants));
         }
-        if backward || !again {
+        let furthest = self.first(Way::Backward);
+        if way == Way::Backward || furthest.is_none_or(|furthest| t >= furthest) {
             self.compose(clip, frame, look, t, &claims);
             self.done[t - first] = true;
         }
-        self.next = if backward {
-            (t > first).then(|| (t - 1, Pass::Backward))
-        } else if t < last {
-            Some((t + 1, Pass::Forward))
-        } else {
-            furthest.and_then(|furthest| {
-                // The last frame that both sweeps need was composed on the way.
-                let from = if self.done[furthest - first] { furthest.checked_sub(1)? } else { furthest };
-                (from >= first).then_some((from, Pass::Backward))
-            })
+        let backward = |t: usize| (t, Pass::Sweep(Way::Backward));
+        self.next = match way {
+            Way::Backward => (t > first).then(|| backward(t - 1)),
+            Way::Forward if t < last => Some((t + 1, Pass::Sweep(Way::Forward))),
+            // The last frame that both sweeps need may have been composed on the way.
+            Way::Forward => furthest.and_then(|furthest| match self.done[furthest - first] {
+                true => (furthest > first).then(|| backward(furthest - 1)),
+                false => Some(backward(furthest)),
+            }),
         };
     }
 
     /// In frames that no sweep has come to, nothing is left of objects that nothing is said of any more.
-    fn finish_if_done(&mut self, clip: &mut SegmentedClip) {
-        if self.next.is_some() {
-            return;
-        }
-        let [first, last] = self.scene;
-        for t in first..=last {
-            let speaks = |number: u8| {
-                clip.frames[t].said.as_ref().is_some_and(|said| said.speaks_of.contains(&number))
-            };
-            let gone: Vec<u8> = self.tracks.iter().map(|track| track.number).filter(|&number| !speaks(number)).collect();
-            let Some(layer) = clip.frames[t].layer.clone().filter(|_| !self.done[t - first]) else { continue };
-            if layer.labels.each().any(|(label, _)| gone.contains(&label)) {
-                let labels = layer.labels.map(|label| if gone.contains(&label) { NOTHING_SAID } else { label });
-                let layer = Layer { labels, odds: layer.odds };
-                self.put(clip, t, Some(layer));
+    fn finish(&mut self, clip: &mut SegmentedClip) {
+        let decided: Vec<u8> = self.worlds.iter().flat_map(|world| world.decides.clone()).collect();
+        for t in self.scene[0]..=self.scene[1] {
+            let speaks_of = clip.frames[t].said.as_ref().map_or(&[][..], |said| &said.speaks_of);
+            let is_gone = |label: u8| decided.contains(&label) && !speaks_of.contains(&label);
+            let Some(layer) = clip.frames[t].layer.as_ref().filter(|_| !self.done[t - self.scene[0]]) else { continue };
+            if layer.labels.each().any(|(label, _)| is_gone(label)) {
+                let mut labels = layer.labels.values();
+                labels.iter_mut().filter(|label| is_gone(**label)).for_each(|label| *label = NOTHING_SAID);
+                let [width, height] = clip.working_size();
+                let odds = layer.odds.odds(width, height);
+                let layer = clip.layer_of(&labels, &|_, p| odds.values()[p]);
+                self.put(clip, t, layer);
             }
         }
     }
 
     /// Puts the claims of a frame over what was found.
-    fn compose(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, claims: &[Option<Claim>]) {
+    fn compose(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, claims: &[(u8, Option<Claim>)]) {
         let [width, height] = clip.size();
         let before = clip.frames[t].layer.clone();
         let mut labels = match &before {
             Some(layer) => layer.labels.values(),
             None => Buffer::filled(width * height, NOTHING_SAID),
         };
-        let said = clip.frames[t].said.as_ref().map(|said| said.labels.values());
-        let touched = |label: u8| self.tracks.iter().any(|track| track.number == label);
+        let decided = |label: u8| claims.iter().any(|(number, _)| *number == label);
         let persons = clip.persons();
-        let held: Vec<bool> =
-            labels.iter().map(|&label| label != NOTHING_SAID && label != 0 && !touched(label) && persons.contains(&label)).collect();
-        for (label, _) in labels.iter_mut().zip(&held).filter(|(_, held)| !**held) {
-            *label = NOTHING_SAID;
-        }
-        let mut best = vec![0.0f32; width * height];
-        for (track, claim) in self.tracks.iter().zip(claims) {
-            let Some(claim) = claim.as_ref().filter(|claim| claim.mask.contains(&1)) else { continue };
-            let mut mask = vec![0u8; look.size[0] * look.size[1]];
-            claim.pixels(look.size[0]).for_each(|(p, k)| mask[p] = claim.mask[k]);
-            let full = upsample(&mask, look.size, 2, frame.luminance());
-            for (p, _) in full.iter().enumerate().filter(|&(p, inside)| *inside > 0 && !held[p]) {
-                let odds = claim.at(look.pixel(p, width), look.size[0]).max(0.01);
-                if odds > best[p] {
-                    (best[p], labels[p]) = (odds, track.number);
-                }
-            }
-        }
-        if let Some(said) = &said {
-            for (p, &said) in said.iter().enumerate().filter(|&(p, said)| *said != NOTHING_SAID && !held[p]) {
-                labels[p] = said;
-                best[p] = CERTAIN;
-            }
-        }
+        // The objects of a person that the correction is not about keep what they have.
+        let mut held: Vec<bool> = labels.iter().map(|&label| persons.contains(&label) && !decided(label)).collect();
+        labels.iter_mut().zip(&held).filter(|(_, held)| !**held).for_each(|(label, _)| *label = NOTHING_SAID);
         if clip.locked.contains(&true) {
             let found = clip.found_full(t, frame.luminance());
-            for (p, label) in labels.iter_mut().enumerate() {
-                let f = usize::from(found[p]);
-                if clip.locked[f] && !persons.contains(&found[p]) && !touched(found[p]) {
-                    *label = NOTHING_SAID;
+            for (held, &label) in held.iter_mut().zip(&found) {
+                *held |= clip.locked[usize::from(label)] && !persons.contains(&label);
+            }
+        }
+        let mut best = vec![0.0f32; width * height];
+        for (number, claim) in claims {
+            let Some(claim) = claim.as_ref().filter(|claim| claim.mask.contains(&1)) else { continue };
+            let mut mask = vec![0u8; look.pixels()];
+            claim.area.pixels(look.size[0]).zip(&claim.mask).for_each(|(p, &inside)| mask[p] = inside);
+            let full = upsample(&mask, look.size, 2, frame.luminance());
+            for p in (0..full.len()).filter(|&p| full[p] > 0 && !held[p]) {
+                let odds = claim.at(look.pixel(p, width), look.size[0]).max(f32::MIN_POSITIVE);
+                if odds > best[p] {
+                    (best[p], labels[p]) = (odds, *number);
                 }
             }
         }
-        let layer = labels.iter().any(|&label| label != NOTHING_SAID).then(|| {
-            let [w, h] = clip.working_size();
-            let step = width.div_ceil(w).next_power_of_two();
-            let old = before.map(|layer| layer.odds.odds(w, h));
-            let odds = Plane::from_fn(w, h, |x, y| {
-                let p = (y * step).min(height - 1) * width + (x * step).min(width - 1);
-                match labels[p] {
-                    NOTHING_SAID => 0.0,
-                    0 => -CERTAIN,
-                    _ if held[p] => old.as_ref().map_or(0.0, |old| old.at(x, y)),
-                    _ => best[p].min(CERTAIN),
-                }
-            });
-            Layer { labels: Runs::of(&labels), odds: KeptOdds::of(&odds) }
+        if let Some(said) = &clip.frames[t].said {
+            let said = said.labels.values();
+            for p in (0..said.len()).filter(|&p| said[p] != NOTHING_SAID && !held[p]) {
+                (best[p], labels[p]) = (CERTAIN, said[p]);
+            }
+        }
+        let [w, h] = clip.working_size();
+        let old = before.map(|layer| layer.odds.odds(w, h));
+        let layer = clip.layer_of(&labels, &|p, at| match held[p] {
+            true => old.as_ref().map_or(0.0, |old| old.values()[at]),
+            false => best[p].min(CERTAIN),
         });
         self.put(clip, t, layer);
     }
 
     fn put(&mut self, clip: &mut SegmentedClip, t: usize, layer: Option<Layer>) {
-        let now = &mut clip.frames[t].layer;
-        let same = match (&*now, &layer) {
-            (Some(one), Some(other)) => one.labels == other.labels,
-            (None, None) => true,
-            _ => false,
-        };
-        if !same && !self.changed.contains(&t) {
+        let labels = |layer: &Option<Layer>| layer.as_ref().map(|layer| layer.labels.clone());
+        if labels(&clip.frames[t].layer) != labels(&layer) && !self.changed.contains(&t) {
             self.changed.push(t);
         }
-        let old = std::mem::replace(now, layer);
-        self.before.entry(t).or_insert(old);
+        clip.frames[t].layer = layer;
     }
 }
 
-/// What is said of each working pixel about an object.
-fn of_object(said: &[u8], number: u8, full_width: usize, look: &Look) -> Vec<Said> {
-    at_working_size(said, full_width, look)
-        .iter()
-        .map(|&label| match label {
-            NOTHING_SAID => Said::Nothing,
-            label if label == number => Said::Object,
-            _ => Said::Other,
+impl SegmentedClip {
+    /// A layer of full-size labels, if they say anything. `odds` has those of a full-size pixel, and of the working pixel that it is the
+    /// corner of.
+    fn layer_of(&self, labels: &[u8], odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
+        let ([width, height], [w, h]) = (self.size(), self.working_size());
+        let step = width.div_ceil(w).next_power_of_two();
+        labels.iter().any(|&label| label != NOTHING_SAID).then(|| {
+            let odds = Plane::from_fn(w, h, |x, y| {
+                let p = (y * step).min(height - 1) * width + (x * step).min(width - 1);
+                match labels[p] {
+                    NOTHING_SAID => 0.0,
+                    0 => -CERTAIN,
+                    _ => odds(p, y * w + x),
+                }
+            });
+            Layer { labels: Runs::of(labels), odds: KeptOdds::of(&odds) }
         })
-        .collect()
+    }
+
+    /// What is said of a frame at a working size.
+    fn said_at(&self, t: usize, size: [usize; 2], step: usize) -> Option<(Vec<u8>, Spread)> {
+        let said = self.frames[t].said.as_ref()?;
+        Some((at_size(&said.labels.values(), self.size()[0], size, step), said.spread))
+    }
 }
 
-/// What is said of each working pixel: at its centre, or anywhere in it.
-fn at_working_size(said: &[u8], full_width: usize, look: &Look) -> Vec<u8> {
-    let ([width, height], step) = (look.size, look.step);
+/// Labels of full size at a working size: what is said at the centre of each pixel, or anywhere in it.
+fn at_size(said: &[u8], full_width: usize, [width, height]: [usize; 2], step: usize) -> Vec<u8> {
     let mut working = vec![NOTHING_SAID; width * height];
     for (p, &label) in said.iter().enumerate().filter(|(_, label)| **label != NOTHING_SAID) {
         let (x, y) = (p % full_width, p / full_width);

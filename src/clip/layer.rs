@@ -19,12 +19,9 @@ pub enum Spread {
 }
 
 impl Spread {
-    pub(super) fn forward(self) -> bool {
-        matches!(self, Spread::Both | Spread::Forward)
-    }
-
-    pub(super) fn backward(self) -> bool {
-        matches!(self, Spread::Both | Spread::Backward)
+    /// Forward, backward.
+    pub(super) fn ways(self) -> [bool; 2] {
+        [matches!(self, Spread::Both | Spread::Forward), matches!(self, Spread::Both | Spread::Backward)]
     }
 }
 
@@ -47,7 +44,7 @@ pub(super) struct SaidFrame {
     pub(super) spread: Spread,
     /// Objects that it speaks of: they are followed from here.
     pub(super) speaks_of: Vec<u8>,
-    /// Objects that it takes pixels from.
+    /// Other objects of a person that it takes pixels from.
     pub(super) takes_from: Vec<u8>,
 }
 

@@ -317,18 +317,23 @@ impl SegmentedClip {
         let _call = workspace::begin(self.size);
         let state = &self.frames[index];
         let persons = self.persons();
-        let given = |label: u8| if persons.contains(&label) { label } else { self.numbers[usize::from(label)] };
+        // What a layer must tell apart keeps its number until then.
+        let is_persons = |label: u8| persons.contains(&label);
+        let given = |label: u8| match self.numbers[usize::from(label)] {
+            number if is_persons(label) || is_persons(number) => label,
+            number => number,
+        };
         let mut labels = state.found.labels();
         labels.iter_mut().for_each(|label| *label = given(*label));
         let (mut odds, onward) = (state.found.odds(self.working_size()), self.onward(index));
         let working = |labels: &[u8], odds: &Plane, mark_unknown| {
             WorkingFrame { index, labels, odds, onward: onward.as_ref(), mark_unknown }.described(frame.luminance())
         };
-        if state.layer.is_none() && !labels.iter().any(|label| persons.contains(label)) {
+        if state.layer.is_none() && labels.iter().all(|&label| self.numbers[usize::from(label)] == label && !is_persons(label)) {
             return Ok(working(&labels, &odds, self.mark_unknown));
         }
         let found = working(&labels, &odds, false).labels;
-        let full = self.overlaid(index, &found, &persons);
+        let full = self.overlaid(index, &found, &persons, &|label| self.numbers[usize::from(label)]);
         let [w, h] = self.working_size();
         let step = self.size[0].div_ceil(w).next_power_of_two();
         let layer = state.layer.as_ref().map(|layer| layer.odds.odds(w, h));
@@ -353,15 +358,15 @@ impl SegmentedClip {
 
     /// The labels of a frame with what persons say, without other numbers.
     pub(super) fn layered(&self, index: usize, luminance: &Plane) -> Vec<u8> {
-        self.overlaid(index, &self.found_full(index, luminance), &self.persons())
+        self.overlaid(index, &self.found_full(index, luminance), &self.persons(), &|label| label)
     }
 
-    /// Full-size labels with the layer of a frame over them.
-    fn overlaid(&self, index: usize, found: &[u8], persons: &[u8]) -> Vec<u8> {
+    /// Full-size labels with the layer of a frame over them, by the `number` of each.
+    fn overlaid(&self, index: usize, found: &[u8], persons: &[u8], number: &dyn Fn(u8) -> u8) -> Vec<u8> {
         let layer = self.frames[index].layer.as_ref().map(|layer| layer.labels.values());
         let above = |p: usize| {
             let label = layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]);
-            let gone = label > 0 && label != NOTHING_SAID && self.numbers[usize::from(label)] == 0;
+            let gone = label > 0 && label != NOTHING_SAID && number(label) == 0;
             if gone { NOTHING_SAID } else { label }
         };
         // What was found yields to a person's object that has most of it.
@@ -373,11 +378,12 @@ impl SegmentedClip {
         }
         let below = |label: u8| {
             let [all, taken] = sizes[usize::from(label)];
-            if persons.contains(&label) || 2 * taken > all && !self.locked[usize::from(label)] { 0 } else { label }
+            let yields = persons.contains(&label) || 2 * taken > all && !self.locked[usize::from(label)];
+            if yields { 0 } else { number(label) }
         };
         let shown = |p: usize| match above(p) {
             NOTHING_SAID => below(found[p]),
-            label => self.numbers[usize::from(label)],
+            label => number(label),
         };
         (0..found.len()).map(shown).collect()
     }

@@ -47,6 +47,12 @@ impl Area {
         touch(&self.columns, &other.columns) && touch(&self.rows, &other.rows)
     }
 
+    /// The indices, in a grid that is `width` wide, of the area's pixels.
+    pub(crate) fn pixels(&self, width: usize) -> impl Iterator<Item = usize> + use<> {
+        let columns = self.columns.clone();
+        self.rows.clone().flat_map(move |y| columns.clone().map(move |x| y * width + x))
+    }
+
     /// Index within the area of a pixel of a grid that is `width` wide.
     pub(crate) fn index_of(&self, p: usize, width: usize) -> usize {
         (p / width - self.rows.start) * self.width() + p % width - self.columns.start

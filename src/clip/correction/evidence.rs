@@ -1,6 +1,7 @@
 //! What the labels that were found automatically say of an object, as far as they agreed with it so far.
 
 use crate::frame::Plane;
+use crate::frame::area::Area;
 
 /// Share of the counts that is left after a frame.
 const DECAY: f32 = 0.9;
@@ -30,30 +31,18 @@ impl Evidence {
         self.ratios[usize::from(found)]
     }
 
-    /// Takes a frame.
-    pub(super) fn learn(&mut self, found: &[u8], mask: &Plane, begins: bool, own: Option<u8>) {
+    /// Takes a frame; the first one counts for itself.
+    pub(super) fn learn(&mut self, found: &[u8], mask: &Plane, begins: bool) {
+        let (width, height) = (mask.width(), mask.height());
         let inside: Vec<usize> = (0..found.len()).filter(|&p| mask.values()[p] > 0.5).collect();
         if inside.is_empty() {
             return;
         }
-        let area = crate::frame::area::Area::of(&inside, mask.width()).grown(AROUND, mask.width(), mask.height());
         let mut counts = vec![[0.0f32; 2]; 256];
-        for y in area.rows.clone() {
-            for x in area.columns.clone() {
-                let p = y * mask.width() + x;
-                counts[kind(found[p])][usize::from(mask.values()[p] < 0.5)] += 1.0;
-            }
+        for p in Area::of(&inside, width).grown(AROUND, width, height).pixels(width) {
+            counts[usize::from(found[p])][usize::from(mask.values()[p] < 0.5)] += 1.0;
         }
-        let [mut old, mut new] = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
-        if begins && let Some(own) = own {
-            let t: f32 = std::env::var("OWN").map_or(0.0, |t| t.parse().unwrap());
-            [old, new] = [t, 1.0 - t];
-            let sum = |side: usize| counts.iter().map(|count| count[side]).sum::<f32>();
-            let [object, ground] = [sum(0), sum(1)];
-            self.counts = vec![[0.0; 2]; 256];
-            self.counts[0] = [0.2 * object, 0.9 * ground];
-            self.counts[usize::from(own)] = [0.8 * object, 0.1 * ground];
-        }
+        let [old, new] = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
         let mut totals = [0.0f32; 2];
         for (count, now) in self.counts.iter_mut().zip(&counts) {
             for side in 0..2 {
@@ -62,20 +51,8 @@ impl Evidence {
             }
         }
         let share = |count: f32, total: f32| (count + FLOOR * total + 1.0) / ((1.0 + 2.0 * FLOOR) * total + 2.0);
-        self.ratios = self
-            .counts
-            .iter()
-            .map(|[object, ground]| {
-                libm::logf(share(*object, totals[0]) / share(*ground, totals[1])).clamp(-MOST, MOST)
-            })
-            .collect();
-        if std::env::var("BINARY").is_ok() {
-            let one = self.ratios[1];
-            self.ratios[2..].fill(one);
+        for (ratio, [object, ground]) in self.ratios.iter_mut().zip(&self.counts) {
+            *ratio = libm::logf(share(*object, totals[0]) / share(*ground, totals[1])).clamp(-MOST, MOST);
         }
     }
-}
-
-fn kind(label: u8) -> usize {
-    if std::env::var("BINARY").is_ok() { usize::from(label > 0) } else { usize::from(label) }
 }

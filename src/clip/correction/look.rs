@@ -1,11 +1,11 @@
 //! What the propagation sees of a frame.
 
 use super::memory::colour;
-use crate::frame::Frame;
-use crate::frame::Plane;
+use crate::frame::area::Area;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::lab::lab;
 use crate::frame::picture::{Picture, colours};
+use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
 
 /// Noise that edges stand out from, grey levels.
@@ -13,7 +13,9 @@ const EDGE_NOISE: f32 = 1.0;
 /// Blur of the colours, pixels.
 const BLUR: f32 = 0.7;
 /// Longer side at most, pixels.
-pub(super) const LONGEST: usize = 480;
+const LONGEST: usize = 480;
+/// Coarse pixels are so many of the working size.
+pub(super) const COARSE: usize = 4;
 
 /// A frame at the working size of the propagation.
 #[derive(Clone, Debug)]
@@ -30,7 +32,7 @@ pub(super) struct Look {
 }
 
 /// Full-size pixels for each pixel of the working size.
-pub(super) fn step_of(size: [usize; 2]) -> usize {
+fn step_of(size: [usize; 2]) -> usize {
     let mut step = 1;
     while size[0].max(size[1]).div_ceil(step) > LONGEST {
         step *= 2;
@@ -55,9 +57,31 @@ impl Look {
 }
 
 impl Look {
+    pub(super) fn pixels(&self) -> usize {
+        self.colours.len()
+    }
+
+    pub(super) fn area(&self) -> Area {
+        Area::whole(self.size[0], self.size[1])
+    }
+
+    pub(super) fn middle(&self) -> [f32; 2] {
+        self.size.map(|side| 0.5 * side as f32)
+    }
+
     /// The pixel of the working size that a full-size pixel belongs to.
     pub(super) fn pixel(&self, p: usize, full_width: usize) -> usize {
         let (x, y) = (p % full_width / self.step, p / full_width / self.step);
         y.min(self.size[1] - 1) * self.size[0] + x.min(self.size[0] - 1)
+    }
+
+    /// A plane of values.
+    pub(super) fn plane_of(&self, value: &dyn Fn(usize) -> f32) -> Plane {
+        Plane::from_buffer(self.size[0], self.size[1], (0..self.pixels()).map(value).collect())
+    }
+
+    /// 1 at some pixels, else 0.
+    pub(super) fn plane(&self, inside: &dyn Fn(usize) -> bool) -> Plane {
+        self.plane_of(&|p| f32::from(u8::from(inside(p))))
     }
 }

@@ -36,8 +36,8 @@ pub(super) enum Part {
     Given,
     /// The frames passed.
     Recent,
-    /// What was found automatically.
-    Surveyed,
+    /// Frames in which the object was found automatically.
+    Found,
 }
 
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ pub(super) struct Memory {
     given: Vec<Counts>,
     recent: Vec<Counts>,
     /// Cells of what was found automatically, and all that was said of each colour, which silences them where it disagrees.
-    surveyed: Vec<Counts>,
+    found: Vec<Counts>,
     said: Vec<Counts>,
 }
 
@@ -70,7 +70,7 @@ impl Memory {
     pub(super) fn new(area: &Area, cell: f32) -> Memory {
         let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * MARGIN;
         let size = [cells(area.width()), cells(area.height())];
-        Memory { size, cell, places: vec![0; COLOURS], seen: Vec::new(), given: Vec::new(), recent: Vec::new(), surveyed: Vec::new(), said: Vec::new() }
+        Memory { size, cell, places: vec![0; COLOURS], seen: Vec::new(), given: Vec::new(), recent: Vec::new(), found: Vec::new(), said: Vec::new() }
     }
 
     fn cells(&self) -> usize {
@@ -113,7 +113,7 @@ impl Memory {
                         self.given[cell][side] += weight;
                     }
                     Part::Recent => self.recent[cell][side] += weight,
-                    Part::Surveyed => self.surveyed[cell][side] += weight,
+                    Part::Found => self.found[cell][side] += weight,
                 }
             }
         }
@@ -137,7 +137,7 @@ impl Memory {
             let cells = self.seen.len() * self.size[0] * self.size[1];
             self.given.resize(cells, [0.0; 2]);
             self.recent.resize(cells, [0.0; 2]);
-            self.surveyed.resize(cells, [0.0; 2]);
+            self.found.resize(cells, [0.0; 2]);
             self.said.push([0.0; 2]);
         }
         usize::from(*place) - 1
@@ -151,7 +151,7 @@ impl Memory {
         for (place, &colour) in self.seen.iter().enumerate() {
             let trust = self.trust(colour);
             let cells = place * cells..(place + 1) * cells;
-            for (sum, found) in blurred[cells.clone()].iter_mut().zip(&self.surveyed[cells]) {
+            for (sum, found) in blurred[cells.clone()].iter_mut().zip(&self.found[cells]) {
                 *sum = [sum[0] + trust[0] * found[0], sum[1] + trust[1] * found[1]];
             }
         }

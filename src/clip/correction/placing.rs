@@ -1,76 +1,123 @@
-//! One shift of the whole object: where its pixels are found again, whatever the pairs know of its motion.
+//! An object as a whole: where it was last seen whole, and by which shift its pixels are found again, whatever the pairs know of its motion.
 
 use super::constants::Constants;
+use super::look::{COARSE, Look};
 use crate::clip::evidence::Flow;
 use crate::frame::Plane;
+use crate::order::median;
+
+/// A shift of an object, pixels of the working size.
+pub(super) type Shift = [f32; 2];
 
 /// Pixels of the object that are compared.
 const COMPARED: usize = 150;
-/// How far around the median of the flow, coarse pixels.
+/// How far around the expected shift, coarse pixels.
 const SEARCH: isize = 12;
 /// Squared colour difference beyond which it does not matter.
 const TRUNCATION: f32 = 600.0;
 /// What a pixel outside costs, as a share of that.
 const OUTSIDE: f32 = 0.7;
-/// Coarse pixels are so many of the working size.
-const COARSE: usize = 4;
+/// Mean cost, as a share of that, above which an object that is partly hidden was not found again.
+const MISSED: f32 = 0.4;
 /// Pixels of an object below which it is not searched.
-const FEWEST: usize = 80;
+const FEWEST: f32 = 80.0;
+/// An object is seen whole while it has this share of the pixels that it had …
+const SEEN: f32 = 0.6;
+/// … of which this share is expected a frame later.
+const SHRINKING: f32 = 0.99;
 
-/// A shift of an object, pixels of the working size.
-pub(super) type Shift = [f32; 2];
-
-/// The median displacement of an object's pixels, if there are enough of them.
-pub(super) fn middle(mask: &Plane, flow: &Flow) -> Option<Shift> {
-    let inside: Vec<usize> = (0..mask.values().len()).filter(|&p| mask.values()[p] > 0.5).collect();
-    if inside.len() < FEWEST {
-        return None;
-    }
-    let flows: Vec<[f64; 2]> = inside.iter().map(|&p| flow.at(p % mask.width(), p / mask.width())).collect();
-    Some([0, 1].map(|k| {
-        let mut along: Vec<f64> = flows.iter().map(|flow| flow[k]).collect();
-        along.sort_unstable_by(f64::total_cmp);
-        along[along.len() / 2] as f32
-    }))
+/// The object where it was last seen whole.
+#[derive(Clone, Debug)]
+pub(super) struct Whole {
+    pub(super) mask: Plane,
+    coarse: [Plane; 3],
+    centre: [f32; 2],
+    /// From there to the frame that the sweep has reached, and the last step of it.
+    shift: Shift,
+    step: Shift,
+    /// Whether it is seen whole in that frame.
+    pub(super) now: bool,
+    /// Pixels that it has.
+    pixels: f32,
 }
 
-/// The shift near the expected one by which the object's pixels are found again, with what it costs a pixel, 0…1.
-pub(super) fn shift_of(mask: &Plane, before: &[Plane; 3], here: &[Plane; 3], expected: Shift, constants: &Constants) -> (Shift, f32) {
-    let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) as isize);
-    let (width, height) = (before[0].width(), before[0].height());
-    let coarse: Vec<usize> = (0..width * height)
-        .filter(|&p| {
+impl Whole {
+    pub(super) fn new(mask: &Plane, look: &Look, centre: [f32; 2]) -> Whole {
+        let pixels = mask.values().iter().sum();
+        Whole { mask: mask.clone(), coarse: look.coarse.clone(), centre, shift: [0.0; 2], step: [0.0; 2], now: true, pixels }
+    }
+
+    /// The object a frame later. While much of it is hidden, it stays what it was, and moves on.
+    pub(super) fn gone_on(self, mask: &Plane, look: &Look, centre: [f32; 2], shift: Option<Shift>) -> Whole {
+        let pixels: f32 = mask.values().iter().sum();
+        let expected = SHRINKING * self.pixels;
+        let shift = shift.unwrap_or(self.shift);
+        let before = if self.now { [0.0; 2] } else { self.shift };
+        let step = [shift[0] - before[0], shift[1] - before[1]];
+        if pixels < SEEN * expected {
+            return Whole { shift, step, now: false, pixels: expected, ..self };
+        }
+        Whole { step, pixels: pixels.max(expected), ..Whole::new(mask, look, centre) }
+    }
+
+    /// The centre of an object that is partly hidden.
+    pub(super) fn expected_centre(&self, shift: Option<Shift>) -> Option<[f32; 2]> {
+        shift.filter(|_| !self.now).map(|[dx, dy]| [self.centre[0] + dx, self.centre[1] + dy])
+    }
+
+    /// The shift from where it was seen whole to a frame; none for an object that is too small. `flow` leads to that frame from the one
+    /// before it.
+    pub(super) fn shift_to(&self, look: &Look, flow: &Flow, constants: &Constants) -> Option<Shift> {
+        let inside: Vec<usize> = (0..look.pixels()).filter(|&p| self.mask.values()[p] > 0.5).collect();
+        if (inside.len() as f32) < FEWEST {
+            return None;
+        }
+        let width = look.size[0];
+        let expected = if self.now {
+            let along = |k: usize| {
+                let flows: Vec<f32> = inside.iter().map(|&p| flow.at(p % width, p / width)[k] as f32).collect();
+                median(&flows).unwrap_or(0.0)
+            };
+            [along(0), along(1)]
+        } else {
+            [self.shift[0] + self.step[0], self.shift[1] + self.step[1]]
+        };
+        let (shift, cost) = self.nearest(look, expected, constants);
+        Some(if self.now || cost < MISSED { shift } else { expected })
+    }
+
+    /// The best shift near the one expected, and its mean cost.
+    fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> (Shift, f32) {
+        let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) as isize);
+        let (width, height) = (self.coarse[0].width(), self.coarse[0].height());
+        let is_inside = |&p: &usize| {
             let (x, y) = (p % width * COARSE, p / width * COARSE);
-            x < mask.width() && y < mask.height() && mask.at(x, y) > 0.5
-        })
-        .collect();
-    let step = (coarse.len() / COMPARED).max(1);
-    let chosen: Vec<usize> = coarse.into_iter().step_by(step).collect();
-    let mut best = (f32::INFINITY, middle, f32::INFINITY);
-    for dy in -SEARCH..=SEARCH {
-        for dx in -SEARCH..=SEARCH {
-            let [sx, sy] = [middle[0] + dx, middle[1] + dy];
-            let mut sum = 0.0;
-            for &p in &chosen {
+            x < look.size[0] && y < look.size[1] && self.mask.at(x, y) > 0.5
+        };
+        let coarse: Vec<usize> = (0..width * height).filter(is_inside).collect();
+        let chosen: Vec<usize> = coarse.iter().copied().step_by((coarse.len() / COMPARED).max(1)).collect();
+        let cost = |[sx, sy]: [isize; 2]| {
+            let of_pixel = |&p: &usize| {
                 let (x, y) = ((p % width) as isize + sx, (p / width) as isize + sy);
                 if x < 0 || y < 0 || x >= width as isize || y >= height as isize {
-                    sum += OUTSIDE * TRUNCATION;
-                    continue;
+                    return OUTSIDE;
                 }
                 let q = y as usize * width + x as usize;
-                let squares = before.iter().zip(here).map(|(before, here)| {
-                    let step = before.values()[p] - here.values()[q];
-                    step * step
-                });
-                sum += squares.sum::<f32>().min(TRUNCATION);
-            }
-            let far = libm::sqrtf((dx * dx + dy * dy) as f32) * COARSE as f32;
-            let misfit = sum / chosen.len().max(1) as f32;
-            let cost = misfit + constants.shift * far;
-            if cost < best.0 {
-                best = (cost, [sx, sy], misfit / TRUNCATION);
+                let steps = self.coarse.iter().zip(&look.coarse).map(|(before, here)| before.values()[p] - here.values()[q]);
+                (steps.map(|step| step * step).sum::<f32>() / TRUNCATION).min(1.0)
+            };
+            chosen.iter().map(of_pixel).sum::<f32>() / chosen.len().max(1) as f32
+        };
+        let mut best = (f32::INFINITY, middle, 1.0);
+        for dy in -SEARCH..=SEARCH {
+            for dx in -SEARCH..=SEARCH {
+                let shift = [middle[0] + dx, middle[1] + dy];
+                let (cost, far) = (cost(shift), libm::sqrtf((dx * dx + dy * dy) as f32));
+                if cost + constants.shift * far < best.0 {
+                    best = (cost + constants.shift * far, shift, cost);
+                }
             }
         }
+        (best.1.map(|shift| (shift * COARSE as isize) as f32), best.2)
     }
-    (best.1.map(|shift| (shift * COARSE as isize) as f32), best.2)
 }

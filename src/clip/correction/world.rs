@@ -1,0 +1,93 @@
+//! Objects that the same frames speak of: they are followed together, and each has what none of the others has better reason to have.
+
+use super::constants::Constants;
+use super::look::Look;
+use super::sweep::{Claim, Expected, Given, Said, odds_at};
+use super::track::{Track, Way};
+use crate::clip::evidence::Flow;
+
+/// What is known of a frame besides its pixels.
+pub(super) struct Known<'a> {
+    /// What is said of each full-size pixel, at the working size, and where that spreads.
+    pub(super) said: Option<(&'a [u8], [bool; 2])>,
+    pub(super) found: &'a [u8],
+    /// From this frame to the one before in the direction of the sweep, and from that one to this.
+    pub(super) flows: Option<[&'a Flow; 2]>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct World {
+    pub(super) tracks: Vec<Track>,
+    /// Numbers of the objects that it decides of. The others were spoken of together with these, and compete.
+    pub(super) decides: Vec<u8>,
+}
+
+impl World {
+    /// The frame in which a sweep begins.
+    pub(super) fn first(&self, way: Way) -> Option<usize> {
+        let firsts = self.tracks.iter().filter_map(|track| track.first(way));
+        if way == Way::Forward { firsts.min() } else { firsts.max() }
+    }
+
+    /// The claims of a frame.
+    pub(super) fn visit(&mut self, t: usize, way: Way, look: &Look, known: &Known<'_>, constants: &Constants) -> Vec<(u8, Option<Claim>)> {
+        let said: Vec<Option<Vec<Said>>> =
+            self.tracks.iter().map(|track| known.said.map(|(said, _)| of_object(said, track.number))).collect();
+        let given: Vec<Given<'_>> = self
+            .tracks
+            .iter()
+            .zip(&said)
+            .map(|(track, said)| Given {
+                said: said.as_deref(),
+                speaks: track.speaks(t),
+                spreads: known.said.is_none_or(|(_, spreads)| spreads[way as usize]),
+                found: known.found,
+                flows: known.flows,
+            })
+            .collect();
+        let mut expected: Vec<Option<Expected>> =
+            self.tracks.iter_mut().zip(&given).map(|(track, given)| track.expect(way, look, given, constants)).collect();
+        compete(&mut expected, look.size[0]);
+        let again = way == Way::Forward && self.first(Way::Backward).is_some_and(|last| t < last);
+        let mut claims = Vec::new();
+        for ((track, given), expected) in self.tracks.iter_mut().zip(&given).zip(expected) {
+            let claim = track.visit(t, way, look, given, expected, constants);
+            if again {
+                track.keep(t, claim.clone());
+            }
+            if self.decides.contains(&track.number) {
+                claims.push((track.number, claim));
+            }
+        }
+        claims
+    }
+}
+
+/// The odds of each object against everything else: the others are part of that.
+fn compete(expected: &mut [Option<Expected>], width: usize) {
+    let alone: Vec<_> = expected.iter().flatten().map(|of| (of.area.clone(), of.odds.clone())).collect();
+    for (k, of) in expected.iter_mut().flatten().enumerate() {
+        for (j, (area, odds)) in alone.iter().enumerate().filter(|(_, (area, _))| area.touches(&of.area)) {
+            if j == k {
+                continue;
+            }
+            for (at, p) in of.area.pixels(width).enumerate() {
+                let rival = odds_at(area, odds, p, width);
+                let own = alone[k].1[at];
+                if rival > 0.0 {
+                    of.odds[at] = of.odds[at].min(own - rival);
+                }
+            }
+        }
+    }
+}
+
+/// What is said about one object.
+pub(super) fn of_object(said: &[u8], number: u8) -> Vec<Said> {
+    let of = |&label: &u8| match label {
+        crate::clip::whole::NOTHING_SAID => Said::Nothing,
+        label if label == number => Said::Object,
+        _ => Said::Other,
+    };
+    said.iter().map(of).collect()
+}
