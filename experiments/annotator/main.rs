@@ -202,6 +202,7 @@ impl Options {
         work: impl Fn(&Case) -> Result<T, Failure> + Sync,
     ) -> Result<Vec<T>, Failure> {
         let shown = |case: &Case| {
+            vary_propagation(self.constants);
             let row = work(case).map_err(|error| format!("{}: {error}", case.name))?;
             println!("{}", serde_json::to_string(&row)?);
             Ok(row)

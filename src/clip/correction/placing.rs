@@ -17,14 +17,12 @@ const SEARCH: isize = 12;
 const TRUNCATION: f32 = 600.0;
 /// What a pixel outside costs, as a share of that.
 const OUTSIDE: f32 = 0.7;
-/// Mean cost, as a share of that, above which an object that is partly hidden was not found again.
-const MISSED: f32 = 0.4;
 /// Pixels of an object below which it is not searched.
 const FEWEST: f32 = 80.0;
 /// An object is seen whole while it has this share of the pixels that it had …
-const SEEN: f32 = 0.6;
+const SEEN: f32 = 0.85;
 /// … of which this share is expected a frame later.
-const SHRINKING: f32 = 0.99;
+const SHRINKING: f32 = 0.97;
 
 /// The object where it was last seen whole.
 #[derive(Clone, Debug)]
@@ -73,21 +71,18 @@ impl Whole {
             return None;
         }
         let width = look.size[0];
-        let expected = if self.now {
-            let along = |k: usize| {
-                let flows: Vec<f32> = inside.iter().map(|&p| flow.at(p % width, p / width)[k] as f32).collect();
-                median(&flows).unwrap_or(0.0)
-            };
-            [along(0), along(1)]
-        } else {
-            [self.shift[0] + self.step[0], self.shift[1] + self.step[1]]
+        if !self.now {
+            return Some([self.shift[0] + self.step[0], self.shift[1] + self.step[1]]);
+        }
+        let along = |k: usize| {
+            let flows: Vec<f32> = inside.iter().map(|&p| flow.at(p % width, p / width)[k] as f32).collect();
+            median(&flows).unwrap_or(0.0)
         };
-        let (shift, cost) = self.nearest(look, expected, constants);
-        Some(if self.now || cost < MISSED { shift } else { expected })
+        Some(self.nearest(look, [along(0), along(1)], constants))
     }
 
-    /// The best shift near the one expected, and its mean cost.
-    fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> (Shift, f32) {
+    /// The best shift near the one expected.
+    fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> Shift {
         let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) as isize);
         let (width, height) = (self.coarse[0].width(), self.coarse[0].height());
         let is_inside = |&p: &usize| {
@@ -108,16 +103,16 @@ impl Whole {
             };
             chosen.iter().map(of_pixel).sum::<f32>() / chosen.len().max(1) as f32
         };
-        let mut best = (f32::INFINITY, middle, 1.0);
+        let mut best = (f32::INFINITY, middle);
         for dy in -SEARCH..=SEARCH {
             for dx in -SEARCH..=SEARCH {
                 let shift = [middle[0] + dx, middle[1] + dy];
-                let (cost, far) = (cost(shift), libm::sqrtf((dx * dx + dy * dy) as f32));
-                if cost + constants.shift * far < best.0 {
-                    best = (cost + constants.shift * far, shift, cost);
+                let cost = cost(shift) + constants.shift * libm::sqrtf((dx * dx + dy * dy) as f32);
+                if cost < best.0 {
+                    best = (cost, shift);
                 }
             }
         }
-        (best.1.map(|shift| (shift * COARSE as isize) as f32), best.2)
+        best.1.map(|shift| (shift * COARSE as isize) as f32)
     }
 }

@@ -234,7 +234,8 @@ impl Sweep {
 
     /// Goes on from a frame. It learns its labels there if it `knows_little` of them.
     fn arrive(&mut self, look: &Look, given: &Given<'_>, front: Front, [knows_little, begins]: [bool; 2], constants: &Constants) {
-        if let Some(memory) = &mut self.memory {
+        // Of an object that is partly hidden it would learn what hides it.
+        if let Some(memory) = self.memory.as_mut().filter(|_| front.whole.now) {
             memory.fade(constants.decay);
             if knows_little {
                 memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, |p| front.side(p));
