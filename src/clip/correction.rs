@@ -151,7 +151,9 @@ impl ClipCorrection {
             Pass::Survey => {
                 let found = clip.found_at(index, look.size);
                 let tracks = self.worlds.iter_mut().flat_map(|world| &mut world.tracks);
-                tracks.filter(|track| found.contains(&track.number)).for_each(|track| track.survey(&look, &found, &constants));
+                tracks
+                    .filter(|track| found.contains(&track.number))
+                    .for_each(|track| track.survey(&look, &found, &constants));
                 self.next = self.after_survey();
             }
             Pass::Sweep(way) => self.visit(clip, frame, &look, index, way, &constants),
@@ -207,7 +209,8 @@ impl ClipCorrection {
             }
             self.worlds.push(World { tracks, decides: vec![number] });
         }
-        let is_followed = |label: u8| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.number == label);
+        let is_followed =
+            |label: u8| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.number == label);
         let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds_any(t, &is_followed)).collect();
         let count = there.len().min(SURVEYED);
         self.survey = (0..count).map(|k| there[k * there.len() / count]).collect();
@@ -264,7 +267,8 @@ impl ClipCorrection {
     fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, constants: &Constants) {
         let now = at_size(&clip.layered(self.index, frame.luminance()), clip.size()[0], look.size, look.step);
         let said = clip.said_at(self.index, look.size, look.step);
-        let known = Known { said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())), found: &now, flows: None };
+        let known =
+            Known { said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())), found: &now, flows: None };
         let mut claims = Vec::new();
         for &number in self.worlds.iter().flat_map(|world| &world.decides) {
             let alone = Track::new(number, vec![(self.index, Spread::Both)], self.index + 1);
@@ -287,7 +291,15 @@ impl ClipCorrection {
         if way == Way::Forward { firsts.min() } else { firsts.max() }
     }
 
-    fn visit(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, way: Way, constants: &Constants) {
+    fn visit(
+        &mut self,
+        clip: &mut SegmentedClip,
+        frame: &Frame,
+        look: &Look,
+        t: usize,
+        way: Way,
+        constants: &Constants,
+    ) {
         let [first, last] = self.scene;
         let found = clip.found_at(t, look.size);
         let flow = |kept: Option<Flow>| kept.map(|flow| flow.enlarged(look.size));
@@ -341,7 +353,14 @@ impl ClipCorrection {
     }
 
     /// Puts the claims of a frame over what was found.
-    fn compose(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, claims: &[(u8, Option<Claim>)]) {
+    fn compose(
+        &mut self,
+        clip: &mut SegmentedClip,
+        frame: &Frame,
+        look: &Look,
+        t: usize,
+        claims: &[(u8, Option<Claim>)],
+    ) {
         let [width, height] = clip.size();
         let before = clip.frames[t].layer.clone();
         let mut labels = match &before {

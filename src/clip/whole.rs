@@ -2,10 +2,10 @@
 
 use super::correction::ClipCorrection;
 use super::description::WorkingFrame;
-use super::layer::{Layer, SaidFrame, Spread};
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs, Pairs};
 use super::grouping::Census;
 use super::identity::Parting;
+use super::layer::{Layer, SaidFrame, Spread};
 use super::parting::divide;
 use super::runs::Runs;
 use super::saved::{Format, saved};
@@ -303,7 +303,8 @@ impl SegmentedClip {
     pub fn frames_with(&self, object: u8) -> Vec<usize> {
         let is_it = |(label, _): (u8, usize)| self.numbers[usize::from(label)] == object;
         let is_there = |frame: &FrameState| {
-            frame.found.labels.each().any(is_it) || frame.layer.as_ref().is_some_and(|layer| layer.labels.each().any(is_it))
+            frame.found.labels.each().any(is_it)
+                || frame.layer.as_ref().is_some_and(|layer| layer.labels.each().any(is_it))
         };
         (0..self.len()).filter(|&index| is_there(&self.frames[index])).collect()
     }
@@ -329,7 +330,9 @@ impl SegmentedClip {
         let working = |labels: &[u8], odds: &Plane, mark_unknown| {
             WorkingFrame { index, labels, odds, onward: onward.as_ref(), mark_unknown }.described(frame.luminance())
         };
-        if state.layer.is_none() && labels.iter().all(|&label| self.numbers[usize::from(label)] == label && !is_persons(label)) {
+        if state.layer.is_none()
+            && labels.iter().all(|&label| self.numbers[usize::from(label)] == label && !is_persons(label))
+        {
             return Ok(working(&labels, &odds, self.mark_unknown));
         }
         let found = working(&labels, &odds, false).labels;
@@ -346,7 +349,13 @@ impl SegmentedClip {
             }
             labels[p] = full[q];
         }
-        let working = WorkingFrame { index, labels: &labels, odds: &odds, onward: onward.as_ref(), mark_unknown: self.mark_unknown };
+        let working = WorkingFrame {
+            index,
+            labels: &labels,
+            odds: &odds,
+            onward: onward.as_ref(),
+            mark_unknown: self.mark_unknown,
+        };
         Ok(working.marked(full, frame.width()))
     }
 
@@ -390,8 +399,12 @@ impl SegmentedClip {
 
     /// Numbers of the objects that a person has spoken of.
     pub(super) fn persons(&self) -> Vec<u8> {
-        let mut persons: Vec<u8> =
-            self.frames.iter().filter_map(|frame| frame.said.as_ref()).flat_map(|said| said.speaks_of.clone()).collect();
+        let mut persons: Vec<u8> = self
+            .frames
+            .iter()
+            .filter_map(|frame| frame.said.as_ref())
+            .flat_map(|said| said.speaks_of.clone())
+            .collect();
         persons.sort_unstable();
         persons.dedup();
         persons

@@ -26,7 +26,9 @@ pub(super) struct Constants {
 }
 
 impl Constants {
-    const fn new([bias, carried, memory, back_off, decay, cell, found, smoothness, shift, survey]: [f32; 10]) -> Constants {
+    const fn new(
+        [bias, carried, memory, back_off, decay, cell, found, smoothness, shift, survey]: [f32; 10],
+    ) -> Constants {
         Constants { bias, carried, memory, back_off, decay, cell, found, smoothness, shift, survey }
     }
 }

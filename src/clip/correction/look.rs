@@ -49,7 +49,8 @@ impl Look {
         let sharp = lab(&picture.colours);
         let smooth = sharp.each_ref().map(|plane| gaussian(plane, BLUR));
         let size = [picture.luminance.width(), picture.luminance.height()];
-        let colours = (0..size[0] * size[1]).map(|p| colour(smooth.each_ref().map(|plane| plane.values()[p]))).collect();
+        let colours =
+            (0..size[0] * size[1]).map(|p| colour(smooth.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = smooth.each_ref().map(|plane| halve(&halve(plane)));
         let borders = Borders::new(&picture, EDGE_NOISE, 1.0);
         Look { size, step, colours, coarse, borders }

@@ -70,7 +70,16 @@ impl Memory {
     pub(super) fn new(area: &Area, cell: f32) -> Memory {
         let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * MARGIN;
         let size = [cells(area.width()), cells(area.height())];
-        Memory { size, cell, places: vec![0; COLOURS], seen: Vec::new(), given: Vec::new(), recent: Vec::new(), found: Vec::new(), said: Vec::new() }
+        Memory {
+            size,
+            cell,
+            places: vec![0; COLOURS],
+            seen: Vec::new(),
+            given: Vec::new(),
+            recent: Vec::new(),
+            found: Vec::new(),
+            said: Vec::new(),
+        }
     }
 
     fn cells(&self) -> usize {
@@ -96,7 +105,14 @@ impl Memory {
     }
 
     /// Adds the pixels of a frame with weights; `sides` has 0 for the object, 1 for ground, anything else for neither.
-    pub(super) fn learn(&mut self, look: &Look, centre: [f32; 2], part: Part, weight: f32, sides: impl Fn(usize) -> usize) {
+    pub(super) fn learn(
+        &mut self,
+        look: &Look,
+        centre: [f32; 2],
+        part: Part,
+        weight: f32,
+        sides: impl Fn(usize) -> usize,
+    ) {
         let [width, height] = look.size;
         for y in 0..height {
             for x in 0..width {
@@ -146,8 +162,12 @@ impl Memory {
     /// Probability of the object at every pixel of an area, for an object with the given centre.
     pub(super) fn read(&self, look: &Look, area: &Area, centre: [f32; 2], constants: &Constants) -> Vec<f32> {
         let (cells, width) = (self.cells(), look.size[0]);
-        let mut blurred: Vec<Counts> =
-            self.given.iter().zip(&self.recent).map(|(given, recent)| [given[0] + recent[0], given[1] + recent[1]]).collect();
+        let mut blurred: Vec<Counts> = self
+            .given
+            .iter()
+            .zip(&self.recent)
+            .map(|(given, recent)| [given[0] + recent[0], given[1] + recent[1]])
+            .collect();
         for (place, &colour) in self.seen.iter().enumerate() {
             let trust = self.trust(colour);
             let cells = place * cells..(place + 1) * cells;

@@ -37,12 +37,23 @@ pub(super) struct Whole {
     pub(super) now: bool,
     /// Pixels that it has.
     pixels: f32,
+    /// Whether all of its mask was said once; else its pixels may be few because they were too many before.
+    known: bool,
 }
 
 impl Whole {
-    pub(super) fn new(mask: &Plane, look: &Look, centre: [f32; 2]) -> Whole {
+    pub(super) fn new(mask: &Plane, look: &Look, centre: [f32; 2], known: bool) -> Whole {
         let pixels = mask.values().iter().sum();
-        Whole { mask: mask.clone(), coarse: look.coarse.clone(), centre, shift: [0.0; 2], step: [0.0; 2], now: true, pixels }
+        Whole {
+            mask: mask.clone(),
+            coarse: look.coarse.clone(),
+            centre,
+            shift: [0.0; 2],
+            step: [0.0; 2],
+            now: true,
+            pixels,
+            known,
+        }
     }
 
     /// The object a frame later. While much of it is hidden, it stays what it was, and moves on.
@@ -52,10 +63,10 @@ impl Whole {
         let shift = shift.unwrap_or(self.shift);
         let before = if self.now { [0.0; 2] } else { self.shift };
         let step = [shift[0] - before[0], shift[1] - before[1]];
-        if pixels < SEEN * expected {
+        if self.known && pixels < SEEN * expected {
             return Whole { shift, step, now: false, pixels: expected, ..self };
         }
-        Whole { step, pixels: pixels.max(expected), ..Whole::new(mask, look, centre) }
+        Whole { step, pixels: pixels.max(expected), ..Whole::new(mask, look, centre, self.known) }
     }
 
     /// The centre of an object that is partly hidden.
@@ -98,7 +109,8 @@ impl Whole {
                     return OUTSIDE;
                 }
                 let q = y as usize * width + x as usize;
-                let steps = self.coarse.iter().zip(&look.coarse).map(|(before, here)| before.values()[p] - here.values()[q]);
+                let steps =
+                    self.coarse.iter().zip(&look.coarse).map(|(before, here)| before.values()[p] - here.values()[q]);
                 (steps.map(|step| step * step).sum::<f32>() / TRUNCATION).min(1.0)
             };
             chosen.iter().map(of_pixel).sum::<f32>() / chosen.len().max(1) as f32

@@ -147,7 +147,7 @@ impl Sweep {
         let claim = solved(look, area, odds, given.said, constants);
         let mask = claim.plane(look);
         let centre = centre_of(&mask).unwrap_or(centre);
-        let whole = Whole::new(&mask, look, centre);
+        let whole = Whole::new(&mask, look, centre, !partly);
         self.arrive(look, given, Front { mask, centre, whole }, [partly, true], constants);
         claim
     }
@@ -233,7 +233,14 @@ impl Sweep {
     }
 
     /// Goes on from a frame. It learns its labels there if it `knows_little` of them.
-    fn arrive(&mut self, look: &Look, given: &Given<'_>, front: Front, [knows_little, begins]: [bool; 2], constants: &Constants) {
+    fn arrive(
+        &mut self,
+        look: &Look,
+        given: &Given<'_>,
+        front: Front,
+        [knows_little, begins]: [bool; 2],
+        constants: &Constants,
+    ) {
         // Of an object that is partly hidden it would learn what hides it.
         if let Some(memory) = self.memory.as_mut().filter(|_| front.whole.now) {
             memory.fade(constants.decay);
@@ -305,8 +312,11 @@ fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Said]>, consta
         })
         .collect();
     let area = look.area();
-    let mask =
-        if said.contains(&Said::Nothing) { cut(look, &area, &odds, constants) } else { odds.iter().map(|&z| u8::from(z > 0.0)).collect() };
+    let mask = if said.contains(&Said::Nothing) {
+        cut(look, &area, &odds, constants)
+    } else {
+        odds.iter().map(|&z| u8::from(z > 0.0)).collect()
+    };
     Claim { area, odds, mask }
 }
 

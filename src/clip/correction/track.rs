@@ -62,7 +62,13 @@ impl Track {
     }
 
     /// What is expected of the object in a frame, if the sweep has begun.
-    pub(super) fn expect(&mut self, way: Way, look: &Look, given: &Given<'_>, constants: &Constants) -> Option<Expected> {
+    pub(super) fn expect(
+        &mut self,
+        way: Way,
+        look: &Look,
+        given: &Given<'_>,
+        constants: &Constants,
+    ) -> Option<Expected> {
         self.sweep(way).expect(look, given, constants)
     }
 

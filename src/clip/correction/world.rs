@@ -30,7 +30,14 @@ impl World {
     }
 
     /// The claims of a frame.
-    pub(super) fn visit(&mut self, t: usize, way: Way, look: &Look, known: &Known<'_>, constants: &Constants) -> Vec<(u8, Option<Claim>)> {
+    pub(super) fn visit(
+        &mut self,
+        t: usize,
+        way: Way,
+        look: &Look,
+        known: &Known<'_>,
+        constants: &Constants,
+    ) -> Vec<(u8, Option<Claim>)> {
         let said: Vec<Option<Vec<Said>>> =
             self.tracks.iter().map(|track| known.said.map(|(said, _)| of_object(said, track.number))).collect();
         let given: Vec<Given<'_>> = self
@@ -45,8 +52,12 @@ impl World {
                 flows: known.flows,
             })
             .collect();
-        let mut expected: Vec<Option<Expected>> =
-            self.tracks.iter_mut().zip(&given).map(|(track, given)| track.expect(way, look, given, constants)).collect();
+        let mut expected: Vec<Option<Expected>> = self
+            .tracks
+            .iter_mut()
+            .zip(&given)
+            .map(|(track, given)| track.expect(way, look, given, constants))
+            .collect();
         compete(&mut expected, look.size[0]);
         let again = way == Way::Forward && self.first(Way::Backward).is_some_and(|last| t < last);
         let mut claims = Vec::new();
