@@ -4,6 +4,7 @@
 #[allow(dead_code, reason = "the clip benchmark uses the rest")]
 mod cases;
 mod dump;
+mod fit;
 mod measure;
 mod objects;
 mod overlap;
@@ -37,6 +38,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   measure        real clips with masks of one object: a line of figures for each, then means; writes measure.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
   page           writes annotating.md from these figures
+  fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
   --data DIR         folder of the real clips; default ../shared/data/clips
   --only A,B         only clips whose name contains one of these
@@ -51,6 +53,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
 
 pub(crate) type Failure = Box<dyn Error + Send + Sync>;
 
+#[derive(Clone)]
 pub(crate) struct Options {
     step: String,
     data: PathBuf,
@@ -87,7 +90,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "objects" | "page" => options.step = name,
+            "frames" | "measure" | "objects" | "page" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -113,7 +116,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, objects or page.".into()),
+        true => Err("Say which step: frames, measure, objects, page or fit.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -137,6 +140,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             return Ok(());
         }
         "page" => return write_page(options),
+        "fit" => return fit::run(&options.real()?, options),
         "objects" => {
             let cases = options.chosen(objects::cases());
             objects::table(&options.on_all(&cases, |case| objects::measure(case, options))?, false)
