@@ -169,28 +169,28 @@ impl ClipCorrection {
         let [first, last] = self.scene;
         let values = said.values();
         let says = values.iter().any(|&label| label != NOTHING_SAID);
-        let mut touched: Vec<u8> = values.iter().copied().filter(|&label| label > 0 && label != NOTHING_SAID).collect();
+        let mut touched = [false; 256];
+        let mut touch = |number: u8| touched[usize::from(number)] = true;
+        values.iter().for_each(|&label| touch(label));
         let persons = clip.persons();
         let now = clip.layered(self.index, frame.luminance());
         let mut loses = [false; 256];
         for (&said, &now) in values.iter().zip(&now) {
             loses[usize::from(now)] |= said != NOTHING_SAID && said != now;
         }
-        let takes = |person: &u8| loses[usize::from(*person)] && !clip.locked[usize::from(*person)];
-        let takes_from: Vec<u8> = persons.into_iter().filter(takes).collect();
-        touched.extend(&takes_from);
+        let takes = |k: &u8| persons[usize::from(*k)] && loses[usize::from(*k)] && !clip.locked[usize::from(*k)];
+        let takes_from: Vec<u8> = (1..NOTHING_SAID).filter(takes).collect();
+        takes_from.iter().for_each(|&number| touch(number));
         if let Some(before) = &clip.frames[self.index].said {
-            touched.extend(before.speaks_of.iter().chain(&before.takes_from));
+            before.speaks_of.iter().chain(&before.takes_from).for_each(|&number| touch(number));
         }
         let starts_before: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
         clip.frames[self.index].said =
             says.then_some(SaidFrame { labels: said, spread, speaks_of: Vec::new(), takes_from });
         self.speak(clip);
         let starts: Vec<Vec<Start>> = (0..NOTHING_SAID).map(|number| self.starts(clip, number)).collect();
-        touched.extend((1..NOTHING_SAID).filter(|&n| starts[usize::from(n)] != starts_before[usize::from(n)]));
-        touched.sort_unstable();
-        touched.dedup();
-        for &number in &touched {
+        let is_touched = |k: &u8| touched[usize::from(*k)] || starts[usize::from(*k)] != starts_before[usize::from(*k)];
+        for number in (1..NOTHING_SAID).filter(is_touched) {
             let frames: Vec<usize> = starts[usize::from(number)].iter().map(|(t, _)| *t).collect();
             let of_these = |world: &&mut World| {
                 world.decides.first().is_some_and(|&other| starts[usize::from(other)] == starts[usize::from(number)])
@@ -370,12 +370,12 @@ impl ClipCorrection {
         let decided = |label: u8| claims.iter().any(|(number, _)| *number == label);
         let persons = clip.persons();
         // The objects of a person that the correction is not about keep what they have.
-        let mut held: Vec<bool> = labels.iter().map(|&label| persons.contains(&label) && !decided(label)).collect();
+        let mut held: Vec<bool> = labels.iter().map(|&label| persons[usize::from(label)] && !decided(label)).collect();
         labels.iter_mut().zip(&held).filter(|(_, held)| !**held).for_each(|(label, _)| *label = NOTHING_SAID);
         if clip.locked.contains(&true) {
             let found = clip.found_full(t, frame.luminance());
             for (held, &label) in held.iter_mut().zip(&found) {
-                *held |= clip.locked[usize::from(label)] && !persons.contains(&label);
+                *held |= clip.locked[usize::from(label)] && !persons[usize::from(label)];
             }
         }
         let mut best = vec![0.0f32; width * height];

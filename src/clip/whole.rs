@@ -319,7 +319,7 @@ impl SegmentedClip {
         let state = &self.frames[index];
         let persons = self.persons();
         // What a layer must tell apart keeps its number until then.
-        let is_persons = |label: u8| persons.contains(&label);
+        let is_persons = |label: u8| persons[usize::from(label)];
         let given = |label: u8| match self.numbers[usize::from(label)] {
             number if is_persons(label) || is_persons(number) => label,
             number => number,
@@ -371,7 +371,7 @@ impl SegmentedClip {
     }
 
     /// Full-size labels with the layer of a frame over them, by the `number` of each.
-    fn overlaid(&self, index: usize, found: &[u8], persons: &[u8], number: &dyn Fn(u8) -> u8) -> Vec<u8> {
+    fn overlaid(&self, index: usize, found: &[u8], persons: &Numbers, number: &dyn Fn(u8) -> u8) -> Vec<u8> {
         let layer = self.frames[index].layer.as_ref().map(|layer| layer.labels.values());
         let above = |p: usize| {
             let label = layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]);
@@ -387,7 +387,7 @@ impl SegmentedClip {
         }
         let below = |label: u8| {
             let [all, taken] = sizes[usize::from(label)];
-            let yields = persons.contains(&label) || 2 * taken > all && !self.locked[usize::from(label)];
+            let yields = persons[usize::from(label)] || 2 * taken > all && !self.locked[usize::from(label)];
             if yields { 0 } else { number(label) }
         };
         let shown = |p: usize| match above(p) {
@@ -398,15 +398,11 @@ impl SegmentedClip {
     }
 
     /// Numbers of the objects that a person has spoken of.
-    pub(super) fn persons(&self) -> Vec<u8> {
-        let mut persons: Vec<u8> = self
-            .frames
-            .iter()
-            .filter_map(|frame| frame.said.as_ref())
-            .flat_map(|said| said.speaks_of.clone())
-            .collect();
-        persons.sort_unstable();
-        persons.dedup();
+    pub(super) fn persons(&self) -> Numbers {
+        let mut persons = [false; 256];
+        for said in self.frames.iter().filter_map(|frame| frame.said.as_ref()) {
+            said.speaks_of.iter().for_each(|&label| persons[usize::from(label)] = true);
+        }
         persons
     }
 
@@ -438,10 +434,10 @@ impl SegmentedClip {
             is_found[usize::from(label)] = true;
         }
         let objects = 1..NOTHING_SAID;
-        let is_taken = |k: &u8| is_found[usize::from(*k)] || persons.contains(k) || numbers.contains(k);
+        let is_taken = |k: &u8| is_found[usize::from(*k)] || persons[usize::from(*k)] || numbers.contains(k);
         let mut free = objects.clone().filter(|k| !is_taken(k));
         let mut now: Vec<u8> = (0..=NOTHING_SAID).collect();
-        for k in objects.clone().filter(|k| numbers.contains(k) && !persons.contains(k)) {
+        for k in objects.clone().filter(|k| numbers.contains(k) && !persons[usize::from(*k)]) {
             let old = usize::from(k);
             let number = std::mem::replace(&mut self.numbers[old], k);
             if is_found[old] {
@@ -577,6 +573,8 @@ impl SegmentedClip {
 
 /// Odds where something that was found is no object any more, nats.
 const FREED: f32 = 4.0;
+/// A set of numbers of objects.
+pub(super) type Numbers = [bool; 256];
 /// The label of a pixel of which a correction says nothing.
 pub(super) const NOTHING_SAID: u8 = u8::MAX;
 

@@ -34,11 +34,11 @@ fn between(table: &[f32], at: f32) -> f32 {
 }
 
 fn linear(value: f32) -> f32 {
-    if value <= 0.040_45 { value / 12.92 } else { libm::powf((value + 0.055) / 1.055, 2.4) }
+    if value <= 0.040_45 { value / 12.92 } else { libm::expf(2.4 * libm::logf((value + 0.055) / 1.055)) }
 }
 
 fn root(value: f32) -> f32 {
-    if value > 0.008_856 { libm::cbrtf(value) } else { 7.787 * value + 16.0 / 116.0 }
+    if value > 0.008_856 { libm::expf(libm::logf(value) / 3.0) } else { 7.787 * value + 16.0 / 116.0 }
 }
 
 #[cfg(test)]

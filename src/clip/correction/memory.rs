@@ -89,7 +89,7 @@ impl Memory {
     /// Place of pixel (x, y) in cells, for an object with the given centre.
     fn at(&self, x: usize, y: usize, centre: [f32; 2]) -> [f32; 2] {
         let place = |at: usize, centre: f32, size: usize| {
-            ((at as f32 - centre) / self.cell + 0.5 * (size - 1) as f32).clamp(0.0, size as f32 - 1.001)
+            ((at as f32 - centre) / self.cell + 0.5 * (size - 1) as f32).max(0.0).min(size as f32 - 1.001)
         };
         [place(x, centre[0], self.size[0]), place(y, centre[1], self.size[1])]
     }
