@@ -1,13 +1,12 @@
 //! Fits the constants of the propagation on half of the clips and reports them on the other half, and the other way round.
 
-use std::path::PathBuf;
-
 use veronese::clip::{propagation_constants, vary_propagation};
 
-use crate::cases::Case;
+use crate::cases::{Case, Data};
 use crate::measure;
 use crate::overlap::mean;
 use crate::parallel::in_parallel;
+use crate::session::Session;
 use crate::{Failure, Options};
 
 /// Factors that a constant is tried with, one constant after another.
@@ -15,27 +14,34 @@ const FACTORS: [f32; 2] = [1.25, 0.8];
 /// Gain of a factor below which the constant stays: chance.
 const LEAST: f64 = 0.0005;
 
+/// A clip that is segmented.
+struct Opened<'a> {
+    case: &'a Case,
+    data: &'a Data,
+    session: Session<'a>,
+}
+
 /// Mean J of a mask given and of one round of strokes.
-fn score(cases: &[&Case], options: &Options, constants: [f32; 10]) -> Result<f64, Failure> {
-    let of_clip = |case: &&Case| {
+fn score(clips: &[&Opened<'_>], options: &Options, constants: [f32; 10]) -> Result<f64, Failure> {
+    let of_clip = |clip: &&Opened<'_>| {
         vary_propagation(constants);
-        let row = measure::measure(case, options)?;
+        let row = measure::figures_of(clip.case, clip.data, clip.session.clone(), options)?;
         Ok(0.5 * (row.mask + row.rounds[1]))
     };
-    Ok(mean(&in_parallel(cases, of_clip)?))
+    Ok(mean(&in_parallel(clips, of_clip)?))
 }
 
 /// The constants fitted to some clips, with their score there.
-fn fitted(cases: &[&Case], options: &Options) -> Result<([f32; 10], f64), Failure> {
+fn fitted(clips: &[&Opened<'_>], options: &Options) -> Result<([f32; 10], f64), Failure> {
     let mut constants = options.constants;
-    let mut best = score(cases, options, constants)?;
+    let mut best = score(clips, options, constants)?;
     for (k, (name, _)) in propagation_constants().into_iter().enumerate() {
         for factor in FACTORS {
             let mut others = constants;
             // On in the same direction while that helps.
             loop {
                 others[k] *= factor;
-                let now = score(cases, options, others)?;
+                let now = score(clips, options, others)?;
                 println!("{name} {:.4}: {now:.4}", others[k]);
                 if now < best + LEAST {
                     break;
@@ -48,21 +54,19 @@ fn fitted(cases: &[&Case], options: &Options) -> Result<([f32; 10], f64), Failur
 }
 
 pub(crate) fn run(cases: &[Case], options: &Options) -> Result<(), Failure> {
-    let options = Options { rounds: 1, dump: None, out: PathBuf::from(&options.out), ..options.clone() };
+    let options = Options { rounds: 1, dump: None, ..options.clone() };
+    let data = in_parallel(cases, Case::load)?;
+    let cases: Vec<(&Case, &Data)> = cases.iter().zip(&data).collect();
+    let clips =
+        in_parallel(&cases, |&(case, data)| Ok(Opened { case, data, session: measure::open(case, data, &options)? }))?;
     for held_out in 0..2 {
-        let fold =
-            |own: bool| cases.iter().enumerate().filter(move |(k, _)| (k % 2 == held_out) != own).map(|(_, case)| case);
-        let [own, other] = [true, false].map(|own| fold(own).collect::<Vec<_>>());
+        let half = |k: usize| clips.iter().skip(k).step_by(2).collect::<Vec<_>>();
+        let (own, other) = (half(1 - held_out), half(held_out));
         let before = [score(&own, &options, options.constants)?, score(&other, &options, options.constants)?];
         let (constants, fitted) = fitted(&own, &options)?;
         let after = score(&other, &options, constants)?;
-        println!(
-            "\nfitted to {} clips: {:.4} → {fitted:.4}; on the {} others {:.4} → {after:.4}",
-            own.len(),
-            before[0],
-            other.len(),
-            before[1]
-        );
+        println!("\nfitted to {} clips: {:.4} → {fitted:.4}", own.len(), before[0]);
+        println!("on the {} others: {:.4} → {after:.4}", other.len(), before[1]);
         for ((name, old), new) in propagation_constants().into_iter().zip(constants) {
             println!("  {name} {old} → {new:.4}");
         }

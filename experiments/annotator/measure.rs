@@ -44,11 +44,21 @@ pub(crate) struct Row {
 /// All figures of a clip.
 pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let data = case.load()?;
+    let automatic = open(case, &data, options)?;
+    figures_of(case, &data, automatic, options)
+}
+
+/// The clip as it is segmented when nothing is said.
+pub(crate) fn open<'a>(case: &Case, data: &'a Data, options: &Options) -> Result<Session<'a>, Failure> {
+    Session::open(&data.frames, options.quality, &options.pairs(case))
+}
+
+/// All figures of a clip that is segmented.
+pub(crate) fn figures_of(case: &Case, data: &Data, automatic: Session<'_>, options: &Options) -> Result<Row, Failure> {
     let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
     let truths: Vec<Vec<bool>> = data.truths.iter().map(|truth| of_label(truth, 1)).collect();
     let (count, pixels) = (truths.len(), truths[0].len());
-    let automatic = Session::open(&data.frames, options.quality, &options.pairs(case))?;
-    dump::write(options, case, "auto", &data, &automatic.labels)?;
+    dump::write(options, case, "auto", data, &automatic.labels)?;
 
     let mut areas = [0usize; 256];
     automatic.labels.iter().flatten().for_each(|&label| areas[usize::from(label)] += 1);
@@ -66,7 +76,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let given: Vec<u8> = truths[0].iter().map(|&object| if object { GIVEN } else { 0 }).collect();
     session.correct(0, &given)?;
     let mask = between(&masks(&session.labels, GIVEN), &truths);
-    dump::write(options, case, "mask", &data, &session.labels)?;
+    dump::write(options, case, "mask", data, &session.labels)?;
     let mut effort = session.effort;
 
     let mut session = automatic;
@@ -81,11 +91,11 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
         session.correct(worst, said)?;
         round_seconds.push((session.effort.time - before).as_secs_f64());
         rounds.push(mean(&each(&masks(&session.labels, label), &truths)));
-        dump::write(options, case, &format!("round-{round}"), &data, &session.labels)?;
+        dump::write(options, case, &format!("round-{round}"), data, &session.labels)?;
     }
     effort.time += session.effort.time;
     effort.frames += session.effort.frames;
-    let baseline = baseline(case, &data, options, &truths)?;
+    let baseline = baseline(case, data, options, &truths)?;
     let (clip, quality, frame_milliseconds) = (case.name.clone(), options.quality_name().into(), effort.per_frame());
     Ok(Row { clip, quality, frames: count, auto, click, mask, rounds, round_seconds, frame_milliseconds, baseline })
 }
