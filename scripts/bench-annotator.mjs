@@ -1,4 +1,5 @@
-// npm run bench:annotator: scores what an annotator gets for what he says of a clip; `-- --help` lists the options.
+// npm run bench:annotator: scores what an annotator gets for what he says of a clip; `-- --help` lists the options, `-- fit`
+// fits the constants.
 // First OpenCV's baseline runs on the real clips, then the program measures them and generated clips, and writes the page.
 
 import { rmSync } from 'node:fs';
@@ -14,6 +15,7 @@ const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,
 await command(async (args) => {
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
   await checkRust();
+  if (args.includes('fit')) return (await run('cargo', [...CARGO, ...args])).code;
   const place = args.indexOf('--out');
   const out = resolve(root, place < 0 ? 'out/annotator' : args[place + 1]);
   // What pairs of frames told is kept from run to run, but the page must not be of another version.

@@ -1,5 +1,7 @@
 //! Fits the constants of the propagation on half of the clips and reports them on the other half, and the other way round.
 
+use std::fs;
+
 use veronese::clip::{propagation_constants, vary_propagation};
 
 use crate::cases::{Case, Data};
@@ -59,17 +61,28 @@ pub(crate) fn run(cases: &[Case], options: &Options) -> Result<(), Failure> {
     let cases: Vec<(&Case, &Data)> = cases.iter().zip(&data).collect();
     let clips =
         in_parallel(&cases, |&(case, data)| Ok(Opened { case, data, session: measure::open(case, data, &options)? }))?;
-    for held_out in 0..2 {
+    let mut text = String::from("| constant | used |");
+    let mut rows: Vec<String> =
+        propagation_constants().iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
+    let mut scores = String::new();
+    for (held_out, fold) in ["first", "second"].into_iter().enumerate() {
         let half = |k: usize| clips.iter().skip(k).step_by(2).collect::<Vec<_>>();
         let (own, other) = (half(1 - held_out), half(held_out));
         let before = [score(&own, &options, options.constants)?, score(&other, &options, options.constants)?];
         let (constants, fitted) = fitted(&own, &options)?;
         let after = score(&other, &options, constants)?;
-        println!("\nfitted to {} clips: {:.4} → {fitted:.4}", own.len(), before[0]);
-        println!("on the {} others: {:.4} → {after:.4}", other.len(), before[1]);
-        for ((name, old), new) in propagation_constants().into_iter().zip(constants) {
-            println!("  {name} {old} → {new:.4}");
-        }
+        text += &format!(" fitted without the {fold} half |");
+        rows.iter_mut().zip(constants).for_each(|(row, value)| *row += &format!(" {value:.3} |"));
+        scores += &format!(
+            "- without the {fold} half: {:.3} → {fitted:.3} on the {} clips fitted to, {:.3} → {after:.3} on the {} held out\n",
+            before[0],
+            own.len(),
+            before[1],
+            other.len()
+        );
     }
+    text += &format!("\n{}\n{}\n\n{scores}", "|---".repeat(4) + "|", rows.join("\n"));
+    print!("\n{text}");
+    fs::write(options.out.join("fit.md"), text)?;
     Ok(())
 }

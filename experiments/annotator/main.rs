@@ -157,7 +157,8 @@ fn docs() -> PathBuf {
 
 fn write_page(options: &Options) -> Result<(), Failure> {
     let (real, generated) = (rows::<measure::Row>(options, "measure")?, rows::<objects::Row>(options, "objects")?);
-    let text = sealed::sealed(&page::text(&real, &generated));
+    let fit = fs::read_to_string(options.out.join("fit.md")).ok();
+    let text = sealed::sealed(&page::text(&real, &generated, fit.as_deref()));
     fs::write(options.out.join("annotating.md"), &text)?;
     if options.write_docs {
         if real.is_empty() || generated.len() < objects::cases().len() {
