@@ -4,91 +4,15 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
+mod support;
+
+use support::moving::{
+    Thing, carrier, correct, frames_of, mask, moving_and_resting, one_number, options, scene, thing, whole,
+};
 use veronese::clip::{
     ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
 };
-use veronese::{Error, Frame, MotionCount, Quality, Random, SegmentOptions};
-
-const SIZE: [usize; 2] = [160, 120];
-
-/// A texture: smooth noise in colour, sampled between its pixels.
-struct Texture(Vec<[f32; 3]>);
-
-impl Texture {
-    const SIDE: usize = 64;
-
-    fn new(seed: u64) -> Texture {
-        let mut random = Random::from_seed(seed);
-        let base: [f64; 3] = std::array::from_fn(|_| random.uniform(60.0, 190.0));
-        let pixel = |_| std::array::from_fn(|c| (base[c] + 45.0 * random.uniform(-1.0, 1.0)) as f32);
-        Texture((0..Self::SIDE * Self::SIDE).map(pixel).collect())
-    }
-
-    fn at(&self, x: f32, y: f32) -> [f32; 3] {
-        // Two pixels of the frame for one of the texture: smooth enough for sub-pixel motion.
-        let (x, y) = (0.5 * x + 640.0, 0.5 * y + 640.0);
-        let pixel_of = |i: usize, j: usize| self.0[(j % Self::SIDE) * Self::SIDE + i % Self::SIDE];
-        let (i, j, f, g) = (x as usize, y as usize, x.fract(), y.fract());
-        let (a, b, c, d) = (pixel_of(i, j), pixel_of(i + 1, j), pixel_of(i, j + 1), pixel_of(i + 1, j + 1));
-        std::array::from_fn(|k| (1.0 - g) * ((1.0 - f) * a[k] + f * b[k]) + g * ((1.0 - f) * c[k] + f * d[k]))
-    }
-}
-
-/// A box with its own texture. Later boxes cover earlier ones.
-struct Thing {
-    texture: Texture,
-    size: [f32; 2],
-    /// Upper left corner in each frame.
-    place: fn(usize) -> [f32; 2],
-}
-
-impl Thing {
-    fn covers(&self, t: usize, x: usize, y: usize) -> bool {
-        let [left, top] = (self.place)(t);
-        let (u, v) = (x as f32 - left, y as f32 - top);
-        (0.0..self.size[0]).contains(&u) && (0.0..self.size[1]).contains(&v)
-    }
-}
-
-fn thing(seed: u64, size: [f32; 2], place: fn(usize) -> [f32; 2]) -> Thing {
-    Thing { texture: Texture::new(seed), size, place }
-}
-
-/// A frame of a scene, and which thing (from 1) is seen at each pixel.
-fn frame(ground: u64, things: &[Thing], t: usize) -> (Frame, Vec<usize>) {
-    let ground = Texture::new(ground);
-    let (mut rgba, mut truth) = (Vec::new(), Vec::new());
-    for y in 0..SIZE[1] {
-        for x in 0..SIZE[0] {
-            let seen = things.iter().rposition(|thing| thing.covers(t, x, y));
-            let colour = match seen {
-                Some(k) => {
-                    let [left, top] = (things[k].place)(t);
-                    things[k].texture.at(x as f32 - left, y as f32 - top)
-                }
-                None => ground.at(x as f32, y as f32),
-            };
-            rgba.extend(colour.map(|c| c.clamp(0.0, 255.0) as u8));
-            rgba.push(255);
-            truth.push(seen.map_or(0, |k| k + 1));
-        }
-    }
-    (Frame::from_rgba(SIZE[0], SIZE[1], rgba).unwrap(), truth)
-}
-
-fn options(quality: Quality, look_ahead: Option<usize>) -> ClipOptions {
-    ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead }
-}
-
-fn whole(frames: &[Frame], options: ClipOptions) -> SegmentedClip {
-    let mut segmenter = ClipSegmenter::new(options).unwrap();
-    frames.iter().for_each(|frame| drop(segmenter.push(frame.clone()).unwrap()));
-    segmenter.conclude()
-}
-
-fn frames_of(clip: &SegmentedClip, frames: &[Frame]) -> Vec<ClipFrame> {
-    frames.iter().enumerate().map(|(t, frame)| clip.frame(t, frame).unwrap()).collect()
-}
+use veronese::{Error, Frame, MotionCount, Quality, SegmentOptions};
 
 /// As a stream if there is a look-ahead.
 fn segment(frames: &[Frame], options: ClipOptions) -> Vec<ClipFrame> {
@@ -110,34 +34,6 @@ fn segment(frames: &[Frame], options: ClipOptions) -> Vec<ClipFrame> {
         assert!(frame.labels.iter().all(known));
     }
     done
-}
-
-/// The label that most pixels of a thing have in a frame, and the IoU of both; none where less than 40 pixels of it are in sight.
-fn carrier(labels: &[u8], truth: &[usize], thing: usize) -> Option<(u8, f64)> {
-    let of_thing: Vec<usize> = (0..truth.len()).filter(|&p| truth[p] == thing).collect();
-    if of_thing.len() < 40 {
-        return None;
-    }
-    let count = |label: u8| of_thing.iter().filter(|&&p| labels[p] == label).count();
-    let label = (0..=255u8).max_by_key(|&label| count(label)).unwrap();
-    let all = labels.iter().filter(|&&l| l == label).count();
-    Some((label, count(label) as f64 / (of_thing.len() + all - count(label)) as f64))
-}
-
-/// Asserts that a thing has one number, which is not that of the background, in the frames asked for; returns it.
-fn one_number(done: &[ClipFrame], truths: &[Vec<usize>], thing: usize, frames: std::ops::Range<usize>) -> u8 {
-    let carriers: Vec<(usize, u8, f64)> = frames
-        .filter_map(|t| carrier(&done[t].labels, &truths[t], thing).map(|(label, iou)| (t, label, iou)))
-        .collect();
-    let number = carriers[0].1;
-    assert!(number != 0 && carriers.iter().all(|c| c.1 == number), "thing {thing}: {carriers:?}");
-    let mean = carriers.iter().map(|c| c.2).sum::<f64>() / carriers.len() as f64;
-    assert!(mean > 0.75, "thing {thing}: {carriers:?}");
-    number
-}
-
-fn scene(ground: u64, things: &[Thing], count: usize) -> (Vec<Frame>, Vec<Vec<usize>>) {
-    (0..count).map(|t| frame(ground, things, t)).unzip()
 }
 
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
@@ -312,117 +208,11 @@ fn mistakes_have_a_code_and_the_clip_goes_on() {
     assert_eq!(correction.wanted(), Some(0), "it waits for the right frame");
 }
 
-/// Corrects a frame; returns the frames that have changed.
-fn correct(clip: &mut SegmentedClip, frames: &[Frame], index: usize, labels: &[u8]) -> Vec<usize> {
-    let mut correction = clip.correct(index, labels, Spread::Both).unwrap();
-    while let Some(wanted) = correction.wanted() {
-        correction.take(clip, &frames[wanted]).unwrap();
-    }
-    correction.changed().to_vec()
-}
-
-/// A box that moves before, between and after frames in which it rests, and one that always rests.
-fn in_order(mut indices: Vec<usize>) -> Vec<usize> {
-    indices.sort_unstable();
-    indices
-}
-
-fn moving_and_resting() -> (Vec<Frame>, Vec<Vec<usize>>) {
-    let things = [thing(2, [34.0, 30.0], |t| [10.0 + 4.0 * t as f32, 20.0]), thing(3, [40.0, 26.0], |_| [90.0, 80.0])];
-    scene(1, &things, 12)
-}
-
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
-#[test]
-fn a_corrected_mask_holds_and_spreads_both_ways() {
-    let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
-    let before = frames_of(&clip, &frames);
-    assert_eq!(carrier(&before[5].labels, &truths[5], 2).unwrap().0, 0, "what rests is background");
-    let moving = one_number(&before, &truths, 1, 0..12);
-
-    let mask: Vec<u8> = truths[5].iter().map(|&t| [0, moving, 9][t]).collect();
-    let changed = correct(&mut clip, &frames, 5, &mask);
-    assert!(changed.len() > 8, "{changed:?}");
-    let after = frames_of(&clip, &frames);
-    assert_eq!(after[5].labels, mask, "the mask holds to the pixel");
-    assert_eq!(one_number(&after, &truths, 2, 1..11), 9);
-    assert_eq!(one_number(&after, &truths, 1, 0..12), moving);
-
-    // Nothing said in the same frame takes it all back.
-    let restored = correct(&mut clip, &frames, 5, &[255; 160 * 120]);
-    assert_eq!(in_order(restored), in_order(changed));
-    for (restored, before) in frames_of(&clip, &frames).iter().zip(&before) {
-        assert_eq!(restored.labels, before.labels);
-    }
-}
-
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
-#[test]
-fn a_stroke_takes_the_region_around_it_along() {
-    let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
-    let stroke = |p: usize| (95..125).contains(&(p % SIZE[0])) && (88..96).contains(&(p / SIZE[0]));
-    let ground = |p: usize| p / SIZE[0] == 116 || p / SIZE[0] == 72 || p % SIZE[0] == 84 || p % SIZE[0] == 138;
-    let said = |p: usize| {
-        if stroke(p) {
-            7
-        } else if ground(p) {
-            0
-        } else {
-            255
-        }
-    };
-    correct(&mut clip, &frames, 6, &(0..SIZE[0] * SIZE[1]).map(said).collect::<Vec<u8>>());
-    let done = frames_of(&clip, &frames);
-    for t in [3, 6, 9] {
-        let (label, iou) = carrier(&done[t].labels, &truths[t], 2).unwrap();
-        assert!(label == 7 && iou > 0.6, "frame {t}: {label}, {iou}");
-    }
-}
-
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
-#[test]
-fn a_new_number_of_an_object_lasts() {
-    let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
-    let mask: Vec<u8> = truths[2].iter().map(|&t| if t == 1 { 40 } else { 255 }).collect();
-    correct(&mut clip, &frames, 2, &mask);
-    assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 40);
-}
-
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
-#[test]
-fn objects_can_be_merged_and_removed() {
-    let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
-    let resting: Vec<u8> = truths[5].iter().map(|&t| if t == 2 { 30 } else { 255 }).collect();
-    correct(&mut clip, &frames, 5, &resting);
-    let moving = one_number(&frames_of(&clip, &frames), &truths, 1, 0..12);
-    let all: Vec<usize> = (0..12).collect();
-    let with_resting = clip.frames_with(30);
-    assert!(clip.frames_with(moving) == all && with_resting.contains(&5));
-    for (object, number) in [(moving, 31), (31, moving), (31, 0), (31, 32)] {
-        assert!(clip.renumber(object, number).unwrap().is_empty(), "no object has the number 31 or 32");
-    }
-    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (all.clone(), with_resting));
-    assert_eq!(clip.renumber(moving, 30).unwrap(), all);
-    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (vec![], all.clone()));
-    let merged = frames_of(&clip, &frames);
-    assert!(merged.iter().all(|frame| frame.objects.iter().map(|object| object.id).eq([30])));
-    assert!(merged[5].labels.iter().zip(&truths[5]).all(|(&label, &thing)| thing != 2 || label == 30));
-    assert_eq!(clip.renumber(30, 0).unwrap(), all);
-    assert!(
-        frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label != moving && label != 30))
-    );
-}
-
 #[test]
 fn a_saved_clip_is_the_same_and_a_damaged_one_is_refused() {
     let (frames, truths) = moving_and_resting();
     let mut clip = whole(&frames, options(Quality::Fast, None));
-    let mask: Vec<u8> = truths[5].iter().map(|&t| if t == 2 { 9 } else { 255 }).collect();
-    correct(&mut clip, &frames, 5, &mask);
+    correct(&mut clip, &frames, 5, &mask(&truths[5], &[(2, 9)]));
     let bytes = clip.to_bytes();
     let again = SegmentedClip::from_bytes(&bytes).unwrap();
     for (one, other) in frames_of(&clip, &frames).iter().zip(frames_of(&again, &frames)) {
@@ -432,12 +222,12 @@ fn a_saved_clip_is_the_same_and_a_damaged_one_is_refused() {
         assert!(matches!(SegmentedClip::from_bytes(bytes), Err(Error::InvalidOption { name: "state", .. })));
     };
     damaged(&bytes).iter().for_each(|damaged| refused(damaged));
-    let old = [b"VERCLIP2", &bytes[MARK..bytes.len() - 8]].concat();
+    let old = [b"VERCLIP3", &bytes[MARK..bytes.len() - 8]].concat();
     assert!(SegmentedClip::from_bytes(&old).unwrap_err().to_string().contains("not of this version"));
 }
 
 /// Length of the mark before what is kept.
-const MARK: usize = concat!("VERCLIP3 ", env!("CARGO_PKG_VERSION"), "\n").len();
+const MARK: usize = concat!("VERCLIP4 ", env!("CARGO_PKG_VERSION"), "\n").len();
 
 /// Bytes with one bit changed, cut off, left out, added.
 fn damaged(bytes: &[u8]) -> Vec<Vec<u8>> {
@@ -557,43 +347,4 @@ fn the_same_bits_on_every_target() {
         hash
     };
     assert_eq!([hash(None), hash(Some(1))], [4_489_319_569_541_349_816, 9_588_751_157_850_698_864]);
-}
-
-#[test]
-fn reserved_numbers_are_free_for_objects_of_a_person() {
-    let (frames, truths) = moving_and_resting();
-    let mut clip = whole(&frames, options(Quality::Fast, None));
-    let found = frames_of(&clip, &frames);
-    let (number, _) = carrier(&found[3].labels, &truths[3], 1).unwrap();
-    let ids: Vec<u8> = (1..255).filter(|&id| !clip.frames_with(id).is_empty()).collect();
-    assert!(number != 0 && ids.contains(&number));
-    let in_frames = clip.frames_with(number);
-    // The lowest number that is neither found nor reserved.
-    let free = (1..255).find(|id| !ids.contains(id) && *id != 77).unwrap();
-    assert_eq!(clip.reserve(&[0, number, 77, 255, number]), in_frames);
-    assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], in_frames));
-    for (before, after) in found.iter().zip(frames_of(&clip, &frames)) {
-        let renumbered: Vec<u8> =
-            before.labels.iter().map(|&label| if label == number { free } else { label }).collect();
-        assert_eq!(after.labels, renumbered);
-    }
-    // A person's object has its number for good; what was found under it before has another.
-    let mask: Vec<u8> = truths[3].iter().map(|&t| if t == 2 { number } else { 255 }).collect();
-    correct(&mut clip, &frames, 3, &mask);
-    assert_eq!(clip.reserve(&[number]), Vec::<usize>::new());
-    assert!(clip.frames_with(number).contains(&3));
-    let said = clip.frame(3, &frames[3]).unwrap().labels;
-    assert!(mask.iter().zip(&said).all(|(&said, &label)| said != number || label == number));
-    // A number that was merged away or deleted before is a new one, and what was merged into it goes along.
-    let mut clip = whole(&frames, options(Quality::Fast, None));
-    clip.renumber(number, 0).unwrap();
-    clip.reserve(&[number]);
-    assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], vec![]));
-    correct(&mut clip, &frames, 3, &mask);
-    assert!(clip.frames_with(number).contains(&3));
-    // Where no number is left there is nothing to give.
-    let mut clip = whole(&frames, options(Quality::Fast, None));
-    clip.reserve(&(0..=255).collect::<Vec<u8>>());
-    assert_eq!(clip.dropped(), ids.len());
-    assert!(frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label == 0)));
 }

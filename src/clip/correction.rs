@@ -72,8 +72,9 @@ pub struct ClipCorrection {
     worlds: Vec<World>,
     /// The frame that is wanted, and what for.
     next: Option<(usize, Pass)>,
-    /// Frames that are still to be surveyed.
+    /// Frames that are still to be surveyed, and those that speak for themselves.
     survey: Vec<usize>,
+    alone: Vec<usize>,
     /// Whether the layer of each frame of the scene is up to date.
     done: Vec<bool>,
     /// What there was of each frame of the scene.
@@ -86,25 +87,22 @@ pub struct ClipCorrection {
 enum Pass {
     /// To learn what objects look like that were found automatically.
     Survey,
+    /// Because it speaks of an object, and no sweep comes to it.
+    Alone,
     Sweep(Way),
 }
 
 impl ClipCorrection {
     pub(super) fn new(clip: &SegmentedClip, index: usize, labels: &[u8], spread: Spread) -> ClipCorrection {
-        let (mut first, mut last) = (index, index);
-        while clip.frames[first].back.is_some() && first > 0 {
-            first -= 1;
-        }
-        while last + 1 < clip.len() && clip.frames[last + 1].back.is_some() {
-            last += 1;
-        }
+        let scene @ [first, last] = clip.scene(index);
         ClipCorrection {
             index,
             said: Some((Runs::of(labels), spread)),
-            scene: [first, last],
+            scene,
             worlds: Vec::new(),
             next: Some((index, Pass::Sweep(Way::Forward))),
             survey: Vec::new(),
+            alone: Vec::new(),
             done: vec![false; last + 1 - first],
             before: clip.frames[first..=last].iter().map(|frame| (frame.said.clone(), frame.layer.clone())).collect(),
             changed: Vec::new(),
@@ -141,8 +139,11 @@ impl ClipCorrection {
         let look = Look::new(frame);
         let mut is_wanted = true;
         if let Some((said, spread)) = self.said.take() {
+            let is_new = clip.frames[index].said.as_ref().is_none_or(|before| before.labels != said);
             self.begin(clip, frame, said, spread);
-            self.at_once(clip, frame, &look, &constants);
+            if is_new {
+                self.at_once(clip, frame, &look, &constants);
+            }
             self.next = self.after_survey();
             is_wanted = self.next == Some((index, pass));
         }
@@ -156,7 +157,15 @@ impl ClipCorrection {
                     .for_each(|track| track.survey(&look, &found, &constants));
                 self.next = self.after_survey();
             }
-            Pass::Sweep(way) => self.visit(clip, frame, &look, index, way, &constants),
+            Pass::Alone => {
+                // Nothing is followed yet.
+                self.visit(clip, frame, &look, index, Way::Backward, &constants);
+                self.next = self.after_survey();
+            }
+            Pass::Sweep(way) => {
+                self.visit(clip, frame, &look, index, way, &constants);
+                self.next = self.after(index, way);
+            }
         }
         if self.next.is_none() {
             self.finish(clip);
@@ -172,7 +181,7 @@ impl ClipCorrection {
         let mut touched = [false; 256];
         let mut touch = |number: u8| touched[usize::from(number)] = true;
         values.iter().for_each(|&label| touch(label));
-        let persons = clip.persons();
+        let persons = clip.persons_in(self.index);
         let now = clip.layered(self.index, frame.luminance());
         let mut loses = [false; 256];
         for (&said, &now) in values.iter().zip(&now) {
@@ -214,6 +223,10 @@ impl ClipCorrection {
         let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds_any(t, &is_followed)).collect();
         let count = there.len().min(SURVEYED);
         self.survey = (0..count).map(|k| there[k * there.len() / count]).collect();
+        let [forward, backward] = [Way::Forward, Way::Backward].map(|way| self.first(way));
+        let is_swept = |t: usize| forward.is_some_and(|from| t >= from) || backward.is_some_and(|from| t <= from);
+        let speaks = |t: usize| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.speaks(t));
+        self.alone = (first..=last).filter(|&t| speaks(t) && !is_swept(t)).collect();
     }
 
     /// The frames of the scene that speak of an object.
@@ -282,6 +295,9 @@ impl ClipCorrection {
         if let Some(t) = self.survey.pop() {
             return Some((t, Pass::Survey));
         }
+        if let Some(t) = self.alone.pop() {
+            return Some((t, Pass::Alone));
+        }
         let forward = self.first(Way::Forward).map(|t| (t, Pass::Sweep(Way::Forward)));
         forward.or(self.first(Way::Backward).map(|t| (t, Pass::Sweep(Way::Backward))))
     }
@@ -322,8 +338,14 @@ impl ClipCorrection {
             self.compose(clip, frame, look, t, &claims);
             self.done[t - first] = true;
         }
+    }
+
+    /// What comes after a frame of a sweep.
+    fn after(&self, t: usize, way: Way) -> Option<(usize, Pass)> {
+        let [first, last] = self.scene;
+        let furthest = self.first(Way::Backward);
         let backward = |t: usize| (t, Pass::Sweep(Way::Backward));
-        self.next = match way {
+        match way {
             Way::Backward => (t > first).then(|| backward(t - 1)),
             Way::Forward if t < last => Some((t + 1, Pass::Sweep(Way::Forward))),
             // The last frame that both sweeps need may have been composed on the way.
@@ -331,7 +353,7 @@ impl ClipCorrection {
                 true => (furthest > first).then(|| backward(furthest - 1)),
                 false => Some(backward(furthest)),
             }),
-        };
+        }
     }
 
     /// In frames that no sweep has come to, nothing is left of objects that nothing is said of any more.
@@ -368,7 +390,7 @@ impl ClipCorrection {
             None => Buffer::filled(width * height, NOTHING_SAID),
         };
         let decided = |label: u8| claims.iter().any(|(number, _)| *number == label);
-        let persons = clip.persons();
+        let persons = clip.persons_in(t);
         // The objects of a person that the correction is not about keep what they have.
         let mut held: Vec<bool> = labels.iter().map(|&label| persons[usize::from(label)] && !decided(label)).collect();
         labels.iter_mut().zip(&held).filter(|(_, held)| !**held).for_each(|(label, _)| *label = NOTHING_SAID);

@@ -317,7 +317,7 @@ impl SegmentedClip {
         self.check(index, frame)?;
         let _call = workspace::begin(self.size);
         let state = &self.frames[index];
-        let persons = self.persons();
+        let persons = self.persons_in(index);
         // What a layer must tell apart keeps its number until then.
         let is_persons = |label: u8| persons[usize::from(label)];
         let given = |label: u8| match self.numbers[usize::from(label)] {
@@ -339,13 +339,14 @@ impl SegmentedClip {
         let full = self.overlaid(index, &found, &persons, &|label| self.numbers[usize::from(label)]);
         let [w, h] = self.working_size();
         let step = self.size[0].div_ceil(w).next_power_of_two();
-        let layer = state.layer.as_ref().map(|layer| layer.odds.odds(w, h));
+        let layer = state.layer.as_ref().map(|layer| layer.odds.odds(w, h)).zip(self.above(index));
         for p in 0..w * h {
             let q = (p / w * step).min(self.size[1] - 1) * self.size[0] + (p % w * step).min(self.size[0] - 1);
             let odds = &mut odds.values_mut()[p];
-            let of_layer = layer.as_ref().map_or(0.0, |layer| layer.values()[p]);
-            if full[q] != found[q] || of_layer != 0.0 {
-                *odds = if full[q] > 0 { of_layer.max(0.0) } else { -of_layer.abs().max(FREED) };
+            match &layer {
+                Some((of_layer, above)) if above[q] != NOTHING_SAID => *odds = of_layer.values()[p],
+                _ if full[q] == 0 && found[q] > 0 => *odds = -FREED,
+                _ => {}
             }
             labels[p] = full[q];
         }
@@ -367,17 +368,13 @@ impl SegmentedClip {
 
     /// The labels of a frame with what persons say, without other numbers.
     pub(super) fn layered(&self, index: usize, luminance: &Plane) -> Vec<u8> {
-        self.overlaid(index, &self.found_full(index, luminance), &self.persons(), &|label| label)
+        self.overlaid(index, &self.found_full(index, luminance), &self.persons_in(index), &|label| label)
     }
 
     /// Full-size labels with the layer of a frame over them, by the `number` of each.
     fn overlaid(&self, index: usize, found: &[u8], persons: &Numbers, number: &dyn Fn(u8) -> u8) -> Vec<u8> {
-        let layer = self.frames[index].layer.as_ref().map(|layer| layer.labels.values());
-        let above = |p: usize| {
-            let label = layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]);
-            let gone = label > 0 && label != NOTHING_SAID && number(label) == 0;
-            if gone { NOTHING_SAID } else { label }
-        };
+        let layer = self.above(index);
+        let above = |p: usize| layer.as_ref().map_or(NOTHING_SAID, |layer| layer[p]);
         // What was found yields to a person's object that has most of it.
         let mut sizes = [[0usize; 2]; 256];
         for (p, &label) in found.iter().enumerate() {
@@ -397,8 +394,42 @@ impl SegmentedClip {
         (0..found.len()).map(shown).collect()
     }
 
+    /// The labels of the layer of a frame, if it has one. What was found shows again where objects of a person were deleted.
+    fn above(&self, index: usize) -> Option<Buffer<u8>> {
+        let is_gone = |label: u8| label > 0 && label != NOTHING_SAID && self.numbers[usize::from(label)] == 0;
+        let mut labels = self.frames[index].layer.as_ref()?.labels.values();
+        labels.iter_mut().filter(|label| is_gone(**label)).for_each(|label| *label = NOTHING_SAID);
+        Some(labels)
+    }
+
+    /// First and last frame of the scene of a frame.
+    pub(super) fn scene(&self, index: usize) -> [usize; 2] {
+        let (mut first, mut last) = (index, index);
+        while self.frames[first].back.is_some() && first > 0 {
+            first -= 1;
+        }
+        while last + 1 < self.len() && self.frames[last + 1].back.is_some() {
+            last += 1;
+        }
+        [first, last]
+    }
+
+    /// Numbers of the objects of a person to which what is said of the scene spreads in a frame. Elsewhere they are what was found.
+    pub(super) fn persons_in(&self, index: usize) -> Numbers {
+        let [first, last] = self.scene(index);
+        let mut persons = [false; 256];
+        for t in first..=last {
+            let Some(said) = &self.frames[t].said else { continue };
+            let [forward, backward] = said.spread.ways();
+            if t == index || (t < index && forward) || (t > index && backward) {
+                said.speaks_of.iter().for_each(|&label| persons[usize::from(label)] = true);
+            }
+        }
+        persons
+    }
+
     /// Numbers of the objects that a person has spoken of.
-    pub(super) fn persons(&self) -> Numbers {
+    fn persons(&self) -> Numbers {
         let mut persons = [false; 256];
         for said in self.frames.iter().filter_map(|frame| frame.said.as_ref()) {
             said.speaks_of.iter().for_each(|&label| persons[usize::from(label)] = true);

@@ -1,4 +1,5 @@
 //! Code shared by several test files.
-#![allow(dead_code, unreachable_pub, reason = "every test file uses a part of it")]
+#![allow(clippy::unwrap_used, dead_code, unreachable_pub, reason = "every test file uses a part of it")]
 
+pub mod moving;
 pub mod protocol;

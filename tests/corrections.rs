@@ -1,0 +1,653 @@
+//! Corrections of a clip: what a person says of a frame holds there, follows each object, and disturbs nothing else.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
+
+#[cfg(target_arch = "wasm32")]
+use wasm_bindgen_test::wasm_bindgen_test as test;
+
+mod support;
+
+use support::moving::{
+    SIZE, Thing, carrier, correct, correct_some, frames_of, mask, moving_and_resting, one_number, options, scene_of,
+    thing, whole,
+};
+use veronese::clip::{SegmentedClip, Spread};
+use veronese::{Frame, Quality, Random};
+
+/// A small scene, and the clip of it.
+#[derive(Clone)]
+struct Shot {
+    size: [usize; 2],
+    frames: Vec<Frame>,
+    truths: Vec<Vec<usize>>,
+    clip: SegmentedClip,
+}
+
+/// What is said of a frame.
+type Said = (usize, Vec<u8>, Spread);
+
+impl Shot {
+    fn new(size: [usize; 2], things: &[Thing], count: usize) -> Shot {
+        let (frames, truths) = scene_of(size, 1, things, count);
+        let clip = whole(&frames, options(Quality::Fast, None));
+        Shot { size, frames, truths, clip }
+    }
+
+    fn correct(&mut self, index: usize, labels: &[u8]) -> Vec<usize> {
+        correct(&mut self.clip, &self.frames, index, labels)
+    }
+
+    fn say(&mut self, (index, labels, spread): &Said) -> Vec<usize> {
+        correct_some(&mut self.clip, &self.frames, *index, labels, *spread)
+    }
+
+    /// Says a thing's mask in a frame, and nothing of the rest.
+    fn give(&mut self, index: usize, thing: usize, number: u8) -> Vec<usize> {
+        self.correct(index, &mask(&self.truths[index], &[(thing, number)]))
+    }
+
+    fn nothing(&self) -> Vec<u8> {
+        vec![255; self.size[0] * self.size[1]]
+    }
+
+    /// A filled rectangle.
+    fn stroke(&self, number: u8, [x, y, width, height]: [usize; 4]) -> Vec<u8> {
+        let inside =
+            |p: usize| (x..x + width).contains(&(p % self.size[0])) && (y..y + height).contains(&(p / self.size[0]));
+        (0..self.size[0] * self.size[1]).map(|p| if inside(p) { number } else { 255 }).collect()
+    }
+
+    fn labels(&self) -> Vec<Vec<u8>> {
+        frames_of(&self.clip, &self.frames).into_iter().map(|frame| frame.labels).collect()
+    }
+
+    /// The number of what moves, as it was found.
+    fn found(&self, thing: usize) -> u8 {
+        let middle = self.frames.len() / 2;
+        let (number, _) = carrier(&self.labels()[middle], &self.truths[middle], thing).unwrap();
+        assert_ne!(number, 0, "thing {thing} is found");
+        number
+    }
+
+    /// Intersection over union of a number and a thing, of each frame in which the thing is seen.
+    fn ious(&self, thing: usize, number: u8) -> Vec<f64> {
+        let iou = |(labels, truth): (Vec<u8>, &Vec<usize>)| {
+            let both = labels.iter().zip(truth).map(|(&l, &t)| (l == number, t == thing));
+            let (mut all, mut common) = (0, 0);
+            both.for_each(|(one, other)| {
+                all += usize::from(one || other);
+                common += usize::from(one && other);
+            });
+            truth.contains(&thing).then(|| f64::from(common as u32) / f64::from(all as u32))
+        };
+        self.labels().into_iter().zip(&self.truths).filter_map(iou).collect()
+    }
+
+    /// Everything that is shown and kept.
+    fn state(&self) -> (Vec<Vec<u8>>, Vec<String>, Vec<u8>) {
+        let frames = frames_of(&self.clip, &self.frames);
+        let objects = frames.iter().map(|frame| format!("{:?}", frame.objects)).collect();
+        (frames.into_iter().map(|frame| frame.labels).collect(), objects, self.clip.to_bytes())
+    }
+}
+
+/// One that moves and is found (1), and two that rest (2, 3).
+fn three() -> Shot {
+    let things = [
+        thing(2, [32.0, 26.0], |t| [6.0 + 4.0 * t as f32, 8.0]),
+        thing(3, [34.0, 26.0], |_| [86.0, 62.0]),
+        thing(7, [28.0, 30.0], |_| [10.0, 60.0]),
+    ];
+    Shot::new([128, 96], &things, 7)
+}
+
+/// All orders of some numbers.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    let Some(last) = count.checked_sub(1) else { return vec![Vec::new()] };
+    let with_last = |order: Vec<usize>| {
+        (0..count).map(move |place| {
+            let mut order = order.clone();
+            order.insert(place, last);
+            order
+        })
+    };
+    orders(last).into_iter().flat_map(with_last).collect()
+}
+
+/// Asserts that corrections give the same in all orders.
+fn assert_any_order(shot: &Shot, said: &[Said]) {
+    let after = |order: &[usize]| {
+        let mut shot = shot.clone();
+        order.iter().for_each(|&k| drop(shot.say(&said[k])));
+        (shot.labels(), shot.clip.to_bytes())
+    };
+    let orders = orders(said.len());
+    let (labels, bytes) = after(&orders[0]);
+    assert_ne!(labels, shot.labels());
+    for order in &orders[1..] {
+        let (other, other_bytes) = after(order);
+        for (t, (one, other)) in labels.iter().zip(&other).enumerate() {
+            let differ = one.iter().zip(other).filter(|(one, other)| one != other).count();
+            assert_eq!(differ, 0, "frame {t}, order {order:?}");
+        }
+        assert!(bytes == other_bytes, "order {order:?}");
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn masks_and_strokes_of_one_object_in_any_order() {
+    let shot = three();
+    let said = [
+        (1, mask(&shot.truths[1], &[(2, 9)]), Spread::Both),
+        (4, shot.stroke(9, [92, 66, 12, 8]), Spread::Both),
+        (6, shot.stroke(0, [60, 80, 30, 2]), Spread::Both),
+    ];
+    assert_any_order(&shot, &said);
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn two_separate_objects_in_any_order() {
+    let shot = three();
+    let said = [
+        (1, mask(&shot.truths[1], &[(2, 9)]), Spread::Both),
+        (5, mask(&shot.truths[5], &[(3, 11)]), Spread::Both),
+        (3, shot.stroke(11, [16, 66, 10, 10]), Spread::Forward),
+    ];
+    assert_any_order(&shot, &said);
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn ground_said_of_a_found_object_and_a_mask_that_takes_it_over_in_any_order() {
+    let shot = three();
+    let said = [
+        (2, shot.stroke(0, [14, 10, 14, 8]), Spread::Both),
+        (5, mask(&shot.truths[5], &[(1, 20)]), Spread::Both),
+        (3, mask(&shot.truths[3], &[(2, 9)]), Spread::Both),
+    ];
+    assert_any_order(&shot, &said[..2]);
+    assert_any_order(&shot, &said);
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_correction_replaces_the_one_before_in_its_frame_and_can_be_taken_back() {
+    let mut shot = three();
+    let moving = shot.found(1);
+    let found = shot.state();
+    // Of an object of one's own, of one that was found, and of both.
+    for numbers in [&[(2, 9)][..], &[(1, moving)], &[(1, 30), (2, 9)], &[(0, 0), (1, moving), (2, 9)]] {
+        let said = mask(&shot.truths[3], numbers);
+        let changed = shot.correct(3, &said);
+        let once = shot.state();
+        assert_eq!(shot.correct(3, &said), [0; 0], "{numbers:?}: the same again");
+        assert_eq!(shot.state(), once);
+        shot.give(3, 3, 12);
+        assert!(shot.clip.frames_with(9).is_empty() && shot.clip.frames_with(30).is_empty(), "{numbers:?}: replaced");
+        shot.correct(3, &said);
+        assert!(shot.state() == once, "{numbers:?}: said again after something else");
+        assert_eq!(shot.correct(3, &shot.nothing()), changed, "{numbers:?}: taken back");
+        let back = shot.state();
+        assert_eq!(back.0, found.0, "{numbers:?}: labels");
+        assert_eq!(back.1, found.1, "{numbers:?}: objects");
+        assert!(back.2 == found.2, "{numbers:?}: bytes");
+    }
+    // With other corrections of the object and of others before and after.
+    shot.give(1, 2, 9);
+    shot.give(6, 3, 12);
+    let before = shot.state();
+    for said in [
+        mask(&shot.truths[4], &[(2, 9), (3, 12), (1, 40)]),
+        shot.stroke(0, [86, 62, 10, 10]),
+        shot.stroke(12, [60, 40, 9, 9]),
+    ] {
+        shot.correct(4, &said);
+        assert!(shot.state().0 != before.0);
+        shot.correct(4, &shot.nothing());
+        let back = shot.state();
+        assert_eq!((back.0, back.1), (before.0.clone(), before.1.clone()));
+        assert!(back.2 == before.2);
+    }
+}
+
+/// Two of a person that cross, close to one that was found and to one another.
+fn crossing() -> Shot {
+    let things = [
+        thing(2, [24.0, 22.0], |t| [6.0 + 7.0 * t as f32, 34.0]),
+        thing(3, [26.0, 30.0], |t| [88.0 - 7.0 * t as f32, 38.0]),
+        thing(7, [30.0, 22.0], |t| [40.0 + 2.0 * t as f32, 10.0]),
+        thing(9, [30.0, 20.0], |_| [60.0, 74.0]),
+        thing(11, [24.0, 20.0], |_| [90.0, 74.0]),
+    ];
+    Shot::new([128, 96], &things, 8)
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn other_objects_of_a_person_keep_every_pixel() {
+    let start = crossing();
+    // Crossing ones, and adjacent ones that rest.
+    for (one, other) in [(1, 2), (2, 1), (4, 5), (5, 4), (3, 1)] {
+        for spread in [Spread::Both, Spread::Forward, Spread::None] {
+            let mut shot = start.clone();
+            shot.give(1, one, 100);
+            let before = shot.labels();
+            for (t, number) in [(6, 101), (2, 101), (0, 102)] {
+                // Of what is the first one's in that frame already, nothing is said.
+                let mut said = mask(&shot.truths[t], &[(other, number)]);
+                said.iter_mut().zip(&before[t]).filter(|(_, l)| **l == 100).for_each(|(said, _)| *said = 255);
+                shot.say(&(t, said, spread));
+                for (t, (before, after)) in before.iter().zip(shot.labels()).enumerate() {
+                    let differ = before.iter().zip(&after).filter(|(a, b)| (**a == 100) != (**b == 100)).count();
+                    assert_eq!(differ, 0, "{one} while {other} is corrected, {spread:?}, frame {t}");
+                }
+            }
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn found_objects_change_by_pixels_taken_and_given_back_and_locked_ones_not_at_all() {
+    let mut shot = crossing();
+    let found = shot.labels();
+    let number = shot.found(3);
+    let objects: Vec<u8> = (1..255).filter(|&k| !shot.clip.frames_with(k).is_empty()).collect();
+    // A corner of what was found, and something beside it.
+    let said = |shot: &Shot| shot.stroke(200, [46, 24, 40, 14]);
+    shot.correct(4, &said(&shot));
+    for (before, after) in found.iter().zip(shot.labels()) {
+        assert!(before.iter().zip(&after).all(|(b, a)| a == b || *a == 200));
+    }
+    shot.correct(4, &shot.nothing());
+    assert_eq!(shot.labels(), found);
+    shot.clip.lock(&objects);
+    for labels in [said(&shot), mask(&shot.truths[4], &[(3, 200)]), vec![200; 128 * 96], vec![0; 128 * 96]] {
+        shot.correct(4, &labels);
+        for (before, after) in found.iter().zip(shot.labels()) {
+            assert!(before.iter().zip(&after).all(|(b, a)| *b == 0 || a == b));
+        }
+    }
+    // What was said holds where nothing locked is.
+    shot.correct(4, &vec![200; 128 * 96]);
+    assert!(found[4].iter().zip(&shot.labels()[4]).all(|(b, a)| *b != 0 || *a == 200));
+    // Unlocked, it can be taken.
+    shot.clip.lock(&[]);
+    shot.give(4, 3, 201);
+    assert!(!shot.clip.frames_with(number).contains(&4));
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn deleting_gives_back_what_was_found_and_merging_keeps_both() {
+    let start = three();
+    let (number, found) = (start.found(1), start.state());
+    // One of the ground, and one over what was found.
+    for thing in [2, 1] {
+        let mut shot = three();
+        shot.give(3, thing, 60);
+        assert_ne!(shot.labels(), found.0);
+        shot.clip.renumber(60, 0).unwrap();
+        let after = shot.state();
+        assert_eq!(after.0, found.0, "thing {thing}: labels");
+        assert_eq!(after.1, found.1, "thing {thing}: objects");
+    }
+    // Also of part of what was found.
+    for (from, into) in [(60, number), (number, 60)] {
+        for said in
+            [start.stroke(60, [14, 8, 20, 10]), mask(&start.truths[3], &[(2, 60)]), start.stroke(60, [20, 9, 40, 22])]
+        {
+            let mut shot = three();
+            shot.correct(3, &said);
+            let before = shot.labels();
+            shot.clip.renumber(from, into).unwrap();
+            for (t, (before, after)) in before.iter().zip(shot.labels()).enumerate() {
+                let merged: Vec<u8> = before.iter().map(|&l| if l == from { into } else { l }).collect();
+                assert!(merged == after, "{from} into {into}, frame {t}");
+            }
+        }
+    }
+}
+
+#[test]
+fn exact_pixels_stay_exact_at_full_size() {
+    for size in [[963, 541], [131, 97]] {
+        let mut shot = Shot::new(size, &[thing(2, [80.0, 70.0], |t| [20.0 + 6.0 * t as f32, 16.0])], 2);
+        let mut random = Random::from_seed(5);
+        // Single pixels, also those of the last column and row, and blocks.
+        let said: Vec<u8> = (0..size[0] * size[1])
+            .map(|p| {
+                let block = (p % size[0] / 37 + p / size[0] / 23) % 3;
+                let any = [0, 5, 9, 255][random.uniform(0.0, 4.0) as usize];
+                [any, 255, 9][block]
+            })
+            .collect();
+        shot.correct(0, &said);
+        assert!(shot.labels()[0].iter().zip(&said).all(|(label, said)| *said == 255 || label == said), "{size:?}");
+        let whole: Vec<u8> = said.iter().map(|&l| if l == 255 { 7 } else { l }).collect();
+        shot.correct(1, &whole);
+        assert_eq!(shot.labels()[1], whole);
+        assert!(shot.labels()[0].iter().zip(&said).all(|(label, said)| *said == 255 || label == said), "{size:?}");
+    }
+}
+
+/// Frames whose labels differ.
+fn differing(one: &[Vec<u8>], other: &[Vec<u8>]) -> Vec<usize> {
+    (0..one.len()).filter(|&t| one[t] != other[t]).collect()
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn corrections_spread_where_they_are_told_to() {
+    let start = three();
+    let (number, found) = (start.found(1), start.labels());
+    let [erased, part] = [start.stroke(0, [20, 8, 12, 12]), start.stroke(number, [30, 20, 40, 20])];
+    for said in [mask(&start.truths[3], &[(2, 9)]), mask(&start.truths[3], &[(1, 9)]), erased, part] {
+        for (spread, frames) in
+            [(Spread::None, 3..4), (Spread::Forward, 3..7), (Spread::Backward, 0..4), (Spread::Both, 0..7)]
+        {
+            let mut shot = start.clone();
+            let changed = shot.say(&(3, said.clone(), spread));
+            let differ = differing(&found, &shot.labels());
+            assert!(differ.iter().all(|t| frames.contains(t)), "{spread:?}: {differ:?}");
+            assert!(differ.contains(&3));
+            assert_eq!(changed, differ, "{spread:?}");
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn two_frames_with_different_spreads() {
+    let mut shot = three();
+    let said = |t: usize, spread| (t, mask(&three().truths[t], &[(2, 9)]), spread);
+    shot.say(&said(2, Spread::Backward));
+    assert_eq!(shot.clip.frames_with(9), [0, 1, 2]);
+    shot.say(&said(5, Spread::None));
+    assert_eq!(shot.clip.frames_with(9), [0, 1, 2, 5]);
+    let before = shot.labels();
+    shot.say(&said(4, Spread::Forward));
+    assert_eq!(shot.clip.frames_with(9), [0, 1, 2, 4, 5, 6]);
+    let differ = differing(&before, &shot.labels());
+    assert!(differ.iter().all(|t| [4, 6].contains(t)), "frame 5 was said: {differ:?}");
+    shot.say(&(4, shot.nothing(), Spread::Both));
+    assert_eq!(shot.labels(), before);
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn nothing_crosses_a_cut() {
+    let size = [128, 96];
+    let one = [thing(2, [32.0, 26.0], |t| [6.0 + 4.0 * t as f32, 8.0]), thing(3, [34.0, 26.0], |_| [86.0, 62.0])];
+    let (mut frames, mut truths) = scene_of(size, 1, &one, 5);
+    let (after, after_truths) = scene_of(size, 5, &[thing(6, [36.0, 30.0], |t| [4.0 + 4.0 * t as f32, 40.0])], 10);
+    frames.extend(after.into_iter().skip(5));
+    truths.extend(after_truths.into_iter().skip(5));
+    let clip = whole(&frames, options(Quality::Fast, None));
+    let mut shot = Shot { size, frames, truths, clip };
+    let found = shot.labels();
+    for (t, scene) in [(2, 0..5), (4, 0..5), (5, 5..10), (8, 5..10)] {
+        for said in [vec![9; size[0] * size[1]], shot.stroke(9, [20, 20, 40, 40]), vec![0; size[0] * size[1]]] {
+            shot.correct(t, &said);
+            let differ = differing(&found, &shot.labels());
+            assert!(differ.contains(&t) && differ.iter().all(|t| scene.contains(t)), "said of {t}: {differ:?}");
+            shot.correct(t, &shot.nothing());
+            assert_eq!(shot.labels(), found);
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_cancelled_correction_leaves_no_trace() {
+    let mut shot = three();
+    shot.give(2, 2, 9);
+    let before = shot.state();
+    let said = mask(&shot.truths[4], &[(1, 30), (2, 9), (3, 10), (0, 0)]);
+    for steps in 0.. {
+        let mut correction = shot.clip.correct(4, &said, Spread::Both).unwrap();
+        let mut taken = 0;
+        while let Some(wanted) = correction.wanted().filter(|_| taken < steps) {
+            correction.take(&mut shot.clip, &shot.frames[wanted]).unwrap();
+            taken += 1;
+        }
+        let is_done = correction.wanted().is_none();
+        correction.cancel(&mut shot.clip);
+        assert!(shot.state() == before, "after {taken} frames");
+        if is_done {
+            assert!(steps > 8);
+            break;
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_given_mask_follows_what_moves() {
+    let things = [
+        thing(2, [32.0, 26.0], |t| [6.0 + 4.0 * t as f32, 8.0]),
+        thing(3, [30.0, 28.0], |t| [90.0 - 3.0 * t as f32, 60.0 - 2.0 * t as f32]),
+    ];
+    for t in [0, 4, 8] {
+        let mut shot = Shot::new([128, 96], &things, 9);
+        shot.give(t, 1, 50);
+        let ious = shot.ious(1, 50);
+        assert!(ious.iter().all(|&iou| iou >= 0.9), "said of {t}: {ious:.3?}");
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn strokes_alone_make_an_object_that_is_followed() {
+    let mut shot = three();
+    let mut said = shot.stroke(9, [92, 68, 20, 12]);
+    said.iter_mut().zip(shot.stroke(0, [70, 50, 8, 44])).filter(|(_, s)| *s == 0).for_each(|(said, _)| *said = 0);
+    said.iter_mut().zip(shot.stroke(0, [70, 50, 56, 6])).filter(|(_, s)| *s == 0).for_each(|(said, _)| *said = 0);
+    shot.correct(3, &said);
+    let ious = shot.ious(2, 9);
+    println!("strokes: {ious:.3?}");
+    assert!(ious.len() == 7 && ious.iter().all(|&iou| iou > 0.6), "{ious:.3?}");
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn one_that_is_hidden_for_some_frames_keeps_its_number() {
+    let things = [
+        thing(2, [24.0, 22.0], |t| [6.0 + 6.0 * t as f32, 36.0]),
+        thing(3, [34.0, 40.0], |t| [86.0 - 5.0 * t as f32, 28.0]),
+    ];
+    let mut shot = Shot::new([128, 96], &things, 14);
+    let hidden: Vec<usize> = (0..14).filter(|&t| shot.truths[t].iter().filter(|&&l| l == 1).count() < 40).collect();
+    assert!(!hidden.is_empty() && hidden[0] > 1 && hidden[hidden.len() - 1] < 11, "{hidden:?}");
+    shot.correct(0, &mask(&shot.truths[0], &[(1, 50), (2, 51)]));
+    let labels = shot.labels();
+    for t in (0..hidden[0] - 1).chain(hidden[hidden.len() - 1] + 3..14) {
+        for (thing, number) in [(1, 50), (2, 51)] {
+            let (label, iou) = carrier(&labels[t], &shot.truths[t], thing).unwrap();
+            println!("{t} {thing}: {label}, {iou:.3}");
+            assert!(label == number && iou > 0.7, "frame {t}, thing {thing}: {label}, {iou:.3}");
+        }
+    }
+}
+
+#[test]
+fn extremes_are_taken_as_they_are() {
+    for size @ [width, height] in [[16, 16], [17, 40], [64, 48]] {
+        let things = [thing(2, [7.0, 6.0], |t| [2.0 + t as f32, 4.0])];
+        let pixels = width * height;
+        let at = |p: usize, number: u8| {
+            let mut said = vec![255; pixels];
+            said[p] = number;
+            said
+        };
+        let numbers: Vec<u8> = (0..pixels).map(|p| (p * 254 / pixels) as u8 + 1).collect();
+        let single: Vec<u8> = (0..pixels).map(|p| if p < 254 { p as u8 + 1 } else { 255 }).collect();
+        let said = [
+            vec![255; pixels],
+            at(0, 1),
+            at(pixels - 1, 254),
+            at(pixels / 2, 0),
+            vec![254; pixels],
+            vec![0; pixels],
+            numbers,
+            single,
+            (0..pixels).map(|p| p as u8).collect(),
+        ];
+        let start = Shot::new(size, &things, 3);
+        let mut kept = Shot::new(size, &things, 3);
+        for (k, said) in said.iter().enumerate() {
+            let mut shot = start.clone();
+            // Alone, and after all that was said before.
+            shot.correct(1, said);
+            kept.correct(k % 3, said);
+            for labels in [&shot.labels()[1], &kept.labels()[k % 3]] {
+                assert!(labels.iter().zip(said).all(|(label, said)| *said == 255 || label == said), "{size:?}, {k}");
+            }
+        }
+    }
+    // Of a clip of one frame.
+    let mut shot = Shot::new([16, 16], &[], 1);
+    assert_eq!(shot.correct(0, &[254; 256]), [0]);
+    assert_eq!(shot.labels()[0], [254; 256]);
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_restored_clip_goes_on_with_the_same_bits() {
+    let mut shot = three();
+    let number = shot.found(1);
+    shot.clip.lock(&[number]);
+    shot.give(1, 2, 9);
+    shot.say(&(4, shot.stroke(12, [16, 66, 10, 10]), Spread::Forward));
+    let clip = SegmentedClip::from_bytes(&shot.clip.to_bytes()).unwrap();
+    let mut again = Shot { clip, ..shot.clone() };
+    for shot in [&mut shot, &mut again] {
+        shot.correct(5, &mask(&shot.truths[5], &[(2, 9), (0, 0)]));
+        shot.correct(1, &shot.nothing());
+        shot.clip.renumber(12, number).unwrap();
+    }
+    assert!(shot.state() == again.state());
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_corrected_mask_holds_and_spreads_both_ways() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let before = frames_of(&clip, &frames);
+    assert_eq!(carrier(&before[5].labels, &truths[5], 2).unwrap().0, 0, "what rests is background");
+    let moving = one_number(&before, &truths, 1, 0..12);
+
+    let mask = mask(&truths[5], &[(0, 0), (1, moving), (2, 9)]);
+    let changed = correct(&mut clip, &frames, 5, &mask);
+    assert!(changed.len() > 8, "{changed:?}");
+    let after = frames_of(&clip, &frames);
+    assert_eq!(after[5].labels, mask, "the mask holds to the pixel");
+    assert_eq!(one_number(&after, &truths, 2, 1..11), 9);
+    assert_eq!(one_number(&after, &truths, 1, 0..12), moving);
+
+    // Nothing said in the same frame takes it all back.
+    let restored = correct(&mut clip, &frames, 5, &[255; 160 * 120]);
+    assert_eq!(restored, changed);
+    for (restored, before) in frames_of(&clip, &frames).iter().zip(&before) {
+        assert_eq!(restored.labels, before.labels);
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_stroke_takes_the_region_around_it_along() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let stroke = |p: usize| (95..125).contains(&(p % SIZE[0])) && (88..96).contains(&(p / SIZE[0]));
+    let ground = |p: usize| p / SIZE[0] == 116 || p / SIZE[0] == 72 || p % SIZE[0] == 84 || p % SIZE[0] == 138;
+    let said = |p: usize| {
+        if stroke(p) {
+            7
+        } else if ground(p) {
+            0
+        } else {
+            255
+        }
+    };
+    correct(&mut clip, &frames, 6, &(0..SIZE[0] * SIZE[1]).map(said).collect::<Vec<u8>>());
+    let done = frames_of(&clip, &frames);
+    for t in [3, 6, 9] {
+        let (label, iou) = carrier(&done[t].labels, &truths[t], 2).unwrap();
+        assert!(label == 7 && iou > 0.6, "frame {t}: {label}, {iou}");
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_new_number_of_an_object_lasts() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    correct(&mut clip, &frames, 2, &mask(&truths[2], &[(1, 40)]));
+    assert_eq!(one_number(&frames_of(&clip, &frames), &truths, 1, 0..12), 40);
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn objects_can_be_merged_and_removed() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    correct(&mut clip, &frames, 5, &mask(&truths[5], &[(2, 30)]));
+    let moving = one_number(&frames_of(&clip, &frames), &truths, 1, 0..12);
+    let all: Vec<usize> = (0..12).collect();
+    let with_resting = clip.frames_with(30);
+    assert!(clip.frames_with(moving) == all && with_resting.contains(&5));
+    for (object, number) in [(moving, 31), (31, moving), (31, 0), (31, 32)] {
+        assert!(clip.renumber(object, number).unwrap().is_empty(), "no object has the number 31 or 32");
+    }
+    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (all.clone(), with_resting));
+    assert_eq!(clip.renumber(moving, 30).unwrap(), all);
+    assert_eq!((clip.frames_with(moving), clip.frames_with(30)), (vec![], all.clone()));
+    let merged = frames_of(&clip, &frames);
+    assert!(merged.iter().all(|frame| frame.objects.iter().map(|object| object.id).eq([30])));
+    assert!(merged[5].labels.iter().zip(&truths[5]).all(|(&label, &thing)| thing != 2 || label == 30));
+    assert_eq!(clip.renumber(30, 0).unwrap(), all);
+    assert!(
+        frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label != moving && label != 30))
+    );
+}
+
+#[test]
+fn reserved_numbers_are_free_for_objects_of_a_person() {
+    let (frames, truths) = moving_and_resting();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let found = frames_of(&clip, &frames);
+    let (number, _) = carrier(&found[3].labels, &truths[3], 1).unwrap();
+    let ids: Vec<u8> = (1..255).filter(|&id| !clip.frames_with(id).is_empty()).collect();
+    assert!(number != 0 && ids.contains(&number));
+    let in_frames = clip.frames_with(number);
+    // The lowest number that is neither found nor reserved.
+    let free = (1..255).find(|id| !ids.contains(id) && *id != 77).unwrap();
+    assert_eq!(clip.reserve(&[0, number, 77, 255, number]), in_frames);
+    assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], in_frames));
+    for (before, after) in found.iter().zip(frames_of(&clip, &frames)) {
+        let renumbered: Vec<u8> =
+            before.labels.iter().map(|&label| if label == number { free } else { label }).collect();
+        assert_eq!(after.labels, renumbered);
+    }
+    // A person's object has its number for good; what was found under it before has another.
+    let mask = mask(&truths[3], &[(2, number)]);
+    correct(&mut clip, &frames, 3, &mask);
+    assert_eq!(clip.reserve(&[number]), Vec::<usize>::new());
+    assert!(clip.frames_with(number).contains(&3));
+    let said = clip.frame(3, &frames[3]).unwrap().labels;
+    assert!(mask.iter().zip(&said).all(|(&said, &label)| said != number || label == number));
+    // A number that was merged away or deleted before is a new one, and what was merged into it goes along.
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    clip.renumber(number, 0).unwrap();
+    clip.reserve(&[number]);
+    assert_eq!((clip.frames_with(number), clip.frames_with(free)), (vec![], vec![]));
+    correct(&mut clip, &frames, 3, &mask);
+    assert!(clip.frames_with(number).contains(&3));
+    // Where no number is left there is nothing to give.
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    clip.reserve(&(0..=255).collect::<Vec<u8>>());
+    assert_eq!(clip.dropped(), ids.len());
+    assert!(frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label == 0)));
+}
