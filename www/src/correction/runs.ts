@@ -58,16 +58,10 @@ export function overlapsOf(images: Iterable<readonly [Runs, Runs]>): Overlap[] {
   const [areasBefore, areasNow, common] = [new Map<number, number>(), new Map<number, number>(), new Map<number, number>()];
   const add = (map: Map<number, number>, key: number, pixels: number): void => void map.set(key, (map.get(key) ?? 0) + pixels);
   for (const [before, now] of images) {
-    const old = resized(before, now);
-    for (let i = 0, k = 0, from = 0; i < old.ends.length && k < now.ends.length; ) {
-      const to = Math.min(old.ends[i]!, now.ends[k]!);
-      const [was, is] = [old.labels[i]!, now.labels[k]!];
-      add(areasBefore, was, to - from);
-      add(areasNow, is, to - from);
-      add(common, 256 * is + was, to - from);
-      if (old.ends[i] === to) i += 1;
-      if (now.ends[k] === to) k += 1;
-      from = to;
+    for (const [was, is, pixels] of together(resized(before, now), now)) {
+      add(areasBefore, was, pixels);
+      add(areasNow, is, pixels);
+      add(common, 256 * is + was, pixels);
     }
   }
   return [...common]
@@ -77,6 +71,17 @@ export function overlapsOf(images: Iterable<readonly [Runs, Runs]>): Overlap[] {
     })
     .filter(({ was, is, share }) => is !== UNLABELLED && was !== UNLABELLED && share >= LEAST_COMMON)
     .sort((one, other) => other.share - one.share);
+}
+
+/** Pixels one after another that have a label in one image and a label in another of the same size, and how many these are. */
+export function* together(one: Runs, other: Runs): Generator<readonly [number, number, number], void, undefined> {
+  for (let i = 0, k = 0, from = 0; i < one.ends.length && k < other.ends.length; ) {
+    const to = Math.min(one.ends[i]!, other.ends[k]!);
+    yield [one.labels[i]!, other.labels[k]!, to - from];
+    if (one.ends[i] === to) i += 1;
+    if (other.ends[k] === to) k += 1;
+    from = to;
+  }
 }
 
 /** The labels at another size, by nearest neighbour. */

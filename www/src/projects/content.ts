@@ -13,9 +13,10 @@ type Entries<K, V> = readonly (readonly [K, V])[];
 /** A project with lists of entries in place of maps. */
 export interface Content extends Pick<Project, 'settings'> {
   readonly clip:
-    | (Omit<ProjectClip, 'painted' | 'became' | 'spans' | 'solved'> & {
+    | (Omit<ProjectClip, 'painted' | 'became' | 'locks' | 'spans' | 'solved'> & {
         readonly painted: Entries<number, Runs>;
         readonly became: Entries<number, number>;
+        readonly locks?: Entries<number, boolean>;
         readonly spans: readonly (Omit<Span, 'numbers'> & { readonly numbers: Entries<number, number> })[];
         readonly solved: { readonly settings: SolvedPairs['settings']; readonly pairs: Entries<number, Blob> } | null;
       })
@@ -72,6 +73,8 @@ const isColour = listOf(isFrom(0, 255), 3);
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
 const isRange = objectOf({ first: isIndex, last: isIndex });
+/** Files of earlier versions have none. */
+const isLocks: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isFrom(1, 254), isFlag))(value);
 const isClip = objectOf({
   range: isRange,
   longestSide: isSide,
@@ -82,6 +85,7 @@ const isClip = objectOf({
   found: listOf(orNull(isRuns)),
   painted: listOf(entryOf(isIndex, isRuns)),
   became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
+  locks: isLocks,
   spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))) })),
   at: isIndex,
   hidden: listOf(isFrom(1, 254)),

@@ -110,6 +110,7 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
         ...clip,
         painted: new Map(clip.painted),
         became: new Map(clip.became),
+        locks: new Map(clip.locks),
         spans: clip.spans.map((span) => ({ ...span, numbers: new Map(span.numbers) })),
         solved: clip.solved && { ...clip.solved, pairs: new Map(clip.solved.pairs) },
       },

@@ -6,7 +6,7 @@ import { type Kept, keptFrom } from '../state/kept.js';
 import { type FramePair, type Subject, keyOfPair, subjectOf, subjectOfClip, timelineOf } from '../state/pair.js';
 import type { Settings } from '../state/settings.js';
 import type { State } from '../state/state.js';
-import { type SolvedPairs, type Tracked, type Version, isComplete, isTracked, lengthOf, untracked, versionOf } from '../state/tracked.js';
+import { type SolvedPairs, type Tracked, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
 
 /** The objects of a clip. */
 export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'names' | 'colours'> {
@@ -54,7 +54,7 @@ function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: S
 /** The state in which what the project has counts as saved, unless it has changed since. */
 export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of, clip, pairs }: Project): Partial<State> {
   const savedClip = <T extends Tracked | null>(now: T): T =>
-    clip === null || now?.clip.fingerprint !== of ? now : { ...now, saved: { frames: clip.frames, names: clip.names, colours: clip.colours } };
+    clip === null || now?.clip.fingerprint !== of ? now : { ...now, saved: savedOf(clip) };
   const savedEdits = <T extends Kept['edits']>(now: T, key: string | null): T => {
     const written = pairs.get(key ?? '');
     return written === undefined ? now : { ...now, saved: asSaved(written.edits).saved };
@@ -81,14 +81,13 @@ export function withProject(state: State, { of, settings, clip, pairs }: Project
 /** Masks of a project that replace others are one more step. */
 function continued(before: Tracked, { solved, at: _at, hidden: _hidden, ...clip }: ProjectClip): Tracked {
   const complete = isComplete(clip);
-  const { frames, range, names, colours } = clip;
   return {
     ...before,
     ...clip,
     run: complete ? { phase: 'done', cause: 'continued', changed: 0 } : { phase: 'cancelled' },
-    solved: complete ? lengthOf(range) : (solved?.pairs.size ?? 0),
+    solved: complete ? lengthOf(clip.range) : (solved?.pairs.size ?? 0),
     past: isTracked(before) ? [...before.past, versionOf(before)] : [],
     future: [],
-    saved: { frames, names, colours },
+    saved: savedOf(clip),
   };
 }

@@ -461,6 +461,7 @@ export class Session {
   #continue({ at, hidden }: ProjectClip): void {
     this.show('objects');
     if (this.#store.get().look.kind === 'objects') this.#store.look({ hidden: new Set(hidden) });
+    void this.tracking.renew();
     void this.goTo(at);
   }
 

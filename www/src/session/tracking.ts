@@ -13,13 +13,16 @@ import { UNLABELLED, keyOf } from '../result/masks.js';
 import { type Said, paintedOver, withSaid } from '../state/said.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
-import { MOST_OBJECTS, contains, editsIn, fromSpan, numbersOf, spanAt, toSpan, withRun } from '../state/spans.js';
-import { type ClipRun, type Range, type SolvedPairs, type Span, type Tracked, type TrackedFrame, type Version, isTracked, untracked, versionOf } from '../state/tracked.js';
+import { MOST_OBJECTS, contains, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan, withRun } from '../state/spans.js';
+import { type ClipRun, type Range, type SolvedPairs, type Span, type Tracked, type TrackedFrame, type Version, isLocked, isTracked, savedOf, untracked, versionOf } from '../state/tracked.js';
 import { ClipFrames, STOPPED } from './clip-frames.js';
 import { TimeLeft } from './time-left.js';
 
 /** Masks are shown at most this often while they come, milliseconds. */
 const OFTEN = 100;
+
+/** The beginning of carrying a correction through a clip. */
+const CARRYING = { phase: 'working', stage: 'corrections', left: null, labelled: 0 } as const;
 
 interface Hooks {
   /** The masks of some frames have changed; `before`: what there was. */
@@ -35,6 +38,8 @@ type Change = (change: Partial<Tracked>) => void;
 interface Carrying {
   /** The masks after those that are done. */
   settled: Version;
+  /** These, as far as the one under way has changed them. */
+  now: Version;
   readonly waiting: Said[];
 }
 
@@ -81,12 +86,13 @@ export class Tracking {
 
   /**
    * Segments the open clip from its in point to its out point, or continues with it. Masks that there are stay until all new ones are
-   * there; what is outside stays, and corrections are applied again.
+   * there; what is outside stays, and corrections are applied again. `part`: other frames than those.
    */
-  async segment(): Promise<void> {
+  async segment(part?: Range): Promise<void> {
     const { tracked, settings: own, motionsElsewhere } = this.#store.get();
     if (tracked === null) return;
-    const { clip, range } = tracked;
+    const { clip, range: chosen } = tracked;
+    const range = part ?? chosen;
     // The number of motions of a single pair is not that of the clip.
     const alone = tracked.frames.every((frame, index) => frame === null || contains(range, index));
     const settings = { ...own, motions: motionsElsewhere ?? own.motions, longestSide: alone ? own.longestSide : tracked.longestSide };
@@ -129,9 +135,41 @@ export class Tracking {
     });
   }
 
-  /** Stops the run. Frames whose pairs are solved get their masks first; if that is what is under way, it stops at once. */
+  /**
+   * Segments the open clip again if what the package knows of it is of another version. Its masks stay until then, but take no corrections.
+   */
+  async renew(): Promise<void> {
+    const { tracked } = this.#store.get();
+    if (tracked === null || (await this.#isReadable(tracked))) return;
+    if (this.#store.get().tracked?.clip !== tracked.clip) return;
+    this.#abort();
+    this.#known.delete(tracked.clip.fingerprint);
+    this.#store.set({ tracked: { ...this.#store.get().tracked!, spans: [] } });
+    for (const { range } of tracked.spans) {
+      await this.segment(range);
+      const { tracked: now } = this.#store.get();
+      if (now?.clip !== tracked.clip || now.run.phase !== 'done') return;
+    }
+  }
+
+  async #isReadable({ clip, longestSide, spans: [span] }: Tracked): Promise<boolean> {
+    if (span === undefined) return true; // all are of one version
+    const frames = new ClipFrames(clip, longestSide, span.range);
+    try {
+      await this.#segmenter.segmentClip(frames, { state: (await bytesOf(span.state))!, changesOnly: true }).next();
+      return true;
+    } catch (error) {
+      return codeOf(error) !== 'invalid-option';
+    }
+  }
+
+  /**
+   * Stops the run. Frames whose pairs are solved get their masks first; if that is what is under way, it stops at once. A correction under
+   * way is taken back.
+   */
   cancel(): void {
     const { tracked } = this.#store.get();
+    if (this.#carrying !== null) return this.#takeBack(this.#carrying);
     if (tracked?.run.phase !== 'working' || tracked.run.stage !== 'pairs' || this.#solving === null) return this.#abort();
     this.#solving.stop();
     this.#store.set({ tracked: { ...tracked, run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } } });
@@ -217,6 +255,16 @@ export class Tracking {
     this.#go('future', 'past', 'redone');
   }
 
+  /** Locks an object, or unlocks it: whether corrections of others may change it. */
+  setLocked(id: number, locked: boolean): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    const said = { locks: new Map([[id, locked]]) };
+    if (this.#carrying !== null) return void this.correct(said);
+    this.#store.set({ tracked: { ...tracked, past: [...tracked.past, versionOf(tracked)], future: [] } });
+    this.#show(withSaid(tracked, said), tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause: locked ? 'locked' : 'unlocked', changed: 0 });
+  }
+
   /** Sets the name or colour of an object. An empty name restores the default. */
   setAppearance(id: number, what: { name: string } | { colour: Colour }): void {
     const { tracked } = this.#store.get();
@@ -243,8 +291,7 @@ export class Tracking {
   /** Records that the masks were exported as they are. */
   saved(exported: Tracked): void {
     const { tracked } = this.#store.get();
-    const { frames, names, colours } = exported;
-    if (tracked?.clip === exported.clip) this.#store.set({ tracked: { ...tracked, saved: { frames, names, colours } } });
+    if (tracked?.clip === exported.clip) this.#store.set({ tracked: { ...tracked, saved: savedOf(exported) } });
   }
 
   #refuse(sentence: string): null {
@@ -274,18 +321,29 @@ export class Tracking {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     const under = this.#carrying;
-    const carrying: Carrying = under ?? { settled: versionOf(tracked), waiting: [] };
+    const settled = versionOf(tracked);
+    const carrying: Carrying = under ?? { settled, now: settled, waiting: [] };
     carrying.waiting.push(said);
     this.#show(withSaid(tracked, said), tracked.run);
     if (under !== null) return; // taken by the loop below
     this.#carrying = carrying;
-    await this.#run(async (signal, set) => {
-      while (carrying.waiting.length > 0) await this.#carry(carrying, signal, set);
-    });
-    if (this.#carrying !== carrying) return;
-    this.#carrying = null;
-    // Of what failed nothing stays.
-    if (this.#store.get().tracked?.run.phase === 'failed') this.#show(carrying.settled, { phase: 'done', cause: 'undone', changed: 0 });
+    while (this.#carrying === carrying && carrying.waiting.length > 0) {
+      await this.#run((signal, set) => this.#carry(carrying, signal, set));
+      if (this.#carrying !== carrying || this.#store.get().tracked?.run.phase !== 'failed') continue;
+      // Of what failed nothing stays.
+      carrying.waiting.length = 0;
+      this.#show(carrying.settled, { phase: 'done', cause: 'undone', changed: 0 });
+    }
+    if (this.#carrying === carrying) this.#carrying = null;
+  }
+
+  /** Takes back the correction that is being carried through the clip. Those said since are carried on. */
+  #takeBack(carrying: Carrying): void {
+    const { settled, waiting } = carrying;
+    if (waiting.length === 0) return this.#abort();
+    this.#current?.abort();
+    carrying.now = settled;
+    this.#show(waiting.reduce(withSaid, settled), CARRYING);
   }
 
   /** Carries the next correction through the frames that were segmented together. */
@@ -293,12 +351,15 @@ export class Tracking {
     const { settled: before, waiting } = carrying;
     const said = waiting.shift();
     if (said === undefined) return;
-    set({ run: { phase: 'working', stage: 'corrections', left: null, labelled: 0 } });
+    set({ run: CARRYING });
+    carrying.now = withSaid(before, said);
+    const shows = this.#shows(carrying);
     let after: Version = before;
-    if ('edits' in said) {
-      after = withSaid(before, said);
+    if ('locks' in said) after = carrying.now;
+    else if ('edits' in said) {
+      after = carrying.now;
       const objects = new Set([...(said.edits.merge ?? []), said.edits.delete ?? []].flat());
-      for (const span of before.spans) if ([...span.numbers.values()].some((id) => objects.has(id))) after = await this.#applied(after, span, [], signal);
+      for (const span of before.spans) if ([...span.numbers.values()].some((id) => objects.has(id))) after = await this.#applied(after, span, [], signal, shows);
     } else {
       const painted = new Map(before.painted);
       for (const [index, labels] of said.painted) {
@@ -307,26 +368,62 @@ export class Tracking {
       after = { ...before, painted };
       for (const span of before.spans) {
         const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
-        if (own.length > 0) after = await this.#applied(after, span, own, signal);
+        if (own.length > 0) after = await this.#applied(after, span, own, signal, shows);
       }
     }
     const now = this.#store.get().tracked;
     if (signal.aborted || now === null) return;
-    carrying.settled = after;
+    carrying.settled = carrying.now = after;
     set({ past: [...now.past, before], future: [] });
     const changed = after.frames.filter((frame, index) => frame !== before.frames[index]).length;
     // What was said meanwhile stays on screen.
     this.#show(waiting.reduce(withSaid, after), waiting.length > 0 ? now.run : { phase: 'done', cause: 'corrected', changed });
   }
 
-  /** Applies what became of objects to the frames of a span, and what was painted in some of them. */
-  async #applied(version: Version, span: Span, painted: readonly number[], signal: AbortSignal): Promise<Version> {
+  /** Shows frames as a correction changes them: those on screen at once, others soon. */
+  #shows(carrying: Carrying): (index: number, masks: TrackedFrame) => void {
+    const changed = new Set<number>();
+    let shown = -Infinity;
+    return (index, masks) => {
+      const { now, waiting } = carrying;
+      changed.add(index);
+      carrying.now = { ...now, frames: now.frames.with(index, masks), largest: Math.max(now.largest, ...masks.objects.map(({ id }) => id)) };
+      const { timeline } = this.#store.get();
+      if (index !== timeline?.first && index !== timeline?.second && performance.now() - shown < OFTEN) return;
+      shown = performance.now();
+      this.#show(waiting.reduce(withSaid, carrying.now), { ...CARRYING, labelled: changed.size });
+    };
+  }
+
+  /**
+   * Applies what became of objects to the frames of a span, and what was painted in some of them. `changes` takes frames as they change,
+   * perhaps not for the last time.
+   */
+  async #applied(
+    version: Version,
+    span: Span,
+    painted: readonly number[],
+    signal: AbortSignal,
+    changes?: (index: number, masks: TrackedFrame) => void,
+  ): Promise<Version> {
     const { tracked, settings } = this.#store.get();
     if (tracked === null) return version;
     const { first } = span.range;
     const numbers = new Map(span.numbers);
     const frames = new ClipFrames(tracked.clip, version.longestSide, span.range);
     const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(unpacked(version.painted.get(index)!), numbers) }));
+    let { largest } = version;
+    const named = (frame: ClipFrame): TrackedFrame => {
+      const masks = fromSpan(masksOf(frame, frames.size), numbers, largest);
+      largest = Math.max(largest, ...masks.objects.map(({ id }) => id));
+      return masks;
+    };
+    const isOwn = (index: number): boolean => spanAt(version.spans, index) === span;
+    const onChange = async (index: number, segmented: () => Promise<ClipFrame>): Promise<void> => {
+      if (!isOwn(first + index)) return;
+      const frame = await segmented();
+      if (!signal.aborted) changes?.(first + index, named(frame));
+    };
     const found = this.#segmenter.segmentClip(frames, {
       state: (await bytesOf(span.state))!,
       markUnknown: settings.markUnknown,
@@ -335,14 +432,13 @@ export class Tracking {
       transfer: true,
       edits: editsIn(numbers, version.became),
       corrections,
+      locked: lockedIn(span, version, painted, (id) => isLocked({ locks: version.locks, names: tracked.names }, id)),
+      ...(changes && { onChange }),
     });
     const masks = [...version.frames];
-    let { largest } = version;
     for await (const frame of found) {
-      const index = first + frame.index;
-      const named = fromSpan(masksOf(frame, frames.size), numbers, largest);
-      largest = Math.max(largest, ...named.objects.map(({ id }) => id));
-      if (spanAt(version.spans, index) === span) masks[index] = named;
+      const is = named(frame);
+      if (isOwn(first + frame.index)) masks[first + frame.index] = is;
     }
     const state = await found.state();
     if (state === undefined) return version;
@@ -364,8 +460,12 @@ export class Tracking {
   #go(from: 'past' | 'future', to: 'past' | 'future', cause: 'undone' | 'redone'): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
-    // A correction under way is what is undone.
-    if (this.#carrying !== null && from === 'past') return this.#abort();
+    const carrying = this.#carrying;
+    if (carrying !== null && from === 'past') {
+      // The last correction is what is undone.
+      if (carrying.waiting.pop() === undefined) return this.#abort();
+      return this.#show(carrying.waiting.reduce(withSaid, carrying.now), tracked.run);
+    }
     if (tracked.run.phase === 'working') return;
     const version = tracked[from].at(-1);
     if (version === undefined) return;
@@ -407,7 +507,7 @@ export class Tracking {
       set({ run: { phase: 'working', stage: 'labels', left: null, labelled: masks.length } });
       if (!fresh) return;
       const frames = untracked(clip).frames.map((_, index) => masks[index - range.first] ?? null);
-      set({ frames, largest: largestOf(frames), longestSide, saved: { frames, names: before.names, colours: before.colours } });
+      set({ frames, largest: largestOf(frames), longestSide, saved: savedOf({ ...before, frames }) });
       this.#hooks.changed(before);
     };
     try {
@@ -429,8 +529,8 @@ export class Tracking {
     signal: AbortSignal,
     set: Change,
   ): Promise<void> {
-    const { spans, past, painted, became } = before;
-    const numbers = spans.length === 0 ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
+    const { past, painted, became } = before;
+    const numbers = before.found.every((runs) => runs === null) ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
     const said = [...painted.keys()].filter((index) => contains(range, index));
     const corrected = said.length > 0 || became.size > 0;

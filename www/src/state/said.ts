@@ -6,8 +6,11 @@ import { UNLABELLED } from '../result/masks.js';
 import { becameAfter } from './spans.js';
 import type { Version } from './tracked.js';
 
-/** What a person says: pixels of frames, by index, or what becomes of whole objects. */
-export type Said = { readonly painted: ReadonlyMap<number, Uint8Array> } | { readonly edits: NonNullable<ClipOptions['edits']> };
+/** What a person says: pixels of frames, by index, what becomes of whole objects, or which of them are locked. */
+export type Said =
+  | { readonly painted: ReadonlyMap<number, Uint8Array> }
+  | { readonly edits: NonNullable<ClipOptions['edits']> }
+  | { readonly locks: ReadonlyMap<number, boolean> };
 
 /** What was painted before in a frame, with this over it. */
 export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
@@ -17,6 +20,7 @@ export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: 
 
 /** The masks with what is painted in its own frames. The motions and certainties there follow later, and the masks of whole objects. */
 export function withSaid<V extends Version>(version: V, said: Said): V {
+  if ('locks' in said) return { ...version, locks: new Map([...version.locks, ...said.locks]) };
   if ('edits' in said) return { ...version, became: becameAfter(version.became, said.edits) };
   return [...said.painted].reduce((before, [index, labels]) => withPainted(before, index, labels), version);
 }

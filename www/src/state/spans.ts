@@ -2,7 +2,7 @@
 //! number, in other parts and when its frames are segmented again.
 
 import type { ClipOptions } from 'veronese';
-import { type Runs, overlapsOf, resized } from '../correction/runs.js';
+import { type Runs, overlapsOf, resized, together } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Range, Span, TrackedFrame, Version } from './tracked.js';
 
@@ -88,6 +88,23 @@ export function editsIn(numbers: Map<number, number>, became: ReadonlyMap<number
   const { 0: gone = [], ...kept } = Object.fromEntries(groups) as Record<number, number[]>;
   for (const [id, [there]] of Object.entries(kept)) numbers.set(there!, Number(id));
   return { merge: Object.values(kept).filter((group) => group.length > 1), delete: gone };
+}
+
+/**
+ * The package's numbers of the objects that other corrections leave as they are. What is painted in the frames `own` is about the objects
+ * that it names; parts that are made background, in any frame, are a correction of their object.
+ */
+export function lockedIn({ range, numbers }: Span, { painted, became, frames, found }: Version, own: readonly number[], isLocked: (id: number) => boolean): number[] {
+  const spoken = new Set<number>();
+  for (const [index, said] of painted) {
+    if (!contains(range, index)) continue;
+    if (own.includes(index)) for (const label of said.labels) spoken.add(label);
+    for (const masks of [frames[index]?.runs, found[index]]) {
+      if (masks) for (const [label, under] of together(said, masks)) if (label === 0) spoken.add(became.get(under) ?? under);
+    }
+  }
+  const here = (id: number): number => became.get(id) ?? id;
+  return [...numbers].filter(([, id]) => isLocked(here(id)) && !spoken.has(here(id))).map(([there]) => there);
 }
 
 /** What became of objects after an edit as well. */

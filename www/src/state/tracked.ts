@@ -4,6 +4,7 @@ import type { ClipFrame, ClipProgress } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import type { Runs } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
+import { keyOf } from '../result/masks.js';
 
 /** Frames from one index to another, both included. */
 export interface Range {
@@ -21,13 +22,13 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'corrected' | 'undone' | 'redone' | 'continued'; readonly changed: number }
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'corrected' | 'undone' | 'redone' | 'continued' | 'locked' | 'unlocked'; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
       /** Time left until all masks are there, seconds; `null` until it can be told. */
       readonly left: number | null;
-      /** Number of frames that are labelled. */
+      /** Number of frames that are labelled, or that a correction has changed. */
       readonly labelled: number;
     };
 
@@ -62,6 +63,8 @@ export interface Version {
   readonly painted: ReadonlyMap<number, Runs>;
   /** What became of objects that were merged or deleted: the number of another object, or 0. */
   readonly became: ReadonlyMap<number, number>;
+  /** Whether a person wants an object locked or not, by its number. */
+  readonly locks: ReadonlyMap<number, boolean>;
   /** The largest number that an object ever had. Numbers are not used again. */
   readonly largest: number;
 }
@@ -85,9 +88,10 @@ export interface Tracked extends Version {
   readonly saved: Saved;
 }
 
-type Saved = Pick<Tracked, 'frames' | 'names' | 'colours'>;
+type Saved = Pick<Tracked, 'frames' | 'names' | 'colours' | 'locks'>;
 
 const NOTHING = {};
+const NO_LOCKS: Version['locks'] = new Map();
 
 export function untracked(clip: Clip): Tracked {
   const frames = Array.from({ length: clip.count }, () => null);
@@ -102,24 +106,35 @@ export function untracked(clip: Clip): Tracked {
     found: frames,
     painted: new Map(),
     became: new Map(),
+    locks: NO_LOCKS,
     largest: 0,
     past: [],
     future: [],
     checked: new Map(),
     names: NOTHING,
     colours: NOTHING,
-    saved: { frames, names: NOTHING, colours: NOTHING },
+    saved: { frames, names: NOTHING, colours: NOTHING, locks: NO_LOCKS },
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, painted, became, largest }: Version): Version {
-  return { frames, spans, longestSide, found, painted, became, largest };
+export function versionOf({ frames, spans, longestSide, found, painted, became, locks, largest }: Version): Version {
+  return { frames, spans, longestSide, found, painted, became, locks, largest };
+}
+
+/** Whether corrections of other objects leave this one as it is: an object with a name, unless a person says otherwise. */
+export function isLocked({ locks, names }: Pick<Tracked, 'locks' | 'names'>, id: number): boolean {
+  return locks.get(id) ?? keyOf('objects', id) in names;
+}
+
+/** What is saved when the clip is kept or exported as it is. */
+export function savedOf({ frames, names, colours, locks }: Saved): Saved {
+  return { frames, names, colours, locks };
 }
 
 /** Whether leaving would lose what a person did. */
-export function isUnsavedClip({ frames, names, colours, saved, past, run }: Tracked): boolean {
+export function isUnsavedClip({ frames, names, colours, locks, saved, past, run }: Tracked): boolean {
   const corrected = past.length > 0 || isCorrecting(run);
-  return names !== saved.names || colours !== saved.colours || (frames !== saved.frames && corrected);
+  return names !== saved.names || colours !== saved.colours || locks !== saved.locks || (frames !== saved.frames && corrected);
 }
 
 /** Whether a correction is being carried through the clip. */

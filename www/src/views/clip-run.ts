@@ -68,7 +68,8 @@ function sentenceFor(tracked: Tracked): string {
 }
 
 function detailOf({ run, solved, range }: Tracked): string {
-  if (run.phase !== 'working' || run.stage === 'corrections') return '';
+  if (run.phase !== 'working') return '';
+  if (run.stage === 'corrections') return run.labelled === 0 ? '' : strings.tracking.changed(run.labelled);
   return run.stage === 'pairs' ? strings.tracking.pairs(solved, lengthOf(range), run.left) : strings.tracking.labels(run.labelled, solved);
 }
 

@@ -5,7 +5,7 @@ import { strings } from '../common/strings.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
-import { type Life, livesOf } from '../state/tracked.js';
+import { type Life, isLocked, livesOf } from '../state/tracked.js';
 import { find } from './markup.js';
 import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
 import { chooseTool } from './tools.js';
@@ -55,12 +55,14 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
   const share = find(row, '.motion-share', HTMLElement);
   const facts = find(row, '.motion-facts', HTMLElement);
   const doubtful = find(row, '[data-action=doubtful]', HTMLButtonElement);
+  const lock = find(row, '[data-action=lock]', HTMLButtonElement);
   const split = find(row, '[data-action=split]', HTMLButtonElement);
   const remove = find(row, '[data-action=remove]', HTMLButtonElement);
   doubtful.addEventListener('click', () => {
     session.goToDoubtful(id);
     find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
   });
+  lock.addEventListener('click', () => session.tracking.setLocked(id, lock.getAttribute('aria-pressed') === 'false'));
   split.addEventListener('click', () => session.tracking.split(id));
   remove.addEventListener('click', () => session.tracking.remove(id));
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;
@@ -73,7 +75,9 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
     if (id === 0) return;
     facts.textContent = factsOf(life, here === undefined && result !== null);
     const ready = life !== null && tracked !== null && tracked.spans.length > 0;
-    for (const control of [split, remove]) control.disabled = !ready;
+    for (const control of [lock, split, remove]) control.disabled = !ready;
+    lock.setAttribute('aria-pressed', String(tracked !== null && isLocked(tracked, id)));
+    lock.setAttribute('aria-label', strings.lockOf(called));
     offerMerging(row, ids.filter((other) => other !== 0 && other !== id), look, ready);
     doubtful.hidden = life === null || tracked?.checked.get(id) === life.doubtful.index;
     if (life !== null) {
