@@ -1,5 +1,5 @@
 //! Clips: objects keep their number while they move, stop, cross and hide, and the stream keeps its promises.
-#![allow(clippy::unwrap_used, reason = "test code may panic")]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "test code may panic")]
 
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
@@ -7,7 +7,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 mod support;
 
 use support::moving::{
-    Thing, carrier, correct, frames_of, mask, moving_and_resting, one_number, options, scene, thing, whole,
+    Thing, correct, frames_of, mask, moving_and_resting, one_number, options, scene, thing, whole,
 };
 use veronese::clip::{
     ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
