@@ -28,13 +28,14 @@ use constants::Constants;
 #[cfg(feature = "ablation")]
 pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
+use std::cmp::Reverse;
 use sweep::Claim;
 use track::{Start, Track, Way};
 use world::{Known, World};
 
 /// Odds of what is said, nats.
 const CERTAIN: f32 = 8.0;
-/// Frames that are surveyed at most.
+/// Frames that are surveyed at most for an object.
 const SURVEYED: usize = 8;
 
 /// A correction that spreads through a [`SegmentedClip`]. It asks for the frames that it needs:
@@ -72,8 +73,8 @@ pub struct ClipCorrection {
     worlds: Vec<World>,
     /// The frame that is wanted, and what for.
     next: Option<(usize, Pass)>,
-    /// Frames that are still to be surveyed, and those that speak for themselves.
-    survey: Vec<usize>,
+    /// Frames that are still to be surveyed, and for which object, and those that speak for themselves.
+    survey: Vec<(usize, u8)>,
     alone: Vec<usize>,
     /// Whether the layer of each frame of the scene is up to date.
     done: Vec<bool>,
@@ -151,10 +152,12 @@ impl ClipCorrection {
             _ if !is_wanted => {}
             Pass::Survey => {
                 let found = clip.found_at(index, look.size);
-                let tracks = self.worlds.iter_mut().flat_map(|world| &mut world.tracks);
-                tracks
-                    .filter(|track| found.contains(&track.number))
-                    .for_each(|track| track.survey(&look, &found, &constants));
+                while let Some((_, number)) = self.survey.pop_if(|(t, _)| *t == index) {
+                    let tracks = self.worlds.iter_mut().flat_map(|world| &mut world.tracks);
+                    tracks
+                        .filter(|track| track.number == number)
+                        .for_each(|track| track.survey(&look, &found, &constants));
+                }
                 self.next = self.after_survey();
             }
             Pass::Alone => {
@@ -218,11 +221,17 @@ impl ClipCorrection {
             }
             self.worlds.push(World { tracks, decides: vec![number] });
         }
-        let is_followed =
-            |label: u8| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.number == label);
-        let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds_any(t, &is_followed)).collect();
-        let count = there.len().min(SURVEYED);
-        self.survey = (0..count).map(|k| there[k * there.len() / count]).collect();
+        // Each object in frames of its own: which others are followed makes no difference to it.
+        let mut followed: Vec<u8> =
+            self.worlds.iter().flat_map(|world| &world.tracks).map(|track| track.number).collect();
+        followed.sort_unstable();
+        followed.dedup();
+        for number in followed {
+            let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds(t, number)).collect();
+            let count = there.len().min(SURVEYED);
+            self.survey.extend((0..count).map(|k| (there[k * there.len() / count], number)));
+        }
+        self.survey.sort_unstable_by_key(|(t, _)| Reverse(*t));
         let [forward, backward] = [Way::Forward, Way::Backward].map(|way| self.first(way));
         let is_swept = |t: usize| forward.is_some_and(|from| t >= from) || backward.is_some_and(|from| t <= from);
         let speaks = |t: usize| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.speaks(t));
@@ -286,14 +295,14 @@ impl ClipCorrection {
         for &number in self.worlds.iter().flat_map(|world| &world.decides) {
             let alone = Track::new(number, vec![(self.index, Spread::Both)], self.index + 1);
             let mut world = World { tracks: vec![alone], decides: vec![number] };
-            claims.append(&mut world.visit(self.index, Way::Forward, look, &known, constants));
+            claims.append(&mut world.visit(self.index, Way::Forward, false, look, &known, constants));
         }
         self.compose(clip, frame, look, self.index, &claims);
     }
 
     fn after_survey(&mut self) -> Option<(usize, Pass)> {
-        if let Some(t) = self.survey.pop() {
-            return Some((t, Pass::Survey));
+        if let Some((t, _)) = self.survey.last() {
+            return Some((*t, Pass::Survey));
         }
         if let Some(t) = self.alone.pop() {
             return Some((t, Pass::Alone));
@@ -329,12 +338,12 @@ impl ClipCorrection {
             found: &found,
             flows: to.as_ref().zip(from.as_ref()).map(|(to, from)| [to, from]),
         };
+        let again = way == Way::Forward && self.first(Way::Backward).is_some_and(|furthest| t < furthest);
         let mut claims = Vec::new();
         for world in &mut self.worlds {
-            claims.append(&mut world.visit(t, way, look, &known, constants));
+            claims.append(&mut world.visit(t, way, again, look, &known, constants));
         }
-        let furthest = self.first(Way::Backward);
-        if way == Way::Backward || furthest.is_none_or(|furthest| t >= furthest) {
+        if !again {
             self.compose(clip, frame, look, t, &claims);
             self.done[t - first] = true;
         }

@@ -437,9 +437,9 @@ impl SegmentedClip {
         persons
     }
 
-    /// Whether any such label was found in a frame.
-    pub(super) fn finds_any(&self, index: usize, is_such: &dyn Fn(u8) -> bool) -> bool {
-        self.frames[index].found.labels.each().any(|(label, _)| is_such(label))
+    /// Whether an object was found in a frame.
+    pub(super) fn finds(&self, index: usize, number: u8) -> bool {
+        self.frames[index].found.labels.each().any(|(label, _)| label == number)
     }
 
     /// What was found in a frame, at another size.

@@ -61,15 +61,18 @@ impl Track {
         }
     }
 
-    /// What is expected of the object in a frame, if the sweep has begun.
+    /// What is expected of the object in a frame, if the sweep has begun. The one backward may have turned in a frame that it has yet to
+    /// come to again, because other objects are followed from later ones.
     pub(super) fn expect(
         &mut self,
+        t: usize,
         way: Way,
         look: &Look,
         given: &Given<'_>,
         constants: &Constants,
     ) -> Option<Expected> {
-        self.sweep(way).expect(look, given, constants)
+        let is_ahead = way == Way::Backward && self.first(way).is_none_or(|last| t >= last);
+        if is_ahead { None } else { self.sweep(way).expect(look, given, constants) }
     }
 
     /// The object's claim in a frame.

@@ -29,11 +29,12 @@ impl World {
         if way == Way::Forward { firsts.min() } else { firsts.max() }
     }
 
-    /// The claims of a frame.
+    /// The claims of a frame, to which the sweep backward may come `again`.
     pub(super) fn visit(
         &mut self,
         t: usize,
         way: Way,
+        again: bool,
         look: &Look,
         known: &Known<'_>,
         constants: &Constants,
@@ -56,10 +57,9 @@ impl World {
             .tracks
             .iter_mut()
             .zip(&given)
-            .map(|(track, given)| track.expect(way, look, given, constants))
+            .map(|(track, given)| track.expect(t, way, look, given, constants))
             .collect();
         compete(&mut expected, look.size[0]);
-        let again = way == Way::Forward && self.first(Way::Backward).is_some_and(|last| t < last);
         let mut claims = Vec::new();
         for ((track, given), expected) in self.tracks.iter_mut().zip(&given).zip(expected) {
             let claim = track.visit(t, way, look, given, expected, constants);
