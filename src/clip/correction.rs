@@ -23,12 +23,12 @@ use super::whole::{NOTHING_SAID, SegmentedClip};
 use crate::error::Result;
 use crate::frame::{Frame, Plane};
 use crate::labelling::resolution::upsampling::upsample;
+use crate::order::sort_few;
 use crate::workspace::{self, Buffer};
 use constants::Constants;
 #[cfg(feature = "ablation")]
 pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
-use std::cmp::Reverse;
 use sweep::Claim;
 use track::{Start, Track, Way};
 use world::{Known, World};
@@ -222,16 +222,15 @@ impl ClipCorrection {
             self.worlds.push(World { tracks, decides: vec![number] });
         }
         // Each object in frames of its own: which others are followed makes no difference to it.
-        let mut followed: Vec<u8> =
-            self.worlds.iter().flat_map(|world| &world.tracks).map(|track| track.number).collect();
-        followed.sort_unstable();
-        followed.dedup();
-        for number in followed {
+        for number in 1..NOTHING_SAID {
+            if !self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.number == number) {
+                continue;
+            }
             let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds(t, number)).collect();
             let count = there.len().min(SURVEYED);
             self.survey.extend((0..count).map(|k| (there[k * there.len() / count], number)));
         }
-        self.survey.sort_unstable_by_key(|(t, _)| Reverse(*t));
+        sort_few(&mut self.survey, |(one, _), (other, _)| other.cmp(one));
         let [forward, backward] = [Way::Forward, Way::Backward].map(|way| self.first(way));
         let is_swept = |t: usize| forward.is_some_and(|from| t >= from) || backward.is_some_and(|from| t <= from);
         let speaks = |t: usize| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.speaks(t));
