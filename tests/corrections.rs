@@ -487,8 +487,7 @@ fn strokes_alone_make_an_object_that_is_followed() {
     said.iter_mut().zip(shot.stroke(0, [70, 50, 56, 6])).filter(|(_, s)| *s == 0).for_each(|(said, _)| *said = 0);
     shot.correct(3, &said);
     let ious = shot.ious(2, 9);
-    println!("strokes: {ious:.3?}");
-    assert!(ious.len() == 7 && ious.iter().all(|&iou| iou > 0.6), "{ious:.3?}");
+    assert!(ious.len() == 7 && ious.iter().all(|&iou| iou > 0.85), "{ious:.3?}");
 }
 
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
@@ -506,7 +505,6 @@ fn one_that_is_hidden_for_some_frames_keeps_its_number() {
     for t in (0..hidden[0] - 1).chain(hidden[hidden.len() - 1] + 3..14) {
         for (thing, number) in [(1, 50), (2, 51)] {
             let (label, iou) = carrier(&labels[t], &shot.truths[t], thing).unwrap();
-            println!("{t} {thing}: {label}, {iou:.3}");
             assert!(label == number && iou > 0.7, "frame {t}, thing {thing}: {label}, {iou:.3}");
         }
     }
@@ -514,37 +512,36 @@ fn one_that_is_hidden_for_some_frames_keeps_its_number() {
 
 #[test]
 fn extremes_are_taken_as_they_are() {
-    for size @ [width, height] in [[16, 16], [19, 17]] {
-        let things = [thing(2, [7.0, 6.0], |t| [2.0 + t as f32, 4.0])];
-        let pixels = width * height;
-        let at = |p: usize, number: u8| {
-            let mut said = vec![255; pixels];
-            said[p] = number;
-            said
-        };
-        let numbers: Vec<u8> = (0..pixels).map(|p| (p * 254 / pixels) as u8 + 1).collect();
-        let single: Vec<u8> = (0..pixels).map(|p| if p < 254 { p as u8 + 1 } else { 255 }).collect();
-        let said = [
-            vec![255; pixels],
-            at(0, 1),
-            at(pixels - 1, 254),
-            at(pixels / 2, 0),
-            vec![254; pixels],
-            vec![0; pixels],
-            numbers,
-            single,
-            (0..pixels).map(|p| p as u8).collect(),
-        ];
-        let start = Shot::new(size, &things, 2);
-        let mut kept = start.clone();
-        for (k, said) in said.iter().enumerate() {
-            // Alone, and after all that was said before.
-            let mut shot = start.clone();
-            shot.correct(1, said);
-            kept.correct(k % 2, said);
-            for labels in [&shot.labels()[1], &kept.labels()[k % 2]] {
-                assert!(labels.iter().zip(said).all(|(label, said)| *said == 255 || label == said), "{size:?}, {k}");
-            }
+    let size @ [width, height] = [16, 16];
+    let things = [thing(2, [7.0, 6.0], |t| [2.0 + t as f32, 4.0])];
+    let pixels = width * height;
+    let at = |p: usize, number: u8| {
+        let mut said = vec![255; pixels];
+        said[p] = number;
+        said
+    };
+    let numbers: Vec<u8> = (0..pixels).map(|p| (p * 254 / pixels) as u8 + 1).collect();
+    let single: Vec<u8> = (0..pixels).map(|p| if p < 254 { p as u8 + 1 } else { 255 }).collect();
+    let said = [
+        vec![255; pixels],
+        at(0, 1),
+        at(pixels - 1, 254),
+        at(pixels / 2, 0),
+        vec![254; pixels],
+        vec![0; pixels],
+        numbers,
+        single,
+        (0..pixels).map(|p| p as u8).collect(),
+    ];
+    let start = Shot::new(size, &things, 2);
+    let mut kept = start.clone();
+    for (k, said) in said.iter().enumerate() {
+        // Alone, and after all that was said before.
+        let mut shot = start.clone();
+        shot.correct(1, said);
+        kept.correct(k % 2, said);
+        for labels in [&shot.labels()[1], &kept.labels()[k % 2]] {
+            assert!(labels.iter().zip(said).all(|(label, said)| *said == 255 || label == said), "{k}");
         }
     }
     // Of a clip of one frame.
