@@ -6,9 +6,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 mod support;
 
-use support::moving::{
-    Thing, carrier, correct, frames_of, mask, moving_and_resting, one_number, options, scene, thing, whole,
-};
+use support::moving::{Thing, correct, frames_of, mask, moving_and_resting, one_number, options, scene, thing, whole};
 use veronese::clip::{
     ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
 };
