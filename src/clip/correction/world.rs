@@ -102,3 +102,46 @@ pub(super) fn of_object(said: &[u8], number: u8) -> Vec<Said> {
     };
     said.iter().map(of).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::constants::constants;
+    use super::*;
+    use crate::clip::layer::Spread;
+
+    const SIZE: [usize; 2] = [96, 64];
+
+    #[test]
+    fn two_rivals_share_no_pixel() {
+        // Side by side and of one colour; the border between them was said in one frame alone.
+        let look = Look::painted(SIZE, |x, y| match (20..68).contains(&x) && (20..44).contains(&y) {
+            true => [190, 70, 60],
+            false => [110, 120, 115],
+        });
+        let inside = |p: usize| (20..44).contains(&(p / SIZE[0]));
+        let said = |p: usize| match p % SIZE[0] {
+            20..44 if inside(p) => 1,
+            44..68 if inside(p) => 2,
+            _ => 0,
+        };
+        let said: Vec<u8> = (0..look.pixels()).map(said).collect();
+        let tracks = [1, 2].map(|number| Track::new(number, vec![(0, Spread::Both)], 3)).to_vec();
+        let mut world = World { tracks, decides: vec![1, 2] };
+        let found = vec![0; look.pixels()];
+        for t in 0..3 {
+            let said = (t == 0).then_some((&said[..], [true; 2]));
+            let claims =
+                world.visit(t, Way::Forward, false, &look, &Known { said, found: &found, flows: None }, &constants());
+            let mut owners = vec![0; look.pixels()];
+            for (number, claim) in claims {
+                let claim = claim.unwrap();
+                let own: Vec<usize> =
+                    claim.area.pixels(SIZE[0]).zip(&claim.mask).filter(|(_, m)| **m > 0).map(|(p, _)| p).collect();
+                assert!((450..700).contains(&own.len()), "frame {t}: {number} has {} of 576 pixels", own.len());
+                for p in own {
+                    assert_eq!(std::mem::replace(&mut owners[p], number), 0, "frame {t}, pixel {p}");
+                }
+            }
+        }
+    }
+}
