@@ -202,15 +202,17 @@ export class Tracking {
     if (own === 0 && tool === 'eraser') return this.#refuse(strings.notices.nothingElse);
     const { width } = pair.first;
     return ({ points, radius }) => {
-      const masks = this.#store.get().tracked?.frames[frame]?.runs;
-      if (masks === undefined) return;
+      const { tracked: now } = this.#store.get();
+      const masks = now?.frames[frame]?.runs;
+      if (!now || masks === undefined) return;
       const scale = masks.width / width;
       const path = { points: points.map((value) => (value + 0.5) * scale - 0.5), radius: radius * scale };
       const [labels, said] = [unpacked(masks), new Uint8Array(masks.width * masks.height).fill(UNLABELLED)];
       eachPixel(path, masks.width, masks.height, (p) => {
-        if (tool === 'brush') said[p] = own;
-        else if (labels[p] === own) said[p] = 0;
+        const there = labels[p]!;
+        if (tool === 'eraser' ? there === own : there === own || !isLocked(now, there)) said[p] = tool === 'eraser' ? 0 : own;
       });
+      if (tool === 'brush' && said.every((label) => label === UNLABELLED)) return void this.#refuse(strings.notices.locked);
       void this.correct({ painted: new Map([[frame, said]]) });
     };
   }
