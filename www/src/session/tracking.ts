@@ -21,6 +21,9 @@ import { TimeLeft } from './time-left.js';
 /** Masks are shown at most this often while they come, milliseconds. */
 const OFTEN = 100;
 
+/** Memory for frames that a correction reads again, bytes. */
+const ROOM = 64 << 20;
+
 /** The beginning of carrying a correction through a clip. */
 const CARRYING = { phase: 'working', stage: 'corrections', left: null, labelled: 0 } as const;
 
@@ -408,11 +411,12 @@ export class Tracking {
     signal: AbortSignal,
     changes?: (index: number, masks: TrackedFrame) => void,
   ): Promise<Version> {
-    const { tracked, settings } = this.#store.get();
+    const { tracked, settings, pair } = this.#store.get();
     if (tracked === null) return version;
     const { first } = span.range;
     const numbers = new Map(span.numbers);
-    const frames = new ClipFrames(tracked.clip, version.longestSide, span.range);
+    const hand = [pair.first, pair.second].filter((frame) => frame !== null);
+    const frames = new ClipFrames(tracked.clip, version.longestSide, span.range, { hand, room: ROOM });
     const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(unpacked(version.painted.get(index)!), numbers) }));
     let { largest } = version;
     const named = (frame: ClipFrame): TrackedFrame => {
