@@ -56,7 +56,7 @@ export class ClipFrames {
     const { data, width, height } = kept === undefined ? await this.#frame(this.range.first + index) : copyOf(kept);
     this.size.width = width;
     this.size.height = height;
-    this.#compare(data);
+    if (kept === undefined) this.#compare(data);
     if (kept === undefined && data.length <= this.at.room) this.#keep(index, copyOf({ data, width, height }));
     return { data, width, height };
   }
@@ -78,9 +78,9 @@ export class ClipFrames {
 
   #compare(data: Uint8ClampedArray): void {
     if (this.#differ) return;
-    const first = this.#first ?? data.slice();
-    this.#differ = !data.every((value, k) => value === first[k]);
-    this.#first = this.#differ ? null : first;
+    const first = this.#first;
+    this.#differ = first !== null && !data.every((value, k) => value === first[k]);
+    this.#first = this.#differ ? null : (first ?? data.slice());
   }
 }
 

@@ -417,7 +417,7 @@ export class Tracking {
     const numbers = new Map(span.numbers);
     const hand = [pair.first, pair.second].filter((frame) => frame !== null);
     const frames = new ClipFrames(tracked.clip, version.longestSide, span.range, { hand, room: ROOM });
-    const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(unpacked(version.painted.get(index)!), numbers) }));
+    const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(version.painted.get(index)!, numbers) }));
     let { largest } = version;
     const named = (frame: ClipFrame): TrackedFrame => {
       const masks = fromSpan(masksOf(frame, frames.size), numbers, largest);
