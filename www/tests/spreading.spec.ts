@@ -85,8 +85,8 @@ test('frames are redrawn as a correction changes them, with its progress', async
   await settled(page);
   const told = await page.evaluate(() => (window as unknown as { told: string[] }).told);
   expect(told.length).toBeGreaterThan(1);
-  expect(told[0]).toBe('Carrying your correction to other frames… Changed so far: one frame false');
-  const counts = told.slice(1).map((text) => Number(/… Changed so far: (\d+) frames false$/.exec(text)?.[1]));
+  expect(told[0]).toBe('Carrying your correction to other frames… 1 so far false');
+  const counts = told.slice(1).map((text) => Number(/… (\d+) so far false$/.exec(text)?.[1]));
   expect(counts).toEqual([...counts].sort((one, other) => one - other));
   expect(counts[0]).toBeGreaterThan(1);
   expect(differences(await labelsOnCanvas(page), before)).toBeGreaterThan(0);

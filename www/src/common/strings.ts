@@ -122,7 +122,7 @@ export const strings = {
     resume: 'Continue',
     pairs: (done: number, of: number, left: number | null): string => (done < of ? `${whole.format(done)} of ${frames(of)}${remaining(left)}` : 'Following the objects…'),
     corrections: 'Carrying your correction to other frames…',
-    changed: (count: number): string => `Changed so far: ${frames(count)}`,
+    changed: (count: number): string => `${whole.format(count)} so far`,
     labels: (done: number, of: number): string => `Masks of ${whole.format(done)} of ${frames(of)}`,
     started: 'Segmenting…',
     corrected: (changed: number): string => `Corrected: the masks of ${frames(changed)} have changed.`,

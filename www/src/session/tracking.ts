@@ -536,7 +536,8 @@ export class Tracking {
     set: Change,
   ): Promise<void> {
     const { past, painted, became } = before;
-    const numbers = before.found.every((runs) => runs === null) ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
+    const isFirst = before.found.every((runs) => runs === null);
+    const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
     const said = [...painted.keys()].filter((index) => contains(range, index));
     const corrected = said.length > 0 || became.size > 0;

@@ -95,7 +95,12 @@ export function editsIn(numbers: Map<number, number>, became: ReadonlyMap<number
  * The package's numbers of the objects that other corrections leave as they are. What is painted in the frames `own` is about the objects
  * that it names; parts that are made background, in any frame, are a correction of their object.
  */
-export function lockedIn({ range, numbers }: Span, { painted, became, frames, found }: Version, own: readonly number[], isLocked: (id: number) => boolean): number[] {
+export function lockedIn(
+  { range, numbers }: Span,
+  { painted, became, frames, found }: Version,
+  own: readonly number[],
+  isLocked: (id: number) => boolean,
+): number[] {
   const spoken = new Set<number>();
   for (const [index, said] of painted) {
     if (!contains(range, index)) continue;
