@@ -1,5 +1,6 @@
 // npm run bench:page: opens a long generated video in the page, segments all of it and steps through it, in headless Chromium, and samples
-// the memory of all processes of the browser (Linux only). Writes out/bench/page.json and prints a table. Options:
+// the memory of all processes of the browser (Linux only). Then it paints in frames of a clip of 854 × 480 pixels and measures the time until
+// the corrected frame is drawn. Writes out/bench/page.json and prints a table. Options:
 //   --frames N     length of the video (2000)
 //   --size WxH     size of its frames (1920x1080)
 //   --quality Q    fast or best (fast)
@@ -27,6 +28,10 @@ const VIDEO = join(OUT, 'long-clip.webm');
 const INTERVAL = 1000;
 /** Rows of the table while the clip is segmented. */
 const ROWS = 10;
+/** The clip that is corrected: in each of these frames a stroke is drawn. */
+const CORRECTED = { size: [854, 480], frames: 50, at: [5, 10, 15, 20, 25, 30, 35, 40, 45] };
+/** From the end of a stroke to the corrected frame, milliseconds. */
+const BAR = 150;
 
 await command(async (args) => {
   const { frames, size, quality, writeDocs } = options(args);
@@ -44,9 +49,11 @@ await command(async (args) => {
     const maker = await browser.newPage();
     await maker.goto(`${address}#sample=intel-two-cars`);
     await writeLongClip(maker, VIDEO, frames, size);
-    await maker.close();
     const measured = await segmented(browser, address, quality);
-    const report = { date: new Date().toISOString().slice(0, 10), processor: cpus()[0].model, cores: cpus().length, chromium: browser.version(), frames, size, quality, ...measured };
+    await writeLongClip(maker, VIDEO, CORRECTED.frames, CORRECTED.size);
+    await maker.close();
+    const corrected = await correctedFrames(browser, address, quality);
+    const report = { date: new Date().toISOString().slice(0, 10), processor: cpus()[0].model, cores: cpus().length, chromium: browser.version(), frames, size, quality, ...measured, corrected };
     writeFileSync(join(OUT, 'page.json'), `${JSON.stringify(report, undefined, 2)}\n`);
     const text = tableOf(report);
     console.log(`\n${text}`);
@@ -119,6 +126,63 @@ async function segmented(browser, address, quality) {
   return { seconds, status, opened, samples, done, stepped: await memory(session) };
 }
 
+/** Times from the end of strokes until the stroke is drawn, the corrected frame is, and the correction has spread, milliseconds. */
+async function correctedFrames(browser, address, quality) {
+  const page = await browser.newPage();
+  await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups`);
+  await reached(page, '#run', 'done');
+  await page.locator('#open-pair').setInputFiles(VIDEO);
+  await page.waitForFunction(() => document.querySelector('#clip-name').textContent !== '');
+  await reached(page, '#run', 'done');
+  await page.locator('#clip-segment').click();
+  await reached(page, '#clip-run', 'working');
+  await reached(page, '#clip-run', 'done');
+  await page.locator('#tools [value=brush]').check();
+  await page.locator('#objects > li').nth(1).locator('.motion-facts').click();
+  const track = page.locator('#track');
+  const times = [];
+  for (const index of CORRECTED.at) {
+    await track.press('Home');
+    for (let k = 0; k < index; k += 1) await track.press('ArrowRight');
+    await page.waitForFunction((index) => document.querySelector('#caption').textContent === `Frame ${index}`, index);
+    await reached(page, '#run', 'done');
+    times.push(await page.evaluate(strokeTimes));
+    await page.locator('#undo').click();
+  }
+  await page.close();
+  const figures = ['stroke', 'frame', 'clip'].map((name) => {
+    const sorted = times.map((time) => time[name]).sort((one, other) => one - other);
+    return [name, { median: sorted[Math.floor(sorted.length / 2)], worst: sorted.at(-1) }];
+  });
+  return { ...Object.fromEntries(figures), times };
+}
+
+/** Runs in the page: draws a stroke across the first object. */
+async function strokeTimes() {
+  const layers = document.querySelector('.layers');
+  const detail = document.querySelector('#clip-detail');
+  const run = document.querySelector('#clip-run');
+  layers.setPointerCapture = () => undefined; // made pointers cannot be captured
+  const { x, y, width, height } = layers.getBoundingClientRect();
+  const send = (type, u, v) =>
+    layers.dispatchEvent(new PointerEvent(type, { pointerId: 1, isPrimary: true, button: type === 'pointermove' ? -1 : 0, bubbles: true, clientX: x + u * width, clientY: y + v * height }));
+  const until = (isSo) =>
+    new Promise((resolve) => {
+      const look = () => (isSo() ? requestAnimationFrame(() => resolve(performance.now())) : undefined);
+      const observer = new MutationObserver(look);
+      for (const node of [detail, run]) observer.observe(node, { attributes: true, childList: true, characterData: true, subtree: true });
+      look();
+    });
+  send('pointerdown', 0.3, 0.5);
+  for (let k = 1; k <= 10; k += 1) send('pointermove', 0.3 + 0.01 * k, 0.5);
+  await new Promise(requestAnimationFrame);
+  const began = performance.now();
+  send('pointerup', 0.4, 0.5);
+  const stroke = new Promise(requestAnimationFrame).then(() => performance.now());
+  const [drawn, frame, clip] = await Promise.all([stroke, until(() => detail.textContent !== ''), until(() => run.dataset.phase === 'done')]);
+  return { stroke: drawn - began, frame: frame - began, clip: clip - began };
+}
+
 async function reached(page, selector, phase) {
   await page.waitForFunction(([selector, phase]) => document.querySelector(selector).dataset.phase === phase, [selector, phase]);
 }
@@ -137,11 +201,15 @@ function proportional(id) {
   }
 }
 
-function tableOf({ date, processor, cores, chromium, frames, size, quality, seconds, status, opened, samples, done, stepped }) {
+function tableOf({ date, processor, cores, chromium, frames, size, quality, seconds, status, opened, samples, done, stepped, corrected }) {
   const head = `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: ${frames} frames of ${size.join(' × ')} pixels, quality *${quality}*, in ${seconds.toFixed(0)} seconds, ${(frames / seconds).toFixed(1)} frames a second. “${status}”`;
   const at = Array.from({ length: ROWS }, (_, k) => samples[Math.floor(((k + 1) / ROWS) * (samples.length - 1))]);
   const rows = [['opened', opened], ...at.map(({ seconds, bytes }) => [`after ${seconds.toFixed(0)} s`, bytes]), ['segmented', done], ['after steps to 32 other frames', stepped]];
-  return [head, '', '| | memory of the browser, MiB |', '| --- | --- |', ...rows.map(([name, bytes]) => `| ${name} | ${mib(bytes)} |`)].join('\n');
+  const memory = [head, '', '| | memory of the browser, MiB |', '| --- | --- |', ...rows.map(([name, bytes]) => `| ${name} | ${mib(bytes)} |`)];
+  const intro = `A stroke in ${corrected.times.length} frames of a clip of ${CORRECTED.frames} frames of ${CORRECTED.size.join(' × ')} pixels; the corrected frame is to be drawn within ${BAR} ms:`;
+  const times = [['stroke', 'stroke'], ['corrected frame', 'frame'], ['all frames', 'clip']].map(([name, key]) => [name, corrected[key].median, corrected[key].worst]);
+  const lines = times.map(([name, ...values]) => `| ${name} | ${values.map((value) => value.toFixed(0)).join(' | ')} |`);
+  return [...memory, '', intro, '', '| drawn | median, ms | worst, ms |', '| --- | --- | --- |', ...lines].join('\n');
 }
 
 function mib(bytes) {

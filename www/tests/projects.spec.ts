@@ -91,7 +91,7 @@ async function correctedClip(page: Page, files: Upload[]): Promise<void> {
   await rename(page, 2, 'Box');
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await page.getByRole('button', { name: 'Delete Object 1' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of 6 frames/);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \d+ frames/);
 }
 
 /** Whether it is the clip of {@link correctedClip}, continued without being segmented again. */
@@ -200,29 +200,62 @@ test('a project is saved as a file and opened in another browser, with its frame
   await isContinued(page, files);
 });
 
-test('masks of another version stay; they can be corrected when the clip has been segmented again', async ({ page }) => {
+test('a project whose state is of an older version is segmented again and corrected as before', async ({ page }) => {
   const files = await clipFrames(6);
+  await correctedClip(page, files);
+  await goTo(page, 3);
+  await page.getByRole('button', { name: 'New object' }).click();
+  const box = (await page.locator('.layers').boundingBox())!;
+  await page.mouse.move(box.x + 0.2 * box.width, box.y + 0.3 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.32 * box.width, box.y + 0.46 * box.height, { steps: 4 });
+  await page.mouse.up();
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  const corrected = await numbersOnCanvas(page);
+  expect(new Set(corrected)).toContain(3);
+  const project = await savedProject(page);
+  const unpacked = gunzipSync(project.buffer).toString('latin1');
+  expect(unpacked).toContain('VERCLIP4');
+  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll('VERCLIP4', 'VERCLIP3'), 'latin1')) };
+  await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('projects', { recursive: true }));
+  await page.reload();
+  await upload(page, [old, ...files]);
+  await expect(page.locator('#caption')).toHaveText('Frame 3');
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
+  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0); // at once, and when it is segmented
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 6 frames, corrected as before.', { timeout: 30_000 });
+  await expect(page.locator('#notice')).toBeHidden();
+  expect(differences(await numbersOnCanvas(page), corrected)).toBe(0);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
+  expect(await leaves(page)).toBe(true);
+
+  // Corrections go on from there, and what is kept now is of this version.
+  await page.locator('#objects > li').nth(1).locator('summary').click();
+  await page.getByRole('button', { name: 'Delete Box' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 3]));
+  await kept(page);
+  expect(await fileInBrowser(page)).not.toContain('VERCLIP3');
+});
+
+test('a project of an older version whose segmentation is cancelled keeps its masks, and takes corrections when that is done', async ({ page }) => {
+  const files = await clipFrames(24);
   await correctedClip(page, files);
   const project = await savedProject(page);
   const unpacked = gunzipSync(project.buffer).toString('latin1');
-  expect(unpacked).toContain('VERCLIP3');
-  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replace('VERCLIP3', 'VERCLIP2'), 'latin1')) };
+  const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll('VERCLIP4', 'VERCLIP3'), 'latin1')) };
+  const masks = await numbersOnCanvas(page);
   await upload(page, [old]);
-  await isContinued(page, files);
+  await expect(page.locator('#clip-detail')).toContainText('of 24 frames');
+  await page.locator('#clip-cancel').click();
+  await phase(page, 'cancelled');
+  expect(differences(await numbersOnCanvas(page), masks)).toBe(0);
   await page.locator('#objects > li').nth(1).locator('summary').click();
-  await page.getByRole('button', { name: 'Delete Box' }).click();
-  await expect(page.locator('#notice-code')).toHaveText('other-state');
-  await expect(page.locator('#notice-sentence')).toContainText('They stay and can be exported. To correct them, segment the clip again.');
-  await page.locator('#notice-close').click();
-  const found = await clipInNode(files, { quality: 'fast', edits: { delete: [1] } });
-  expect(differences(await numbersOnCanvas(page), found[5]!)).toBe(0);
-  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Box');
-  await page.getByRole('button', { name: 'Segment the clip again' }).click();
-  await phase(page, 'done');
-  await expect(page.locator('#clip-status')).not.toHaveText(/^Continued/);
-  // What was corrected before is corrected again, so that Box keeps its row, whose menu is open still.
-  await page.getByRole('button', { name: 'Delete Box' }).click();
-  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
+  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeDisabled();
+  await page.getByRole('button', { name: 'Continue' }).click();
+  await expect(page.locator('#clip-status')).toHaveText('One object in 24 frames, corrected as before.', { timeout: 30_000 });
+  expect(differences(await numbersOnCanvas(page), masks)).toBe(0);
+  await expect(page.getByRole('button', { name: 'Delete Box' })).toBeEnabled();
 });
 
 test('strokes and names of a pair are there after a reload', async ({ page }) => {

@@ -19,7 +19,7 @@ import { suggestionsOf } from '../src/result/junctions.js';
 import { labelSet, masksOf, merged, separated, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/numbering.js';
-import { becameAfter, editsIn, fromSpan, numbersOf, spanAt, toSpan } from '../src/state/spans.js';
+import { becameAfter, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
 import { type TrackedFrame, untracked } from '../src/state/tracked.js';
@@ -324,12 +324,27 @@ test('an object keeps its number when its frames are segmented again', () => {
   expect(numbersOf([masks(7, 7, 0, 0, 0, 0)], { first: 3, last: 3 }, version)).toEqual(new Map([[7, 1]]));
 });
 
+test('objects that a person has spoken of by erasing are not locked', () => {
+  const runs = (...labels: number[]): Runs => packed(Uint8Array.from(labels), labels.length, 1);
+  const span = { range: { first: 0, last: 1 }, state: new Blob(), numbers: new Map([[1, 5], [2, 6], [3, 7], [4, 8]]) };
+  const found = [runs(5, 6, 7, 8), runs(5, 6, 7, 8)];
+  const frames = found.map((runs) => ({ runs, objects: [], background: null }));
+  const version = { ...untracked({ count: 2 } as Clip), frames, found, spans: [span], painted: new Map([[0, runs(255, 0, 255, 255)]]), became: new Map([[8, 7]]) };
+  expect(lockedIn(span, version, [], () => true)).toEqual([1, 3, 4]);
+  expect(lockedIn(span, version, [], (id) => id === 7)).toEqual([3, 4]); // what was merged into it as well
+  // The frame that is painted now names 5.
+  const now = { ...version, painted: new Map([...version.painted, [1, runs(255, 255, 255, 5)]]) };
+  expect(lockedIn(span, now, [1], () => true)).toEqual([3, 4]);
+  expect(lockedIn(span, now, [0], () => true)).toEqual([1, 3, 4]);
+});
+
 test('masks and corrections are translated between the numbers of a run and those of the clip', () => {
+  const row = (...labels: number[]): Runs => packed(Uint8Array.from(labels), labels.length, 1);
   const numbers = new Map([[1, 3], [3, 1]]);
   // What no run knows gets a number that no object of the run has.
-  expect(Array.from(toSpan(Uint8Array.of(0, 1, 3, 2, 255, 2), numbers))).toEqual([0, 3, 1, 2, 255, 2]);
-  expect(Array.from(toSpan(Uint8Array.of(7, 1), new Map([[7, 2]])))).toEqual([8, 1]);
-  expect(Array.from(toSpan(Uint8Array.of(9), new Map([[9, 1], [254, 2]])))).toEqual([1]);
+  expect(Array.from(toSpan(row(0, 1, 3, 2, 255, 2), numbers))).toEqual([0, 3, 1, 2, 255, 2]);
+  expect(Array.from(toSpan(row(7, 1), new Map([[7, 2]])))).toEqual([8, 1]);
+  expect(Array.from(toSpan(row(9), new Map([[9, 1], [254, 2]])))).toEqual([1]);
   const seen = fromSpan(masks(1, 3, 6, 0, 255, 2), numbers, 5);
   expect(Array.from(unpacked(seen.runs))).toEqual([3, 1, 6, 0, 255, 2]);
   expect(seen.objects.map(({ id }) => id)).toEqual([1, 2, 3, 6]);

@@ -122,7 +122,7 @@ export const strings = {
     resume: 'Continue',
     pairs: (done: number, of: number, left: number | null): string => (done < of ? `${whole.format(done)} of ${frames(of)}${remaining(left)}` : 'Following the objects…'),
     corrections: 'Carrying your correction to other frames…',
-    changed: (count: number): string => `${frames(count)} changed so far`,
+    changed: (count: number): string => `${whole.format(count)} so far`,
     labels: (done: number, of: number): string => `Masks of ${whole.format(done)} of ${frames(of)}`,
     started: 'Segmenting…',
     corrected: (changed: number): string => `Corrected: the masks of ${frames(changed)} have changed.`,
@@ -289,6 +289,7 @@ export const strings = {
     leftOut: (folder: string, count: number): string => `Opened the images of “${folder}”. ${images(count)} of other folders ${count === 1 ? 'is' : 'are'} left out.`,
     nothingTicked: 'Tick an object in the list first.',
     notReady: 'Segment the clip first.',
+    locked: 'What you painted belongs to a locked object. Unlock it first.',
     otherState:
       'These masks were made by another version of this page, or in a browser that reads the frames differently. ' +
       'They stay and can be exported. To correct them, segment the clip again.',

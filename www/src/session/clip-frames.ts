@@ -1,8 +1,11 @@
-//! The frames of a clip as the package reads them: whenever it needs one, so that none stays in memory.
+//! The frames of a clip as the package reads them: whenever it needs one, so that few stay in memory, or none.
 
-import type { Pixels } from 'veronese';
 import type { Clip } from '../clips/clip.js';
+import { smaller } from '../frames/frame.js';
+import type { LoadedFrame } from '../state/pair.js';
 import type { Range } from '../state/tracked.js';
+
+type Picture = Pick<LoadedFrame, 'data' | 'width' | 'height'>;
 
 /** Thrown instead of reading a frame after `stop`. */
 export const STOPPED = new Error('stopped');
@@ -16,11 +19,15 @@ export class ClipFrames {
   /** The pixels of the first frame that was read, while all others are the same. */
   #first: Uint8ClampedArray | null = null;
   #differ = false;
+  /** Frames that were read lately, the latest last. */
+  readonly #kept = new Map<number, Picture>();
 
   constructor(
     readonly clip: Clip,
     readonly longestSide: number,
     readonly range: Range,
+    /** What a correction, which reads frames several times, finds without decoding: frames on screen, and so many bytes of others. */
+    readonly at: { readonly hand: readonly LoadedFrame[]; readonly room: number } = { hand: [], room: 0 },
   ) {}
 
   get length(): number {
@@ -42,21 +49,42 @@ export class ClipFrames {
   }
 
   /** `index` counts from the first frame of the range. */
-  async read(index: number): Promise<Pixels> {
+  async read(index: number): Promise<Picture> {
     if (this.#stopped && index >= this.#read) throw STOPPED;
     this.#read = Math.max(this.#read, index + 1);
-    const { data, width, height, bitmap } = await this.clip.frame(this.range.first + index, this.longestSide);
-    bitmap.close();
+    const kept = this.#kept.get(index);
+    const { data, width, height } = kept === undefined ? await this.#frame(this.range.first + index) : copyOf(kept);
     this.size.width = width;
     this.size.height = height;
-    this.#compare(data);
+    if (kept === undefined) this.#compare(data);
+    if (kept === undefined && data.length <= this.at.room) this.#keep(index, copyOf({ data, width, height }));
     return { data, width, height };
+  }
+
+  async #frame(index: number): Promise<Picture> {
+    const isIt = ({ origin, full, width }: LoadedFrame): boolean =>
+      origin !== undefined && 'clip' in origin && origin.clip === this.clip && origin.index === index && smaller(full, this.longestSide).width === width;
+    const shown = this.at.hand.find(isIt);
+    if (shown !== undefined) return copyOf(shown);
+    const { data, width, height, bitmap } = await this.clip.frame(index, this.longestSide);
+    bitmap.close();
+    return { data, width, height };
+  }
+
+  #keep(index: number, pixels: Picture): void {
+    this.#kept.set(index, pixels);
+    while (this.#kept.size * pixels.data.length > this.at.room) this.#kept.delete(this.#kept.keys().next().value!);
   }
 
   #compare(data: Uint8ClampedArray): void {
     if (this.#differ) return;
-    const first = this.#first ?? data.slice(); // the package may take the buffer
-    this.#differ = !data.every((value, k) => value === first[k]);
-    this.#first = this.#differ ? null : first;
+    const first = this.#first;
+    this.#differ = first !== null && !data.every((value, k) => value === first[k]);
+    this.#first = this.#differ ? null : (first ?? data.slice());
   }
+}
+
+/** The package may take the buffer. */
+function copyOf({ data, width, height }: Picture): Picture {
+  return { data: data.slice(), width, height };
 }

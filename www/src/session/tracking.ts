@@ -21,6 +21,9 @@ import { TimeLeft } from './time-left.js';
 /** Masks are shown at most this often while they come, milliseconds. */
 const OFTEN = 100;
 
+/** Memory for frames that a correction reads again, bytes. */
+const ROOM = 64 << 20;
+
 /** The beginning of carrying a correction through a clip. */
 const CARRYING = { phase: 'working', stage: 'corrections', left: null, labelled: 0 } as const;
 
@@ -202,15 +205,17 @@ export class Tracking {
     if (own === 0 && tool === 'eraser') return this.#refuse(strings.notices.nothingElse);
     const { width } = pair.first;
     return ({ points, radius }) => {
-      const masks = this.#store.get().tracked?.frames[frame]?.runs;
-      if (masks === undefined) return;
+      const { tracked: now } = this.#store.get();
+      const masks = now?.frames[frame]?.runs;
+      if (!now || masks === undefined) return;
       const scale = masks.width / width;
       const path = { points: points.map((value) => (value + 0.5) * scale - 0.5), radius: radius * scale };
       const [labels, said] = [unpacked(masks), new Uint8Array(masks.width * masks.height).fill(UNLABELLED)];
       eachPixel(path, masks.width, masks.height, (p) => {
-        if (tool === 'brush') said[p] = own;
-        else if (labels[p] === own) said[p] = 0;
+        const there = labels[p]!;
+        if (tool === 'eraser' ? there === own : there === own || !isLocked(now, there)) said[p] = tool === 'eraser' ? 0 : own;
       });
+      if (tool === 'brush' && said.every((label) => label === UNLABELLED)) return void this.#refuse(strings.notices.locked);
       void this.correct({ painted: new Map([[frame, said]]) });
     };
   }
@@ -406,12 +411,13 @@ export class Tracking {
     signal: AbortSignal,
     changes?: (index: number, masks: TrackedFrame) => void,
   ): Promise<Version> {
-    const { tracked, settings } = this.#store.get();
+    const { tracked, settings, pair } = this.#store.get();
     if (tracked === null) return version;
     const { first } = span.range;
     const numbers = new Map(span.numbers);
-    const frames = new ClipFrames(tracked.clip, version.longestSide, span.range);
-    const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(unpacked(version.painted.get(index)!), numbers) }));
+    const hand = [pair.first, pair.second].filter((frame) => frame !== null);
+    const frames = new ClipFrames(tracked.clip, version.longestSide, span.range, { hand, room: ROOM });
+    const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(version.painted.get(index)!, numbers) }));
     let { largest } = version;
     const named = (frame: ClipFrame): TrackedFrame => {
       const masks = fromSpan(masksOf(frame, frames.size), numbers, largest);
@@ -530,7 +536,8 @@ export class Tracking {
     set: Change,
   ): Promise<void> {
     const { past, painted, became } = before;
-    const numbers = before.found.every((runs) => runs === null) ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
+    const isFirst = before.found.every((runs) => runs === null);
+    const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
     const said = [...painted.keys()].filter((index) => contains(range, index));
     const corrected = said.length > 0 || became.size > 0;

@@ -2,7 +2,7 @@
 //! number, in other parts and when its frames are segmented again.
 
 import type { ClipOptions } from 'veronese';
-import { type Runs, overlapsOf, resized, together } from '../correction/runs.js';
+import { type Runs, overlapsOf, resized, together, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Range, Span, TrackedFrame, Version } from './tracked.js';
 
@@ -27,15 +27,16 @@ function theirNumber(numbers: ReadonlyMap<number, number>, id: number): number {
 }
 
 /** The labels with the package's numbers; `numbers` learns new ones. */
-export function toSpan(labels: Uint8Array, numbers: Map<number, number>): Uint8Array<ArrayBuffer> {
+export function toSpan(runs: Runs, numbers: Map<number, number>): Uint8Array<ArrayBuffer> {
   const table = new Map<number, number>([0, UNLABELLED].map((label) => [label, label]));
-  return Uint8Array.from(labels, (label) => {
+  const labels = runs.labels.map((label) => {
     if (!table.has(label)) {
       table.set(label, theirNumber(numbers, label));
       numbers.set(table.get(label)!, label);
     }
     return table.get(label)!;
   });
+  return unpacked({ ...runs, labels });
 }
 
 /** The masks with the numbers here. What is not known yet gets a number above `largest`, or is background if there is none. */
@@ -94,7 +95,12 @@ export function editsIn(numbers: Map<number, number>, became: ReadonlyMap<number
  * The package's numbers of the objects that other corrections leave as they are. What is painted in the frames `own` is about the objects
  * that it names; parts that are made background, in any frame, are a correction of their object.
  */
-export function lockedIn({ range, numbers }: Span, { painted, became, frames, found }: Version, own: readonly number[], isLocked: (id: number) => boolean): number[] {
+export function lockedIn(
+  { range, numbers }: Span,
+  { painted, became, frames, found }: Version,
+  own: readonly number[],
+  isLocked: (id: number) => boolean,
+): number[] {
   const spoken = new Set<number>();
   for (const [index, said] of painted) {
     if (!contains(range, index)) continue;

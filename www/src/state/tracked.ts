@@ -18,11 +18,13 @@ export interface TrackedFrame extends Pick<ClipFrame, 'objects' | 'background'> 
   readonly runs: Runs;
 }
 
+type ChangeCause = 'corrected' | 'undone' | 'redone';
+
 /** What is done with the clip as a whole. */
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'corrected' | 'undone' | 'redone' | 'continued' | 'locked' | 'unlocked'; readonly changed: number }
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | ChangeCause; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];

@@ -10,14 +10,16 @@ import { find } from './markup.js';
 import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
 import { chooseTool } from './tools.js';
 
-/** Updates one row; `ids` are the numbers of all. */
-type Refresh = (now: State, life: Life | null, ids: readonly number[]) => void;
+interface Row {
+  readonly element: HTMLElement;
+  /** Shows the state; `ids` are the numbers of all. */
+  readonly refresh: (now: State, life: Life | null, ids: readonly number[]) => void;
+}
 
 export function mountObjects(root: ParentNode, store: Store, session: Session): void {
   const list = find(root, '#objects', HTMLOListElement);
   const add = find(root, '#add-object', HTMLButtonElement);
-  let rows: Refresh[] = [];
-  let listed = '';
+  const rows = new Map<number, Row>();
   add.addEventListener('click', () => {
     if (session.tracking.addObject()) chooseTool(store, 'brush');
   });
@@ -34,23 +36,25 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     const ids = [0, ...lives.map(({ id }) => id)];
     // A new object that is selected but not painted yet.
     if (look.selected !== null && look.selected > tracked.largest && look.selected !== UNLABELLED) ids.push(look.selected);
-    if (ids.join() !== listed) {
-      listed = ids.join();
-      const held = heldRow(list);
-      list.replaceChildren();
-      rows = ids.map((id) => {
-        const { element: row, refresh } = rowOf(id, store, session);
-        list.append(row);
-        return refresh;
-      });
-      if (held !== null) focusRow(list, held, look);
+    // Rows that stay are left alone: a press may have begun in one, or a name be typed.
+    const held = heldRow(list);
+    for (const [id, { element }] of rows) {
+      if (ids.includes(id)) continue;
+      element.remove();
+      rows.delete(id);
     }
-    for (const [k, refresh] of rows.entries()) refresh(now, lives.find(({ id }) => id === ids[k]) ?? null, ids);
+    for (const [k, id] of ids.entries()) {
+      const row = rows.get(id) ?? rowOf(id, store, session);
+      rows.set(id, row);
+      if (list.children[k] !== row.element) list.insertBefore(row.element, list.children[k] ?? null);
+      row.refresh(now, lives.find((life) => life.id === id) ?? null, ids);
+    }
+    if (held !== null && !rows.has(held)) focusRow(list, held, look);
   });
 }
 
 /** Connects what only objects of a clip have: their life, and what becomes of them in all frames. */
-function rowOf(id: number, store: Store, session: Session): { readonly element: HTMLElement; readonly refresh: Refresh } {
+function rowOf(id: number, store: Store, session: Session): Row {
   const { element: row, refresh } = maskRow('clip', id, store, session);
   const share = find(row, '.motion-share', HTMLElement);
   const facts = find(row, '.motion-facts', HTMLElement);
@@ -67,7 +71,7 @@ function rowOf(id: number, store: Store, session: Session): { readonly element: 
   remove.addEventListener('click', () => session.tracking.remove(id));
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;
 
-  const refreshAll: Refresh = ({ look, result, tracked }, life, ids) => {
+  const refreshAll: Row['refresh'] = ({ look, result, tracked }, life, ids) => {
     refresh(look);
     const called = nameOf(look, id);
     const here = result?.segmentation.motions.find(({ label }) => label === id);
