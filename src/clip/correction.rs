@@ -292,7 +292,8 @@ impl ClipCorrection {
             Known { said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())), found: &now, flows: None };
         let mut claims = Vec::new();
         for &number in self.worlds.iter().flat_map(|world| &world.decides) {
-            let alone = Track::new(number, vec![(self.index, Spread::Both)], self.index + 1);
+            let mut alone = Track::new(number, vec![(self.index, Spread::Both)], self.index + 1);
+            alone.know(look, &now, constants);
             let mut world = World { tracks: vec![alone], decides: vec![number] };
             claims.append(&mut world.visit(self.index, Way::Forward, false, look, &known, constants));
         }

@@ -36,6 +36,8 @@ const FLOOR: f32 = 0.02;
 const BEGINNING: f32 = 2.0;
 /// Odds of what lies beyond an area, and where nothing is said of an object that was not found.
 const NOWHERE: f32 = -9.0;
+/// Weight as ground of a pixel of which nothing is said where an object begins that was not found.
+const UNSAID: f32 = 0.1;
 /// Ground around the object that is looked at, pixels of the working size.
 const AROUND: usize = 24;
 /// Blur of carried labels, pixels.
@@ -119,6 +121,14 @@ impl Sweep {
         memory.learn(look, centre, Part::Found, constants.survey, |p| usize::from(mask.values()[p] < 0.5));
     }
 
+    /// Takes what a frame shows of the object for what it looks like.
+    pub(super) fn know(&mut self, look: &Look, inside: &dyn Fn(usize) -> bool, constants: &Constants) {
+        let mask = look.plane(inside);
+        let Some(centre) = centre_of(&mask) else { return };
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
+        memory.learn(look, centre, Part::Recent, 1.0, |p| usize::from(mask.values()[p] < 0.5));
+    }
+
     /// The first frame. `number` is what the object is called where it was found.
     pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, number: u8, constants: &Constants) -> Claim {
         let is_found = given.found.contains(&number);
@@ -138,6 +148,11 @@ impl Sweep {
         memory.learn_said(look, centre, given.said);
         let area = look.area();
         if partly {
+            if !is_found {
+                // Most of what nothing is said of is ground.
+                let is_said = |p: usize| given.said.is_some_and(|said| said[p] != Said::Nothing);
+                memory.learn(look, centre, Part::Recent, UNSAID, |p| if is_said(p) { 2 } else { 1 });
+            }
             let remembered = memory.read(look, &area, centre, constants);
             for (p, (odds, remembered)) in odds.iter_mut().zip(remembered).enumerate() {
                 let trust = memory.trust(look.colours[p])[usize::from(*odds < 0.0)];

@@ -47,6 +47,11 @@ impl Track {
         self.starts.iter().any(|(start, _)| *start == t)
     }
 
+    /// Takes what a frame shows of the object for what it looks like.
+    pub(super) fn know(&mut self, look: &Look, now: &[u8], constants: &Constants) {
+        self.forward.know(look, &|p| now[p] == self.number, constants);
+    }
+
     /// Learns from a frame in which the object was found automatically.
     pub(super) fn survey(&mut self, look: &Look, found: &[u8], constants: &Constants) {
         for sweep in [&mut self.forward, &mut self.backward] {
