@@ -510,6 +510,7 @@ fn one_that_is_hidden_for_some_frames_keeps_its_number() {
     }
 }
 
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn extremes_are_taken_as_they_are() {
     let size @ [width, height] = [16, 16];

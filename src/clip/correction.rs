@@ -138,7 +138,7 @@ impl ClipCorrection {
         let _call = workspace::begin(clip.size());
         let constants = constants::constants();
         let look = Look::new(frame);
-        let mut is_wanted = true;
+        let mut pass = Some(pass);
         if let Some((said, spread)) = self.said.take() {
             let is_new = clip.frames[index].said.as_ref().is_none_or(|before| before.labels != said);
             self.begin(clip, frame, said, spread);
@@ -146,11 +146,12 @@ impl ClipCorrection {
                 self.at_once(clip, frame, &look, &constants);
             }
             self.next = self.after_survey();
-            is_wanted = self.next == Some((index, pass));
+            // The frame is here already.
+            pass = self.next.filter(|(wanted, _)| *wanted == index).map(|(_, pass)| pass);
         }
         match pass {
-            _ if !is_wanted => {}
-            Pass::Survey => {
+            None => {}
+            Some(Pass::Survey) => {
                 let found = clip.found_at(index, look.size);
                 while let Some((_, number)) = self.survey.pop_if(|(t, _)| *t == index) {
                     let tracks = self.worlds.iter_mut().flat_map(|world| &mut world.tracks);
@@ -160,12 +161,12 @@ impl ClipCorrection {
                 }
                 self.next = self.after_survey();
             }
-            Pass::Alone => {
+            Some(Pass::Alone) => {
                 // Nothing is followed yet.
                 self.visit(clip, frame, &look, index, Way::Backward, &constants);
                 self.next = self.after_survey();
             }
-            Pass::Sweep(way) => {
+            Some(Pass::Sweep(way)) => {
                 self.visit(clip, frame, &look, index, way, &constants);
                 self.next = self.after(index, way);
             }
