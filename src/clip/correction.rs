@@ -270,7 +270,9 @@ impl ClipCorrection {
                 }
                 for (label, &[all, ground, other]) in sizes.iter().enumerate().skip(1) {
                     taken[label] |= 2 * other > all;
-                    erases[label] = ground > 0 && ground + other < all && !clip.locked[label];
+                    // A lock that came later takes nothing back.
+                    let is_free = !clip.locked[label] || said.speaks_of.contains(&(label as u8));
+                    erases[label] = ground > 0 && ground + other < all && is_free;
                 }
             }
             named.push(names);
@@ -401,13 +403,16 @@ impl ClipCorrection {
         };
         let decided = |label: u8| claims.iter().any(|(number, _)| *number == label);
         let persons = clip.persons_in(t);
+        let shown = Buffer::of(&labels);
         // The objects of a person that the correction is not about keep what they have.
         let mut held: Vec<bool> = labels.iter().map(|&label| persons[usize::from(label)] && !decided(label)).collect();
         labels.iter_mut().zip(&held).filter(|(_, held)| !**held).for_each(|(label, _)| *label = NOTHING_SAID);
         if clip.locked.contains(&true) {
             let found = clip.found_full(t, frame.luminance());
-            for (held, &label) in held.iter_mut().zip(&found) {
-                *held |= clip.locked[usize::from(label)] && !persons[usize::from(label)];
+            for (p, held) in held.iter_mut().enumerate() {
+                // What was taken from it before it was locked stays taken.
+                let found = usize::from(found[p]);
+                *held |= shown[p] == NOTHING_SAID && clip.locked[found] && !persons[found];
             }
         }
         let mut best = vec![0.0f32; width * height];

@@ -438,7 +438,8 @@ export class Tracking {
       transfer: true,
       edits: editsIn(numbers, version.became),
       corrections,
-      locked: lockedIn(span, version, painted, (id) => isLocked({ locks: version.locks, names: tracked.names }, id)),
+      // When the clip is segmented again, all is said again that was said before objects were locked.
+      locked: changes ? lockedIn(span, version, painted, (id) => isLocked({ locks: version.locks, names: tracked.names }, id)) : [],
       ...(changes && { onChange }),
     });
     const masks = [...version.frames];
