@@ -693,3 +693,34 @@ fn reserved_numbers_are_free_for_objects_of_a_person() {
     assert_eq!(clip.dropped(), ids.len());
     assert!(frames_of(&clip, &frames).iter().all(|frame| frame.labels.iter().all(|&label| label == 0)));
 }
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn the_corrected_frame_is_nearly_right_at_once() {
+    let shot = three();
+    let moving = shot.found(1);
+    let strokes = [
+        ("added at the edge", moving, shot.stroke(moving, [44, 14, 4, 10])),
+        ("added inside", moving, shot.stroke(moving, [28, 18, 4, 4])),
+        ("erased", moving, shot.stroke(0, [18, 8, 6, 26])),
+        ("new", 9, shot.stroke(9, [92, 66, 20, 16])),
+    ];
+    for (what, number, said) in strokes {
+        let mut shot = shot.clone();
+        let pixels = |shot: &Shot| {
+            let frame = shot.clip.frame(3, &shot.frames[3]).unwrap();
+            frame.labels.iter().map(|&label| label == number).collect::<Vec<_>>()
+        };
+        let mut correction = shot.clip.correct(3, &said, Spread::Both).unwrap();
+        correction.take(&mut shot.clip, &shot.frames[3]).unwrap();
+        let first = pixels(&shot);
+        while let Some(t) = correction.wanted() {
+            correction.take(&mut shot.clip, &shot.frames[t]).unwrap();
+        }
+        let last = pixels(&shot);
+        let count = |of: fn(bool, bool) -> bool| first.iter().zip(&last).filter(|&(&a, &b)| of(a, b)).count();
+        let overlap = count(|a, b| a && b) as f64 / count(|a, b| a || b) as f64;
+        println!("{what}: {overlap:.2}, {} and {}", count(|a, _| a), count(|_, b| b));
+        assert!(overlap > 0.8, "{what}: {overlap:.2}");
+    }
+}

@@ -141,9 +141,9 @@ impl ClipCorrection {
         let mut pass = Some(pass);
         if let Some((said, spread)) = self.said.take() {
             let is_new = clip.frames[index].said.as_ref().is_none_or(|before| before.labels != said);
-            self.begin(clip, frame, said, spread);
+            let now = self.begin(clip, frame, said, spread);
             if is_new {
-                self.at_once(clip, frame, &look, &constants);
+                self.at_once(clip, frame, &look, &now, &constants);
             }
             self.next = self.after_survey();
             // The frame is here already.
@@ -177,8 +177,8 @@ impl ClipCorrection {
         Ok(())
     }
 
-    /// Which objects the correction is about, and what is said of each.
-    fn begin(&mut self, clip: &mut SegmentedClip, frame: &Frame, said: Runs, spread: Spread) {
+    /// Which objects the correction is about, and what is said of each. Returns what the frame shows before.
+    fn begin(&mut self, clip: &mut SegmentedClip, frame: &Frame, said: Runs, spread: Spread) -> Vec<u8> {
         let [first, last] = self.scene;
         let values = said.values();
         let says = values.iter().any(|&label| label != NOTHING_SAID);
@@ -236,6 +236,7 @@ impl ClipCorrection {
         let is_swept = |t: usize| forward.is_some_and(|from| t >= from) || backward.is_some_and(|from| t <= from);
         let speaks = |t: usize| self.worlds.iter().flat_map(|world| &world.tracks).any(|track| track.speaks(t));
         self.alone = (first..=last).filter(|&t| speaks(t) && !is_swept(t)).collect();
+        now
     }
 
     /// The frames of the scene that speak of an object.
@@ -288,8 +289,8 @@ impl ClipCorrection {
     }
 
     /// The corrected frame at once, from what it shows now.
-    fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, constants: &Constants) {
-        let now = at_size(&clip.layered(self.index, frame.luminance()), clip.size()[0], look.size, look.step);
+    fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, now: &[u8], constants: &Constants) {
+        let now = at_size(now, clip.size()[0], look.size, look.step);
         let said = clip.said_at(self.index, look.size, look.step);
         let known =
             Known { said: said.as_ref().map(|(said, spread)| (&said[..], spread.ways())), found: &now, flows: None };
