@@ -12,7 +12,7 @@ use crate::session::Session;
 use crate::{Failure, Options, dump};
 
 /// Clips that had part in setting constants before the others came.
-const OLD: [&str; 10] =
+pub(crate) const OLD: [&str; 10] =
     ["boat", "bus", "car-turn", "elephant", "flamingo", "hockey", "kite-walk", "scooter-gray", "soccerball", "tennis"];
 /// The number of the object whose mask is given, and that of one that no label found fits.
 const GIVEN: u8 = 200;

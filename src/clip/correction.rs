@@ -12,6 +12,7 @@ mod evidence;
 mod look;
 mod memory;
 mod placing;
+mod still;
 mod sweep;
 mod track;
 mod world;
@@ -29,7 +30,9 @@ use constants::Constants;
 #[cfg(feature = "ablation")]
 pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
+pub(crate) use still::Still;
 use sweep::Claim;
+pub(crate) use sweep::Said;
 use track::{Start, Track, Way};
 use world::{Known, World};
 

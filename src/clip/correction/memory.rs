@@ -232,6 +232,13 @@ impl Memory {
         [object, ground].map(|agrees| (agrees + 1.0) / (object + ground + 1.0))
     }
 
+    /// [`trust`](Self::trust) of the colour of every pixel.
+    pub(super) fn trusts(&self, look: &Look) -> Vec<Counts> {
+        let mut known: Vec<Option<Counts>> = vec![None; COLOURS];
+        let mut of = |colour: &u16| *known[usize::from(*colour)].get_or_insert_with(|| self.trust(*colour));
+        look.colours.iter().map(&mut of).collect()
+    }
+
     /// Adds the counts of a colour and of those beside it.
     fn gather(&self, colour: u16, counts: &[Counts], plane: &mut [Counts]) {
         let colour = usize::from(colour);
