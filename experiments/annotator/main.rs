@@ -38,7 +38,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   frames         prints a line per real clip: its name, a tab, its folder
   measure        real clips with masks of one object: a line of figures for each, then means; writes measure.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
-  pairs          pairs of frames of the real clips and strokes; writes pairs.jsonl
+  pairs          pairs of frames of the real clips with strokes: the same; writes pairs.jsonl
   page           writes annotating.md from these figures
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
@@ -160,8 +160,9 @@ fn docs() -> PathBuf {
 
 fn write_page(options: &Options) -> Result<(), Failure> {
     let (real, generated) = (rows::<measure::Row>(options, "measure")?, rows::<objects::Row>(options, "objects")?);
+    let strokes = rows::<pairs::Row>(options, "pairs")?;
     let fit = fs::read_to_string(options.out.join("fit.md")).ok();
-    let text = sealed::sealed(&page::text(&real, &generated, fit.as_deref()));
+    let text = sealed::sealed(&page::text(&real, &generated, &strokes, fit.as_deref()));
     fs::write(options.out.join("annotating.md"), &text)?;
     if options.write_docs {
         if real.is_empty() || generated.len() < objects::cases().len() {

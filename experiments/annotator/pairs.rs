@@ -1,13 +1,14 @@
-//! Pairs of frames: a robot corrects the masks of an object stroke by stroke.
+//! Strokes on pairs of frames: a robot corrects the object in the first frame.
 
 use std::fmt::Write;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use veronese::{AffineMotion, Correction, MotionCount, SegmentOptions, relabel, segment_pair};
+use veronese::{AffineMotion, Correction, Frame, SegmentOptions, Segmentation, relabel, segment_pair};
 
 use crate::cases::Case;
-use crate::overlap::{each, mean};
+use crate::measure::is_old;
+use crate::overlap::{iou, mean};
 use crate::robot::stroke;
 use crate::{Failure, Options};
 
@@ -17,79 +18,101 @@ const FIRST: [usize; 4] = [0, 8, 16, 24];
 /// The figures of a clip.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Row {
-    pub(crate) clip: String,
-    /// Of each pair: J of the labels that fit best, and after each round of strokes.
-    pub(crate) rounds: Vec<Vec<f64>>,
-    pub(crate) milliseconds: f64,
+    clip: String,
+    /// Of each pair: J of the motions that are the object's, as found and after each round of strokes.
+    pairs: Vec<Vec<f64>>,
+    /// Time of a correction.
+    milliseconds: f64,
 }
 
 /// All figures of a clip.
 pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let data = case.load()?;
-    let (mut rounds, mut times) = (Vec::new(), Vec::new());
+    let asked = SegmentOptions { quality: options.quality, ..SegmentOptions::default() };
+    let (mut pairs, mut times) = (Vec::new(), Vec::new());
     for t in FIRST.into_iter().filter(|t| t + 1 < data.frames.len()) {
-        let [first, second] = [&data.frames[t], &data.frames[t + 1]];
+        let frames = [&data.frames[t], &data.frames[t + 1]];
         let truth: Vec<bool> = data.truths[t].iter().map(|&label| label > 0).collect();
-        let asked =
-            SegmentOptions { quality: options.quality, motions: MotionCount::Auto, ..SegmentOptions::default() };
-        let found = segment_pair(first, second, None, &asked, &mut |_| {})?;
-        let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
-        let groups: Vec<u8> = found.motions.iter().map(|motion| motion.group).collect();
-        if motions.len() < 2 {
-            continue;
-        }
-        // The labels that a person would merge: most of their pixels are the object's.
-        let inside = |k: usize| {
-            let own = (0..truth.len()).filter(|&p| usize::from(found.labels[p]) == k);
-            let [all, hits] = own.fold([0usize; 2], |[all, hits], p| [all + 1, hits + usize::from(truth[p])]);
-            hits as f64 / all.max(1) as f64
-        };
-        let mut set = (0..motions.len()).filter(|&k| inside(k) > 0.5).fold(0u16, |set, k| set | 1 << k);
-        if set == 0 {
-            set = 1 << (1..motions.len()).max_by(|&a, &b| inside(a).total_cmp(&inside(b))).unwrap_or(1);
-        }
-        let everything = (1u16 << motions.len()) - 1;
-        if set == everything {
-            continue;
-        }
-        let mask =
-            |labels: &[u8]| -> Vec<bool> { labels.iter().map(|&l| u32::from(l) < 16 && set >> l & 1 == 1).collect() };
-        let mut now = mask(&found.labels);
+        let found = segment_pair(frames[0], frames[1], None, &asked, &mut |_| {})?;
+        let Some(object) = motions_of(&truth, &found) else { continue };
+        let corrector = Corrector { frames, found: &found, options: &asked, object };
+        let mut now = corrector.mask(&found.labels);
         let mut allowed = vec![0u16; truth.len()];
-        let j = |mask: &[bool]| each(&[mask.to_vec()], std::slice::from_ref(&truth))[0];
-        let mut figures = vec![j(&now)];
+        let mut figures = vec![iou(&now, &truth)];
         for _ in 0..options.rounds {
-            for (object, set) in [(true, set), (false, everything & !set)] {
-                let region: Vec<bool> = (0..truth.len()).map(|p| truth[p] == object && now[p] != object).collect();
-                stroke(&region, first.width()).into_iter().for_each(|p| allowed[p] = set);
+            for (inside, set) in [(true, object), (false, corrector.others())] {
+                let wrong: Vec<bool> = (0..truth.len()).map(|p| truth[p] == inside && now[p] != inside).collect();
+                stroke(&wrong, found.width).into_iter().for_each(|p| allowed[p] = set);
             }
-            let correction =
-                Correction { motions: &motions, groups: &groups, labels: &found.labels, allowed: &allowed };
             let start = Instant::now();
-            now = mask(&relabel(first, second, None, &correction, &asked, &mut |_| {})?.labels);
+            now = corrector.corrected(&allowed)?;
             times.push(1e3 * start.elapsed().as_secs_f64());
-            figures.push(j(&now));
+            figures.push(iou(&now, &truth));
         }
-        rounds.push(figures);
+        pairs.push(figures);
     }
-    Ok(Row { clip: case.name.clone(), rounds, milliseconds: mean(&times) })
+    Ok(Row { clip: case.name.clone(), pairs, milliseconds: mean(&times) })
 }
 
-/// The figures as a table of Markdown.
-pub(crate) fn table(rows: &[Row]) -> String {
-    let mut text = String::from("| pairs | found | rounds … | ms |\n|---|---|---|---|\n");
-    let mut line = |name: &str, rows: &[&Row]| {
-        let pairs: Vec<&Vec<f64>> = rows.iter().flat_map(|row| &row.rounds).collect();
-        let Some(count) = pairs.first().map(|figures| figures.len()) else { return };
-        let columns: Vec<String> = (0..count)
-            .map(|k| format!("{:.3}", mean(&pairs.iter().map(|figures| figures[k]).collect::<Vec<_>>())))
-            .collect();
-        let time = mean(&rows.iter().map(|row| row.milliseconds).filter(|ms| ms.is_finite()).collect::<Vec<_>>());
-        let _ = writeln!(text, "| {name} ({}) | {} | {time:.0} |", pairs.len(), columns.join(" | "));
+/// The motions that a person would call the object: those with more than half of their pixels inside or, if there are none, the one with
+/// the largest share. None of a pair without two sides.
+fn motions_of(truth: &[bool], found: &Segmentation) -> Option<u16> {
+    let share = |motion: usize| {
+        let own = truth.iter().zip(&found.labels).filter(|(_, label)| usize::from(**label) == motion);
+        let [all, inside] = own.fold([0usize; 2], |[all, hits], (inside, _)| [all + 1, hits + usize::from(*inside)]);
+        inside as f64 / all.max(1) as f64
     };
-    for (name, old) in [("old", true), ("new", false)] {
-        line(name, &rows.iter().filter(|row| crate::measure::OLD.contains(&&*row.clip) == old).collect::<Vec<_>>());
+    let count = found.motions.len();
+    let most = (1..count).max_by(|&a, &b| share(a).total_cmp(&share(b)))?;
+    let all = (0..count).filter(|&k| share(k) > 0.5).fold(0u16, |set, k| set | 1 << k);
+    let object = if all == 0 { 1 << most } else { all };
+    (object.count_ones() < count as u32).then_some(object)
+}
+
+struct Corrector<'a> {
+    frames: [&'a Frame; 2],
+    found: &'a Segmentation,
+    options: &'a SegmentOptions,
+    /// The object's motions, a bit for each.
+    object: u16,
+}
+
+impl Corrector<'_> {
+    fn others(&self) -> u16 {
+        (0..self.found.motions.len()).fold(0, |set, k| set | 1 << k) & !self.object
     }
-    line("all", &rows.iter().collect::<Vec<_>>());
+
+    fn mask(&self, labels: &[u8]) -> Vec<bool> {
+        labels.iter().map(|&label| label < 16 && self.object >> label & 1 == 1).collect()
+    }
+
+    /// The object's mask under strokes.
+    fn corrected(&self, allowed: &[u16]) -> veronese::Result<Vec<bool>> {
+        let motions: Vec<AffineMotion> = self.found.motions.iter().map(|motion| motion.matrix).collect();
+        let groups: Vec<u8> = self.found.motions.iter().map(|motion| motion.group).collect();
+        let correction = Correction { motions: &motions, groups: &groups, labels: &self.found.labels, allowed };
+        let [first, second] = self.frames;
+        Ok(self.mask(&relabel(first, second, None, &correction, self.options, &mut |_| {})?.labels))
+    }
+}
+
+/// The means of groups as a table of Markdown.
+pub(crate) fn table(rows: &[Row]) -> String {
+    let rounds = rows.iter().flat_map(|row| &row.pairs).map(Vec::len).min().unwrap_or(1);
+    let titles: String = (1..rounds).map(|k| format!(" round {k} |")).collect();
+    let mut text = format!("| pairs | found |{titles} ms |\n|---|---|{}---|\n", "---|".repeat(rounds - 1));
+    let old = |row: &&Row| is_old(&row.clip);
+    let groups: [(&str, Vec<&Row>); 3] = [
+        ("all", rows.iter().collect()),
+        ("of old clips", rows.iter().filter(old).collect()),
+        ("of new clips", rows.iter().filter(|row| !old(row)).collect()),
+    ];
+    for (name, rows) in groups.iter().filter(|(_, rows)| !rows.is_empty()) {
+        let pairs: Vec<&Vec<f64>> = rows.iter().flat_map(|row| &row.pairs).collect();
+        let of_round = |k: usize| mean(&pairs.iter().map(|figures| figures[k]).collect::<Vec<_>>());
+        let cells: String = (0..rounds).map(|k| format!(" {:.3} |", of_round(k))).collect();
+        let times: Vec<f64> = rows.iter().map(|row| row.milliseconds).filter(|time| time.is_finite()).collect();
+        let _ = writeln!(text, "| {name} ({}) |{cells} {:.0} |", pairs.len(), mean(&times));
+    }
     text
 }

@@ -1,8 +1,8 @@
 //! Interactive correction: the labels of a pair are decided anew under strokes that say which motions are possible at a pixel.
 //!
 //! It is the correction of clips with two frames: the looks of an object and what is said of it, and how its pixels move to the second frame.
-//! A stroke divides the motions into those that are possible and the others; one cut for each such division moves pixels from one side to
-//! the other, and all others keep their labels.
+//! A stroke parts the motions that are possible from those of the pixels that it takes; one cut for each such division moves pixels from one
+//! side to the other, and all others keep their labels.
 
 use super::Pair;
 use super::labels::LabelState;
@@ -121,15 +121,33 @@ impl Correction<'_> {
         u16::MAX >> (u16::BITS as usize - self.motions.len())
     }
 
-    /// The different divisions of the motions that strokes tell, each as the side without the first motion.
-    fn divisions(&self) -> Vec<u16> {
-        let all = self.all();
-        let mut is_told = vec![false; usize::from(all) + 1];
-        for &set in self.allowed.iter().filter(|&&set| set != 0 && set != all) {
-            is_told[usize::from(if set & 1 == 0 { set } else { all & !set })] = true;
+    /// What strokes tell apart. Those that agree with the labels under them tell nothing.
+    fn divisions(&self) -> Vec<Division> {
+        let mut taken = vec![0u16; 1 << self.motions.len()];
+        for (&set, &label) in self.allowed.iter().zip(self.labels) {
+            if set != 0 && label != UNLABELLED && !is_in(label, set) {
+                taken[usize::from(set)] |= 1 << label;
+            }
         }
-        (1..all).filter(|&set| is_told[usize::from(set)]).collect()
+        let mut divisions: Vec<Division> = Vec::new();
+        for (set, &taken) in (0u16..).zip(&taken).filter(|(_, taken)| **taken != 0) {
+            // Strokes either way are of the same division.
+            let [object, others] =
+                if taken.trailing_zeros() < set.trailing_zeros() { [set, taken] } else { [taken, set] };
+            match divisions.iter_mut().find(|known| known.object == object) {
+                Some(known) => known.others |= others,
+                None => divisions.push(Division { object, others }),
+            }
+        }
+        divisions
     }
+}
+
+/// Two sides that strokes tell apart, sets of motions. The smallest label is one of the others.
+#[derive(Clone, Copy, Debug)]
+struct Division {
+    object: u16,
+    others: u16,
 }
 
 /// Whether a label is one of a set of motions.
@@ -192,31 +210,31 @@ impl<'a> Working<'a> {
         own.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or_default()
     }
 
-    /// Which pixels have one of a set of motions, and which one of the others.
-    fn divide(&self, set: u16, labels: &mut [u8]) {
-        let (size @ [columns, rows], others) = (self.still.size(), self.correction.all() & !set);
+    /// Which pixels are on which side of a division.
+    fn divide(&self, Division { object, others }: Division, labels: &mut [u8]) {
+        let size @ [columns, rows] = self.still.size();
         let mut said = vec![Said::Nothing; columns * rows];
         let mut found = vec![0usize; columns * rows];
         for (p, (&allowed, &label)) in self.correction.allowed.iter().zip(&*labels).enumerate() {
             let here = self.pixel(p);
-            found[here] += usize::from(is_in(label, set));
-            match allowed {
-                0 => {}
-                allowed if allowed & !set == 0 => said[here] = Said::Object,
+            found[here] += usize::from(is_in(label, object));
+            match [allowed & object, allowed & others] {
+                _ if allowed == 0 => {}
+                [own, 0] if own != 0 => said[here] = Said::Object,
                 // Where strokes contradict each other inside a pixel, it is the object's.
-                allowed if allowed & set == 0 && said[here] == Said::Nothing => said[here] = Said::Other,
+                [0, _] if said[here] == Said::Nothing => said[here] = Said::Other,
                 _ => {}
             }
         }
         let half = self.still.step().pow(2) / 2;
-        let odds = |x, y| self.best(others, y * columns + x).0 - self.best(set, y * columns + x).0;
-        let mask = self.still.mask(&said, &|p| found[p] > half, &Plane::from_fn(columns, rows, odds));
+        let found: Vec<bool> = found.into_iter().map(|pixels| pixels > half).collect();
+        let odds = |x, y| self.best(others, y * columns + x).0 - self.best(object, y * columns + x).0;
+        let mask = self.still.mask(&said, &found, &Plane::from_fn(columns, rows, odds));
         let full = upsample(&mask, size, 2, self.frame.luminance());
         for (p, (label, &inside)) in labels.iter_mut().zip(&full).enumerate() {
-            match (inside > 0, is_in(*label, set)) {
-                (true, false) => *label = self.best(set, self.pixel(p)).1,
-                (false, true) => *label = self.best(others, self.pixel(p)).1,
-                _ => {}
+            let side = if inside > 0 { [others, object] } else { [object, others] };
+            if is_in(*label, side[0]) || (inside > 0 && *label == UNLABELLED) {
+                *label = self.best(side[1], self.pixel(p)).1;
             }
         }
     }

@@ -6,6 +6,9 @@ use super::memory::{Memory, Part};
 use super::sweep::{BEGINNING, Said, centre_of, logit, solved};
 use crate::frame::{Frame, Plane};
 
+/// Odds from which motions decide, nats.
+const DECISIVE: f32 = 0.5;
+
 /// A frame at the size at which objects are corrected.
 pub(crate) struct Still(Look);
 
@@ -25,20 +28,44 @@ impl Still {
     }
 
     /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats.
-    pub(crate) fn mask(&self, said: &[Said], found: &dyn Fn(usize) -> bool, motion: &Plane) -> Vec<u8> {
+    pub(crate) fn mask(&self, said: &[Said], found: &[bool], motion: &Plane) -> Vec<u8> {
         let (look, constants) = (&self.0, constants());
-        let shown = look.plane(&|p| if said[p] == Said::Nothing { found(p) } else { said[p] == Said::Object });
+        let shown = look.plane(&|p| if said[p] == Said::Nothing { found[p] } else { said[p] == Said::Object });
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
         let mut memory = Memory::of(&shown, &constants);
         memory.learn_said(look, centre, Some(said));
-        memory.learn(look, centre, Part::Found, 1.0, |p| usize::from(!found(p)));
+        let doubted = trust_against_motion(said, found, motion);
+        for contradicted in [false, true] {
+            let weight = if contradicted { doubted } else { 1.0 };
+            let of_these = |p: usize| contradicts(found[p], motion.values()[p]) == contradicted;
+            memory.learn(look, centre, Part::Found, weight, |p| if of_these(p) { usize::from(!found[p]) } else { 2 });
+        }
         let remembered = memory.read(look, &look.area(), centre, &constants);
         let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, trust))| {
-            let found = if found(p) { trust[0] * BEGINNING } else { -trust[1] * BEGINNING };
-            found + constants.memory * logit(*remembered) + motion.values()[p]
+            let (found, motion) = (found[p], motion.values()[p]);
+            let weight = if contradicts(found, motion) { doubted } else { 1.0 };
+            let found = if found { trust[0] * BEGINNING } else { -trust[1] * BEGINNING };
+            weight * found + constants.memory * logit(*remembered) + motion
         });
         solved(look, look.area(), odds.collect(), Some(said), &constants).mask
     }
+}
+
+/// How far what was found is trusted where motions contradict it, 0…1: as far as what is said agrees with it there.
+fn trust_against_motion(said: &[Said], found: &[bool], motion: &Plane) -> f32 {
+    let [mut agrees, mut all] = [0.0f32; 2];
+    for ((said, &found), &motion) in said.iter().zip(found).zip(motion.values()) {
+        if *said != Said::Nothing && contradicts(found, motion) {
+            agrees += f32::from(u8::from(found == (*said == Said::Object)));
+            all += 1.0;
+        }
+    }
+    (agrees + 1.0) / (all + 1.0)
+}
+
+/// Whether the motions at a pixel clearly contradict what was found there.
+fn contradicts(found: bool, motion: f32) -> bool {
+    if found { motion < -DECISIVE } else { motion > DECISIVE }
 }
 
 #[cfg(test)]
@@ -59,12 +86,20 @@ mod tests {
                 None => [110, 120, 115],
             });
         let mut said = vec![Said::Nothing; width * height];
-        said[42 * width + 58..42 * width + 62].fill(Said::Object);
-        said[42 * width + 94..42 * width + 98].fill(Said::Other);
-        let unknown = Plane::filled(width, height, 0.0);
-        let mask = Still(look).mask(&said, &|p| inside(p, 10) || inside(p, 82), &unknown);
-        for p in 0..mask.len() {
-            assert_eq!(mask[p] == 1, inside(p, 10) || inside(p, 46), "({}, {})", p % width, p / width);
+        for row in 37..47 {
+            said[row * width + 50..row * width + 66].fill(Said::Object);
+            said[row * width + 86..row * width + 102].fill(Said::Other);
         }
+        let unknown = Plane::filled(width, height, 0.0);
+        let found: Vec<bool> = (0..width * height).map(|p| inside(p, 10) || inside(p, 82)).collect();
+        let mask = Still(look).mask(&said, &found, &unknown);
+        let overlap = |left: usize| {
+            let both = (0..mask.len()).filter(|&p| mask[p] == 1 && inside(p, left)).count();
+            both as f64 / (24 * 24) as f64
+        };
+        let [first, second, third] = [10, 46, 82].map(overlap);
+        // Colours of a pixel on the border are no longer those of either side.
+        assert!(first > 0.97 && second > 0.8 && third < 0.25, "{first}, {second}, {third}");
+        assert!(mask.iter().filter(|inside| **inside > 0).count() < 2 * 24 * 24 + 24);
     }
 }
