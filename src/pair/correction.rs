@@ -12,6 +12,7 @@ use crate::answer::UNLABELLED;
 use crate::clip::{Said, Still};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
+use crate::labelling::BACKGROUND;
 use crate::labelling::resolution::upsampling::upsample;
 use crate::labelling::solver::MAX_LABELS;
 use crate::motion::AffineMotion;
@@ -50,7 +51,8 @@ pub struct Relabelling {
 }
 
 /// Decides the labels of `first` anew under a correction. The motions and their numbering stay the same, and the result depends on the
-/// arguments alone: to undo a correction, call again without it. Pixels change only between motions that a stroke tells apart.
+/// arguments alone: to undo a correction, call again without it. Pixels change only between motions that a stroke tells apart, and where
+/// that is connected with it.
 ///
 /// `options.quality` should be that of the labels so far; the other options have no effect.
 ///
@@ -204,10 +206,26 @@ impl<'a> Working<'a> {
         (p / width / step).min(rows - 1) * columns + (p % width / step).min(columns - 1)
     }
 
-    /// Price of the motion of a set that fits a pixel best, and which that is.
-    fn best(&self, set: u16, p: usize) -> (f32, u8) {
-        let own = (0u8..).zip(&self.costs).filter(|(k, _)| is_in(*k, set)).map(|(k, cost)| (cost.values()[p], k));
-        own.min_by(|one, other| one.0.total_cmp(&other.0)).unwrap_or_default()
+    /// The motions of a set with their prices.
+    fn of(&self, set: u16) -> impl Iterator<Item = (u8, &Plane)> {
+        (0u8..).zip(&self.costs).filter(move |(k, _)| is_in(*k, set))
+    }
+
+    /// Price of the motion of a set that fits a pixel best.
+    fn price(&self, set: u16, p: usize) -> f32 {
+        self.of(set).map(|(_, cost)| cost.values()[p]).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Which motion of a set every pixel would have: of an object the largest one, else the one that fits.
+    fn choice(&self, set: u16) -> Vec<u8> {
+        let [columns, rows] = self.still.size();
+        let pixels = |k: &u8| self.correction.labels.iter().filter(|label| *label == k).count();
+        let has_ground = is_in(BACKGROUND as u8, set);
+        if let Some(largest) = self.of(set).map(|(k, _)| k).max_by_key(pixels).filter(|_| !has_ground) {
+            return vec![largest; columns * rows];
+        }
+        let (labels, costs): (Vec<u8>, Vec<Plane>) = self.of(set).map(|(k, cost)| (k, cost.clone())).unzip();
+        self.still.labels(&costs).iter().map(|&k| labels[usize::from(k)]).collect()
     }
 
     /// Which pixels are on which side of a division.
@@ -228,22 +246,25 @@ impl<'a> Working<'a> {
         }
         let half = self.still.step().pow(2) / 2;
         let found: Vec<bool> = found.into_iter().map(|pixels| pixels > half).collect();
-        let odds = |x, y| self.best(others, y * columns + x).0 - self.best(object, y * columns + x).0;
+        let odds = |x, y| self.price(others, y * columns + x) - self.price(object, y * columns + x);
         let mask = self.still.mask(&said, &found, &Plane::from_fn(columns, rows, odds));
         let full = upsample(&mask, size, 2, self.frame.luminance());
+        let [within, without] = [object, others].map(|side| self.choice(side));
         for (p, (label, &inside)) in labels.iter_mut().zip(&full).enumerate() {
-            let side = if inside > 0 { [others, object] } else { [object, others] };
-            if is_in(*label, side[0]) || (inside > 0 && *label == UNLABELLED) {
-                *label = self.best(side[1], self.pixel(p)).1;
+            if inside > 0 && (is_in(*label, others) || *label == UNLABELLED) {
+                *label = within[self.pixel(p)];
+            } else if inside == 0 && is_in(*label, object) {
+                *label = without[self.pixel(p)];
             }
         }
     }
 
     /// Strokes hold at every pixel of the frame.
     fn obey(&self, labels: &mut [u8]) {
+        let mut choices: Vec<Option<Vec<u8>>> = vec![None; 1 << self.costs.len()];
         for (p, (label, &set)) in labels.iter_mut().zip(self.correction.allowed).enumerate() {
             if set != 0 && set != self.correction.all() && !is_in(*label, set) {
-                *label = self.best(set, self.pixel(p)).1;
+                *label = choices[usize::from(set)].get_or_insert_with(|| self.choice(set))[self.pixel(p)];
             }
         }
     }

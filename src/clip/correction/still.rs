@@ -4,10 +4,16 @@ use super::constants::constants;
 use super::look::Look;
 use super::memory::{Memory, Part};
 use super::sweep::{BEGINNING, Said, centre_of, logit, solved};
+use crate::components::{Components, Connectivity, components};
+use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
+use crate::labelling::solver::Solver;
 
 /// Odds from which motions decide, nats.
 const DECISIVE: f32 = 0.5;
+
+/// Window over which odds of motions are averaged before that, pixels.
+const WINDOW: f32 = 1.5;
 
 /// A frame at the size at which objects are corrected.
 pub(crate) struct Still(Look);
@@ -27,40 +33,61 @@ impl Still {
         self.0.step
     }
 
-    /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats.
+    /// The labels of least energy, given the price of each at every pixel.
+    pub(crate) fn labels(&self, costs: &[Plane]) -> Vec<u8> {
+        let (look, smoothness) = (&self.0, constants().smoothness);
+        look.borders.times(smoothness).solve(costs, Solver::FAST).to_vec()
+    }
+
+    /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats. Only what is
+    /// connected with something said changes.
     pub(crate) fn mask(&self, said: &[Said], found: &[bool], motion: &Plane) -> Vec<u8> {
         let (look, constants) = (&self.0, constants());
         let shown = look.plane(&|p| if said[p] == Said::Nothing { found[p] } else { said[p] == Said::Object });
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
         let mut memory = Memory::of(&shown, &constants);
         memory.learn_said(look, centre, Some(said));
-        let doubted = trust_against_motion(said, found, motion);
-        for contradicted in [false, true] {
-            let weight = if contradicted { doubted } else { 1.0 };
-            let of_these = |p: usize| contradicts(found[p], motion.values()[p]) == contradicted;
-            memory.learn(look, centre, Part::Found, weight, |p| if of_these(p) { usize::from(!found[p]) } else { 2 });
+        // Where the motions clearly contradict what was found, what is said decides between them.
+        let smooth = gaussian(motion, WINDOW);
+        let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
+        let trust = trust(said, found, &is_doubted);
+        let presumed = |p: usize| if is_doubted[p] && trust < 0.0 { !found[p] } else { found[p] };
+        for (doubted, weight) in [(false, 1.0), (true, trust.abs())] {
+            let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
+            memory.learn(look, centre, Part::Found, weight, side);
         }
         let remembered = memory.read(look, &look.area(), centre, &constants);
-        let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, trust))| {
-            let (found, motion) = (found[p], motion.values()[p]);
-            let weight = if contradicts(found, motion) { doubted } else { 1.0 };
-            let found = if found { trust[0] * BEGINNING } else { -trust[1] * BEGINNING };
-            weight * found + constants.memory * logit(*remembered) + motion
+        let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, of_colour))| {
+            let presumed = if presumed(p) { of_colour[0] * BEGINNING } else { -of_colour[1] * BEGINNING };
+            let weight = if is_doubted[p] { trust.abs() } else { 1.0 };
+            weight * presumed + constants.memory * logit(*remembered) + motion.values()[p]
         });
-        solved(look, look.area(), odds.collect(), Some(said), &constants).mask
+        let mut mask = solved(look, look.area(), odds.collect(), Some(said), &constants).mask;
+        keep_near(&mut mask, said, found, look.size[0]);
+        mask
     }
 }
 
-/// How far what was found is trusted where motions contradict it, 0…1: as far as what is said agrees with it there.
-fn trust_against_motion(said: &[Said], found: &[bool], motion: &Plane) -> f32 {
-    let [mut agrees, mut all] = [0.0f32; 2];
-    for ((said, &found), &motion) in said.iter().zip(found).zip(motion.values()) {
-        if *said != Said::Nothing && contradicts(found, motion) {
-            agrees += f32::from(u8::from(found == (*said == Said::Object)));
-            all += 1.0;
-        }
+/// Takes back changes that nothing connects with what is said.
+fn keep_near(mask: &mut [u8], said: &[Said], found: &[bool], width: usize) {
+    let changed = |p: usize| u8::from(said[p] != Said::Nothing || (mask[p] > 0) != found[p]);
+    let changes: Vec<u8> = (0..mask.len()).map(changed).collect();
+    let Components { of, list } = components(&changes, width, Connectivity::Eight);
+    let mut is_said = vec![false; list.len()];
+    (0..mask.len()).filter(|&p| said[p] != Said::Nothing).for_each(|p| is_said[of[p] as usize] = true);
+    for (p, inside) in mask.iter_mut().enumerate().filter(|(p, _)| !is_said[of[*p] as usize]) {
+        *inside = u8::from(found[p]);
     }
-    (agrees + 1.0) / (all + 1.0)
+}
+
+/// How far what was found is trusted where it is doubted: from 1, where what is said agrees with it there, to −1.
+fn trust(said: &[Said], found: &[bool], is_doubted: &[bool]) -> f32 {
+    let [mut sum, mut all] = [0.0f32; 2];
+    for p in (0..said.len()).filter(|&p| is_doubted[p] && said[p] != Said::Nothing) {
+        sum += if found[p] == (said[p] == Said::Object) { 1.0 } else { -1.0 };
+        all += 1.0;
+    }
+    if all > 0.0 { sum / all } else { 1.0 }
 }
 
 /// Whether the motions at a pixel clearly contradict what was found there.
@@ -100,6 +127,7 @@ mod tests {
         let [first, second, third] = [10, 46, 82].map(overlap);
         // Colours of a pixel on the border are no longer those of either side.
         assert!(first > 0.97 && second > 0.8 && third < 0.25, "{first}, {second}, {third}");
-        assert!(mask.iter().filter(|inside| **inside > 0).count() < 2 * 24 * 24 + 24);
+        let is_ground = |p: &usize| ![10, 46, 82].iter().any(|&left| inside(*p, left));
+        assert!((0..mask.len()).filter(is_ground).filter(|&p| mask[p] > 0).count() < 24);
     }
 }
