@@ -1,5 +1,6 @@
 //! One object in a single frame: what is said of some pixels goes on along the looks of the object that was found, and along its motion.
 
+use super::SURVEYED;
 use super::constants::constants;
 use super::look::Look;
 use super::memory::{Memory, Part};
@@ -10,10 +11,10 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::solver::Solver;
 
 /// Odds from which motions decide, nats.
-const DECISIVE: f32 = 0.5;
+const DECISIVE: f32 = 0.3;
 
 /// Window over which odds of motions are averaged before that, pixels.
-const WINDOW: f32 = 1.5;
+const WINDOW: f32 = 5.0;
 
 /// A frame at the size at which objects are corrected.
 pub(crate) struct Still(Look);
@@ -52,7 +53,9 @@ impl Still {
         let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
         let trust = trust(said, found, &is_doubted);
         let presumed = |p: usize| if is_doubted[p] && trust < 0.0 { !found[p] } else { found[p] };
-        for (doubted, weight) in [(false, 1.0), (true, trust.abs())] {
+        // As much as frames of a clip in which an object was found.
+        let found_weight = constants.survey * SURVEYED as f32;
+        for (doubted, weight) in [(false, found_weight), (true, found_weight * trust.abs())] {
             let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
             memory.learn(look, centre, Part::Found, weight, side);
         }
