@@ -33,7 +33,7 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
 
-pub use correction::ClipCorrection;
+pub use correction::{ClipCorrection, Prompt};
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
 pub use correction::{propagation_constants, vary_propagation};

@@ -10,8 +10,8 @@ use support::moving::{
     SIZE, Thing, carrier, correct, correct_some, frames_of, mask, moving_and_resting, one_number, options, scene_of,
     thing, whole,
 };
-use veronese::clip::{SegmentedClip, Spread};
-use veronese::{Frame, Quality, Random};
+use veronese::clip::{Prompt, SegmentedClip, Spread};
+use veronese::{Error, Frame, Quality, Random};
 
 /// A small scene, and the clip of it.
 #[derive(Clone)]
@@ -59,6 +59,20 @@ impl Shot {
         let inside =
             |p: usize| (x..x + width).contains(&(p % self.size[0])) && (y..y + height).contains(&(p / self.size[0]));
         (0..self.size[0] * self.size[1]).map(|p| if inside(p) { number } else { 255 }).collect()
+    }
+
+    fn outline(&self, index: usize, prompt: Prompt) -> Vec<u8> {
+        self.clip.outline(index, &self.frames[index], prompt).unwrap()
+    }
+
+    /// The smallest rectangle around what is seen of a thing: first column, first row, width, height.
+    fn around(&self, index: usize, thing: usize) -> [usize; 4] {
+        let of_thing = || (0..self.truths[index].len()).filter(|&p| self.truths[index][p] == thing);
+        let [columns, rows] = [0, 1].map(|k| {
+            let at = |p: usize| [p % self.size[0], p / self.size[0]][k];
+            [of_thing().map(at).min().unwrap(), of_thing().map(at).max().unwrap()]
+        });
+        [columns[0], rows[0], columns[1] + 1 - columns[0], rows[1] + 1 - rows[0]]
     }
 
     fn labels(&self) -> Vec<Vec<u8>> {
@@ -368,6 +382,81 @@ fn exact_pixels_stay_exact_at_full_size() {
         assert_eq!(shot.labels()[1], whole);
         assert!(shot.labels()[0].iter().zip(&said).all(|(label, said)| *said == 255 || label == said), "{size:?}");
     }
+}
+
+/// A box with some room around each thing, and a click in its middle.
+fn prompts_of(shot: &Shot, index: usize, thing: usize) -> [Prompt; 2] {
+    let [x, y, width, height] = shot.around(index, thing);
+    let [left, top] = [x, y].map(|from| from.saturating_sub(3));
+    let [right, bottom] = [(x + width + 3).min(shot.size[0]), (y + height + 3).min(shot.size[1])];
+    [Prompt::Box([left, top, right - left, bottom - top]), Prompt::Click([x + width / 2, y + height / 2])]
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_box_and_a_click_give_what_was_found_and_what_was_not_and_these_follow_it() {
+    let start = three();
+    for thing in [1, 2, 3] {
+        for prompt in prompts_of(&start, 3, thing) {
+            let mut shot = start.clone();
+            let mask = shot.outline(3, prompt);
+            assert!(mask.iter().all(|inside| *inside < 2));
+            let said: Vec<u8> = mask.iter().map(|&inside| if inside > 0 { 90 } else { 255 }).collect();
+            shot.correct(3, &said);
+            assert!(shot.labels()[3].iter().zip(&mask).all(|(label, inside)| *inside == 0 || *label == 90));
+            let overlaps = shot.overlaps(thing, 90);
+            assert!(overlaps.iter().all(|&iou| iou > 0.85), "thing {thing}, {prompt:?}: {overlaps:.3?}");
+        }
+    }
+}
+
+#[test]
+fn a_box_holds_its_object_and_a_click_is_in_its_own_at_full_size() {
+    for size in [[963, 541], [131, 97]] {
+        let shot = Shot::new(size, &[thing(2, [80.0, 70.0], |t| [20.0 + 6.0 * t as f32, 16.0])], 2);
+        let mut random = Random::from_seed(8);
+        let mut below = |limit: usize| random.uniform(0.0, limit as f64) as usize;
+        let [width, height] = size;
+        // Single pixels, corners and the whole frame, and any others.
+        let mut boxes = vec![[0, 0, width, height], [width - 1, height - 1, 1, 1], [0, 3, 1, height - 3], [7, 7, 1, 1]];
+        boxes.extend([(); 4].map(|()| {
+            let [x, y] = [below(width), below(height)];
+            [x, y, 1 + below(width - x), 1 + below(height - y)]
+        }));
+        for [x, y, columns, rows] in boxes {
+            let mask = shot.outline(1, Prompt::Box([x, y, columns, rows]));
+            let inside = |p: usize| (x..x + columns).contains(&(p % width)) && (y..y + rows).contains(&(p / width));
+            assert!((0..mask.len()).all(|p| mask[p] == 0 || inside(p)), "{size:?}, box {x} {y} {columns} {rows}");
+            assert!(mask.contains(&1), "{size:?}, box {x} {y} {columns} {rows}");
+        }
+        for [x, y] in [[0, 0], [width - 1, height - 1], [below(width), below(height)], [below(width), below(height)]] {
+            let mask = shot.outline(0, Prompt::Click([x, y]));
+            assert_eq!((mask.len(), mask[y * width + x]), (width * height, 1), "{size:?}, click {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn an_outline_follows_from_the_frame_alone_and_must_be_within_it() {
+    let mut shot = three();
+    let prompts = prompts_of(&shot, 2, 3);
+    let before = prompts.map(|prompt| shot.outline(2, prompt));
+    shot.correct(2, &shot.stroke(9, [10, 60, 60, 30]));
+    shot.clip.lock(&[9]);
+    assert_eq!(prompts.map(|prompt| shot.outline(2, prompt)), before);
+    let again = SegmentedClip::from_bytes(&shot.clip.to_bytes()).unwrap();
+    assert_eq!(again.outline(2, &shot.frames[2], prompts[1]).unwrap(), before[1]);
+
+    let fails = |index, frame, prompt| shot.clip.outline(index, &shot.frames[frame], prompt).unwrap_err();
+    for sides in [[0, 0, 0, 5], [0, 0, 5, 0], [128, 0, 1, 1], [0, 95, 1, 2], [100, 0, 29, 5], [1, 1, usize::MAX, 1]] {
+        let is_box = matches!(fails(0, 0, Prompt::Box(sides)), Error::InvalidOption { name: "box", .. });
+        assert!(is_box, "{sides:?}");
+    }
+    for at in [[128, 0], [0, 96], [usize::MAX, usize::MAX]] {
+        assert!(matches!(fails(0, 0, Prompt::Click(at)), Error::InvalidOption { name: "click", .. }), "{at:?}");
+    }
+    assert!(matches!(fails(7, 0, prompts[0]), Error::InvalidOption { name: "frame", .. }));
+    assert!(matches!(fails(1, 0, prompts[0]), Error::OtherFrame { index: 1 }));
 }
 
 /// Frames whose labels differ.

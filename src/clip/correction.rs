@@ -11,6 +11,7 @@ mod constants;
 mod evidence;
 mod look;
 mod memory;
+mod outline;
 mod placing;
 mod sweep;
 mod track;
@@ -29,6 +30,8 @@ use constants::Constants;
 #[cfg(feature = "ablation")]
 pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
+pub use outline::Prompt;
+pub(super) use outline::outline;
 use sweep::Claim;
 use track::{Start, Track, Way};
 use world::{Known, World};

@@ -1,6 +1,6 @@
 //! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
 
-use super::correction::ClipCorrection;
+use super::correction::{ClipCorrection, Prompt, outline};
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs, Pairs};
 use super::grouping::Census;
@@ -509,6 +509,16 @@ impl SegmentedClip {
             return Err(Error::InvalidOption { name: "corrections", reason });
         }
         Ok(ClipCorrection::new(self, index, labels, spread))
+    }
+
+    /// The mask of an object that a click or a box in a frame points to, found or not: 1 at its pixels, else 0. It follows from the frame
+    /// and the clip as it was segmented, whatever was said since. Of a box nothing outside is the object; of a click its pixel is.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len) and a prompt that is not within the frame,
+    /// [`Error::FrameSizeMismatch`], [`Error::OtherFrame`].
+    pub fn outline(&self, index: usize, frame: &Frame, prompt: Prompt) -> Result<Vec<u8>> {
+        outline(self, index, frame, prompt)
     }
 
     /// Gives every pixel of an object another number for the whole clip: that of another object to merge them, 0 to make it background.

@@ -15,8 +15,8 @@ use super::frames::{frame_from_pixels, pair_option};
 use super::plain::{Record, list, numbers};
 use super::{Failure, entries, invalid};
 use crate::clip::{
-    ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip,
-    Spread, StreamSegmenter,
+    ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, Prompt,
+    SegmentedClip, Spread, StreamSegmenter,
 };
 use crate::{AffineMotion, Error, Frame};
 
@@ -167,6 +167,24 @@ pub fn correct_clip(clip: u32, index: usize, labels: &[u8], forward: bool, backw
     segmented(clip, &mut |clip, correction| {
         *correction = Some(clip.correct(index, labels, spread)?);
         Ok(JsValue::UNDEFINED)
+    })
+}
+
+/// The mask of the object that a click (`[x, y]`) or a box (`[x, y, width, height]`) in a frame of a concluded clip points to: 1 at its
+/// pixels, else 0.
+///
+/// # Errors
+/// As [`frame_of_clip`].
+#[wasm_bindgen(js_name = outlineClip)]
+pub fn outline_clip(clip: u32, index: usize, frame: &JsValue, prompt: &[usize]) -> Result<JsValue, JsValue> {
+    let frame = frame_from_pixels("the frame", frame)?;
+    segmented(clip, &mut |clip, _| {
+        let prompt = match *prompt {
+            [x, y, width, height] => Prompt::Box([x, y, width, height]),
+            [x, y] => Prompt::Click([x, y]),
+            _ => return Err(Error::InvalidOption { name: "prompt", reason: "must have two or four numbers".into() }),
+        };
+        clip.outline(index, &frame, prompt).map(|mask| bytes(&mask))
     })
 }
 

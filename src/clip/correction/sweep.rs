@@ -27,7 +27,7 @@ pub(super) enum Said {
 }
 
 /// Odds of what is said, nats.
-const CERTAIN: f32 = 99.0;
+pub(super) const CERTAIN: f32 = 99.0;
 /// Largest odds of anything else.
 const MOST: f32 = 5.0;
 /// Probability added to both sides.
@@ -309,7 +309,7 @@ fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
     (moments[0] >= 3.0).then(|| [1, 2].map(|k| (moments[k] / moments[0]) as f32))
 }
 
-fn logit(p: f32) -> f32 {
+pub(super) fn logit(p: f32) -> f32 {
     libm::logf((p + FLOOR) / (1.0 - p + FLOOR))
 }
 
