@@ -61,8 +61,9 @@ impl Shot {
         (0..self.size[0] * self.size[1]).map(|p| if inside(p) { number } else { 255 }).collect()
     }
 
-    fn outline(&self, index: usize, prompt: Prompt) -> Vec<u8> {
-        self.clip.outline(index, &self.frames[index], prompt).unwrap()
+    /// What is to be said of an object's pixels.
+    fn outline(&self, index: usize, prompt: Prompt, number: u8) -> Vec<u8> {
+        self.clip.outline(index, &self.frames[index], prompt, number).unwrap()
     }
 
     /// The smallest rectangle around what is seen of a thing: first column, first row, width, height.
@@ -399,11 +400,13 @@ fn a_box_and_a_click_give_what_was_found_and_what_was_not_and_these_follow_it() 
     for thing in [1, 2, 3] {
         for prompt in prompts_of(&start, 3, thing) {
             let mut shot = start.clone();
-            let mask = shot.outline(3, prompt);
-            assert!(mask.iter().all(|inside| *inside < 2));
-            let said: Vec<u8> = mask.iter().map(|&inside| if inside > 0 { 90 } else { 255 }).collect();
+            let (before, said) = (shot.labels(), shot.outline(3, prompt, 90));
+            // Other objects are left as they are.
+            let moving = start.found(1);
+            assert!(thing == 1 || said.iter().zip(&before[3]).all(|(said, now)| *now != moving || *said == 255));
+            assert!(said.iter().zip(&before[3]).all(|(said, now)| *now == moving || [0, 90].contains(said)));
             shot.correct(3, &said);
-            assert!(shot.labels()[3].iter().zip(&mask).all(|(label, inside)| *inside == 0 || *label == 90));
+            assert!(shot.labels()[3].iter().zip(&said).all(|(label, said)| *said == 255 || label == said));
             let overlaps = shot.overlaps(thing, 90);
             assert!(overlaps.iter().all(|&iou| iou > 0.85), "thing {thing}, {prompt:?}: {overlaps:.3?}");
         }
@@ -424,36 +427,60 @@ fn a_box_holds_its_object_and_a_click_is_in_its_own_at_full_size() {
             [x, y, 1 + below(width - x), 1 + below(height - y)]
         }));
         for [x, y, columns, rows] in boxes {
-            let mask = shot.outline(1, Prompt::Box([x, y, columns, rows]));
+            let said = shot.outline(1, Prompt::Box([x, y, columns, rows]), 7);
             let inside = |p: usize| (x..x + columns).contains(&(p % width)) && (y..y + rows).contains(&(p / width));
-            assert!((0..mask.len()).all(|p| mask[p] == 0 || inside(p)), "{size:?}, box {x} {y} {columns} {rows}");
-            assert!(mask.contains(&1), "{size:?}, box {x} {y} {columns} {rows}");
+            assert!((0..said.len()).all(|p| said[p] != 7 || inside(p)), "{size:?}, box {x} {y} {columns} {rows}");
+            assert!(said.contains(&7), "{size:?}, box {x} {y} {columns} {rows}");
         }
         for [x, y] in [[0, 0], [width - 1, height - 1], [below(width), below(height)], [below(width), below(height)]] {
-            let mask = shot.outline(0, Prompt::Click([x, y]));
-            assert_eq!((mask.len(), mask[y * width + x]), (width * height, 1), "{size:?}, click {x} {y}");
+            let said = shot.outline(0, Prompt::Click([x, y]), 7);
+            assert_eq!((said.len(), said[y * width + x]), (width * height, 7), "{size:?}, click {x} {y}");
         }
     }
 }
 
 #[test]
-fn an_outline_follows_from_the_frame_alone_and_must_be_within_it() {
+fn an_outline_takes_nothing_from_other_objects_of_a_person_and_must_be_within_the_frame() {
     let mut shot = three();
     let prompts = prompts_of(&shot, 2, 3);
-    let before = prompts.map(|prompt| shot.outline(2, prompt));
-    shot.correct(2, &shot.stroke(9, [10, 60, 60, 30]));
-    shot.clip.lock(&[9]);
-    assert_eq!(prompts.map(|prompt| shot.outline(2, prompt)), before);
-    let again = SegmentedClip::from_bytes(&shot.clip.to_bytes()).unwrap();
-    assert_eq!(again.outline(2, &shot.frames[2], prompts[1]).unwrap(), before[1]);
+    let before = prompts.map(|prompt| shot.outline(2, prompt, 9));
+    // One that is said in the same frame, within the other, and one that comes from another frame; both are not locked.
+    let corner = shot.stroke(30, [10, 60, 12, 12]);
+    shot.correct(2, &corner);
+    shot.correct(5, &shot.mask(5, 2, 31));
+    let now = shot.labels();
+    for (prompt, before) in prompts.into_iter().zip(&before) {
+        let said = shot.outline(2, prompt, 9);
+        for p in 0..said.len() {
+            let expected = match (corner[p], now[2][p]) {
+                (30, _) => 30,
+                (_, 30 | 31) => 255,
+                _ => before[p],
+            };
+            assert_eq!(said[p], expected, "{prompt:?}, pixel {p}");
+        }
+        let again = SegmentedClip::from_bytes(&shot.clip.to_bytes()).unwrap();
+        assert_eq!(again.outline(2, &shot.frames[2], prompt, 9).unwrap(), said);
+        let mut shot = shot.clone();
+        shot.correct(2, &said);
+        for (t, (before, after)) in now.iter().zip(shot.labels()).enumerate() {
+            // More was said of the frame of one, but nothing of the other.
+            let keeps = |label: u8| label == 31 || label == 30 && t == 2;
+            assert!(before.iter().zip(&after).all(|(b, a)| !keeps(*b) || a == b), "{prompt:?}, frame {t}");
+        }
+    }
 
-    let fails = |index, frame, prompt| shot.clip.outline(index, &shot.frames[frame], prompt).unwrap_err();
+    let fails = |index, frame, prompt| shot.clip.outline(index, &shot.frames[frame], prompt, 9).unwrap_err();
     for sides in [[0, 0, 0, 5], [0, 0, 5, 0], [128, 0, 1, 1], [0, 95, 1, 2], [100, 0, 29, 5], [1, 1, usize::MAX, 1]] {
         let is_box = matches!(fails(0, 0, Prompt::Box(sides)), Error::InvalidOption { name: "box", .. });
         assert!(is_box, "{sides:?}");
     }
     for at in [[128, 0], [0, 96], [usize::MAX, usize::MAX]] {
         assert!(matches!(fails(0, 0, Prompt::Click(at)), Error::InvalidOption { name: "click", .. }), "{at:?}");
+    }
+    for number in [0, 255] {
+        let error = shot.clip.outline(0, &shot.frames[0], prompts[0], number).unwrap_err();
+        assert!(matches!(error, Error::InvalidOption { name: "label", .. }));
     }
     assert!(matches!(fails(7, 0, prompts[0]), Error::InvalidOption { name: "frame", .. }));
     assert!(matches!(fails(1, 0, prompts[0]), Error::OtherFrame { index: 1 }));

@@ -170,21 +170,21 @@ pub fn correct_clip(clip: u32, index: usize, labels: &[u8], forward: bool, backw
     })
 }
 
-/// The mask of the object that a click (`[x, y]`) or a box (`[x, y, width, height]`) in a frame of a concluded clip points to: 1 at its
-/// pixels, else 0.
+/// What is to be said to [`correct_clip`] of a frame of a concluded clip when the object of a number is where a click (`[x, y]`) or a box
+/// (`[x, y, width, height]`) points to.
 ///
 /// # Errors
 /// As [`frame_of_clip`].
 #[wasm_bindgen(js_name = outlineClip)]
-pub fn outline_clip(clip: u32, index: usize, frame: &JsValue, prompt: &[usize]) -> Result<JsValue, JsValue> {
+pub fn outline_clip(clip: u32, index: usize, frame: &JsValue, prompt: &[u32], number: u8) -> Result<JsValue, JsValue> {
     let frame = frame_from_pixels("the frame", frame)?;
     segmented(clip, &mut |clip, _| {
         let prompt = match *prompt {
-            [x, y, width, height] => Prompt::Box([x, y, width, height]),
-            [x, y] => Prompt::Click([x, y]),
-            _ => return Err(Error::InvalidOption { name: "prompt", reason: "must have two or four numbers".into() }),
+            [x, y, width, height] => Prompt::Box([x, y, width, height].map(|side| side as usize)),
+            [x, y] => Prompt::Click([x, y].map(|at| at as usize)),
+            _ => return Err(Error::InvalidOption { name: "prompt", reason: "has two or four numbers".into() }),
         };
-        clip.outline(index, &frame, prompt).map(|mask| bytes(&mask))
+        clip.outline(index, &frame, prompt, number).map(|said| bytes(&said))
     })
 }
 
