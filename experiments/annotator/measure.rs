@@ -155,12 +155,7 @@ fn pointed(automatic: &Session<'_>, prompt: Prompt, truths: &[Vec<bool>]) -> Res
 }
 
 /// J in the first frame of what GrabCut makes of the box, if it ran.
-fn baseline_boxed(
-    case: &Case,
-    data: &Data,
-    options: &Options,
-    truths: &[Vec<bool>],
-) -> Result<Option<f64>, Failure> {
+fn baseline_boxed(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -> Result<Option<f64>, Failure> {
     let frame = Data { frames: data.frames[..1].to_vec(), truths: data.truths[..1].to_vec() };
     let found = crate::cases::labels(&options.out.join("baseline").join(&case.name).join("box"), &frame)?;
     Ok(found.map(|labels| each(&masks(&labels, 1), &truths[..1])[0]))

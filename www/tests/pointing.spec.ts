@@ -66,7 +66,8 @@ test('a box makes a new object in its frame and in the others, and undo takes it
   const before = await labelsOnCanvas(page);
   const objects = page.locator('#objects > li');
   const count = await objects.count();
-  await page.keyboard.press('b');
+  await page.locator('.layers').focus();
+  await page.keyboard.press('x');
   await expect(tool(page)).toBeChecked();
   await expect(page.locator('#tool-help')).toContainText('it becomes a new object');
   await drag(page, ...AROUND);
@@ -137,16 +138,41 @@ test('objects one after another keep what they have, and a pair has no box', asy
   const labels = await labelsOnCanvas(page);
   expect(overlap(labels, own, 3)).toBeGreaterThan(0.85);
   expect(labels).toContain(own + 1);
-  await page.locator('#look').getByText('Groups').click();
+  await page.locator('#kinds [value=groups]').check();
   await expect(tool(page)).toBeHidden();
   await expect(page.locator('#tools [value=look]')).toBeChecked();
 });
 
-test('the tools can be touched on a phone', async ({ page }) => {
-  await page.setViewportSize({ width: 390, height: 800 });
-  await openSegmented(page);
-  for (const label of await page.locator('#tools fieldset label').all()) {
-    const { width, height } = (await label.boundingBox())!;
-    expect(Math.min(width, height)).toBeGreaterThanOrEqual(44);
-  }
+test.describe('on a phone', () => {
+  test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
+
+  test('the tools are large enough, and a finger draws a box; two fingers draw none', async ({ page }) => {
+    await openSegmented(page);
+    await goTo(page, 3);
+    for (const label of await page.locator('#tools fieldset label').all()) {
+      const { width, height } = (await label.boundingBox())!;
+      expect(Math.min(width, height)).toBeGreaterThanOrEqual(44);
+    }
+    const own = Math.max(...(await labelsOnCanvas(page))) + 1;
+    await tool(page).check();
+    await page.locator('.layers').scrollIntoViewIfNeeded();
+    const box = (await page.locator('.layers').boundingBox())!;
+    const at = ([x, y]: Place, id = 0): { x: number; y: number; id: number } => ({ x: box.x + x * box.width, y: box.y + y * box.height, id });
+    const cdp = await page.context().newCDPSession(page);
+    const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', ...touchPoints: { x: number; y: number; id: number }[]): Promise<unknown> =>
+      cdp.send('Input.dispatchTouchEvent', { type, touchPoints });
+    await touch('touchStart', at(AROUND[0]));
+    await touch('touchMove', at(MIDDLE));
+    await touch('touchStart', at(MIDDLE), at([0.8, 0.8], 1));
+    await touch('touchEnd');
+    await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
+    await expect(page.locator('#clip-status')).not.toHaveText(/^Corrected/);
+    await page.locator('#zoom-fit').dispatchEvent('click');
+    await touch('touchStart', at(AROUND[0]));
+    await touch('touchMove', at(MIDDLE));
+    await touch('touchMove', at(AROUND[1]));
+    await touch('touchEnd');
+    await expect(page.locator('#clip-status')).toHaveText(/^Corrected/, { timeout: 45_000 });
+    expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);
+  });
 });

@@ -29,7 +29,7 @@ impl Evidence {
     /// That of one frame, in which pixels have a side: 0 for the object, 1 for ground, else neither.
     pub(super) fn of(found: &[u8], sides: &[u8], area: &Area, width: usize) -> Evidence {
         let mut evidence = Evidence::default();
-        evidence.count([0.0, 1.0], area.pixels(width).map(|p| (found[p], usize::from(sides[p]))));
+        evidence.count([0.0, 1.0], found, area, width, &|p| usize::from(sides[p]));
         evidence
     }
 
@@ -48,14 +48,16 @@ impl Evidence {
         let area = Area::of(&inside, width).grown(AROUND, width, height);
         let side = |p: usize| usize::from(mask.values()[p] < 0.5);
         let shares = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
-        self.count(shares, area.pixels(width).map(|p| (found[p], side(p))));
+        self.count(shares, found, &area, width, &side);
     }
 
     /// Counts labels with their sides; the counts are made of those before and these, by their shares.
-    fn count(&mut self, [old, new]: [f32; 2], pixels: impl Iterator<Item = (u8, usize)>) {
+    fn count(&mut self, [old, new]: [f32; 2], found: &[u8], area: &Area, width: usize, side: &dyn Fn(usize) -> usize) {
         let mut counts = vec![[0.0f32; 2]; 256];
-        for (label, side) in pixels.filter(|(_, side)| *side < 2) {
-            counts[usize::from(label)][side] += 1.0;
+        for p in area.pixels(width) {
+            if let Some(count) = counts[usize::from(found[p])].get_mut(side(p)) {
+                *count += 1.0;
+            }
         }
         let mut totals = [0.0f32; 2];
         for (count, now) in self.counts.iter_mut().zip(&counts) {

@@ -113,10 +113,10 @@ impl Memory {
         weight: f32,
         sides: impl Fn(usize) -> usize,
     ) {
-        self.learn_within(look, &look.area(), centre, part, weight, sides);
+        self.learn_within(look, &look.area(), centre, part, weight, &sides);
     }
 
-    /// [`learn`](Self::learn) from an area.
+    /// [`learn`](Self::learn) from an area. Not generic: each call would have a copy of its own.
     pub(super) fn learn_within(
         &mut self,
         look: &Look,
@@ -124,7 +124,7 @@ impl Memory {
         centre: [f32; 2],
         part: Part,
         weight: f32,
-        sides: impl Fn(usize) -> usize,
+        sides: &dyn Fn(usize) -> usize,
     ) {
         let width = look.size[0];
         for y in area.rows.clone() {

@@ -121,6 +121,8 @@ pub(in crate::clip) fn outline(
 /// An object with its mask, and ground where nothing else is shown and was said.
 fn said_of(clip: &SegmentedClip, index: usize, shown: &[u8], mask: &[u8], number: u8) -> Vec<u8> {
     let persons = clip.persons_in(index);
+    let ([width, _], [w, h]) = (clip.size(), clip.working_size());
+    let (step, (found, _)) = (width.div_ceil(w).next_power_of_two(), clip.found(index));
     let before = clip.frames[index].said.as_ref().map(|said| said.labels.values());
     let mut sizes = [[0usize; 2]; 256];
     for (&label, &inside) in shown.iter().zip(mask) {
@@ -128,6 +130,8 @@ fn said_of(clip: &SegmentedClip, index: usize, shown: &[u8], mask: &[u8], number
         *all += 1;
         *taken += usize::from(inside);
     }
+    // Ground in a part of what was found is a correction of that, so none is said in any pixel of it.
+    let found = |p: usize| found[(p / width / step).min(h - 1) * w + (p % width / step).min(w - 1)];
     let others = |label: u8| label != 0 && label != NOTHING_SAID && label != number;
     // What was found yields to an object that has most of it.
     let is_left = |label: u8| 2 * sizes[usize::from(label)][1] <= sizes[usize::from(label)][0];
@@ -136,7 +140,7 @@ fn said_of(clip: &SegmentedClip, index: usize, shown: &[u8], mask: &[u8], number
         _ if others(shown[p]) && persons[usize::from(shown[p])] => NOTHING_SAID,
         _ if mask[p] > 0 => number,
         0 => 0,
-        _ if others(shown[p]) && is_left(shown[p]) => NOTHING_SAID,
+        _ if [shown[p], found(p)].into_iter().any(|label| others(label) && is_left(label)) => NOTHING_SAID,
         _ => 0,
     };
     (0..mask.len()).map(said).collect()
@@ -167,7 +171,7 @@ impl View<'_> {
         let mut sides = vec![1; self.look.pixels()];
         area.pixels(width).for_each(|p| sides[p] = if squares[p] < ELLIPSE * ELLIPSE { 0 } else { 2 });
         let odds = squares.iter().map(|square| BOX[0] - BOX[1] * square).collect();
-        self.fitted(Beginning { area, odds, sides }, |_| false, ROUNDS[1])
+        self.fitted(Beginning { area, odds, sides }, &|_| false, ROUNDS[1])
     }
 
     fn clicked(&self, click: usize) -> Vec<u8> {
@@ -178,7 +182,7 @@ impl View<'_> {
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
         let beginnings = discs.into_iter().chain(regions);
         let masks: Vec<Vec<u8>> =
-            beginnings.map(|from| self.part_of(click, self.fitted(from, near, ROUNDS[0]))).collect();
+            beginnings.map(|from| self.part_of(click, self.fitted(from, &near, ROUNDS[0]))).collect();
         let mut votes = vec![0.0f32; pixels];
         let mut total = 0.0;
         for mask in &masks {
@@ -192,7 +196,7 @@ impl View<'_> {
         agreed.iter().for_each(|&p| sides[p] = 0);
         let odds = votes.iter().map(|votes| VOTES * (votes - ENOUGH)).collect();
         let area = self.around(&Area::of(&agreed, self.look.size[0]));
-        self.part_of(click, self.fitted(Beginning { area, odds, sides }, near, ROUNDS[1]))
+        self.part_of(click, self.fitted(Beginning { area, odds, sides }, &near, ROUNDS[1]))
     }
 
     fn disc(&self, click: usize, share: f32) -> Beginning {
@@ -231,7 +235,7 @@ impl View<'_> {
     }
 
     /// Learns from a mask what the object looks like, cuts the next one, and so on.
-    fn fitted(&self, from: Beginning, is_sure: impl Fn(usize) -> bool, rounds: usize) -> Vec<u8> {
+    fn fitted(&self, from: Beginning, is_sure: &dyn Fn(usize) -> bool, rounds: usize) -> Vec<u8> {
         let (look, [width, height]) = (self.look, self.look.size);
         let Beginning { area, odds: prior, mut sides } = from;
         let seen = area.grown(AROUND, width, height);
@@ -242,7 +246,7 @@ impl View<'_> {
             let mut memory = Memory::new(&Area::whole(0, 0), f32::INFINITY);
             for (side, weight) in [(0, 1.0), (1, weight)] {
                 let of = |p: usize| if sides[p] == side { usize::from(side) } else { 2 };
-                memory.learn_within(look, &seen, [0.0; 2], Part::Recent, weight, of);
+                memory.learn_within(look, &seen, [0.0; 2], Part::Recent, weight, &of);
             }
             let remembered = memory.read(look, &area, [0.0; 2], &self.constants);
             let evidence: Vec<Evidence> =

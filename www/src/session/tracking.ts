@@ -446,7 +446,10 @@ export class Tracking {
       this.#refuse(strings.notices.nothingThere);
       return new Map();
     }
-    return new Map([[frame, labels.map((own) => (own === label ? id : own === 0 ? 0 : UNLABELLED))]]);
+    const { width } = version.frames[frame]!.runs;
+    const [left, top, columns = width, rows = labels.length] = at.length === 2 ? [0, 0] : at;
+    const isWithin = (p: number): boolean => p % width >= left && p % width < left + columns && p / width >= top && p / width < top + rows;
+    return new Map([[frame, labels.map((own, p) => (own === label && isWithin(p) ? id : own === 0 ? 0 : UNLABELLED))]]);
   }
 
   /** Shows frames as a correction changes them: those on screen at once, others soon. */
