@@ -33,7 +33,7 @@ await command(async (args) => {
     const program = join(root, 'experiments', 'annotator', 'peers.py');
     await runOnAll(python, program, clips, (_, folder) => [folder, join(out, 'baseline')]);
   }
-  for (const step of ['measure', 'objects', 'page']) {
+  for (const step of ['measure', 'objects', 'pairs', 'page']) {
     const { code } = await run('cargo', [...CARGO, step, ...args]);
     if (code !== 0) return code;
   }

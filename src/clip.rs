@@ -34,6 +34,7 @@ use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
 
 pub use correction::{ClipCorrection, Prompt};
+pub(crate) use correction::{Said, Still};
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
 pub use correction::{propagation_constants, vary_propagation};

@@ -76,7 +76,7 @@
 //!
 //! # Correcting labels
 //!
-//! [`relabel`] solves the labels again, given a person's strokes. A [`Correction`] holds a set of possible motions for each pixel:
+//! [`relabel`] decides the labels anew, given a person's strokes. A [`Correction`] holds a set of possible motions for each pixel:
 //!
 //! ```
 //! use veronese::scene::{self, SceneOptions};

@@ -865,3 +865,29 @@ fn the_corrected_frame_is_nearly_right_at_once() {
         assert!(overlap > 0.8, "{what}: {overlap:.2}");
     }
 }
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn one_of_the_grounds_own_colours_is_followed_by_its_motion() {
+    let [width, height] = [96, 64];
+    let inside = |x: usize, y: usize, t: usize| (30 + 2 * t..60 + 2 * t).contains(&x) && (20..44).contains(&y);
+    let grey = |x: usize, y: usize, t: usize| {
+        let [u, v] = if inside(x, y, t) { [x + 300 - 2 * t, y + 90] } else { [x, y] }.map(|at| at as f64);
+        (128.0 + 60.0 * (0.5 * u + 0.2 * v).sin() + 50.0 * (0.4 * v - 0.15 * u).cos()) as u8
+    };
+    let frame = |t: usize| {
+        let rgba = |p: usize| [[grey(p % width, p / width, t); 3].as_slice(), &[255]].concat();
+        Frame::from_rgba(width, height, (0..width * height).flat_map(rgba).collect::<Vec<u8>>()).unwrap()
+    };
+    let frames: Vec<Frame> = (0..6).map(frame).collect();
+    let mut clip = whole(&frames, options(Quality::Fast, None));
+    let truth = |t: usize| (0..width * height).map(move |p| inside(p % width, p / width, t));
+    correct(&mut clip, &frames, 0, &truth(0).map(|inside| if inside { 9 } else { 0 }).collect::<Vec<u8>>());
+    for (t, found) in frames_of(&clip, &frames).iter().enumerate() {
+        let pixels = truth(t).zip(&found.labels);
+        let [both, either] = pixels.fold([0, 0], |[both, either], (inside, &label)| {
+            [both + usize::from(inside && label == 9), either + usize::from(inside || label == 9)]
+        });
+        assert!(10 * both > 8 * either, "frame {t}: {both} of {either}");
+    }
+}

@@ -9,6 +9,7 @@ mod measure;
 mod objects;
 mod overlap;
 mod page;
+mod pairs;
 #[path = "../panels.rs"]
 mod panels;
 #[path = "../parallel.rs"]
@@ -37,6 +38,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   frames         prints a line per real clip: its name, a tab, its folder
   measure        real clips with masks of one object: a line of figures for each, then means; writes measure.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
+  pairs          pairs of frames of the real clips with strokes: the same; writes pairs.jsonl
   page           writes annotating.md from these figures
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
@@ -90,7 +92,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "objects" | "page" | "fit" => options.step = name,
+            "frames" | "measure" | "objects" | "pairs" | "page" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -116,7 +118,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, objects, page or fit.".into()),
+        true => Err("Say which step: frames, measure, objects, pairs, page or fit.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -145,6 +147,7 @@ fn run(options: &Options) -> Result<(), Failure> {
             let cases = options.chosen(objects::cases());
             objects::table(&options.on_all(&cases, |case| objects::measure(case, options))?, false)
         }
+        "pairs" => pairs::table(&options.on_all(&options.real()?, |case| pairs::measure(case, options))?),
         _ => measure::table(&options.on_all(&options.real()?, |case| measure::measure(case, options))?, false),
     };
     print!("\n{table}");
@@ -157,8 +160,9 @@ fn docs() -> PathBuf {
 
 fn write_page(options: &Options) -> Result<(), Failure> {
     let (real, generated) = (rows::<measure::Row>(options, "measure")?, rows::<objects::Row>(options, "objects")?);
+    let strokes = rows::<pairs::Row>(options, "pairs")?;
     let fit = fs::read_to_string(options.out.join("fit.md")).ok();
-    let text = sealed::sealed(&page::text(&real, &generated, fit.as_deref()));
+    let text = sealed::sealed(&page::text(&real, &generated, &strokes, fit.as_deref()));
     fs::write(options.out.join("annotating.md"), &text)?;
     if options.write_docs {
         if real.is_empty() || generated.len() < objects::cases().len() {

@@ -167,9 +167,14 @@ fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -
     Ok(found.map(|labels| between(&masks(&labels, 1), truths)))
 }
 
+/// Whether constants of clips were first set on a clip.
+pub(crate) fn is_old(clip: &str) -> bool {
+    OLD.contains(&clip)
+}
+
 /// Clips that belong together in the tables.
 fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
-    let old = |row: &&Row| OLD.contains(&row.clip.as_str());
+    let old = |row: &&Row| is_old(&row.clip);
     let groups = [
         ("all", rows.iter().collect::<Vec<_>>()),
         ("old", rows.iter().filter(old).collect()),

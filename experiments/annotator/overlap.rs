@@ -11,7 +11,7 @@ pub(crate) fn masks(labels: &[Vec<u8>], label: u8) -> Vec<Vec<bool>> {
 }
 
 /// IoU of two masks, 1 where both are empty.
-fn iou(a: &[bool], b: &[bool]) -> f64 {
+pub(crate) fn iou(a: &[bool], b: &[bool]) -> f64 {
     let both = |(&a, &b): (&bool, &bool)| [usize::from(a && b), usize::from(a || b)];
     let [inside, union] = a.iter().zip(b).map(both).fold([0; 2], |[i, u], [inside, union]| [i + inside, u + union]);
     if union == 0 { 1.0 } else { inside as f64 / union as f64 }

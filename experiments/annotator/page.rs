@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::measure::Row;
-use crate::{measure, objects};
+use crate::{measure, objects, pairs};
 
 const HEAD: &str = "\
 # Annotating
@@ -76,6 +76,17 @@ In clips of *similar colours* and *all together* all objects are cut from one cl
 
 ";
 
+const PAIRS: &str = "\
+## Strokes on a pair
+
+Four pairs of neighbouring frames of each clip, if something was found to move. The motions with more than half of their pixels inside the
+true mask are the object; the robot draws its strokes for it in the first frame, round after round.
+
+- **found**: J of these motions when nothing is said;
+- **ms**: time of native code for a correction, on one core of a machine in use.
+
+";
+
 const CONSTANTS: &str = "\
 ## Constants
 
@@ -86,7 +97,7 @@ not seen. Scores are those of the constants used and of the fitted ones.
 ";
 
 /// The page; sections without figures are left out.
-pub(crate) fn text(real: &[Row], generated: &[objects::Row], fit: Option<&str>) -> String {
+pub(crate) fn text(real: &[Row], generated: &[objects::Row], strokes: &[pairs::Row], fit: Option<&str>) -> String {
     let mut text = String::from(HEAD);
     let quality = real.first().map(|row| &row.quality).or(generated.first().map(|row| &row.quality));
     if let Some(quality) = quality {
@@ -103,6 +114,9 @@ pub(crate) fn text(real: &[Row], generated: &[objects::Row], fit: Option<&str>) 
             "### By generated clip\n\nA name has the kind and the seed.\n\n{}",
             objects::table(generated, true)
         );
+    }
+    if !strokes.is_empty() {
+        let _ = write!(text, "\n{PAIRS}{}", pairs::table(strokes));
     }
     if let Some(fit) = fit {
         let _ = write!(text, "\n{CONSTANTS}{fit}");

@@ -512,13 +512,13 @@ export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOpti
 export function segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
 
 /**
- * Solves the labels of a segmentation again, given a person's evidence about single pixels. The motions do not change.
+ * Decides the labels of a segmentation anew, given a person's evidence about single pixels. The motions do not change.
  *
  * `evidence` holds a set of possible labels for each pixel, row by row: bit k is set if label k is possible; 0 means no evidence. "This is
  * label 2" is `0b100`; "this is not label 0" of four is `0b1110`; "one of the merged labels 1 and 3" is `0b1010`. Evidence is binding on
- * its own pixels and spreads from there to similar parts of the image; labels far away do not change. Numbering and groups do not change
- * either, so a label may have no pixels left. The result has no `confidence`. The same arguments give the same result: to undo, call
- * again without the evidence.
+ * its own pixels and spreads from there to parts of the image that look and move alike. Pixels change only between labels that the
+ * evidence tells apart, and where that is connected with it. Numbering and groups do not change, so a label may have no pixels left. The
+ * result has no `confidence`. The same arguments give the same result: to undo, call again without the evidence.
  *
  * All arguments are copied before the call returns, and the result shares no memory with the segmentation passed in.
  */

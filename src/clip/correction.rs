@@ -13,6 +13,7 @@ mod look;
 mod memory;
 mod outline;
 mod placing;
+mod still;
 mod sweep;
 mod track;
 mod world;
@@ -32,7 +33,9 @@ pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
 pub use outline::Prompt;
 pub(super) use outline::outline;
+pub(crate) use still::Still;
 use sweep::Claim;
+pub(crate) use sweep::Said;
 use track::{Start, Track, Way};
 use world::{Known, World};
 

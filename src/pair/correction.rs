@@ -1,34 +1,29 @@
-//! Interactive correction: the labels of a pair are solved again under strokes that say which motions are possible at a pixel.
+//! Interactive correction: the labels of a pair are decided anew under strokes that say which motions are possible at a pixel.
 //!
-//! It is the labelling of [`segment_pair`](crate::segment_pair) at the working size with the motions given and one more term
-//! ([`strokes`](crate::labelling::terms::strokes)). Labels that no stroke reaches are returned bit for bit.
+//! It is the correction of clips with two frames: the looks of an object and what is said of it, and how its pixels move to the second frame.
+//! A stroke parts the motions that are possible from those of the pixels that it takes; one cut for each such division moves pixels from one
+//! side to the other, and all others keep their labels.
 
 use super::Pair;
 use super::labels::LabelState;
 use super::report::{SegmentedMotion, describe};
 use super::settings::{Part, Settings};
 use crate::answer::UNLABELLED;
+use crate::clip::{Said, Still};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
+use crate::labelling::BACKGROUND;
 use crate::labelling::resolution::upsampling::upsample;
 use crate::labelling::solver::MAX_LABELS;
-use crate::labelling::terms::strokes::add_strokes;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
-use crate::workspace::{self, Buffer};
+use crate::workspace;
 
 const STAGES: &[&str] = &["frames", "labels", "masks"];
 
 /// Largest number of motions in a [`Correction`]: what the labelling solves at once.
 pub const MAX_CORRECTED: usize = MAX_LABELS;
-
-/// A stroke has no influence below this share of its price. Not varied, nor are the next two.
-const SMALLEST_INFLUENCE: f32 = 0.02;
-/// Price of changing a label where no stroke has influence: that of a motion that does not fit.
-const CHANGE_PRICE: f32 = 2.0;
-/// Full-size labels are computed anew within this many working pixels of a change.
-const MARGIN: usize = 3;
 
 /// Input of [`relabel`].
 #[derive(Clone, Copy, Debug)]
@@ -55,8 +50,9 @@ pub struct Relabelling {
     pub unlabelled: usize,
 }
 
-/// Solves the labels of `first` again under a correction. The motions and their numbering stay the same, and the result depends on
-/// the arguments alone: to undo a correction, call again without it.
+/// Decides the labels of `first` anew under a correction. The motions and their numbering stay the same, and the result depends on the
+/// arguments alone: to undo a correction, call again without it. Pixels change only between motions that a stroke tells apart, and where
+/// that is connected with it.
 ///
 /// `options.quality` should be that of the labels so far; the other options have no effect.
 ///
@@ -77,21 +73,16 @@ pub fn relabel(
     // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
     let settings = Settings { draft_side: usize::MAX, ..Settings::new(options, super::size(first)) };
     let mut stages = Stages::new(STAGES, progress);
-    let labels = if correction.allowed.iter().all(|&set| set == 0) {
-        correction.labels.to_vec()
-    } else {
+    let divisions = correction.divisions();
+    let mut labels = correction.labels.to_vec();
+    if !divisions.is_empty() {
         stages.begin("frames");
-        let pyramid = settings.pyramid(first);
-        let before = before.map(|frame| settings.pyramid(frame));
-        let mut pair = Pair::new(first, &pyramid, &settings.pyramid(second), before.as_ref(), &settings);
-        drop(before);
-        let working = WorkingCorrection::new(&pair, correction, first.width());
-        pair.take_dominant(&working.motions[0], settings.has(Part::Brightness));
+        let working = Working::new(first, second, before, correction, &settings);
         stages.begin("labels");
-        let solved = working.solve(&pair, &settings);
+        divisions.into_iter().for_each(|division| working.divide(division, &mut labels));
         stages.begin("masks");
-        working.enlarge(&solved, correction, first.luminance())
-    };
+        working.obey(&mut labels);
+    }
     let groups: Vec<usize> = correction.groups.iter().map(|&g| usize::from(g)).collect();
     let mut motions = describe(correction.motions, &groups, &labels, first.luminance(), second.luminance());
     motions.iter_mut().zip(correction.groups).for_each(|(motion, &group)| motion.group = group);
@@ -126,110 +117,155 @@ impl Correction<'_> {
         }
         Ok(())
     }
-}
 
-/// The correction at working size.
-struct WorkingCorrection {
-    motions: Vec<AffineMotion>,
-    labels: Buffer<u8>,
-    allowed: Buffer<u16>,
-    /// Full-size pixels per working pixel.
-    step: usize,
-    size: [usize; 2],
-}
-
-impl WorkingCorrection {
-    fn new(pair: &Pair, correction: &Correction<'_>, full_width: usize) -> WorkingCorrection {
-        let level = pair.finest();
-        let (width, height) = (level.width(), level.height());
-        let step = pair.reduction as usize;
-        let full_height = correction.labels.len() / full_width;
-        let mut labels = Buffer::with_capacity(width * height);
-        let mut allowed = Buffer::filled(width * height, 0u16);
-        for y in 0..height {
-            for x in 0..width {
-                let (u, v) = ((x * step + step / 2).min(full_width - 1), (y * step + step / 2).min(full_height - 1));
-                labels.push(correction.labels[v * full_width + u]);
-            }
-        }
-        for (p, &set) in correction.allowed.iter().enumerate().filter(|&(_, &set)| set != 0) {
-            let (x, y) = ((p % full_width / step).min(width - 1), (p / full_width / step).min(height - 1));
-            let slot = &mut allowed[y * width + x];
-            // Two strokes through one working pixel: the intersection of their sets or, if it is empty, the union.
-            *slot = match (*slot, *slot & set) {
-                (0, _) => set,
-                (old, 0) => old | set,
-                (_, both) => both,
-            };
-        }
-        let motions = correction.motions.iter().map(|m| m.scaled(1.0 / pair.reduction)).collect();
-        WorkingCorrection { motions, labels, allowed, step, size: [width, height] }
+    /// All motions.
+    fn all(&self) -> u16 {
+        u16::MAX >> (u16::BITS as usize - self.motions.len())
     }
 
-    /// The labels of working size.
-    fn solve(&self, pair: &Pair, settings: &Settings) -> Buffer<u8> {
+    /// What strokes tell apart. Those that agree with the labels under them tell nothing.
+    fn divisions(&self) -> Vec<Division> {
+        let mut taken = vec![0u16; 1 << self.motions.len()];
+        for (&set, &label) in self.allowed.iter().zip(self.labels) {
+            if set != 0 && label != UNLABELLED && !is_in(label, set) {
+                taken[usize::from(set)] |= 1 << label;
+            }
+        }
+        let mut divisions: Vec<Division> = Vec::new();
+        for (set, &taken) in (0u16..).zip(&taken).filter(|(_, taken)| **taken != 0) {
+            // Strokes either way are of the same division.
+            let [object, others] =
+                if taken.trailing_zeros() < set.trailing_zeros() { [set, taken] } else { [taken, set] };
+            match divisions.iter_mut().find(|known| known.object == object) {
+                Some(known) => known.others |= others,
+                None => divisions.push(Division { object, others }),
+            }
+        }
+        divisions
+    }
+}
+
+/// Two sides that strokes tell apart, sets of motions. The smallest label is one of the others.
+#[derive(Clone, Copy, Debug)]
+struct Division {
+    object: u16,
+    others: u16,
+}
+
+/// Whether a label is one of a set of motions.
+fn is_in(label: u8, set: u16) -> bool {
+    label != UNLABELLED && set >> label & 1 == 1
+}
+
+/// A correction and what the frames tell, at the size at which objects are corrected.
+struct Working<'a> {
+    frame: &'a Frame,
+    correction: &'a Correction<'a>,
+    still: Still,
+    /// Price of each motion at every pixel.
+    costs: Vec<Plane>,
+}
+
+impl<'a> Working<'a> {
+    fn new(
+        first: &'a Frame,
+        second: &Frame,
+        before: Option<&Frame>,
+        correction: &'a Correction<'a>,
+        settings: &Settings,
+    ) -> Working<'a> {
+        let (pyramid, other) = (settings.pyramid(first), settings.pyramid(second));
+        let before = before.map(|frame| settings.pyramid(frame));
+        let mut pair = Pair::new(first, &pyramid, &other, before.as_ref(), settings);
+        let reduction = pair.reduction;
+        let motions: Vec<AffineMotion> = correction.motions.iter().map(|m| m.scaled(1.0 / reduction)).collect();
+        pair.take_dominant(&motions[0], settings.has(Part::Brightness));
+        let (width, step) = (first.width(), reduction as usize);
+        let (w, h) = (pair.finest().width(), pair.finest().height());
+        let middle = |p: usize| {
+            let at = |k: usize, side: usize| (k * step + step / 2).min(side - 1);
+            at(p / w, first.height()) * width + at(p % w, width)
+        };
         // Unlabelled pixels count as the dominant motion's here, as when the masks were corrected for occlusion.
-        let known = self.labels.iter().map(|&l| if l == UNLABELLED { 0 } else { l }).collect();
-        let mut state = LabelState::resumed(pair, self.motions.clone(), known, settings);
+        let label = |p: usize| Some(correction.labels[middle(p)]).filter(|&l| l != UNLABELLED).unwrap_or_default();
+        let labels = (0..w * h).map(label).collect();
+        let mut state = LabelState::resumed(&pair, motions, labels, settings);
         state.update_occlusion();
-        state.add_colour_costs(pair);
-        let influence = add_strokes(&mut state.costs, &self.allowed, &pair.appearance.pictures[0].luminance);
-        self.add_change_price(&mut state.costs, &influence);
-        state.solve_final();
-        for (p, label) in state.labels.iter_mut().enumerate() {
-            if influence[p] < SMALLEST_INFLUENCE {
-                *label = self.labels[p];
-            }
-        }
-        state.labels
+        let still = Still::new(first);
+        let [columns, rows] = still.size();
+        // In pixels of the costs for each of those of the corrections.
+        let scale = |k: usize| (k * still.step() + still.step() / 2) / step;
+        let at_size =
+            |cost: &Plane| Plane::from_fn(columns, rows, |x, y| cost.at(scale(x).min(w - 1), scale(y).min(h - 1)));
+        Working { frame: first, correction, costs: state.costs.iter().map(at_size).collect(), still }
     }
 
-    /// Adds the price of a change where strokes have little influence.
-    fn add_change_price(&self, costs: &mut [Plane], influence: &[f32]) {
-        for (k, cost) in costs.iter_mut().enumerate() {
-            for ((c, &label), share) in cost.values_mut().iter_mut().zip(&self.labels).zip(influence) {
-                if label != UNLABELLED && usize::from(label) != k {
-                    *c += CHANGE_PRICE * (1.0 - share);
-                }
+    /// The pixel that a full-size one belongs to.
+    fn pixel(&self, p: usize) -> usize {
+        let ([columns, rows], step, width) = (self.still.size(), self.still.step(), self.frame.width());
+        (p / width / step).min(rows - 1) * columns + (p % width / step).min(columns - 1)
+    }
+
+    /// The motions of a set with their prices.
+    fn of(&self, set: u16) -> impl Iterator<Item = (u8, &Plane)> {
+        (0u8..).zip(&self.costs).filter(move |(k, _)| is_in(*k, set))
+    }
+
+    /// Price of the motion of a set that fits a pixel best.
+    fn price(&self, set: u16, p: usize) -> f32 {
+        self.of(set).map(|(_, cost)| cost.values()[p]).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Which motion of a set every pixel would have: of an object the largest one, else the one that fits.
+    fn choice(&self, set: u16) -> Vec<u8> {
+        let [columns, rows] = self.still.size();
+        let pixels = |k: &u8| self.correction.labels.iter().filter(|label| *label == k).count();
+        let has_ground = is_in(BACKGROUND as u8, set);
+        if let Some(largest) = self.of(set).map(|(k, _)| k).max_by_key(pixels).filter(|_| !has_ground) {
+            return vec![largest; columns * rows];
+        }
+        let (labels, costs): (Vec<u8>, Vec<Plane>) = self.of(set).map(|(k, cost)| (k, cost.clone())).unzip();
+        self.still.labels(&costs).iter().map(|&k| labels[usize::from(k)]).collect()
+    }
+
+    /// Which pixels are on which side of a division.
+    fn divide(&self, Division { object, others }: Division, labels: &mut [u8]) {
+        let size @ [columns, rows] = self.still.size();
+        let mut said = vec![Said::Nothing; columns * rows];
+        let mut found = vec![0usize; columns * rows];
+        for (p, (&allowed, &label)) in self.correction.allowed.iter().zip(&*labels).enumerate() {
+            let here = self.pixel(p);
+            found[here] += usize::from(is_in(label, object));
+            match [allowed & object, allowed & others] {
+                _ if allowed == 0 => {}
+                [own, 0] if own != 0 => said[here] = Said::Object,
+                // Where strokes contradict each other inside a pixel, it is the object's.
+                [0, _] if said[here] == Said::Nothing => said[here] = Said::Other,
+                _ => {}
+            }
+        }
+        let half = self.still.step().pow(2) / 2;
+        let found: Vec<bool> = found.into_iter().map(|pixels| pixels > half).collect();
+        let odds = |x, y| self.price(others, y * columns + x) - self.price(object, y * columns + x);
+        let mask = self.still.mask(&said, &found, &Plane::from_fn(columns, rows, odds));
+        let full = upsample(&mask, size, 2, self.frame.luminance());
+        let [within, without] = [object, others].map(|side| self.choice(side));
+        for (p, (label, &inside)) in labels.iter_mut().zip(&full).enumerate() {
+            if inside > 0 && (is_in(*label, others) || *label == UNLABELLED) {
+                *label = within[self.pixel(p)];
+            } else if inside == 0 && is_in(*label, object) {
+                *label = without[self.pixel(p)];
             }
         }
     }
 
-    /// Full-size labels: enlarged along the edges of the frame near changes, unchanged elsewhere. Strokes hold at every pixel of
-    /// the frame.
-    fn enlarge(&self, solved: &[u8], correction: &Correction<'_>, guide: &Plane) -> Vec<u8> {
-        let [width, height] = self.size;
-        let near = self.near_changes(solved);
-        // Unlabelled pixels that no stroke reached stay unlabelled: they have a label of their own while labels are enlarged.
-        let unlabelled = self.motions.len() as u8;
-        let current: Vec<u8> = solved.iter().map(|&l| l.min(unlabelled)).collect();
-        let full = upsample(&current, self.size, self.motions.len() + 1, guide);
-        let mut labels = correction.labels.to_vec();
-        for (p, label) in labels.iter_mut().enumerate() {
-            let (x, y) = (p % guide.width() / self.step, p / guide.width() / self.step);
-            let q = y.min(height - 1) * width + x.min(width - 1);
-            if near[q] {
-                *label = if full[p] == unlabelled { UNLABELLED } else { full[p] };
-            }
-            let set = correction.allowed[p];
-            if set != 0 && (*label == UNLABELLED || set >> *label & 1 == 0) {
-                let here = solved[q];
-                *label = if here != UNLABELLED && set >> here & 1 == 1 { here } else { set.trailing_zeros() as u8 };
+    /// Strokes hold at every pixel of the frame.
+    fn obey(&self, labels: &mut [u8]) {
+        let mut choices: Vec<Option<Vec<u8>>> = vec![None; 1 << self.costs.len()];
+        for (p, (label, &set)) in labels.iter_mut().zip(self.correction.allowed).enumerate() {
+            if set != 0 && set != self.correction.all() && !is_in(*label, set) {
+                *label = choices[usize::from(set)].get_or_insert_with(|| self.choice(set))[self.pixel(p)];
             }
         }
-        labels
-    }
-
-    /// Working pixels within [`MARGIN`] of one whose label has changed.
-    fn near_changes(&self, solved: &[u8]) -> Vec<bool> {
-        let [width, height] = self.size;
-        let mut near = vec![false; solved.len()];
-        for p in (0..solved.len()).filter(|&p| solved[p] != self.labels[p]) {
-            let (x, y) = (p % width, p / width);
-            for v in y.saturating_sub(MARGIN)..=(y + MARGIN).min(height - 1) {
-                near[v * width + x.saturating_sub(MARGIN)..=v * width + (x + MARGIN).min(width - 1)].fill(true);
-            }
-        }
-        near
     }
 }

@@ -25,7 +25,9 @@ pub(super) struct Look {
     pub(super) step: usize,
     /// Colour cell of every pixel.
     pub(super) colours: Vec<u16>,
-    /// L, a, b at a quarter of the size.
+    /// L, a, b …
+    pub(super) fine: [Plane; 3],
+    /// … and at a quarter of the size.
     pub(super) coarse: [Plane; 3],
     /// Prices of borders, in units of the smoothness.
     pub(super) borders: Borders,
@@ -46,14 +48,12 @@ impl Look {
         let mut luminance = frame.luminance().clone();
         (0..step.ilog2()).for_each(|_| luminance = halve(&luminance));
         let picture = Picture { colours: colours(frame, luminance.width()), luminance };
-        let sharp = lab(&picture.colours);
-        let smooth = sharp.each_ref().map(|plane| gaussian(plane, BLUR));
+        let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, BLUR));
         let size = [picture.luminance.width(), picture.luminance.height()];
-        let colours =
-            (0..size[0] * size[1]).map(|p| colour(smooth.each_ref().map(|plane| plane.values()[p]))).collect();
-        let coarse = smooth.each_ref().map(|plane| halve(&halve(plane)));
+        let colours = (0..size[0] * size[1]).map(|p| colour(fine.each_ref().map(|plane| plane.values()[p]))).collect();
+        let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
         let borders = Borders::new(&picture, EDGE_NOISE, 1.0);
-        Look { size, step, colours, coarse, borders }
+        Look { size, step, colours, fine, coarse, borders }
     }
 }
 

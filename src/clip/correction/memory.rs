@@ -26,6 +26,9 @@ pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
     ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
 }
 
+/// Pixels found automatically that a pixel of which something else is said silences at most.
+const SILENCES: f32 = 16.0;
+
 /// Counts of pixels: object, ground.
 type Counts = [f32; 2];
 
@@ -52,8 +55,10 @@ pub(super) struct Memory {
     /// Cells of all colours seen, those of corrected frames and recent ones.
     given: Vec<Counts>,
     recent: Vec<Counts>,
-    /// Cells of what was found automatically, and all that was said of each colour, which silences them where it disagrees.
+    /// Cells of what was found automatically; and of each colour, all that was found and all that was said, which silences it where it
+    /// disagrees.
     found: Vec<Counts>,
+    found_of: Vec<Counts>,
     said: Vec<Counts>,
 }
 
@@ -78,6 +83,7 @@ impl Memory {
             given: Vec::new(),
             recent: Vec::new(),
             found: Vec::new(),
+            found_of: Vec::new(),
             said: Vec::new(),
         }
     }
@@ -142,7 +148,10 @@ impl Memory {
                         self.given[cell][side] += weight;
                     }
                     Part::Recent => self.recent[cell][side] += weight,
-                    Part::Found => self.found[cell][side] += weight,
+                    Part::Found => {
+                        self.found_of[place][side] += weight;
+                        self.found[cell][side] += weight;
+                    }
                 }
             }
         }
@@ -167,6 +176,7 @@ impl Memory {
             self.given.resize(cells, [0.0; 2]);
             self.recent.resize(cells, [0.0; 2]);
             self.found.resize(cells, [0.0; 2]);
+            self.found_of.push([0.0; 2]);
             self.said.push([0.0; 2]);
         }
         usize::from(*place) - 1
@@ -239,10 +249,20 @@ impl Memory {
 
     /// How far what was found automatically is trusted for a colour, 0…1: that it is the object's, and that it is ground.
     pub(super) fn trust(&self, colour: u16) -> Counts {
-        let mut told = [[0.0; 2]];
-        self.gather(colour, &self.said, &mut told);
-        let [object, ground] = told[0];
-        [object, ground].map(|agrees| (agrees + 1.0) / (object + ground + 1.0))
+        let [mut said, mut found] = [[[0.0; 2]]; 2];
+        self.gather(colour, &self.said, &mut said);
+        self.gather(colour, &self.found_of, &mut found);
+        let ([object, ground], [found]) = (said[0], found);
+        let heard = |found: f32| (SILENCES * (object + ground) / found.max(1e-6)).min(1.0);
+        [(ground, found[0]), (object, found[1])]
+            .map(|(disagrees, found)| 1.0 - heard(found) * disagrees / (object + ground + 1.0))
+    }
+
+    /// [`trust`](Self::trust) of the colour of every pixel.
+    pub(super) fn trusts(&self, look: &Look) -> Vec<Counts> {
+        let mut known: Vec<Option<Counts>> = vec![None; COLOURS];
+        let mut of = |colour: &u16| *known[usize::from(*colour)].get_or_insert_with(|| self.trust(*colour));
+        look.colours.iter().map(&mut of).collect()
     }
 
     /// Adds the counts of a colour and of those beside it.

@@ -28,6 +28,7 @@ const SHRINKING: f32 = 0.97;
 #[derive(Clone, Debug)]
 pub(super) struct Whole {
     pub(super) mask: Plane,
+    fine: [Plane; 3],
     coarse: [Plane; 3],
     centre: [f32; 2],
     /// From there to the frame that the sweep has reached, and the last step of it.
@@ -46,6 +47,7 @@ impl Whole {
         let pixels = mask.values().iter().sum();
         Whole {
             mask: mask.clone(),
+            fine: look.fine.clone(),
             coarse: look.coarse.clone(),
             centre,
             shift: [0.0; 2],
@@ -92,41 +94,75 @@ impl Whole {
         Some(self.nearest(look, [along(0), along(1)], constants))
     }
 
-    /// The best shift near the one expected.
+    /// The best shift near the one expected: first of all at a quarter of the size, then around that and around the one expected.
     fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> Shift {
-        let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) as isize);
-        let (width, height) = (self.coarse[0].width(), self.coarse[0].height());
+        let quarter = expected.map(|shift| shift / COARSE as f32);
+        let [coarse, fine] = [(&self.coarse, &look.coarse, COARSE), (&self.fine, &look.fine, 1)]
+            .map(|(before, here, side)| Comparison { before, here, pixels: self.pixels_of(before, side) });
+        let price = |steps: f32| constants.shift * steps;
+        let best = coarse.best(around(quarter, SEARCH), &|shift| price(distance(shift, quarter)));
+        let near = best.map(|shift| shift * COARSE as f32);
+        let both = around(near, COARSE as isize).chain(around(expected, 1));
+        fine.best(both, &|shift| price(distance(shift, expected) / COARSE as f32))
+    }
+
+    /// Pixels of the object that are compared, in planes of which a pixel is so many of the working size wide.
+    fn pixels_of(&self, [plane, ..]: &[Plane; 3], side: usize) -> Vec<usize> {
+        let width = plane.width();
         let is_inside = |&p: &usize| {
-            let (x, y) = (p % width * COARSE, p / width * COARSE);
-            x < look.size[0] && y < look.size[1] && self.mask.at(x, y) > 0.5
+            let (x, y) = (p % width * side, p / width * side);
+            x < self.mask.width() && y < self.mask.height() && self.mask.at(x, y) > 0.5
         };
-        let coarse: Vec<usize> = (0..width * height).filter(is_inside).collect();
-        let chosen: Vec<usize> = coarse.iter().copied().step_by((coarse.len() / COMPARED).max(1)).collect();
-        let cost = |[sx, sy]: [isize; 2]| {
-            let of_pixel = |&p: &usize| {
-                let (x, y) = ((p % width) as isize + sx, (p / width) as isize + sy);
-                if x < 0 || y < 0 || x >= width as isize || y >= height as isize {
-                    return OUTSIDE;
-                }
-                let q = y as usize * width + x as usize;
-                let steps =
-                    self.coarse.iter().zip(&look.coarse).map(|(before, here)| before.values()[p] - here.values()[q]);
-                (steps.map(|step| step * step).sum::<f32>() / TRUNCATION).min(1.0)
-            };
-            chosen.iter().map(of_pixel).sum::<f32>() / chosen.len().max(1) as f32
-        };
-        let mut best = (f32::INFINITY, middle);
-        for dy in -SEARCH..=SEARCH {
-            for dx in -SEARCH..=SEARCH {
-                let shift = [middle[0] + dx, middle[1] + dy];
-                let cost = cost(shift) + constants.shift * libm::sqrtf((dx * dx + dy * dy) as f32);
-                if cost < best.0 {
-                    best = (cost, shift);
-                }
+        let inside: Vec<usize> = (0..width * plane.height()).filter(is_inside).collect();
+        inside.iter().copied().step_by((inside.len() / COMPARED).max(1)).collect()
+    }
+}
+
+/// Colours of the object before, and of a frame.
+struct Comparison<'a> {
+    before: &'a [Plane; 3],
+    here: &'a [Plane; 3],
+    pixels: Vec<usize>,
+}
+
+impl Comparison<'_> {
+    /// The first of the shifts with the least difference and price.
+    fn best(&self, shifts: impl Iterator<Item = [isize; 2]>, price: &dyn Fn(Shift) -> f32) -> Shift {
+        let mut best = (f32::INFINITY, [0.0; 2]);
+        for at in shifts {
+            let shift = at.map(|shift| shift as f32);
+            let cost = self.difference(at) + price(shift);
+            if cost < best.0 {
+                best = (cost, shift);
             }
         }
-        best.1.map(|shift| (shift * COARSE as isize) as f32)
+        best.1
     }
+
+    /// Mean difference of the colours, 0 to 1.
+    fn difference(&self, [dx, dy]: [isize; 2]) -> f32 {
+        let (width, height) = (self.here[0].width(), self.here[0].height());
+        let of_pixel = |&p: &usize| {
+            let (x, y) = ((p % width) as isize + dx, (p / width) as isize + dy);
+            if x < 0 || y < 0 || x >= width as isize || y >= height as isize {
+                return OUTSIDE;
+            }
+            let q = y as usize * width + x as usize;
+            let steps = self.before.iter().zip(self.here).map(|(before, here)| before.values()[p] - here.values()[q]);
+            (steps.map(|step| step * step).sum::<f32>() / TRUNCATION).min(1.0)
+        };
+        self.pixels.iter().map(of_pixel).sum::<f32>() / self.pixels.len().max(1) as f32
+    }
+}
+
+/// Whole shifts within a distance.
+fn around(middle: Shift, reach: isize) -> impl Iterator<Item = [isize; 2]> {
+    let [x, y] = middle.map(|shift| libm::roundf(shift) as isize);
+    (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| [x + dx, y + dy]))
+}
+
+fn distance([x, y]: Shift, [u, v]: Shift) -> f32 {
+    libm::hypotf(x - u, y - v)
 }
 
 #[cfg(test)]

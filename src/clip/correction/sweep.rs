@@ -20,7 +20,7 @@ use crate::labelling::solver::Solver;
 
 /// What is said of a pixel: nothing, or whether it belongs to the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Said {
+pub(crate) enum Said {
     Nothing,
     Other,
     Object,
@@ -33,7 +33,7 @@ const MOST: f32 = 5.0;
 /// Probability added to both sides.
 const FLOOR: f32 = 0.02;
 /// Odds where the object begins with what was found of it, and where it is not.
-const BEGINNING: f32 = 2.0;
+pub(super) const BEGINNING: f32 = 2.0;
 /// Odds of what lies beyond an area, and where nothing is said of an object that was not found.
 const NOWHERE: f32 = -9.0;
 /// Weight as ground of a pixel of which nothing is said where an object begins that was not found.
@@ -154,9 +154,8 @@ impl Sweep {
                 memory.learn(look, centre, Part::Recent, UNSAID, |p| if is_said(p) { 2 } else { 1 });
             }
             let remembered = memory.read(look, &area, centre, constants);
-            for (p, (odds, remembered)) in odds.iter_mut().zip(remembered).enumerate() {
-                let trust = memory.trust(look.colours[p])[usize::from(*odds < 0.0)];
-                *odds = trust * *odds + constants.bias + constants.memory * logit(remembered);
+            for ((odds, remembered), trust) in odds.iter_mut().zip(remembered).zip(memory.trusts(look)) {
+                *odds = trust[usize::from(*odds < 0.0)] * *odds + constants.bias + constants.memory * logit(remembered);
             }
         }
         let claim = solved(look, area, odds, given.said, constants);
@@ -298,7 +297,7 @@ pub(super) fn odds_at(area: &Area, odds: &[f32], p: usize, width: usize) -> f32 
 }
 
 /// Centre of the object's pixels, if there are enough.
-fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
+pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
     let mut moments = [0.0f64; 3];
     for y in 0..mask.height() {
         for (x, &share) in mask.row(y).iter().enumerate() {
@@ -314,7 +313,7 @@ pub(super) fn logit(p: f32) -> f32 {
 }
 
 /// The mask of least energy, with what is said of the frame.
-fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Said]>, constants: &Constants) -> Claim {
+pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Said]>, constants: &Constants) -> Claim {
     let Some(said) = said else {
         let mask = cut(look, &area, &odds, constants);
         return Claim { area, odds, mask };

@@ -3,7 +3,6 @@
 pub(crate) mod colour;
 pub(crate) mod data;
 pub(crate) mod smoothness;
-pub(crate) mod strokes;
 pub(crate) mod variance_inflation;
 pub(crate) mod views;
 pub(crate) mod visibility;

@@ -112,7 +112,10 @@ export class Session {
         if (images.length === 0 && project !== null) return [];
         if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
         const { longestSide } = this.#store.get().settings;
-        return Promise.all(images.map((image) => frameFromBlob(image, nameIn(folderOfAll(images), image), longestSide)));
+        const read = images.map((image) => frameFromBlob(image, nameIn(folderOfAll(images), image), longestSide));
+        // Of several that cannot be read, the first one is named.
+        await Promise.allSettled(read);
+        return Promise.all(read);
       },
       (frames, pair) => {
         if (frames.length === 2) return pairOf(frames);

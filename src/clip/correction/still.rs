@@ -1,0 +1,133 @@
+//! One object in a single frame: what is said of some pixels goes on along the looks of the object that was found, and along its motion.
+
+use super::constants::constants;
+use super::look::Look;
+use super::memory::{Memory, Part};
+use super::sweep::{BEGINNING, Said, centre_of, logit, solved};
+use crate::components::{Components, Connectivity, components};
+use crate::frame::filter::gaussian;
+use crate::frame::{Frame, Plane};
+use crate::labelling::solver::Solver;
+
+/// Odds from which motions decide, nats.
+const DECISIVE: f32 = 0.5;
+
+/// Window over which odds of motions are averaged before that, pixels.
+const WINDOW: f32 = 1.5;
+
+/// A frame at the size at which objects are corrected.
+pub(crate) struct Still(Look);
+
+impl Still {
+    pub(crate) fn new(frame: &Frame) -> Still {
+        Still(Look::new(frame))
+    }
+
+    /// Width and height.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        self.0.size
+    }
+
+    /// Full-size pixels for each of these.
+    pub(crate) fn step(&self) -> usize {
+        self.0.step
+    }
+
+    /// The labels of least energy, given the price of each at every pixel.
+    pub(crate) fn labels(&self, costs: &[Plane]) -> Vec<u8> {
+        let (look, smoothness) = (&self.0, constants().smoothness);
+        look.borders.times(smoothness).solve(costs, Solver::FAST).to_vec()
+    }
+
+    /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats. Only what is
+    /// connected with something said changes.
+    pub(crate) fn mask(&self, said: &[Said], found: &[bool], motion: &Plane) -> Vec<u8> {
+        let (look, constants) = (&self.0, constants());
+        let shown = look.plane(&|p| if said[p] == Said::Nothing { found[p] } else { said[p] == Said::Object });
+        let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
+        let mut memory = Memory::of(&shown, &constants);
+        memory.learn_said(look, centre, Some(said));
+        // Where the motions clearly contradict what was found, what is said decides between them.
+        let smooth = gaussian(motion, WINDOW);
+        let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
+        let trust = trust(said, found, &is_doubted);
+        let presumed = |p: usize| if is_doubted[p] && trust < 0.0 { !found[p] } else { found[p] };
+        for (doubted, weight) in [(false, 1.0), (true, trust.abs())] {
+            let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
+            memory.learn(look, centre, Part::Found, weight, side);
+        }
+        let remembered = memory.read(look, &look.area(), centre, &constants);
+        let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, of_colour))| {
+            let presumed = if presumed(p) { of_colour[0] * BEGINNING } else { -of_colour[1] * BEGINNING };
+            let weight = if is_doubted[p] { trust.abs() } else { 1.0 };
+            weight * presumed + constants.memory * logit(*remembered) + motion.values()[p]
+        });
+        let mut mask = solved(look, look.area(), odds.collect(), Some(said), &constants).mask;
+        keep_near(&mut mask, said, found, look.size[0]);
+        mask
+    }
+}
+
+/// Takes back changes that nothing connects with what is said.
+fn keep_near(mask: &mut [u8], said: &[Said], found: &[bool], width: usize) {
+    let changed = |p: usize| u8::from(said[p] != Said::Nothing || (mask[p] > 0) != found[p]);
+    let changes: Vec<u8> = (0..mask.len()).map(changed).collect();
+    let Components { of, list } = components(&changes, width, Connectivity::Eight);
+    let mut is_said = vec![false; list.len()];
+    (0..mask.len()).filter(|&p| said[p] != Said::Nothing).for_each(|p| is_said[of[p] as usize] = true);
+    for (p, inside) in mask.iter_mut().enumerate().filter(|(p, _)| !is_said[of[*p] as usize]) {
+        *inside = u8::from(found[p]);
+    }
+}
+
+/// How far what was found is trusted where it is doubted: from 1, where what is said agrees with it there, to −1.
+fn trust(said: &[Said], found: &[bool], is_doubted: &[bool]) -> f32 {
+    let [mut sum, mut all] = [0.0f32; 2];
+    for p in (0..said.len()).filter(|&p| is_doubted[p] && said[p] != Said::Nothing) {
+        sum += if found[p] == (said[p] == Said::Object) { 1.0 } else { -1.0 };
+        all += 1.0;
+    }
+    if all > 0.0 { sum / all } else { 1.0 }
+}
+
+/// Whether the motions at a pixel clearly contradict what was found there.
+fn contradicts(found: bool, motion: f32) -> bool {
+    if found { motion < -DECISIVE } else { motion > DECISIVE }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stroke_takes_what_looks_and_moves_like_the_object_along() {
+        // Three boxes: one was found; strokes say that the second belongs to it as well, and the third does not.
+        let size @ [width, height] = [120, 80];
+        let inside =
+            |p: usize, left: usize| (left..left + 24).contains(&(p % width)) && (30..54).contains(&(p / width));
+        let look =
+            Look::painted(size, |x, y| match [10, 46, 82].iter().position(|&left| inside(y * width + x, left)) {
+                Some(0) => [190, 70, 60],
+                Some(1) => [60, 80, 190],
+                Some(_) => [200, 190, 60],
+                None => [110, 120, 115],
+            });
+        let mut said = vec![Said::Nothing; width * height];
+        for row in 37..47 {
+            said[row * width + 50..row * width + 66].fill(Said::Object);
+            said[row * width + 86..row * width + 102].fill(Said::Other);
+        }
+        let unknown = Plane::filled(width, height, 0.0);
+        let found: Vec<bool> = (0..width * height).map(|p| inside(p, 10) || inside(p, 82)).collect();
+        let mask = Still(look).mask(&said, &found, &unknown);
+        let overlap = |left: usize| {
+            let both = (0..mask.len()).filter(|&p| mask[p] == 1 && inside(p, left)).count();
+            both as f64 / (24 * 24) as f64
+        };
+        let [first, second, third] = [10, 46, 82].map(overlap);
+        // Colours of a pixel on the border are no longer those of either side.
+        assert!(first > 0.97 && second > 0.8 && third < 0.25, "{first}, {second}, {third}");
+        let is_ground = |p: &usize| ![10, 46, 82].iter().any(|&left| inside(*p, left));
+        assert!((0..mask.len()).filter(is_ground).filter(|&p| mask[p] > 0).count() < 24);
+    }
+}
