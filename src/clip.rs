@@ -33,7 +33,7 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
 
-pub use correction::ClipCorrection;
+pub use correction::{ClipCorrection, Prompt};
 pub(crate) use correction::{Said, Still};
 #[cfg(feature = "ablation")]
 #[doc(hidden)]

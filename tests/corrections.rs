@@ -10,8 +10,8 @@ use support::moving::{
     SIZE, Thing, carrier, correct, correct_some, frames_of, mask, moving_and_resting, one_number, options, scene_of,
     thing, whole,
 };
-use veronese::clip::{SegmentedClip, Spread};
-use veronese::{Frame, Quality, Random};
+use veronese::clip::{Prompt, SegmentedClip, Spread};
+use veronese::{Error, Frame, Quality, Random};
 
 /// A small scene, and the clip of it.
 #[derive(Clone)]
@@ -59,6 +59,21 @@ impl Shot {
         let inside =
             |p: usize| (x..x + width).contains(&(p % self.size[0])) && (y..y + height).contains(&(p / self.size[0]));
         (0..self.size[0] * self.size[1]).map(|p| if inside(p) { number } else { 255 }).collect()
+    }
+
+    /// What is to be said of an object's pixels.
+    fn outline(&self, index: usize, prompt: Prompt, number: u8) -> Vec<u8> {
+        self.clip.outline(index, &self.frames[index], prompt, number).unwrap()
+    }
+
+    /// The smallest rectangle around what is seen of a thing: first column, first row, width, height.
+    fn around(&self, index: usize, thing: usize) -> [usize; 4] {
+        let of_thing = || (0..self.truths[index].len()).filter(|&p| self.truths[index][p] == thing);
+        let [columns, rows] = [0, 1].map(|k| {
+            let at = |p: usize| [p % self.size[0], p / self.size[0]][k];
+            [of_thing().map(at).min().unwrap(), of_thing().map(at).max().unwrap()]
+        });
+        [columns[0], rows[0], columns[1] + 1 - columns[0], rows[1] + 1 - rows[0]]
     }
 
     fn labels(&self) -> Vec<Vec<u8>> {
@@ -368,6 +383,132 @@ fn exact_pixels_stay_exact_at_full_size() {
         assert_eq!(shot.labels()[1], whole);
         assert!(shot.labels()[0].iter().zip(&said).all(|(label, said)| *said == 255 || label == said), "{size:?}");
     }
+}
+
+/// A box with some room around each thing, and a click in its middle.
+fn prompts_of(shot: &Shot, index: usize, thing: usize) -> [Prompt; 2] {
+    let [x, y, width, height] = shot.around(index, thing);
+    let [left, top] = [x, y].map(|from| from.saturating_sub(3));
+    let [right, bottom] = [(x + width + 3).min(shot.size[0]), (y + height + 3).min(shot.size[1])];
+    [Prompt::Box([left, top, right - left, bottom - top]), Prompt::Click([x + width / 2, y + height / 2])]
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn a_box_and_a_click_give_what_was_found_and_what_was_not_and_these_follow_it() {
+    let start = three();
+    for thing in [1, 2, 3] {
+        for prompt in prompts_of(&start, 3, thing) {
+            let mut shot = start.clone();
+            let (before, said) = (shot.labels(), shot.outline(3, prompt, 90));
+            // Other objects are left as they are.
+            let moving = start.found(1);
+            assert!(thing == 1 || said.iter().zip(&before[3]).all(|(said, now)| *now != moving || *said == 255));
+            assert!(said.iter().zip(&before[3]).all(|(said, now)| *now == moving || [0, 90].contains(said)));
+            shot.correct(3, &said);
+            assert!(shot.labels()[3].iter().zip(&said).all(|(label, said)| *said == 255 || label == said));
+            let overlaps = shot.overlaps(thing, 90);
+            assert!(overlaps.iter().all(|&iou| iou > 0.85), "thing {thing}, {prompt:?}: {overlaps:.3?}");
+        }
+    }
+}
+
+#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
+#[test]
+fn what_was_found_elsewhere_stays_at_full_size() {
+    let things = [
+        thing(26, [110.0, 90.0], |t| [20.0 + 8.0 * t as f32, 24.0]),
+        thing(3, [120.0, 90.0], |_| [300.0, 190.0]),
+        thing(14, [100.0, 100.0], |t| [330.0 - 8.0 * t as f32, 40.0]),
+    ];
+    let start = Shot::new([480, 320], &things, 5);
+    let before = start.labels();
+    // One that rests, and one of two that move.
+    for (thing, others) in [(2, [1, 3]), (3, [1, 1])] {
+        for prompt in prompts_of(&start, 2, thing) {
+            let mut shot = start.clone();
+            shot.correct(2, &shot.outline(2, prompt, 90));
+            assert!(shot.overlaps(thing, 90).iter().all(|&iou| iou > 0.85), "thing {thing}, {prompt:?}");
+            for number in others.map(|other| start.found(other)) {
+                for (t, (before, after)) in before.iter().zip(shot.labels()).enumerate() {
+                    let stays = before.iter().zip(&after).all(|(b, a)| (*b == number) == (*a == number) || *a == 90);
+                    assert!(stays, "thing {thing}, {prompt:?}, frame {t}: object {number}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_box_holds_its_object_and_a_click_is_in_its_own_at_full_size() {
+    for size in [[963, 541], [131, 97]] {
+        let shot = Shot::new(size, &[thing(2, [80.0, 70.0], |t| [20.0 + 6.0 * t as f32, 16.0])], 2);
+        let mut random = Random::from_seed(8);
+        let mut below = |limit: usize| random.uniform(0.0, limit as f64) as usize;
+        let [width, height] = size;
+        // Single pixels, corners and the whole frame, and any others.
+        let mut boxes = vec![[0, 0, width, height], [width - 1, height - 1, 1, 1], [0, 3, 1, height - 3], [7, 7, 1, 1]];
+        boxes.extend([(); 4].map(|()| {
+            let [x, y] = [below(width), below(height)];
+            [x, y, 1 + below(width - x), 1 + below(height - y)]
+        }));
+        for [x, y, columns, rows] in boxes {
+            let said = shot.outline(1, Prompt::Box([x, y, columns, rows]), 7);
+            let inside = |p: usize| (x..x + columns).contains(&(p % width)) && (y..y + rows).contains(&(p / width));
+            assert!((0..said.len()).all(|p| said[p] != 7 || inside(p)), "{size:?}, box {x} {y} {columns} {rows}");
+            assert!(said.contains(&7), "{size:?}, box {x} {y} {columns} {rows}");
+        }
+        for [x, y] in [[0, 0], [width - 1, height - 1], [below(width), below(height)], [below(width), below(height)]] {
+            let said = shot.outline(0, Prompt::Click([x, y]), 7);
+            assert_eq!((said.len(), said[y * width + x]), (width * height, 7), "{size:?}, click {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn an_outline_takes_nothing_from_other_objects_of_a_person_and_must_be_within_the_frame() {
+    let mut shot = three();
+    let prompts = prompts_of(&shot, 2, 3);
+    let before = prompts.map(|prompt| shot.outline(2, prompt, 9));
+    // One that is said in the same frame, within the other, and one that comes from another frame; both are not locked.
+    let corner = shot.stroke(30, [10, 60, 12, 12]);
+    shot.correct(2, &corner);
+    shot.correct(5, &shot.mask(5, 2, 31));
+    let now = shot.labels();
+    for (prompt, before) in prompts.into_iter().zip(&before) {
+        let said = shot.outline(2, prompt, 9);
+        for p in 0..said.len() {
+            let expected = match (corner[p], now[2][p]) {
+                (30, _) => 30,
+                (_, 30 | 31) => 255,
+                _ => before[p],
+            };
+            assert_eq!(said[p], expected, "{prompt:?}, pixel {p}");
+        }
+        let again = SegmentedClip::from_bytes(&shot.clip.to_bytes()).unwrap();
+        assert_eq!(again.outline(2, &shot.frames[2], prompt, 9).unwrap(), said);
+        let mut shot = shot.clone();
+        shot.correct(2, &said);
+        for (t, (before, after)) in now.iter().zip(shot.labels()).enumerate() {
+            assert!(before.iter().zip(&after).all(|(b, a)| *b != 31 || a == b), "{prompt:?}, frame {t}");
+            assert!(t != 2 || corner.iter().zip(&after).all(|(said, a)| *said == 255 || a == said), "{prompt:?}");
+        }
+    }
+
+    let fails = |index, frame, prompt| shot.clip.outline(index, &shot.frames[frame], prompt, 9).unwrap_err();
+    for sides in [[0, 0, 0, 5], [0, 0, 5, 0], [128, 0, 1, 1], [0, 95, 1, 2], [100, 0, 29, 5], [1, 1, usize::MAX, 1]] {
+        let is_box = matches!(fails(0, 0, Prompt::Box(sides)), Error::InvalidOption { name: "box", .. });
+        assert!(is_box, "{sides:?}");
+    }
+    for at in [[128, 0], [0, 96], [usize::MAX, usize::MAX]] {
+        assert!(matches!(fails(0, 0, Prompt::Click(at)), Error::InvalidOption { name: "click", .. }), "{at:?}");
+    }
+    for number in [0, 255] {
+        let error = shot.clip.outline(0, &shot.frames[0], prompts[0], number).unwrap_err();
+        assert!(matches!(error, Error::InvalidOption { name: "label", .. }));
+    }
+    assert!(matches!(fails(7, 0, prompts[0]), Error::InvalidOption { name: "frame", .. }));
+    assert!(matches!(fails(1, 0, prompts[0]), Error::OtherFrame { index: 1 }));
 }
 
 /// Frames whose labels differ.

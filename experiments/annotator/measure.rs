@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
+use veronese::clip::Prompt;
 
 use crate::cases::{Case, Data};
 use crate::overlap::{between, each, masks, mean, of_label, worst};
-use crate::robot::{NOTHING_SAID, View};
+use crate::robot::{NOTHING_SAID, View, depths};
 use crate::session::Session;
 use crate::{Failure, Options, dump};
 
@@ -32,6 +33,9 @@ pub(crate) struct Row {
     pub(crate) click: f64,
     /// J of the object in the frames between the first and the last, its true mask of frame 0 given.
     pub(crate) mask: f64,
+    /// J of the object when a box around its true mask of frame 0 points to it, or the deepest pixel of that.
+    pub(crate) boxed: Pointed,
+    pub(crate) touched: Pointed,
     /// J of the object's label after one click and 0, 1, … rounds of strokes in the worst frame.
     pub(crate) rounds: Vec<f64>,
     /// Time of each round, and of a frame that a correction changed.
@@ -39,6 +43,18 @@ pub(crate) struct Row {
     pub(crate) frame_milliseconds: f64,
     /// `mask` of OpenCV's flow and GrabCut.
     pub(crate) baseline: Option<f64>,
+    /// `boxed.at_once` of OpenCV's GrabCut.
+    pub(crate) baseline_boxed: Option<f64>,
+}
+
+/// What comes of pointing to an object in frame 0.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Pointed {
+    /// J there.
+    pub(crate) at_once: f64,
+    /// J in the frames between the first and the last.
+    pub(crate) through: f64,
+    pub(crate) milliseconds: f64,
 }
 
 /// All figures of a clip.
@@ -79,6 +95,9 @@ pub(crate) fn figures_of(case: &Case, data: &Data, automatic: Session<'_>, optio
     dump::write(options, case, "mask", data, &session.labels)?;
     let mut effort = session.effort;
 
+    let [boxed, touched] = prompts(&truths[0], width).map(|prompt| pointed(&automatic, prompt, &truths));
+    let (boxed, touched) = (boxed?, touched?);
+
     let mut session = automatic;
     let (mut rounds, mut round_seconds) = (vec![click], Vec::new());
     let mut said: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
@@ -96,8 +115,50 @@ pub(crate) fn figures_of(case: &Case, data: &Data, automatic: Session<'_>, optio
     effort.time += session.effort.time;
     effort.frames += session.effort.frames;
     let baseline = baseline(case, data, options, &truths)?;
+    let baseline_boxed = baseline_boxed(case, data, options, &truths)?;
     let (clip, quality, frame_milliseconds) = (case.name.clone(), options.quality_name().into(), effort.per_frame());
-    Ok(Row { clip, quality, frames: count, auto, click, mask, rounds, round_seconds, frame_milliseconds, baseline })
+    Ok(Row {
+        clip,
+        quality,
+        frames: count,
+        auto,
+        click,
+        mask,
+        boxed,
+        touched,
+        rounds,
+        round_seconds,
+        frame_milliseconds,
+        baseline,
+        baseline_boxed,
+    })
+}
+
+/// The smallest box around a mask, and a click at its deepest pixel, the first of equals.
+fn prompts(mask: &[bool], width: usize) -> [Prompt; 2] {
+    let inside: Vec<usize> = (0..mask.len()).filter(|&p| mask[p]).collect();
+    let columns = || inside.iter().map(|p| p % width);
+    let (left, right) = (columns().min().unwrap_or(0), columns().max().unwrap_or(0));
+    let (top, bottom) = (inside.first().map_or(0, |p| p / width), inside.last().map_or(0, |p| p / width));
+    let depths = depths(mask, width);
+    let deepest = (0..mask.len()).rev().max_by_key(|&p| depths[p]).unwrap_or(0);
+    [Prompt::Box([left, top, right + 1 - left, bottom + 1 - top]), Prompt::Click([deepest % width, deepest / width])]
+}
+
+fn pointed(automatic: &Session<'_>, prompt: Prompt, truths: &[Vec<bool>]) -> Result<Pointed, Failure> {
+    let mut session = automatic.clone();
+    let (said, took) = session.outline(0, prompt, GIVEN)?;
+    let at_once = each(&[of_label(&said, GIVEN)], &truths[..1])[0];
+    session.correct(0, &said)?;
+    let through = between(&masks(&session.labels, GIVEN), truths);
+    Ok(Pointed { at_once, through, milliseconds: 1e3 * took.as_secs_f64() })
+}
+
+/// J in the first frame of what GrabCut makes of the box, if it ran.
+fn baseline_boxed(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -> Result<Option<f64>, Failure> {
+    let frame = Data { frames: data.frames[..1].to_vec(), truths: data.truths[..1].to_vec() };
+    let found = crate::cases::labels(&options.out.join("baseline").join(&case.name).join("box"), &frame)?;
+    Ok(found.map(|labels| each(&masks(&labels, 1), &truths[..1])[0]))
 }
 
 /// J between the first and the last frame of what OpenCV made of the first mask, if it ran.
@@ -131,11 +192,18 @@ fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
         ("auto".to_owned(), of(&|row| Some(row.auto))),
         ("mask".to_owned(), of(&|row| Some(row.mask))),
         ("OpenCV".to_owned(), of(&|row| row.baseline)),
+        ("box".to_owned(), of(&|row| Some(row.boxed.at_once))),
+        ("GrabCut".to_owned(), of(&|row| row.baseline_boxed)),
+        ("box, clip".to_owned(), of(&|row| Some(row.boxed.through))),
+        ("touch".to_owned(), of(&|row| Some(row.touched.at_once))),
+        ("touch, clip".to_owned(), of(&|row| Some(row.touched.through))),
         ("click".to_owned(), of(&|row| Some(row.click))),
     ];
     figures.extend((1..rounds).map(|k| (format!("round {k}"), of(&|row| Some(row.rounds[k])))));
     figures.push(("s a round".to_owned(), of(&|row| Some(mean(&row.round_seconds)))));
     figures.push(("ms a frame".to_owned(), of(&|row| Some(row.frame_milliseconds))));
+    figures.push(("ms a box".to_owned(), of(&|row| Some(row.boxed.milliseconds))));
+    figures.push(("ms a touch".to_owned(), of(&|row| Some(row.touched.milliseconds))));
     figures
 }
 
@@ -146,7 +214,7 @@ pub(crate) fn table(rows: &[Row], clips: bool) -> String {
     let mut line = |name: &str, rows: &[&Row]| {
         let cell = |(title, value): (String, f64)| match title.as_str() {
             _ if !value.is_finite() => "–".into(),
-            "ms a frame" => format!("{value:.0}"),
+            "ms a frame" | "ms a box" | "ms a touch" => format!("{value:.0}"),
             "s a round" => format!("{value:.1}"),
             _ => format!("{value:.3}"),
         };

@@ -25,12 +25,15 @@ const PROTOCOL: &str = "\
   semi-supervised protocol of DAVIS 2016;
 - **OpenCV**: the same of a baseline: the mask is carried along dense flow (DIS), and GrabCut decides in a band around its border
   (experiments/annotator/peers.py);
+- **box**: the smallest box around the true mask of the first frame points to the object; J of what is found at once in that frame;
+  **GrabCut**: the same of OpenCV's, 5 iterations at full size; **box, clip**: J as for *mask* when that is carried on;
+- **touch**, **touch, clip**: the same of a click at the deepest pixel of the true mask, under a new number;
 - **click**: J of the one label that fits best over the clip, as one click gives it; all frames;
 - **round 1, 2, …**: a robot goes on from the click. It looks at the frame with the lowest J and draws one stroke in the largest missed
   region and one in the largest wrong region: the pixels at least half as deep in the region as its deepest. Regions below 0.05 % of the
   frame are left. Everything said of a frame counts together;
-- **s a round**, **ms a frame**: time of native code for the correction of a round, and for each frame that a correction changed, masks
-  included, with decoded frames, on one core of a machine in use.
+- **s a round**, **ms a frame**, **ms a box**, **ms a touch**: time of native code for the correction of a round, and for each frame that a correction changed, masks
+  included, and for the mask that a box or a click points to, with decoded frames, on one core of a machine in use.
 
 The clips are training sequences of [DAVIS 2016](https://davischallenge.org), at most 33 frames each, 854 × 480 pixels, taken as
 CC BY-NC 4.0; this page shows no pictures of them. They are measured if they are in `../shared/data/clips` next to the checkout. *Old*

@@ -2,7 +2,8 @@
 """peers.py CLIP OUT: what OpenCV makes of the mask of a clip's first frame, without learning.
 
 CLIP has `frames` and `masks`; the mask of every frame, 0 and 1, is written to OUT/NAME/NNNNN.png, NAME being that of the clip. From frame
-to frame the mask is carried along dense flow (DIS), and GrabCut decides within a band around its border.
+to frame the mask is carried along dense flow (DIS), and GrabCut decides within a band around its border. OUT/NAME/box/00000.png is what
+GrabCut makes of the smallest box around the mask.
 Needs numpy and opencv-python-headless. Deterministic."""
 import os
 import sys
@@ -13,6 +14,7 @@ import numpy as np
 BAND = 0.01  # half width of the band, of the diagonal
 MARGIN = 4  # of what GrabCut sees around the band, in half widths
 ROUNDS = 2  # of GrabCut
+BOX_ROUNDS = 5  # from a box
 
 
 def carried(mask, flow):
@@ -42,6 +44,14 @@ def refined(frame, mask):
     return result
 
 
+def boxed(frame, mask):
+    """The object in the box around a mask."""
+    result = np.zeros_like(mask)
+    cv2.setRNGSeed(1)
+    cv2.grabCut(frame, result, cv2.boundingRect(mask), np.zeros((1, 65)), np.zeros((1, 65)), BOX_ROUNDS, cv2.GC_INIT_WITH_RECT)
+    return result & 1
+
+
 def main(clip, out):
     cv2.setNumThreads(1)
     read = lambda folder: [cv2.imread(os.path.join(clip, folder, name)) for name in sorted(os.listdir(os.path.join(clip, folder)))]
@@ -50,7 +60,8 @@ def main(clip, out):
     dis = cv2.DISOpticalFlow_create(cv2.DISOPTICAL_FLOW_PRESET_MEDIUM)
     grey = [cv2.cvtColor(frame, cv2.COLOR_BGR2GRAY) for frame in frames]
     target = os.path.join(out, os.path.basename(os.path.abspath(clip)))
-    os.makedirs(target, exist_ok=True)
+    os.makedirs(os.path.join(target, "box"), exist_ok=True)
+    cv2.imwrite(os.path.join(target, "box", "00000.png"), boxed(frames[0], mask))
     for t, frame in enumerate(frames):
         if t > 0:
             mask = refined(frame, carried(mask, dis.calc(grey[t], grey[t - 1], None)))

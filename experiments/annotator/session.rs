@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use veronese::clip::{ClipOptions, ClipSegmenter, FramePairs, SegmentedClip};
+use veronese::clip::{ClipOptions, ClipSegmenter, FramePairs, Prompt, SegmentedClip};
 use veronese::{Frame, Quality, Result, SegmentOptions};
 
 use crate::Failure;
@@ -61,6 +61,13 @@ impl<'a> Session<'a> {
         let labels = |(index, frame)| Ok(self.clip.frame(index, frame)?.labels);
         self.labels = self.frames.iter().enumerate().map(labels).collect::<Result<_>>()?;
         Ok(())
+    }
+
+    /// What is to be said of a frame where a prompt points to an object, and how long it took to find that out.
+    pub(crate) fn outline(&self, index: usize, prompt: Prompt, number: u8) -> Result<(Vec<u8>, Duration)> {
+        let start = Instant::now();
+        let said = self.clip.outline(index, &self.frames[index], prompt, number)?;
+        Ok((said, start.elapsed()))
     }
 
     /// Corrects a frame and lets that spread through the clip.

@@ -79,6 +79,23 @@ describe('veronese clip --corrections', () => {
     assert.match(settings.corrections, /^[0-9a-f]{64}$/);
   });
 
+  test('boxes and clicks of edits.json point to objects as those of the call do', async (t) => {
+    const { frames, corrections, said, out } = clip(t);
+    said('f1.png', await mask(LABELS.map((label, p) => (p < 200 ? 4 : 255))));
+    said('edits.json', JSON.stringify({ boxes: { f3: { 9: [23, 16, 44, 44] } }, clicks: { f5: { 9: [46, 39], 12: [90, 5] } }, propagate: { f5: 'none' } }));
+    const { lines } = await run([frames, '--corrections', corrections, '--out', out]);
+    const points = [{ frame: 3, label: 9, box: [23, 16, 44, 44] }, ...[[9, [46, 39]], [12, [90, 5]]].map(([label, click]) => ({ frame: 5, label, click, propagate: 'none' }))];
+    const labels = Uint8Array.from({ length: PIXELS }, (_, p) => (p < 200 ? 4 : 255));
+    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', corrections: [{ frame: 1, labels }, ...points] });
+    for await (const { index, labels } of direct) assert.deepEqual(labelsOf(out, index), labels);
+    assert.ok(lines.slice(0, -1).every(({ objects }) => objects.includes(9)));
+    assert.ok(lines[5].objects.includes(12) && !lines[4].objects.includes(12));
+    const before = tracksOf(out).settings.corrections;
+    said('edits.json', JSON.stringify({ boxes: { f3: { 9: [23, 16, 44, 43] } } }));
+    await run([frames, '--corrections', corrections, '--out', out]);
+    assert.notEqual(tracksOf(out).settings.corrections, before);
+  });
+
   test('solves no pair again, whatever is said later, and gives the files of a straight run', async (t) => {
     const { frames, corrections, said, out, path } = clip(t);
     await run([frames, '--out', out]);
@@ -166,6 +183,13 @@ describe('veronese clip --corrections', () => {
       ['edits.json', '{"remove": [1]}', 'invalid-input', /edits\.json': there is no edit 'remove'/],
       ['edits.json', '{"names": {"255": "sky"}}', 'invalid-input', /edits\.json': 'names'/],
       ['edits.json', '{"locked": 5}', 'invalid-input', /edits\.json': 'locked' must be a list of objects/],
+      ['edits.json', '{"boxes": [1]}', 'invalid-input', /edits\.json': 'boxes' must be an object/],
+      ['edits.json', '{"clicks": {"g1": {"1": [2, 3]}}}', 'invalid-input', /edits\.json': 'clicks' has 'g1', the name of no frame/],
+      ['edits.json', '{"clicks": {"f1": [2, 3]}}', 'invalid-input', /edits\.json': 'clicks' must have an object for 'f1'/],
+      ['edits.json', '{"clicks": {"f1": {"0": [2, 3]}}}', 'invalid-input', /'clicks' of 'f1', object 0: must have a label/],
+      ['edits.json', '{"boxes": {"f1": {"1": [2, 3]}}}', 'invalid-input', /'boxes' of 'f1', object 1: must have a box/],
+      ['edits.json', '{"boxes": {"f1": {"1": [90, 3, 9, 9]}}}', 'invalid-input', /'boxes' of 'f1', object 1: is not within the frame/],
+      ['edits.json', '{"boxes": {"f1": {"1": [9, 3, 9, 9]}}, "clicks": {"f1": {"1": [2, 3]}}}', 'invalid-input', /'clicks' of 'f1', object 1: has a box already/],
       ['edits.json', '{"propagate": ["f1"]}', 'invalid-input', /edits\.json': 'propagate' must be an object/],
       ['edits.json', '{"propagate": {"g1": "none"}}', 'invalid-input', /edits\.json': 'propagate' has 'g1', the name of no frame/],
       ['edits.json', '{"propagate": {"f1": "up"}}', 'invalid-input', /edits\.json': 'propagate' must have 'both', 'forward', 'backward' or 'none' for 'f1'/],

@@ -98,6 +98,31 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual(frames, corrected.frames);
     });
 
+    test('a box and a click point to an object, which is followed', async (t) => {
+      const segment = make(t);
+      const box = [23, 16, 44, 44];
+      const isWithin = (p) => p % SIZE.width >= 23 && p % SIZE.width < 67 && p / SIZE.width >= 16 && p / SIZE.width < 60;
+      for (const at of [{ box }, { click: [45, 38] }]) {
+        const { frames, stages } = await outcome(segment, readable(), { state: whole.state, corrections: [{ frame: 3, label: 9, ...at }] });
+        assert.deepEqual([idsOf(frames), stages.pairs, stages.corrections[0]], [ALL.map(() => [9]), [], 3]);
+        const { labels } = frames[3];
+        const [both, either] = [labels.filter((label, p) => label === 9 && mask(1, 0)[p] === 1), labels.filter((label, p) => label === 9 || mask(1, 0)[p] === 1)];
+        assert.ok(both.length > 0.85 * either.length, `${both.length} of ${either.length}`);
+        assert.ok(!('box' in at) || labels.every((label, p) => label !== 9 || isWithin(p)));
+        assert.equal(labels[38 * SIZE.width + 45], 9);
+      }
+      // Beside what is said of the same frame, in any order, and where they are to spread.
+      const said = mask(255, 255).fill(5, 0, 400).fill(0, 400, 700);
+      const corrections = [{ frame: 3, labels: said }, { frame: 3, label: 9, box }, { frame: 3, label: 2, click: [85, 60] }, { frame: 5, label: 9, click: [46, 39], propagate: 'none' }];
+      const one = await outcome(segment, readable(), { state: whole.state, corrections });
+      const other = await outcome(segment, readable(), { state: whole.state, corrections: [...corrections].reverse() });
+      assert.deepEqual(one.frames, other.frames);
+      assert.ok(said.subarray(0, 400).every((label, p) => one.frames[3].labels[p] === label));
+      assert.deepEqual(idsOf(one.frames)[3], [2, 5, 9]);
+      const alone = await outcome(segment, readable(), { state: whole.state, corrections: [{ frame: 3, label: 9, box, propagate: 'none' }] });
+      assert.deepEqual(idsOf(alone.frames), ALL.map((index) => [index === 3 ? 9 : 1]));
+    });
+
     test('edits merge, remove and name', async (t) => {
       // One half of the square is an object of its own.
       const corrections = [{ frame: 3, labels: mask(9, 0).map((label, p) => (label > 0 && p % SIZE.width < 45 ? 1 : label)) }];
@@ -256,6 +281,22 @@ for (const [way, make] of Object.entries(WAYS)) {
         [said(2, [1]), /number 1 must have labels, a Uint8Array/],
         [said(2, new Uint8Array(12)), /that of frame 2 has 12 labels, a frame has 96×72 pixels/],
         [{ ...said(2, new Uint8Array(12)), state: whole.state }, /that of frame 2 has 12 labels/],
+        ...[
+          [{ box: [0, 0, 9, 9] }, /number 0 must have a label, numbers from 1 to 254/],
+          [{ label: 255, click: [0, 0] }, /number 0 must have a label/],
+          [{ label: 1, click: [0] }, /must have a click, the whole numbers \[x, y\]/],
+          [{ label: 1, click: [0.5, 0] }, /must have a click/],
+          [{ label: 1, box: [0, 0, 9] }, /must have a box, the whole numbers \[x, y, width, height\]/],
+          [{ label: 1, box: [0, 0, 9, 0] }, /must have a box/],
+          [{ label: 1, box: [-1, 0, 9, 9] }, /must have a box/],
+          [{ label: 1, box: [0, 0, 9, 9], click: [0, 0] }, /must have a box or a click, not both/],
+          [{ label: 1, box: [90, 0, 7, 9] }, /what points to object 1 in frame 0 is not within 96×72 pixels/],
+          [{ label: 1, click: [0, 72] }, /what points to object 1 in frame 0 is not within 96×72 pixels/],
+          [{ label: 1, click: [0, 0], propagate: 'up' }, /must propagate/],
+          [{ label: 1, click: [0, 0], frame: COUNT }, /must have a frame from 0 to 6/],
+          [{}, /must have labels, a Uint8Array/],
+        ].map(([entry, message]) => [{ corrections: [{ frame: 0, ...entry }] }, message]),
+        [{ corrections: [{ frame: 0, label: 1, click: [0, 0] }, { frame: 0, label: 1, box: [0, 0, 9, 9] }] }, /number 1 points to object 1 in frame 0, as one before does/],
         [{ edits: [] }, /'edits': must be an object/],
         [{ edits: { join: [] } }, /'edits': there is no edit 'join'; there are merge/],
         [{ edits: { merge: [2, 5] } }, /'merge' must be lists of two or more objects, numbers from 1 to 254/],

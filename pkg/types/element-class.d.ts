@@ -1,6 +1,6 @@
 // Types of `veronese/element-class`: the element's class, to register under a name of your own.
 
-import type { ClipCorrection, ClipFrame, ClipProgress, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
+import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipPropagation, ClipTracks, Pixels, Progress, Segmentation, VeroneseError } from './index.js';
 
 /** A frame: a URL, a file, a bitmap, or pixels. */
 export type FrameSource = string | URL | Blob | ImageBitmap | Pixels;
@@ -27,7 +27,7 @@ export interface VeroneseSegmenterEvents {
   /** All frames of a clip are done, or a correction has spread to them. */
   tracks: ClipTracks;
   /** A correction is about to begin: it does not if the default of the event is prevented. */
-  'veronese-correction': ClipCorrection;
+  'veronese-correction': ClipCorrection | ClipPrompt;
   /** Another frame of a clip is shown. */
   show: { index: number; width: number; height: number; labels: Uint8Array };
   /** A person has chosen an object, or none. */
@@ -41,11 +41,14 @@ export interface VeroneseSegmenterEventMap extends Omit<HTMLElementEventMap, key
   result: CustomEvent<Segmentation>;
   frame: CustomEvent<ClipFrame>;
   tracks: CustomEvent<ClipTracks>;
-  'veronese-correction': CustomEvent<ClipCorrection>;
+  'veronese-correction': CustomEvent<ClipCorrection | ClipPrompt>;
   show: CustomEvent<{ index: number; width: number; height: number; labels: Uint8Array }>;
   select: CustomEvent<number | null>;
   error: CustomEvent<VeroneseError>;
 }
+
+/** An object that a box or a click points to. */
+export type ElementPrompt = { label: number; box: readonly [x: number, y: number, width: number, height: number] } | { label: number; click: readonly [x: number, y: number] };
 
 /**
  * Segments two frames or a clip, and shows the masks over the frames.
@@ -102,9 +105,10 @@ export class VeroneseSegmenterElement extends HTMLElement {
    * resolves to the indices of the frames that change. The event `veronese-correction` comes first, and stops it if its default is
    * prevented. Corrections are made one after another; the frame that is shown follows at once. When one has spread, the event `frame` comes
    * for each frame that it has changed, then `tracks`. Where it fails or is stopped ({@link abort}), nothing has changed. To undo one, say
-   * what was said of the frame before; labels that are all 255 take everything back.
+   * what was said of the frame before; labels that are all 255 take everything back. Instead of labels, a box or a click points to an
+   * object, as a {@link ClipPrompt} does.
    */
-  correct(frame: number, labels: Uint8Array, options?: { propagate?: ClipPropagation | undefined }): Promise<number[]>;
+  correct(frame: number, labels: Uint8Array | ElementPrompt, options?: { propagate?: ClipPropagation | undefined }): Promise<number[]>;
   /** Objects of the clip that later corrections of others do not change, as the option `locked` of a clip; all others can be changed. */
   lock(objects: readonly number[]): void;
   /** Stops at once; the last result is kept, and so are the frames of a clip that are done. */

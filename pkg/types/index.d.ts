@@ -235,6 +235,28 @@ export interface ClipCorrection {
 }
 
 /**
+ * Points to an object in one frame of a clip: its mask there is found at once, and the object is followed through the clip. A frame may have
+ * several, of different objects, and a {@link ClipCorrection}. They are added to what is said of the frame, after all other corrections.
+ */
+export type ClipPrompt = {
+  /** Index of the frame, from 0. */
+  frame: number;
+  /** Default: that of a correction of the frame, otherwise `'both'`. */
+  propagate?: ClipPropagation | undefined;
+  /** The number of the object, 1 to 254; one that no object has makes a new object. */
+  label: number;
+} & (
+  | {
+      /** First column, first row, width and height of a rectangle that has all of the object, pixels. */
+      box: readonly [x: number, y: number, width: number, height: number];
+    }
+  | {
+      /** Column and row of a pixel of the object. */
+      click: readonly [x: number, y: number];
+    }
+);
+
+/**
  * Given masks of one frame of a clip, with numbers of your own: those of all objects in an image of labels, or that of one object. A frame
  * may have several of single objects; a later one covers an earlier one, and what is in none of them is background.
  */
@@ -299,7 +321,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'before
    * followed from there through the clip. All that is said counts together, in any order. A correction of a frame that has a mask goes
    * before it where it says anything.
    */
-  corrections?: readonly ClipCorrection[] | undefined;
+  corrections?: readonly (ClipCorrection | ClipPrompt)[] | undefined;
   /** What becomes of whole objects, after the corrections. */
   edits?: ClipEdits | undefined;
   /**

@@ -11,6 +11,7 @@ mod constants;
 mod evidence;
 mod look;
 mod memory;
+mod outline;
 mod placing;
 mod still;
 mod sweep;
@@ -30,6 +31,8 @@ use constants::Constants;
 #[cfg(feature = "ablation")]
 pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
+pub use outline::Prompt;
+pub(super) use outline::outline;
 pub(crate) use still::Still;
 use sweep::Claim;
 pub(crate) use sweep::Said;

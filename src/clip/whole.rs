@@ -1,6 +1,6 @@
 //! Clips whose frames can be read again: segmented once, then asked for any frame, corrected and saved.
 
-use super::correction::ClipCorrection;
+use super::correction::{ClipCorrection, Prompt, outline};
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs, Pairs};
 use super::grouping::Census;
@@ -509,6 +509,17 @@ impl SegmentedClip {
             return Err(Error::InvalidOption { name: "corrections", reason });
         }
         Ok(ClipCorrection::new(self, index, labels, spread))
+    }
+
+    /// What [`correct`](Self::correct) is to be told of a frame when the object of a `number` is where a click or a box points to: the number at
+    /// the object's pixels, 0 where nothing else is, and 255 or what was said before at other objects, which keep what a person has said of
+    /// them. The object may have been found or not. Of a box no pixel outside is the object; of a click its pixel is.
+    ///
+    /// # Errors
+    /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), a prompt that is not within the frame, and a number that is
+    /// not one of an object, [`Error::FrameSizeMismatch`], [`Error::OtherFrame`].
+    pub fn outline(&self, index: usize, frame: &Frame, prompt: Prompt, number: u8) -> Result<Vec<u8>> {
+        outline(self, index, frame, prompt, number)
     }
 
     /// Gives every pixel of an object another number for the whole clip: that of another object to merge them, 0 to make it background.

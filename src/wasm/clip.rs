@@ -15,8 +15,8 @@ use super::frames::{frame_from_pixels, pair_option};
 use super::plain::{Record, list, numbers};
 use super::{Failure, entries, invalid};
 use crate::clip::{
-    ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip,
-    Spread, StreamSegmenter,
+    ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, Prompt,
+    SegmentedClip, Spread, StreamSegmenter,
 };
 use crate::{AffineMotion, Error, Frame};
 
@@ -167,6 +167,24 @@ pub fn correct_clip(clip: u32, index: usize, labels: &[u8], forward: bool, backw
     segmented(clip, &mut |clip, correction| {
         *correction = Some(clip.correct(index, labels, spread)?);
         Ok(JsValue::UNDEFINED)
+    })
+}
+
+/// What is to be said to [`correct_clip`] of a frame of a concluded clip when the object of a number is where a click (`[x, y]`) or a box
+/// (`[x, y, width, height]`) points to.
+///
+/// # Errors
+/// As [`frame_of_clip`].
+#[wasm_bindgen(js_name = outlineClip)]
+pub fn outline_clip(clip: u32, index: usize, frame: &JsValue, prompt: &[u32], number: u8) -> Result<JsValue, JsValue> {
+    let frame = frame_from_pixels("the frame", frame)?;
+    segmented(clip, &mut |clip, _| {
+        let prompt = match *prompt {
+            [x, y, width, height] => Prompt::Box([x, y, width, height].map(|side| side as usize)),
+            [x, y] => Prompt::Click([x, y].map(|at| at as usize)),
+            _ => return Err(Error::InvalidOption { name: "prompt", reason: "has two or four numbers".into() }),
+        };
+        clip.outline(index, &frame, prompt, number).map(|said| bytes(&said))
     })
 }
 

@@ -256,6 +256,15 @@ test('a clip takes corrections: the host may stop them, and undo them', async ({
     const back = { ids: ids(), same: shown() === before };
     const [none, undone] = await Promise.all([element.correct(3, mask(7), { propagate: 'none' }), element.correct(3, nothing)]);
     const alone = { none, undone };
+    // A box and a click.
+    const point = async (said: Parameters<typeof element.correct>[1]): Promise<unknown[]> => {
+      const changed = await element.correct(0, said);
+      const seen = [changed.includes(0), ids(), [...element.labels()!].every((label, p) => label !== 9 || (p % 96 >= 20 && p % 96 < 70))];
+      await element.correct(0, nothing);
+      return seen;
+    };
+    const pointed = [await point({ label: 9, box: [20, 10, 50, 44] }), await point({ label: 9, click: [45, 30] })];
+    const outside = await codeOf(element.correct(0, { label: 9, click: [96, 0] }));
     element.lock([1]);
     const pixels = (): string => String(element.mask(1));
     const object = pixels();
@@ -266,7 +275,7 @@ test('a clip takes corrections: the host may stop them, and undo them', async ({
     await again;
     const stream = await codeOf(element.correct(0, mask(9)));
     element.remove();
-    return { early, corrected, unchanged, alone, back, locked, stream };
+    return { early, corrected, unchanged, alone, back, pointed, outside, locked, stream };
   });
   const all = [0, 1, 2, 3, 4, 5];
   expect(found).toMatchObject({
@@ -283,6 +292,8 @@ test('a clip takes corrections: the host may stop them, and undo them', async ({
     },
     alone: { none: [3], undone: [3] },
     back: { ids: [1], same: true },
+    pointed: [[true, [9], true], [true, [9], expect.any(Boolean)]],
+    outside: 'invalid-option',
     locked: true,
     stream: 'invalid-input',
   });

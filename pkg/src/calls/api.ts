@@ -143,6 +143,7 @@ function stepOf(glue: FramesGlue, task: ClipTask): unknown {
   if (task.call === 'restoreClip') return glue.restoreClip(clip, task.state, task.markUnknown);
   if (task.call === 'reserveClip' || task.call === 'lockClip') return glue[task.call](clip, task.objects);
   if (task.call === 'correctClip') return glue.correctClip(clip, task.index, task.labels, task.forward, task.backward);
+  if (task.call === 'outlineClip') return glue.outlineClip(clip, task.index, task.frame, task.prompt, task.object);
   if (task.call === 'takeCorrection') return glue.takeCorrection(clip, task.frame);
   if (task.call === 'renumberClip') return glue.renumberClip(clip, task.object, task.number);
   if (task.call === 'clipFrame') return glue.clipFrame(clip, task.index, task.frame);

@@ -32,6 +32,7 @@ export type ClipStep =
   | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }
   | { call: 'reserveClip' | 'lockClip'; objects: Uint8Array }
   | { call: 'correctClip'; index: number; labels: Uint8Array; forward: boolean; backward: boolean }
+  | { call: 'outlineClip'; index: number; frame: Pixels; prompt: Uint32Array; object: number }
   | { call: 'takeCorrection'; frame: Pixels }
   | { call: 'renumberClip'; object: number; number: number }
   | { call: 'clipFrame'; index: number; frame: Pixels }

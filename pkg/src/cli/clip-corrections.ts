@@ -2,9 +2,9 @@
 
 import { readdirSync } from 'node:fs';
 import { extname, join } from 'node:path';
-import type { ClipCorrection, ClipEdits, ClipPropagation } from '../../types/index.js';
+import type { ClipCorrection, ClipEdits, ClipPrompt, ClipPropagation } from '../../types/index.js';
 import { editsOf } from '../calls/clip/edits.js';
-import { isPropagation, SPREADS } from '../calls/clip/said.js';
+import { isPropagation, isWithin, type Prompt, promptOf, SPREADS } from '../calls/clip/said.js';
 import { isObject } from '../common/checks.js';
 import { VeroneseError } from '../common/errors.js';
 import type { ClipFrames } from './clip-frames.js';
@@ -16,6 +16,7 @@ export const EDITS = 'edits.json';
 /** What a folder says. */
 interface Folder {
   said: ClipCorrection[];
+  prompts: Prompt[];
   edits: ClipEdits;
   /** By frame. */
   propagate: Map<number, ClipPropagation>;
@@ -25,7 +26,7 @@ interface Folder {
 
 export interface Corrections {
   masks: ClipCorrection[];
-  corrections: ClipCorrection[];
+  corrections: (ClipCorrection | ClipPrompt)[];
   edits: ClipEdits;
   /** The files of all. */
   paths: string[];
@@ -41,10 +42,11 @@ export async function readCorrections(folders: { masks?: string; corrections?: s
   if (both.length === 0) return undefined;
   const all = <T>(read: (edits: ClipEdits) => readonly T[] | undefined) => both.flatMap(({ edits }) => read(edits) ?? []);
   const propagate = new Map(both.flatMap((folder) => [...folder.propagate]));
-  const spread = (said: ClipCorrection[] = []) => said.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
+  const spread = <T extends { frame: number }>(said: T[] = []) => said.map((each) => ({ ...each, propagate: propagate.get(each.frame) }));
+  const prompts = both.flatMap((folder) => folder.prompts.map(clipPrompt));
   return {
     masks: spread(masks?.said),
-    corrections: spread(corrections?.said),
+    corrections: [...spread(corrections?.said), ...spread(prompts)],
     edits: {
       merge: all(({ merge }) => merge),
       delete: all((edits) => edits.delete),
@@ -75,10 +77,10 @@ async function readFolder(folder: string, frames: ClipFrames): Promise<Folder | 
     said.push({ frame, labels });
   }
   said.sort((one, other) => one.frame - other.frame);
-  const edits = names.includes(EDITS) ? await readEdits(join(folder, EDITS), frames) : { edits: {}, propagate: new Map() };
-  if (said.length === 0 && Object.keys(edits.edits).length + edits.propagate.size === 0) return undefined;
+  const edits = names.includes(EDITS) ? await readEdits(join(folder, EDITS), frames) : { edits: {}, prompts: [], propagate: new Map() };
+  if (said.length === 0 && Object.keys(edits.edits).length + edits.prompts.length + edits.propagate.size === 0) return undefined;
   const hashes = said.map(({ frame, labels }) => [frame, sha256(labels)]);
-  const content = [hashes, edits.edits, ...edits.propagate];
+  const content = [hashes, edits.edits, ...edits.propagate, ...edits.prompts.map(({ frame, label, prompt }) => [frame, label, ...prompt])];
   return { said, ...edits, paths: names.map((name) => join(folder, name)), sha256: sha256(JSON.stringify(content)) };
 }
 
@@ -93,18 +95,42 @@ function namesIn(folder: string): string[] {
   }
 }
 
-/** Edits, and by frame where what is said of it spreads. Frames are called by their names. */
-async function readEdits(path: string, frames: ClipFrames): Promise<Pick<Folder, 'edits' | 'propagate'>> {
+/** Edits, what points to objects, and by frame where what is said of it spreads. Frames are called by their names. */
+async function readEdits(path: string, frames: ClipFrames): Promise<Pick<Folder, 'edits' | 'prompts' | 'propagate'>> {
   const wrong = (reason: string) => new VeroneseError('invalid-input', `'${path}': ${reason}`);
   const content = await readJson(path);
-  editsOf(content, wrong, ['propagate']);
-  const { propagate = {}, ...edits } = content as Record<string, unknown>;
+  editsOf(content, wrong, ['boxes', 'clicks', 'propagate']);
+  const { propagate = {}, boxes = {}, clicks = {}, ...edits } = content as Record<string, unknown>;
   if (!isObject(propagate)) throw wrong("'propagate' must be an object, from names of frames to where what is said of them spreads");
-  const spreads = Object.entries(propagate).map(([name, way]): [number, ClipPropagation] => {
+  const frameOf = (list: string, name: string) => {
     const frame = frames.files.findIndex(({ stem }) => stem === name);
-    if (frame < 0) throw wrong(`'propagate' has '${name}', the name of no frame of the clip`);
+    if (frame < 0) throw wrong(`'${list}' has '${name}', the name of no frame of the clip`);
+    return frame;
+  };
+  const prompts: Prompt[] = [];
+  for (const [list, key, value] of [['boxes', 'box', boxes], ['clicks', 'click', clicks]] as const) {
+    if (!isObject(value)) throw wrong(`'${list}' must be an object, from names of frames to a ${key} of each object`);
+    for (const [name, objects] of Object.entries(value)) {
+      const frame = frameOf(list, name);
+      if (!isObject(objects)) throw wrong(`'${list}' must have an object for '${name}', from numbers of objects to a ${key} of each`);
+      for (const [number, at] of Object.entries(objects)) {
+        const bad = (reason: string) => wrong(`'${list}' of '${name}', object ${number}: ${reason}`);
+        const prompt = promptOf({ frame, label: Number(number), [key]: at }, bad);
+        if (!isWithin(prompt, frames.size ?? (await frames.read(0)))) throw bad('is not within the frame');
+        if (prompts.some((other) => other.frame === frame && other.label === prompt.label)) throw bad('has a box already');
+        prompts.push(prompt);
+      }
+    }
+  }
+  const spreads = Object.entries(propagate).map(([name, way]): [number, ClipPropagation] => {
+    const frame = frameOf('propagate', name);
     if (!isPropagation(way)) throw wrong(`'propagate' must have ${SPREADS} for '${name}'`);
     return [frame, way];
   });
-  return { edits, propagate: new Map(spreads) };
+  return { edits, prompts, propagate: new Map(spreads) };
+}
+
+function clipPrompt({ frame, label, prompt }: Prompt): ClipPrompt {
+  const [x = 0, y = 0, width, height] = prompt;
+  return width === undefined || height === undefined ? { frame, label, click: [x, y] } : { frame, label, box: [x, y, width, height] };
 }

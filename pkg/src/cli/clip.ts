@@ -70,7 +70,8 @@ async function corrected(
 ): Promise<Clip> {
   const state = (await known(segmenter, frames, kept)) ?? (await solved(segmenter, frames, options, kept, onProgress));
   const length = frames.failure?.index ?? frames.length;
-  const [masks, corrections] = [said?.masks, said?.corrections].map((list) => list?.filter(({ frame }) => frame < length));
+  const isThere = ({ frame }: { frame: number }) => frame < length;
+  const [masks, corrections] = [said?.masks.filter(isThere), said?.corrections.filter(isThere)];
   const { markUnknown } = options;
   return segmenter.segmentClip({ length, read: frames.read }, { state, markUnknown, masks, corrections, edits: said?.edits, onProgress });
 }

@@ -1,10 +1,10 @@
 // <veronese-segmenter>: two frames or a clip in, masks over the frames out, as a custom element and a control of forms. Importing this
 // file registers nothing.
 
-import type { ClipFrames, FrameSource, VeroneseSegmenterEvents } from '../../types/element-class.js';
-import type { ClipCorrection, ClipFrame, ClipProgress, ClipTracks, Pixels, Progress, Segmentation } from '../../types/index.js';
+import type { ClipFrames, ElementPrompt, FrameSource, VeroneseSegmenterEvents } from '../../types/element-class.js';
+import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipTracks, Pixels, Progress, Segmentation } from '../../types/index.js';
 import { groupLabels, maskOf } from '../calls/labels.js';
-import { UNLABELLED } from '../common/checks.js';
+import { isObject, UNLABELLED } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
 import { Segmenter } from '../entries/web.js';
 import type { ElementClip, ShownFrame } from './clip.js';
@@ -109,8 +109,9 @@ export class VeroneseSegmenterElement extends Base {
    * Corrects a frame of a clip whose frames are all done, when earlier corrections have spread; returns the indices of the frames that
    * change.
    */
-  async correct(frame: number, labels: Uint8Array, { propagate }: Pick<ClipCorrection, 'propagate'> = {}): Promise<number[]> {
-    const correction = { frame, labels: labels instanceof Uint8Array ? labels.slice() : labels, propagate };
+  async correct(frame: number, said: Uint8Array | ElementPrompt, { propagate }: Pick<ClipCorrection, 'propagate'> = {}): Promise<number[]> {
+    const own = said instanceof Uint8Array || !isObject(said) ? { labels: said instanceof Uint8Array ? said.slice() : said } : structuredClone(said);
+    const correction: ClipCorrection | ClipPrompt = { ...own, frame, propagate };
     if (!this.#tell('veronese-correction', correction, true)) return [];
     const turn = this.#corrected.then(() => this.#correct(correction));
     this.#corrected = turn.catch(() => undefined);
@@ -335,7 +336,7 @@ export class VeroneseSegmenterElement extends Base {
     }
   }
 
-  async #correct(correction: ClipCorrection): Promise<number[]> {
+  async #correct(correction: ClipCorrection | ClipPrompt): Promise<number[]> {
     const clip = this.#clip;
     if (!clip?.takesCorrections || this.#request !== undefined) {
       throw new VeroneseError('invalid-input', 'corrections are for clips whose frames are all done and can be read again');

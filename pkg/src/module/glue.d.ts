@@ -30,6 +30,7 @@ export interface FramesGlue extends Glue {
   clipFrame(clip: number, index: number, frame: unknown): unknown;
   reserveClip(clip: number, numbers: Uint8Array): unknown;
   lockClip(clip: number, objects: Uint8Array): unknown;
+  outlineClip(clip: number, index: number, frame: unknown, prompt: Uint32Array, number: number): unknown;
   correctClip(clip: number, index: number, labels: Uint8Array, forward: boolean, backward: boolean): unknown;
   takeCorrection(clip: number, frame: unknown): unknown;
   renumberClip(clip: number, object: number, number: number): unknown;

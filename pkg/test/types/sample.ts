@@ -2,6 +2,7 @@
 
 import {
   type ClipCorrection,
+  type ClipPrompt,
   type ClipEdits,
   type ClipFrame,
   type ClipMask,
@@ -80,6 +81,9 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   if (!first.done) console.log(first.value.index);
   const state: Uint8Array | undefined = await whole.state();
   const corrections: ClipCorrection[] = [{ frame: 3, labels: new Uint8Array(64 * 48), propagate: 'forward' }];
+  const prompts: ClipPrompt[] = [{ frame: 1, label: 7, box: [2, 3, 20, 10] }, { frame: 2, label: 8, click: [5, 5], propagate: 'none' }];
+  // @ts-expect-error a box has four numbers
+  prompts.push({ frame: 1, label: 7, box: [2, 3] });
   const masks: ClipMask[] = [
     { frame: 0, labels: new Uint8Array(64 * 48) },
     { frame: 1, labels: new ImageData(64, 48), propagate: 'none' },
@@ -93,7 +97,7 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const edits: ClipEdits = { merge: [[2, 5]], delete: [3], background: [4], names: { 1: 'car' } };
   const pairs = new Map<number, Uint8Array>();
   const kept: ClipOptions = { onPairs: (index, bytes) => void pairs.set(index, bytes), knownPairs: async (index) => pairs.get(index) };
-  const again = segmentClip({ length: 32, read }, { state, corrections, edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), ...kept });
+  const again = segmentClip({ length: 32, read }, { state, corrections: [...corrections, ...prompts], edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), ...kept });
   console.log(again.tracks().objects[0]?.name);
   // @ts-expect-error a clip tells the confidence of objects alone
   segmentClip([], { confidence: true });

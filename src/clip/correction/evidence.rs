@@ -26,6 +26,13 @@ impl Default for Evidence {
 }
 
 impl Evidence {
+    /// That of one frame, in which pixels have a side: 0 for the object, 1 for ground, else neither.
+    pub(super) fn of(found: &[u8], sides: &[u8], area: &Area, width: usize) -> Evidence {
+        let mut evidence = Evidence::default();
+        evidence.count([0.0, 1.0], found, area, width, &|p| usize::from(sides[p]));
+        evidence
+    }
+
     /// Log-likelihood ratio of the object for a label.
     pub(super) fn ratio(&self, found: u8) -> f32 {
         self.ratios[usize::from(found)]
@@ -38,11 +45,20 @@ impl Evidence {
         if inside.is_empty() {
             return;
         }
+        let area = Area::of(&inside, width).grown(AROUND, width, height);
+        let side = |p: usize| usize::from(mask.values()[p] < 0.5);
+        let shares = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
+        self.count(shares, found, &area, width, &side);
+    }
+
+    /// Counts labels with their sides; the counts are made of those before and these, by their shares.
+    fn count(&mut self, [old, new]: [f32; 2], found: &[u8], area: &Area, width: usize, side: &dyn Fn(usize) -> usize) {
         let mut counts = vec![[0.0f32; 2]; 256];
-        for p in Area::of(&inside, width).grown(AROUND, width, height).pixels(width) {
-            counts[usize::from(found[p])][usize::from(mask.values()[p] < 0.5)] += 1.0;
+        for p in area.pixels(width) {
+            if let Some(count) = counts[usize::from(found[p])].get_mut(side(p)) {
+                *count += 1.0;
+            }
         }
-        let [old, new] = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
         let mut totals = [0.0f32; 2];
         for (count, now) in self.counts.iter_mut().zip(&counts) {
             for side in 0..2 {

@@ -119,9 +119,22 @@ impl Memory {
         weight: f32,
         sides: impl Fn(usize) -> usize,
     ) {
-        let [width, height] = look.size;
-        for y in 0..height {
-            for x in 0..width {
+        self.learn_within(look, &look.area(), centre, part, weight, &sides);
+    }
+
+    /// [`learn`](Self::learn) from an area. Not generic: each call would have a copy of its own.
+    pub(super) fn learn_within(
+        &mut self,
+        look: &Look,
+        area: &Area,
+        centre: [f32; 2],
+        part: Part,
+        weight: f32,
+        sides: &dyn Fn(usize) -> usize,
+    ) {
+        let width = look.size[0];
+        for y in area.rows.clone() {
+            for x in area.columns.clone() {
                 let side = sides(y * width + x);
                 if side > 1 {
                     continue;

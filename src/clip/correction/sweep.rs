@@ -27,7 +27,7 @@ pub(crate) enum Said {
 }
 
 /// Odds of what is said, nats.
-const CERTAIN: f32 = 99.0;
+pub(super) const CERTAIN: f32 = 99.0;
 /// Largest odds of anything else.
 const MOST: f32 = 5.0;
 /// Probability added to both sides.

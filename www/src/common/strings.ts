@@ -230,12 +230,14 @@ export const strings = {
     look: 'Press on a mask to select it.',
     brush: 'Paint what belongs to the selected mask. The pixels around it follow.',
     eraser: 'Paint what does not belong to the selected mask. The pixels around it follow.',
+    box: '',
   },
 
   clipToolHelp: {
     look: 'Press on an object to select it.',
     brush: 'Paint what belongs to the selected object, in any frame. The other frames follow.',
     eraser: 'Paint what does not belong to the selected object. The other frames follow.',
+    box: 'Drag a box around something, or press on it: it becomes a new object. The other frames follow.',
   },
 
   timings: {
@@ -289,6 +291,7 @@ export const strings = {
     leftOut: (folder: string, count: number): string => `Opened the images of “${folder}”. ${images(count)} of other folders ${count === 1 ? 'is' : 'are'} left out.`,
     nothingTicked: 'Tick an object in the list first.',
     notReady: 'Segment the clip first.',
+    nothingThere: 'There is nothing there that is not a locked object or one of yours.',
     locked: 'What you painted belongs to a locked object. Unlock it first.',
     otherState:
       'These masks were made by another version of this page, or in a browser that reads the frames differently. ' +
@@ -340,7 +343,8 @@ export const strings = {
     look: 'View: select masks, pan',
     brush: 'Brush: add to the selected mask',
     eraser: 'Eraser: remove from the selected mask',
-    stroke: 'With the picture focused: start or end a stroke; arrow keys move the brush',
+    box: 'Box: make a new object of a clip',
+    stroke: 'With the picture focused: start or end a stroke or a box; arrow keys move the brush',
     thinner: 'Smaller brush',
     thicker: 'Larger brush',
     undo: 'Undo',

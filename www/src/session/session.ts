@@ -305,6 +305,11 @@ export class Session {
     return mask === null ? null : (path) => this.correcting.stroke({ ...path, tool, mask });
   }
 
+  /** Begins a box around a new object of the clip, or a click on it. Returns what takes its corners, or `null`, and tells why. */
+  beginBox(): ((path: Path) => void) | null {
+    return this.tracking.beginBox();
+  }
+
   undo(): void {
     if (this.#store.get().look.kind === 'objects') this.tracking.undo();
     else this.correcting.undo();

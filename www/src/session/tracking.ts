@@ -10,10 +10,10 @@ import { packed, unpacked } from '../correction/runs.js';
 import { type Path, type Stroke, eachPixel } from '../correction/strokes.js';
 import type { Colour } from '../drawing/palette.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
-import { type Said, paintedOver, withSaid } from '../state/said.js';
+import { type Pointed, type Said, paintedOver, withSaid } from '../state/said.js';
 import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
-import { MOST_OBJECTS, contains, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan, withRun } from '../state/spans.js';
+import { MOST_OBJECTS, contains, editsIn, fromSpan, lockedIn, numbersOf, spanAt, theirNumber, toSpan, withRun } from '../state/spans.js';
 import { type ClipRun, type Range, type SolvedPairs, type Span, type Tracked, type TrackedFrame, type Version, isLocked, isTracked, savedOf, untracked, versionOf } from '../state/tracked.js';
 import { ClipFrames, STOPPED } from './clip-frames.js';
 import { TimeLeft } from './time-left.js';
@@ -23,6 +23,12 @@ const OFTEN = 100;
 
 /** Memory for frames that a correction reads again, bytes. */
 const ROOM = 64 << 20;
+
+/** A box with both sides below this share of the frame's width is a click. */
+const STILL = 0.01;
+
+/** Ends a run in which a frame is all that is wanted. */
+const ENOUGH = new Error('enough');
 
 /** The beginning of carrying a correction through a clip. */
 const CARRYING = { phase: 'working', stage: 'corrections', left: null, labelled: 0 } as const;
@@ -220,6 +226,27 @@ export class Tracking {
     };
   }
 
+  /** Begins a box around a new object, or a click on it, in the frame on screen. Returns what takes its corners, or `null`, and tells why. */
+  beginBox(): ((path: Pick<Path, 'points'>) => void) | null {
+    const { tracked, timeline, pair } = this.#store.get();
+    const frame = timeline?.first ?? null;
+    if (!this.#takesCorrections() || tracked === null || frame === null || pair.first === null) return null;
+    if (spanAt(tracked.spans, frame) === null) return this.#refuse(strings.notTracked);
+    const { first } = pair;
+    return ({ points: [x = 0, y = 0, right = x, bottom = y] }) => {
+      const masks = this.#store.get().tracked?.frames[frame]?.runs;
+      const id = this.#newNumber();
+      if (masks === undefined || id === null) return;
+      const place = (value: number, side: number): number => Math.min(Math.max(Math.round((value + 0.5) * (masks.width / first.width) - 0.5), 0), side - 1);
+      const [columns, rows] = [[x, right].map((at) => place(at, masks.width)), [y, bottom].map((at) => place(at, masks.height))];
+      const [left, top] = [Math.min(...columns), Math.min(...rows)];
+      const [width, height] = [Math.max(...columns) + 1 - left, Math.max(...rows) + 1 - top];
+      const isClick = Math.max(width, height) <= Math.max(STILL * masks.width, 1);
+      this.#store.look({ selected: id });
+      void this.correct({ pointed: { frame, id, at: isClick ? [place(x, masks.width), place(y, masks.height)] : [left, top, width, height] } });
+    };
+  }
+
   /** Two objects become one, under the smaller of their numbers. */
   merge(one: number, other: number): void {
     if (one !== other) this.#edit({ merge: [[Math.min(one, other), Math.max(one, other)]] });
@@ -354,13 +381,17 @@ export class Tracking {
   /** Carries the next correction through the frames that were segmented together. */
   async #carry(carrying: Carrying, signal: AbortSignal, set: Change): Promise<void> {
     const { settled: before, waiting } = carrying;
-    const said = waiting.shift();
-    if (said === undefined) return;
+    const next = waiting.shift();
+    if (next === undefined) return;
     set({ run: CARRYING });
+    const said = 'pointed' in next ? { painted: await this.#outlined(before, next.pointed, signal) } : next;
+    if (signal.aborted) return;
+    if ('painted' in said && said.painted.size === 0) return this.#show(waiting.reduce(withSaid, before), { phase: 'done', cause: 'corrected', changed: 0 });
     carrying.now = withSaid(before, said);
+    if ('pointed' in next) this.#show(waiting.reduce(withSaid, carrying.now), CARRYING);
     const shows = this.#shows(carrying);
     let after: Version = before;
-    if ('locks' in said) after = carrying.now;
+    if ('pointed' in said || 'locks' in said) after = carrying.now;
     else if ('edits' in said) {
       after = carrying.now;
       const objects = new Set([...(said.edits.merge ?? []), said.edits.delete ?? []].flat());
@@ -383,6 +414,42 @@ export class Tracking {
     const changed = after.frames.filter((frame, index) => frame !== before.frames[index]).length;
     // What was said meanwhile stays on screen.
     this.#show(waiting.reduce(withSaid, after), waiting.length > 0 ? now.run : { phase: 'done', cause: 'corrected', changed });
+  }
+
+  /** What is painted when a box or a click points to an object. */
+  async #outlined(version: Version, { frame, id, at }: Pointed, signal: AbortSignal): Promise<Map<number, Uint8Array>> {
+    const { tracked, pair } = this.#store.get();
+    const span = spanAt(version.spans, frame);
+    if (tracked === null || span === null) return new Map();
+    const { first } = span.range;
+    const label = theirNumber(span.numbers, id);
+    const hand = [pair.first, pair.second].filter((frame) => frame !== null);
+    let labels: Uint8Array | undefined;
+    const found = this.#segmenter.segmentClip(new ClipFrames(tracked.clip, version.longestSide, span.range, { hand, room: ROOM }), {
+      state: (await bytesOf(span.state))!,
+      changesOnly: true,
+      signal,
+      corrections: [at.length === 2 ? { frame: frame - first, label, click: at } : { frame: frame - first, label, box: at }],
+      locked: lockedIn(span, version, [], (id) => isLocked({ locks: version.locks, names: tracked.names }, id)),
+      // The first frame that changes is this one; the others are carried later, with all that was said before.
+      onChange: async (index, segmented) => {
+        if (first + index === frame) labels = (await segmented()).labels;
+        throw ENOUGH;
+      },
+    });
+    try {
+      for await (const _ of found);
+    } catch (error) {
+      if (error !== ENOUGH) throw error;
+    }
+    if (!labels?.includes(label)) {
+      this.#refuse(strings.notices.nothingThere);
+      return new Map();
+    }
+    const { width } = version.frames[frame]!.runs;
+    const [left, top, columns = width, rows = labels.length] = at.length === 2 ? [0, 0] : at;
+    const isWithin = (p: number): boolean => p % width >= left && p % width < left + columns && p / width >= top && p / width < top + rows;
+    return new Map([[frame, labels.map((own, p) => (own === label && isWithin(p) ? id : own === 0 ? 0 : UNLABELLED))]]);
   }
 
   /** Shows frames as a correction changes them: those on screen at once, others soon. */

@@ -6,8 +6,16 @@ import { UNLABELLED } from '../result/masks.js';
 import { becameAfter } from './spans.js';
 import type { Version } from './tracked.js';
 
-/** What a person says: pixels of frames, by index, what becomes of whole objects, or which of them are locked. */
+/** What points to a new object in a frame: x, y, width and height of a box, or x and y of a click, pixels of the masks. */
+export interface Pointed {
+  readonly frame: number;
+  readonly id: number;
+  readonly at: readonly [number, number] | readonly [number, number, number, number];
+}
+
+/** What a person says: pixels of frames, by index, where a new object is, what becomes of whole objects, or which of them are locked. */
 export type Said =
+  | { readonly pointed: Pointed }
   | { readonly painted: ReadonlyMap<number, Uint8Array> }
   | { readonly edits: NonNullable<ClipOptions['edits']> }
   | { readonly locks: ReadonlyMap<number, boolean> };
@@ -20,6 +28,8 @@ export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: 
 
 /** The masks with what is painted in its own frames. The motions and certainties there follow later, and the masks of whole objects. */
 export function withSaid<V extends Version>(version: V, said: Said): V {
+  // Nothing is seen of it yet; its number is taken.
+  if ('pointed' in said) return { ...version, largest: Math.max(version.largest, said.pointed.id) };
   if ('locks' in said) return { ...version, locks: new Map([...version.locks, ...said.locks]) };
   if ('edits' in said) return { ...version, became: becameAfter(version.became, said.edits) };
   return [...said.painted].reduce((before, [index, labels]) => withPainted(before, index, labels), version);

@@ -19,7 +19,7 @@ export function spanAt(spans: readonly Span[], index: number): Span | null {
 }
 
 /** The number that the package has for an object, or will have: one that none has makes a new object. */
-function theirNumber(numbers: ReadonlyMap<number, number>, id: number): number {
+export function theirNumber(numbers: ReadonlyMap<number, number>, id: number): number {
   const [known] = [...numbers].find(([, here]) => here === id) ?? [];
   const any = Array.from({ length: MOST_OBJECTS }, (_, k) => k + 1);
   // Above all that are seen there is none that is hidden.

@@ -54,7 +54,7 @@ export interface Look extends Painting {
   readonly names: Readonly<Record<string, string>>;
 }
 
-export type ToolName = 'look' | 'brush' | 'eraser';
+export type ToolName = 'look' | 'brush' | 'eraser' | 'box';
 
 export interface Tool {
   readonly name: ToolName;

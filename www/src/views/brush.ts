@@ -1,4 +1,4 @@
-//! Brush and eraser: the circle under the pointer, the stroke being drawn, and earlier strokes.
+//! Brush, eraser and box: the circle under the pointer, the stroke or the box being drawn, and earlier strokes.
 
 import { maskWith, strokesOf } from '../correction/edits.js';
 import { labellingOf, labelsIn } from '../correction/parts.js';
@@ -16,6 +16,9 @@ const STEPS: Readonly<Record<string, Point>> = { ArrowLeft: [-1, 0], ArrowRight:
 
 /** The colour of the eraser, and of strokes whose mask is not in the result. */
 const COLOURLESS: Colour = [20, 20, 20];
+
+/** Radius of the circle where a box begins, pixels. */
+const CORNER = 3;
 
 /** A point is recorded at this distance from the last, share of the radius. */
 const NEXT_POINT = 0.3;
@@ -54,7 +57,7 @@ export class Brush {
   }
 
   /**
-   * Handles keys while the picture has focus: arrow keys move the brush, Space starts and ends a stroke, Escape discards it. Returns
+   * Handles keys while the picture has focus: arrow keys move the brush, Space starts and ends a stroke or a box, Escape discards it. Returns
    * whether the key was handled.
    */
   key({ key, shiftKey }: KeyboardEvent): boolean {
@@ -83,7 +86,7 @@ export class Brush {
     this.#at = [x, y];
     this.#circle.setAttribute('cx', String(x));
     this.#circle.setAttribute('cy', String(y));
-    this.#circle.setAttribute('r', String(this.#store.get().tool.radius));
+    this.#circle.setAttribute('r', String(radiusOf(this.#store.get().tool)));
   }
 
   /** Hides the circle when the pointer leaves. */
@@ -94,7 +97,7 @@ export class Brush {
   begin(point: Point): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
-    const take = this.#session.beginStroke(tool.name);
+    const take = tool.name === 'box' ? this.#session.beginBox() : this.#session.beginStroke(tool.name);
     if (take !== null) this.#now = { points: [...point], take };
     this.hover(point);
     this.#trace();
@@ -105,8 +108,9 @@ export class Brush {
     if (this.#now === null) return;
     const { points } = this.#now;
     const [lastX, lastY] = [points.at(-2) ?? 0, points.at(-1) ?? 0];
-    if (Math.hypot(x - lastX, y - lastY) < NEXT_POINT * this.#store.get().tool.radius) return;
-    points.push(x, y);
+    if (this.#store.get().tool.name === 'box') points.splice(2, 2, x, y);
+    else if (Math.hypot(x - lastX, y - lastY) < NEXT_POINT * this.#store.get().tool.radius) return;
+    else points.push(x, y);
     this.#trace();
   }
 
@@ -124,8 +128,10 @@ export class Brush {
   }
 
   #trace(): void {
-    this.#path.setAttribute('d', this.#now === null ? '' : pathOf(this.#now.points));
-    this.#path.setAttribute('stroke-width', String(2 * this.#store.get().tool.radius));
+    const { tool } = this.#store.get();
+    const path = tool.name === 'box' ? boxOf : pathOf;
+    this.#path.setAttribute('d', this.#now === null ? '' : path(this.#now.points));
+    this.#path.setAttribute('stroke-width', String(2 * tool.radius));
   }
 
   /** The circle has the colour of the selected mask; the style sheet dashes the eraser's. */
@@ -133,7 +139,7 @@ export class Brush {
     this.#picture.dataset.tool = tool.name;
     this.#picture.style.setProperty('--colour', look.selected === null ? 'white' : cssColour(colourOfMask(look.selected, look)));
     if (tool.name === 'look') this.#circle.setAttribute('r', '0');
-    else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(tool.radius));
+    else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(radiusOf(tool)));
   }
 
   #draw({ edits, tool, result, found, look }: State): void {
@@ -148,6 +154,15 @@ export class Brush {
       }),
     );
   }
+}
+
+function radiusOf({ name, radius }: State['tool']): number {
+  return name === 'box' ? CORNER : radius;
+}
+
+/** The rectangle with two corners. */
+function boxOf([x = 0, y = 0, right = x, bottom = y]: readonly number[]): string {
+  return `M${x.toFixed(1)} ${y.toFixed(1)}H${right.toFixed(1)}V${bottom.toFixed(1)}H${x.toFixed(1)}Z`;
 }
 
 function pathOf(points: readonly number[]): string {

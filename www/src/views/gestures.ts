@@ -1,5 +1,5 @@
 //! Pointers on the picture. View tool: a tap selects a mask, holding shows the other frame, dragging pans the enlarged picture. Brush and
-//! eraser: dragging paints. All tools: the wheel and two fingers zoom.
+//! eraser: dragging paints. Box: dragging draws one, a tap points. All tools: the wheel and two fingers zoom.
 
 import { inPicture } from '../drawing/viewport.js';
 import { maskOf } from '../result/masks.js';
@@ -35,6 +35,8 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     return [(clientX - box.left) / box.width, (clientY - box.top) / box.height];
   };
   const paints = (): boolean => store.get().tool.name !== 'look';
+  /** Half a box is none. */
+  const keeps = (): boolean => store.get().tool.name !== 'box';
   /** A second finger or the browser takes over: a stroke drawn so far stays, one that has not moved is discarded. */
   const leaveOff = (drawn: boolean): void => (drawn ? brush.end() : brush.abandon());
 
@@ -46,7 +48,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     if (presses.size > 1) {
       dragged = true;
       peek.release();
-      leaveOff([...presses.values()].some(({ moved }) => moved));
+      leaveOff(keeps() && [...presses.values()].some(({ moved }) => moved));
       return;
     }
     dragged = false;
@@ -89,7 +91,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     presses.delete(event.pointerId);
     clearTimeout(holding);
     if (paints()) {
-      leaveOff(event.type === 'pointerup' || press.moved);
+      leaveOff(event.type === 'pointerup' || (keeps() && press.moved));
       return;
     }
     const tapped = !dragged && event.type === 'pointerup' && !peek.held;

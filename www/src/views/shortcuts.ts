@@ -56,6 +56,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['v'], shown: 'V', does: keys.look, run: () => chooseTool(store, 'look') },
     { keys: ['p'], shown: 'P', does: keys.brush, run: () => chooseTool(store, 'brush') },
     { keys: ['e'], shown: 'E', does: keys.eraser, run: () => chooseTool(store, 'eraser') },
+    { keys: ['x'], shown: 'X', does: keys.box, run: () => chooseTool(store, 'box') },
     { keys: [], shown: 'Space', does: keys.stroke, run: () => undefined },
     { keys: ['['], shown: '[', does: keys.thinner, run: () => changeRadius(store, 0.75) },
     { keys: [']'], shown: ']', does: keys.thicker, run: () => changeRadius(store, 4 / 3) },

@@ -1,4 +1,4 @@
-//! The tools: view, brush, eraser; the size of the brush; undo and redo.
+//! The tools: view, brush, eraser, box; the size of the brush; undo and redo.
 
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
@@ -8,7 +8,7 @@ import { find } from './markup.js';
 export const RADII = { least: 2, most: 60 } as const;
 
 export function mountTools(form: HTMLFormElement, store: Store, session: Session): void {
-  const names = ['look', 'brush', 'eraser'] as const;
+  const names = ['look', 'brush', 'eraser', 'box'] as const;
   const radios = names.map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
   const size = find(form, '[name=radius]', HTMLInputElement);
   const helps = names.map((name) => ({ name, help: find(form, `#tool-help [data-tool=${name}]`, HTMLElement) }));
@@ -23,13 +23,16 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
 
   const render = (): void => {
     const { tool, result, edits, live, look, tracked } = store.get();
+    const clip = look.kind === 'objects' ? tracked : null;
+    // A pair has no objects that could be new.
+    if (clip === null && tool.name === 'box') return chooseTool(store, 'look');
     const usable = result !== null && live === null;
     for (const radio of radios) {
       radio.checked = radio.value === tool.name;
       radio.disabled = !usable && radio.value !== 'look';
+      if (radio.value === 'box') radio.parentElement!.hidden = clip === null;
     }
     size.value = String(tool.radius);
-    const clip = look.kind === 'objects' ? tracked : null;
     for (const { name, help } of helps) {
       help.textContent = (clip === null ? strings.toolHelp : strings.clipToolHelp)[name];
       help.classList.toggle('away', tool.name !== name);
@@ -47,6 +50,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
 /** Selects a tool. For painting it shows the first frame, and selects the second-largest motion if no mask is selected. */
 export function chooseTool(store: Store, name: ToolName): void {
   const { tool, look, result } = store.get();
+  if (name === 'box' && look.kind !== 'objects') return;
   store.set({ tool: { ...tool, name } });
   if (name === 'look') return;
   const { motions } = result?.segmentation ?? { motions: [] };

@@ -7,7 +7,7 @@ import type { Settings } from '../messages.js';
 import { taken } from '../taking.js';
 import { parted } from '../tasks.js';
 import { type Edits, editsOf, isObjectNumber, RANGE } from './edits.js';
-import { checkedCorrections, type Said } from './said.js';
+import { checkedCorrections, type Corrections } from './said.js';
 
 /** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
@@ -29,14 +29,13 @@ export interface Whole {
   length: number;
 }
 
-export interface Asked extends Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs'> {
+export interface Asked extends Corrections, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs'> {
   source: Stream | Whole;
   onProgress: ((progress: ClipProgress) => void) | undefined;
   transfer: boolean;
   settings: Settings;
   /** Not looked at yet, but the call's own. */
   masks: unknown;
-  corrections: Said[];
   edits: Edits;
   /** Undefined if nobody says. */
   locked: Uint8Array | undefined;
@@ -62,7 +61,7 @@ export function asked(frames: unknown, options: unknown): Asked {
     transfer,
     settings: { lookAhead: 'read' in source ? 'all' : LOOK_AHEAD_OF_STREAMS, ...settings },
     masks: structuredClone(masks),
-    corrections: checkedCorrections(corrections, source.length ?? 0),
+    ...checkedCorrections(corrections, source.length ?? 0),
     edits: known,
     locked: lockedOf(locked, known),
     state: state === undefined ? undefined : (taken([checkedBytes('the state', state)], false)[0] as Uint8Array),

@@ -8,7 +8,7 @@ import { taken } from '../taking.js';
 import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
-import { type Said, together } from './said.js';
+import { isWithin, type Said, together } from './said.js';
 import type { Told } from './tracks.js';
 
 /** What is asked, with masks that are checked as well. */
@@ -76,7 +76,7 @@ async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uin
 
 /** Applies masks, corrections and edits; returns the indices of the frames that they change. */
 async function edited(clip: PlacedClip, frames: Frames, task: Task, length: number): Promise<Set<number>> {
-  const { source, masks, corrections, edits, locked, onProgress, onChange } = task;
+  const { source, masks, corrections, prompts, edits, locked, onProgress, onChange } = task;
   const { read } = source as Whole;
   const changed = new Set<number>();
   const tell = async (indices: readonly number[]) => {
@@ -96,7 +96,8 @@ async function edited(clip: PlacedClip, frames: Frames, task: Task, length: numb
   if (numbers.size > 0) await tell(await clip.step<number[]>({ call: 'reserveClip', objects: Uint8Array.from(numbers) }));
   if (locked) await clip.step({ call: 'lockClip', objects: locked });
   // The source may have failed before it came to a corrected frame.
-  for (const { frame: index, labels, propagate = 'both' } of together(masks, corrections).filter(({ frame }) => frame < length)) {
+  const isThere = ({ frame }: { frame: number }) => frame < length;
+  const correct = async ({ frame: index, labels, propagate = 'both' }: Said) => {
     const [forward, backward] = ['forward', 'backward'].map((way) => propagate === 'both' || propagate === way) as [boolean, boolean];
     await clip.step({ call: 'correctClip', index, labels, forward, backward });
     for (let next: number | undefined = index; next !== undefined; ) {
@@ -106,6 +107,14 @@ async function edited(clip: PlacedClip, frames: Frames, task: Task, length: numb
       await tell(changed);
       next = wanted;
     }
+  };
+  const said = together(masks, corrections).filter(isThere);
+  for (const each of said) await correct(each);
+  // What a box or a click points to depends on what else is there.
+  for (const { frame: index, label: object, prompt, propagate } of prompts.filter(isThere)) {
+    const frame = await frames.one(read, index);
+    const labels = await clip.step<Uint8Array>({ call: 'outlineClip', index, frame, prompt: Uint32Array.from(prompt), object });
+    await correct({ frame: index, labels, propagate: propagate ?? said.find((each) => each.frame === index)?.propagate });
   }
   for (const [object, number] of edits.numbers) await tell(await clip.step<number[]>({ call: 'renumberClip', object, number }));
   return changed;
@@ -116,7 +125,7 @@ function* upTo(length: number): Generator<number, void, undefined> {
   for (let index = 0; index < length; index++) yield index;
 }
 
-function checkSizes({ masks, corrections }: Task, size: { width: number; height: number }): void {
+function checkSizes({ masks, corrections, prompts }: Task, size: { width: number; height: number }): void {
   for (const [option, said] of Object.entries({ masks, corrections })) {
     for (const { frame, labels, width = size.width } of said) {
       if (labels.length === size.width * size.height && width === size.width) continue;
@@ -124,4 +133,8 @@ function checkSizes({ masks, corrections }: Task, size: { width: number; height:
       throw new VeroneseError('invalid-option', `option '${option}': ${sentence}`);
     }
   }
+  const outside = prompts.find((prompt) => !isWithin(prompt, size));
+  if (outside === undefined) return;
+  const sentence = `what points to object ${outside.label} in frame ${outside.frame} is not within ${size.width}×${size.height} pixels`;
+  throw new VeroneseError('invalid-option', `option 'corrections': ${sentence}`);
 }

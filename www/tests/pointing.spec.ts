@@ -1,0 +1,178 @@
+//! The box tool of clips: a box around something, or a press on it, makes a new object at once.
+
+import { type Page } from '@playwright/test';
+
+import { axe, clipFrames, differences, done, expect, labelsOnCanvas, open, test, upload } from './support.js';
+
+type Place = readonly [number, number];
+
+const [WIDTH, HEIGHT, RADIUS] = [200, 140, 0.16 * 140];
+
+/** Where the disc of `clipFrames` is in a frame. */
+const isDisc = (p: number, frame: number): boolean =>
+  Math.hypot((p % WIDTH) - 0.2 * WIDTH - 4 * frame, Math.floor(p / WIDTH) - 0.36 * HEIGHT - frame) < RADIUS;
+
+/** How well a mask agrees with it. */
+function overlap(labels: Uint8Array, own: number, frame: number): number {
+  let [both, either] = [0, 0];
+  for (const [p, label] of labels.entries()) {
+    const [is, was] = [label === own, isDisc(p, frame)];
+    if (is && was) both++;
+    if (is || was) either++;
+  }
+  return both / either;
+}
+
+async function openSegmented(page: Page): Promise<void> {
+  await open(page, 'groups');
+  await upload(page, await clipFrames(8));
+  await expect(page.locator('#clip-name')).toContainText('8 frames');
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await settled(page);
+}
+
+async function settled(page: Page): Promise<void> {
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+}
+
+async function goTo(page: Page, index: number): Promise<void> {
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  const box = (await track.boundingBox())!;
+  const count = Number(await track.getAttribute('aria-valuemax')) + 1;
+  await track.click({ position: { x: ((index + 0.5) * box.width) / count, y: 10 } });
+  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
+  await done(page);
+}
+
+/** Drags between two points of the picture, 0…1. */
+async function drag(page: Page, from: Place, to: Place): Promise<void> {
+  const box = (await page.locator('.layers').boundingBox())!;
+  const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
+  await page.mouse.move(...at(from));
+  await page.mouse.down();
+  await page.mouse.move(...at(to), { steps: 4 });
+  await page.mouse.up();
+}
+
+const tool = (page: Page) => page.getByRole('radio', { name: 'Box: a new object' });
+/** Around the disc in frame 3, from corner to corner, and its middle. */
+const AROUND = [[0.13, 0.18], [0.39, 0.58]] as const;
+const MIDDLE: Place = [0.26, 0.38];
+
+test('a box makes a new object in its frame and in the others, and undo takes it back', async ({ page }) => {
+  await openSegmented(page);
+  await goTo(page, 3);
+  const before = await labelsOnCanvas(page);
+  const objects = page.locator('#objects > li');
+  const count = await objects.count();
+  await page.locator('.layers').focus();
+  await page.keyboard.press('x');
+  await expect(tool(page)).toBeChecked();
+  await expect(page.locator('#tool-help')).toContainText('it becomes a new object');
+  await drag(page, ...AROUND);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/, { timeout: 45_000 });
+  const own = Math.max(...before) + 1;
+  const after = await labelsOnCanvas(page);
+  expect(overlap(after, own, 3)).toBeGreaterThan(0.85);
+  const inside = (p: number): boolean => p % WIDTH >= 25 && p % WIDTH <= 79 && p >= 24 * WIDTH && p < 83 * WIDTH;
+  expect(after.every((label, p) => label !== own || inside(p))).toBe(true);
+  await goTo(page, 6);
+  expect(overlap(await labelsOnCanvas(page), own, 6)).toBeGreaterThan(0.8);
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+  await goTo(page, 3);
+  expect(differences(await labelsOnCanvas(page), before)).toBe(0);
+  await page.getByRole('button', { name: 'Redo' }).click();
+  expect(differences(await labelsOnCanvas(page), after)).toBe(0);
+  expect(await objects.count()).toBeGreaterThanOrEqual(count);
+  expect(await axe(page)).toEqual([]);
+});
+
+test('a press, and the keyboard, point to an object as well', async ({ page }) => {
+  await openSegmented(page);
+  await goTo(page, 3);
+  const before = await labelsOnCanvas(page);
+  const own = Math.max(...before) + 1;
+  await tool(page).check();
+  await drag(page, MIDDLE, MIDDLE);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/, { timeout: 45_000 });
+  expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);
+  await page.keyboard.press('Control+z');
+  await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
+
+  // From the middle of the picture to a corner of the box, then to the other.
+  await page.locator('.layers').focus();
+  const step = async (key: string, times: number): Promise<void> => {
+    for (let k = 0; k < times; k++) await page.keyboard.press(`Shift+${key}`);
+  };
+  await page.mouse.move(0, 0);
+  const at = await page.locator('.brush').evaluate((circle) => ['cx', 'cy'].map((name) => Math.round(Number(circle.getAttribute(name)))));
+  await step('ArrowLeft', at[0]! - 26);
+  await step('ArrowUp', at[1]! - 25);
+  await page.keyboard.press('Space');
+  await step('ArrowRight', 52);
+  await step('ArrowDown', 57);
+  await page.keyboard.press('Space');
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/, { timeout: 45_000 });
+  expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.85);
+
+  // A box that is given up is none.
+  const now = await labelsOnCanvas(page);
+  await page.keyboard.press('Space');
+  await step('ArrowLeft', 20);
+  await page.keyboard.press('Escape');
+  await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
+  expect(differences(await labelsOnCanvas(page), now)).toBe(0);
+});
+
+test('objects one after another keep what they have, and a pair has no box', async ({ page }) => {
+  await openSegmented(page);
+  await goTo(page, 3);
+  const own = Math.max(...(await labelsOnCanvas(page))) + 1;
+  await tool(page).check();
+  // Both in one go: the second waits for the first.
+  await drag(page, ...AROUND);
+  await drag(page, [0.5, 0.05], [0.7, 0.3]);
+  await expect(page.locator('#clip-status')).toHaveText(/^Corrected/, { timeout: 45_000 });
+  const labels = await labelsOnCanvas(page);
+  expect(overlap(labels, own, 3)).toBeGreaterThan(0.85);
+  expect(labels).toContain(own + 1);
+  await page.locator('#kinds [value=groups]').check();
+  await expect(tool(page)).toBeHidden();
+  await expect(page.locator('#tools [value=look]')).toBeChecked();
+});
+
+test.describe('on a phone', () => {
+  test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
+
+  test('the tools are large enough, and a finger draws a box; two fingers draw none', async ({ page }) => {
+    await openSegmented(page);
+    await goTo(page, 3);
+    for (const label of await page.locator('#tools fieldset label').all()) {
+      const { width, height } = (await label.boundingBox())!;
+      expect(Math.min(width, height)).toBeGreaterThanOrEqual(44);
+    }
+    const own = Math.max(...(await labelsOnCanvas(page))) + 1;
+    await tool(page).check();
+    await page.locator('.layers').scrollIntoViewIfNeeded();
+    const box = (await page.locator('.layers').boundingBox())!;
+    const at = ([x, y]: Place, id = 0): { x: number; y: number; id: number } => ({ x: box.x + x * box.width, y: box.y + y * box.height, id });
+    const cdp = await page.context().newCDPSession(page);
+    const touch = (type: 'touchStart' | 'touchMove' | 'touchEnd', ...touchPoints: { x: number; y: number; id: number }[]): Promise<unknown> =>
+      cdp.send('Input.dispatchTouchEvent', { type, touchPoints });
+    await touch('touchStart', at(AROUND[0]));
+    await touch('touchMove', at(MIDDLE));
+    await touch('touchStart', at(MIDDLE), at([0.8, 0.8], 1));
+    await touch('touchEnd');
+    await expect(page.locator('.stroke.now')).toHaveAttribute('d', '');
+    await expect(page.locator('#clip-status')).not.toHaveText(/^Corrected/);
+    await page.locator('#zoom-fit').dispatchEvent('click');
+    await touch('touchStart', at(AROUND[0]));
+    await touch('touchMove', at(MIDDLE));
+    await touch('touchMove', at(AROUND[1]));
+    await touch('touchEnd');
+    await expect(page.locator('#clip-status')).toHaveText(/^Corrected/, { timeout: 45_000 });
+    expect(overlap(await labelsOnCanvas(page), own, 3)).toBeGreaterThan(0.8);
+  });
+});
