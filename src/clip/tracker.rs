@@ -64,6 +64,8 @@ pub(crate) struct Tracker {
 struct Newest {
     frame: Rc<Frame>,
     pyramid: Rc<FramePyramid>,
+    /// Whether it shows the frame before again.
+    repeats: bool,
     /// Odds and flow of the pair with the frame before.
     back: Option<(Plane, Flow)>,
 }
@@ -130,15 +132,16 @@ impl Tracker {
         let _call = workspace::begin(size);
         let settings = self.options.settings(size);
         let pyramid = Rc::new(settings.pyramid(&frame));
-        let newest = Newest { frame: Rc::new(frame), pyramid, back: None };
+        let mut newest = Newest { frame: Rc::new(frame), pyramid, repeats: false, back: None };
         let Some(last) = self.last.take() else {
             self.waits = self.options.look_ahead != Some(0);
             self.last = Some(newest.clone());
             let tracked = if self.waits { None } else { self.advance(newest, None, None) };
             return Ok((tracked, Pairs::default()));
         };
+        newest.repeats = last.frame.colours() == newest.frame.colours();
         let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
-            _ if last.frame.colours() == newest.frame.colours() => self.repeated(&newest, &settings),
+            _ if newest.repeats => self.repeated(&newest, &settings),
             None => both_ways(&last, &newest, &settings),
             Some(_) => self.backward(&last, &newest, &settings),
         });
@@ -226,7 +229,7 @@ impl Tracker {
     /// Hands a frame to the rounds, with what is known of its way to the next one.
     fn advance(
         &mut self,
-        Newest { frame, pyramid, back }: Newest,
+        Newest { frame, pyramid, repeats, back }: Newest,
         onward_odds: Option<Plane>,
         onward: Option<Flow>,
     ) -> Option<Tracked> {
@@ -250,7 +253,7 @@ impl Tracker {
         let appearance = pyramid.appearance(&frame);
         let (palette, unit_borders) = (appearance.palette.clone(), unit_borders(appearance));
         let frame = Some(frame).filter(|_| self.keeps_frames);
-        let record = Rc::new(Record { index: self.count, frame, palette, unit_borders, onward, back });
+        let record = Rc::new(Record { index: self.count, frame, repeats, palette, unit_borders, onward, back });
         self.count += 1;
         let foreground = self.rounds[0].push(record, odds)?;
         self.second_round(foreground)
