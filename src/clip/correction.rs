@@ -14,6 +14,7 @@ mod memory;
 mod placing;
 mod sweep;
 mod track;
+mod view;
 mod world;
 
 use super::evidence::{Flow, KeptOdds};

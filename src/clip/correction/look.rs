@@ -25,7 +25,8 @@ pub(super) struct Look {
     pub(super) step: usize,
     /// Colour cell of every pixel.
     pub(super) colours: Vec<u16>,
-    /// L, a, b at a quarter of the size.
+    /// L, a, b, and the same at a quarter of the size.
+    pub(super) smooth: [Plane; 3],
     pub(super) coarse: [Plane; 3],
     /// Prices of borders, in units of the smoothness.
     pub(super) borders: Borders,
@@ -53,7 +54,7 @@ impl Look {
             (0..size[0] * size[1]).map(|p| colour(smooth.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = smooth.each_ref().map(|plane| halve(&halve(plane)));
         let borders = Borders::new(&picture, EDGE_NOISE, 1.0);
-        Look { size, step, colours, coarse, borders }
+        Look { size, step, colours, smooth, coarse, borders }
     }
 }
 
