@@ -34,7 +34,8 @@ use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
 
 pub use correction::{ClipCorrection, Prompt};
-pub(crate) use correction::{Said, Still};
+#[doc(hidden)]
+pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
 pub use correction::{propagation_constants, vary_propagation};

@@ -151,6 +151,7 @@ pub mod wasm;
 mod workspace;
 
 pub use answer::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED};
+pub use clip::{Correction, MAX_CORRECTED, Relabelling, relabel};
 pub use error::{Error, Result};
 pub use frame::{Derivatives, Frame, MAX_SIDE, MIN_SIDE, Plane, derivatives};
 pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair};
@@ -159,10 +160,7 @@ pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
 #[doc(hidden)]
 pub use pair::Part;
-pub use pair::{
-    Correction, Junction, MAX_CORRECTED, PairEvidence, Relabelling, Segmentation, SegmentedMotion, relabel,
-    segment_pair,
-};
+pub use pair::{Junction, PairEvidence, Segmentation, SegmentedMotion, segment_pair};
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
 pub use pair::{segment_pair_varied, segment_pair_without};

@@ -2,15 +2,13 @@
 
 mod background;
 mod consensus;
-mod correction;
 mod evidence;
 mod hypothesis;
-mod labels;
-mod report;
+pub(crate) mod labels;
+pub(crate) mod report;
 pub(crate) mod settings;
 pub(crate) mod solution;
 
-pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
 pub use report::{Junction, PairEvidence, Segmentation, SegmentedMotion};
 #[doc(hidden)]
 pub use settings::Part;
@@ -183,7 +181,7 @@ fn size(frame: &Frame) -> [usize; 2] {
     [frame.width(), frame.height()]
 }
 
-fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<()> {
+pub(crate) fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<()> {
     let size = (first.width(), first.height());
     for other in [Some(second), before].into_iter().flatten() {
         if (other.width(), other.height()) != size {
@@ -208,7 +206,7 @@ pub(crate) struct Pair {
     /// What the labels follow, at the sizes of the levels down to the base or the draft level.
     appearance: Rc<Appearance>,
     /// Full-size pixels per working pixel.
-    reduction: f64,
+    pub(crate) reduction: f64,
 }
 
 impl Pair {
@@ -267,7 +265,7 @@ impl Pair {
     }
 
     /// As [`find_dominant`](Self::find_dominant) where the dominant motion is known.
-    fn take_dominant(&mut self, motion: &AffineMotion, brightness: bool) {
+    pub(crate) fn take_dominant(&mut self, motion: &AffineMotion, brightness: bool) {
         if brightness && let Some(photometric) = Photometric::along(&self.levels[self.base], View::Second, motion) {
             self.remove(photometric, View::Second);
         }
@@ -304,7 +302,7 @@ impl Pair {
         self.levels.iter_mut().for_each(|level| photometric.remove_from(level, view));
     }
 
-    fn finest(&self) -> &Level {
+    pub(crate) fn finest(&self) -> &Level {
         &self.levels[0]
     }
 }

@@ -12,6 +12,7 @@ mod evidence;
 mod look;
 mod memory;
 mod outline;
+mod pair;
 mod placing;
 mod still;
 mod sweep;
@@ -33,9 +34,8 @@ pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
 pub use outline::Prompt;
 pub(super) use outline::outline;
-pub(crate) use still::Still;
+pub use pair::{Correction, MAX_CORRECTED, Relabelling, relabel};
 use sweep::Claim;
-pub(crate) use sweep::Said;
 use track::{Start, Track, Way};
 use world::{Known, World};
 

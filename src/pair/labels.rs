@@ -56,13 +56,13 @@ impl Labelled {
 }
 
 /// A labelling in progress: the motions, their costs and the current labels.
-pub(super) struct LabelState<'a> {
+pub(crate) struct LabelState<'a> {
     level: &'a Level,
     settings: &'a Settings,
     borders: Borders,
     motions: Vec<AffineMotion>,
     /// Label costs, corrected for occlusion.
-    pub(super) costs: Vec<Plane>,
+    pub(crate) costs: Vec<Plane>,
     /// Label costs before the correction for occlusion.
     uncorrected: LabelCosts,
     /// Estimation costs, from which description lengths are computed.
@@ -157,7 +157,7 @@ impl<'a> LabelState<'a> {
     }
 
     /// The state of a labelling whose motions and labels, of the draft level, are known. It has no costs until occlusion is corrected.
-    pub(super) fn resumed(
+    pub(crate) fn resumed(
         pair: &'a Pair,
         motions: Vec<AffineMotion>,
         labels: Buffer<u8>,
@@ -289,7 +289,7 @@ impl<'a> LabelState<'a> {
     }
 
     /// Updates the costs: no motion pays for pixels that are occluded in the second frame.
-    pub(super) fn update_occlusion(&mut self) {
+    pub(crate) fn update_occlusion(&mut self) {
         let object_bias = self.settings.coherence.object_bias;
         self.costs = with_visibility(self.level, &self.motions, &self.uncorrected.costs, &self.labels, object_bias);
     }

@@ -4,12 +4,9 @@
 //! A stroke parts the motions that are possible from those of the pixels that it takes; one cut for each such division moves pixels from one
 //! side to the other, and all others keep their labels.
 
-use super::Pair;
-use super::labels::LabelState;
-use super::report::{SegmentedMotion, describe};
-use super::settings::{Part, Settings};
+use super::still::Still;
+use super::sweep::Said;
 use crate::answer::UNLABELLED;
-use crate::clip::{Said, Still};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
@@ -17,6 +14,10 @@ use crate::labelling::resolution::upsampling::upsample;
 use crate::labelling::solver::MAX_LABELS;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
+use crate::pair::labels::LabelState;
+use crate::pair::report::{SegmentedMotion, describe};
+use crate::pair::settings::{Part, Settings};
+use crate::pair::{Pair, check_sizes};
 use crate::progress::{Progress, Stages};
 use crate::workspace;
 
@@ -67,11 +68,11 @@ pub fn relabel(
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Relabelling> {
-    super::check_sizes(first, second, before)?;
+    check_sizes(first, second, before)?;
     correction.check(first.width() * first.height())?;
     let _call = workspace::begin([first.width(), first.height()]);
     // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
-    let settings = Settings { draft_side: usize::MAX, ..Settings::new(options, super::size(first)) };
+    let settings = Settings { draft_side: usize::MAX, ..Settings::new(options, [first.width(), first.height()]) };
     let mut stages = Stages::new(STAGES, progress);
     let divisions = correction.divisions();
     let mut labels = correction.labels.to_vec();
