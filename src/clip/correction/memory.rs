@@ -27,7 +27,7 @@ pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
 }
 
 /// Pixels found automatically that a pixel of which something else is said silences at most.
-const SILENCES: f32 = 16.0;
+const SILENCES: f32 = 40.0;
 
 /// Counts of pixels: object, ground.
 type Counts = [f32; 2];

@@ -1,5 +1,6 @@
 //! One object in a single frame: what is said of some pixels goes on along the looks of the object that was found, and along its motion.
 
+use super::SURVEYED;
 use super::constants::constants;
 use super::look::Look;
 use super::memory::{Memory, Part};
@@ -10,10 +11,10 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::solver::Solver;
 
 /// Odds from which motions decide, nats.
-const DECISIVE: f32 = 0.5;
+const DECISIVE: f32 = 0.3;
 
 /// Window over which odds of motions are averaged before that, pixels.
-const WINDOW: f32 = 1.5;
+const WINDOW: f32 = 5.0;
 
 /// A frame at the size at which objects are corrected.
 pub(crate) struct Still(Look);
@@ -52,7 +53,9 @@ impl Still {
         let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
         let trust = trust(said, found, &is_doubted);
         let presumed = |p: usize| if is_doubted[p] && trust < 0.0 { !found[p] } else { found[p] };
-        for (doubted, weight) in [(false, 1.0), (true, trust.abs())] {
+        // As much as frames of a clip in which an object was found.
+        let found_weight = constants.survey * SURVEYED as f32;
+        for (doubted, weight) in [(false, found_weight), (true, found_weight * trust.abs())] {
             let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
             memory.learn(look, centre, Part::Found, weight, side);
         }
@@ -120,13 +123,15 @@ mod tests {
         let unknown = Plane::filled(width, height, 0.0);
         let found: Vec<bool> = (0..width * height).map(|p| inside(p, 10) || inside(p, 82)).collect();
         let mask = Still(look).mask(&said, &found, &unknown);
-        let overlap = |left: usize| {
-            let both = (0..mask.len()).filter(|&p| mask[p] == 1 && inside(p, left)).count();
-            both as f64 / (24 * 24) as f64
+        // Colours of pixels near a border are those of neither side.
+        let inner =
+            |p: usize, left: usize| (left + 3..left + 21).contains(&(p % width)) && (33..51).contains(&(p / width));
+        let share = |left: usize| {
+            let own = (0..mask.len()).filter(|&p| inner(p, left));
+            own.map(|p| f64::from(mask[p])).sum::<f64>() / 324.0
         };
-        let [first, second, third] = [10, 46, 82].map(overlap);
-        // Colours of a pixel on the border are no longer those of either side.
-        assert!(first > 0.97 && second > 0.8 && third < 0.25, "{first}, {second}, {third}");
+        let [first, second, third] = [10, 46, 82].map(share);
+        assert!(first > 0.99 && second > 0.99 && third < 0.01, "{first}, {second}, {third}");
         let is_ground = |p: &usize| ![10, 46, 82].iter().any(|&left| inside(*p, left));
         assert!((0..mask.len()).filter(is_ground).filter(|&p| mask[p] > 0).count() < 24);
     }
