@@ -11,6 +11,8 @@
 //! What is said of the clip makes no difference to the mask: the same click always points to the same object. What is then said of the frame
 //! is more than the mask: it is ground where nothing else is, which is worth .12 of J through a clip. Others keep what they have.
 
+use std::ops::Range;
+
 use super::constants::{Constants, constants};
 use super::evidence::Evidence;
 use super::look::Look;
@@ -34,13 +36,12 @@ const AROUND: usize = 40;
 const FOUND: f32 = 0.7;
 /// The middle of a box is the object with these odds, nats, which fall with the squared distance: by so many at the middle of a side.
 const BOX: [f32; 2] = [1.0, 1.5];
-/// The ellipse that a box begins with, as a share of the largest one.
-const ELLIPSE: f32 = 0.8;
+/// Shares of the largest ellipse in a box up to which it begins as the object, and from which on as ground.
+const ELLIPSE: [f32; 2] = [0.8, f32::INFINITY];
 /// Radii of the discs that a click begins with, as shares of the frame's longer side.
 const RADII: [f32; 6] = [0.03, 0.05, 0.08, 0.13, 0.2, 0.32];
-/// The middle of a disc is the object with these odds, which fall with the squared distance: by so many at the radius, and to the least.
-const DISC: [f32; 3] = [1.5, 1.5, -4.0];
-/// A disc begins as the object up to the first share of its radius, and as ground from the second one on.
+/// The same odds of a disc, and the same shares of its radius.
+const DISC: [f32; 2] = [1.5, 1.5];
 const BEGINNING: [f32; 2] = [0.7, 1.3];
 /// Radius around a click that is the object, pixels of the working size.
 const CLICK: f32 = 2.5;
@@ -162,25 +163,26 @@ fn check(prompt: Prompt, [width, height]: [usize; 2]) -> Result<()> {
 impl View<'_> {
     fn boxed(&self, full: &Area) -> Vec<u8> {
         let ([width, height], step) = (self.look.size, self.look.step);
-        let part = |side: &std::ops::Range<usize>, size: usize| side.start / step..side.end.div_ceil(step).min(size);
+        let part = |side: &Range<usize>, size: usize| side.start / step..side.end.div_ceil(step).min(size);
         let area = Area { columns: part(&full.columns, width), rows: part(&full.rows, height) };
-        let middle = |side: &std::ops::Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
+        let middle = |side: &Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
         let centre = [middle(&area.columns), middle(&area.rows)];
         let radii = [area.width(), area.height()].map(|side| 0.5 * side as f32);
-        let squares: Vec<f32> = (0..self.look.pixels()).map(|p| self.square(p, centre, radii)).collect();
-        let mut sides = vec![1; self.look.pixels()];
-        area.pixels(width).for_each(|p| sides[p] = if squares[p] < ELLIPSE * ELLIPSE { 0 } else { 2 });
-        let odds = squares.iter().map(|square| BOX[0] - BOX[1] * square).collect();
-        self.fitted(Beginning { area, odds, sides }, &|_| false, ROUNDS[1])
+        self.fitted(self.ellipse(area, centre, radii, BOX, ELLIPSE), &|_| false, ROUNDS[1])
     }
 
     fn clicked(&self, click: usize) -> Vec<u8> {
-        let pixels = self.look.pixels();
+        let (pixels, [width, height]) = (self.look.pixels(), self.look.size);
         let centre = self.place(click);
         let near = |p: usize| self.square(p, centre, [CLICK; 2]) < 1.0;
-        let discs = RADII.map(|share| self.disc(click, share));
+        let disc = |share: f32| {
+            let radius = share * width.max(height) as f32;
+            let area = Area::of(&[click], width).grown((2.0 * radius) as usize, width, height);
+            self.ellipse(area, centre, [radius; 2], DISC, BEGINNING)
+        };
+        let discs = RADII.iter().map(|&share| disc(share));
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
-        let beginnings = discs.into_iter().chain(regions);
+        let beginnings = discs.chain(regions);
         let masks: Vec<Vec<u8>> =
             beginnings.map(|from| self.part_of(click, self.fitted(from, &near, ROUNDS[0]))).collect();
         let mut votes = vec![0.0f32; pixels];
@@ -199,21 +201,22 @@ impl View<'_> {
         self.part_of(click, self.fitted(Beginning { area, odds, sides }, &near, ROUNDS[1]))
     }
 
-    fn disc(&self, click: usize, share: f32) -> Beginning {
-        let [width, height] = self.look.size;
-        let radius = share * width.max(height) as f32;
-        let squares: Vec<f32> =
-            (0..self.look.pixels()).map(|p| self.square(p, self.place(click), [radius; 2])).collect();
-        let side = |square: &f32| match square {
-            square if *square < BEGINNING[0] * BEGINNING[0] => 0,
-            square if *square < BEGINNING[1] * BEGINNING[1] => 2,
-            _ => 1,
-        };
-        Beginning {
-            area: Area::of(&[click], width).grown((2.0 * radius) as usize, width, height),
-            sides: squares.iter().map(side).collect(),
-            odds: squares.iter().map(|square| (DISC[0] - DISC[1] * square).max(DISC[2])).collect(),
+    /// An ellipse within an area: odds in its middle and how far they fall to its border, and the shares of its radii up to which it is the
+    /// object, and from which on it is ground.
+    fn ellipse(
+        &self,
+        area: Area,
+        centre: [f32; 2],
+        radii: [f32; 2],
+        odds: [f32; 2],
+        [object, ground]: [f32; 2],
+    ) -> Beginning {
+        let squares: Vec<f32> = (0..self.look.pixels()).map(|p| self.square(p, centre, radii)).collect();
+        let mut sides = vec![1; squares.len()];
+        for p in area.pixels(self.look.size[0]).filter(|&p| squares[p] < ground * ground) {
+            sides[p] = if squares[p] < object * object { 0 } else { 2 };
         }
+        Beginning { area, sides, odds: squares.iter().map(|square| odds[0] - odds[1] * square).collect() }
     }
 
     /// The connected pixels that have the click's label, unless most of the frame has it.
