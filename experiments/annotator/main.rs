@@ -1,5 +1,8 @@
 //! The annotator benchmark: what somebody gets for what he says of a clip. `npm run bench:annotator` runs it.
 
+mod automatic;
+#[path = "../boundary.rs"]
+mod boundary;
 #[path = "../clips/cases.rs"]
 #[allow(dead_code, reason = "the clip benchmark uses the rest")]
 mod cases;
@@ -16,6 +19,9 @@ mod parallel;
 #[path = "../program.rs"]
 mod program;
 mod robot;
+#[path = "../clips/scores.rs"]
+#[allow(dead_code, reason = "the clip benchmark uses the rest")]
+mod scores;
 #[path = "../sealed.rs"]
 mod sealed;
 mod session;
@@ -37,6 +43,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   frames         prints a line per real clip: its name, a tab, its folder
   measure        real clips with masks of one object: a line of figures for each, then means; writes measure.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
+  automatic      real clips when nothing is said, also without parts of the clip segmenter; writes automatic.jsonl
   page           writes annotating.md from these figures
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
@@ -48,6 +55,8 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
   --dump DIR         also write the labels of every stage as indexed images, and strips of small ones
   --set NAME=VALUE   another value of a constant of the propagation, as often as needed
+  --without A,B      parts that automatic leaves out by turns: both-directions, carrying, colours, second-round, grouping
+  --generated        automatic measures the generated clips of npm run bench:clips
   --write-docs       also write docs/annotating.md
 ";
 
@@ -63,6 +72,8 @@ pub(crate) struct Options {
     jobs: Option<usize>,
     pub(crate) out: PathBuf,
     pub(crate) dump: Option<PathBuf>,
+    pub(crate) without: Vec<String>,
+    generated: bool,
     write_docs: bool,
     pub(crate) constants: [f32; 10],
 }
@@ -82,6 +93,8 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         jobs: None,
         out: "out/annotator".into(),
         dump: None,
+        without: Vec::new(),
+        generated: false,
         write_docs: false,
         constants: propagation_constants().map(|(_, value)| value),
     };
@@ -90,7 +103,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "objects" | "page" | "fit" => options.step = name,
+            "frames" | "measure" | "automatic" | "objects" | "page" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -110,13 +123,18 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
                 options.constants[place.ok_or(format!("There is no constant '{name}'."))?] =
                     value.parse().map_err(|_| format!("'{value}' is no number."))?;
             }
+            "--without" => {
+                options.without = value()?.split(',').map(str::to_owned).collect();
+                options.without.iter().try_for_each(|name| automatic::part(name).map(|_| ()))?;
+            }
+            "--generated" => options.generated = true,
             "--write-docs" => options.write_docs = true,
             "--dump" => options.dump = Some(value()?.into()),
             _ => return Err(format!("There is no option '{name}'.")),
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, objects, page or fit.".into()),
+        true => Err("Say which step: frames, measure, automatic, objects, page or fit.".into()),
         false => Ok(Some(options)),
     }
 }
@@ -141,6 +159,10 @@ fn run(options: &Options) -> Result<(), Failure> {
         }
         "page" => return write_page(options),
         "fit" => return fit::run(&options.real()?, options),
+        "automatic" => {
+            let cases = if options.generated { options.chosen(cases::generated()) } else { options.real()? };
+            automatic::table(&options.on_all(&cases, |case| automatic::measure(case, options))?)
+        }
         "objects" => {
             let cases = options.chosen(objects::cases());
             objects::table(&options.on_all(&cases, |case| objects::measure(case, options))?, false)

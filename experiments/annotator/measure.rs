@@ -60,16 +60,11 @@ pub(crate) fn figures_of(case: &Case, data: &Data, automatic: Session<'_>, optio
     let (count, pixels) = (truths.len(), truths[0].len());
     dump::write(options, case, "auto", data, &automatic.labels)?;
 
-    let mut areas = [0usize; 256];
-    automatic.labels.iter().flatten().for_each(|&label| areas[usize::from(label)] += 1);
-    // The first of equals.
-    let background = (0..=u8::MAX).rev().max_by_key(|&label| areas[usize::from(label)]).unwrap_or(0);
+    let (_, background) = areas(&automatic.labels);
     let moving = |labels: &Vec<u8>| labels.iter().map(|&label| label != background && label != NOTHING_SAID).collect();
     let auto = mean(&each(&automatic.labels.iter().map(moving).collect::<Vec<_>>(), &truths));
-    let of = |label: u8| mean(&each(&masks(&automatic.labels, label), &truths));
-    let there = (0..NOTHING_SAID).filter(|&label| label != background && areas[usize::from(label)] > 0);
-    let best = there.map(|label| (label, of(label))).reduce(|a, b| if b.1 > a.1 { b } else { a });
-    let (label, click) = best.unwrap_or_else(|| (NEW, mean(&each(&vec![vec![false; pixels]; count], &truths))));
+    let (label, click) = best_label(&automatic.labels, &truths)
+        .unwrap_or_else(|| (NEW, mean(&each(&vec![vec![false; pixels]; count], &truths))));
     let label = if click < FITS { NEW } else { label };
 
     let mut session = automatic.clone();
@@ -100,15 +95,32 @@ pub(crate) fn figures_of(case: &Case, data: &Data, automatic: Session<'_>, optio
     Ok(Row { clip, quality, frames: count, auto, click, mask, rounds, round_seconds, frame_milliseconds, baseline })
 }
 
+/// Pixels of every label, and the label with most of them, the background's.
+fn areas(labels: &[Vec<u8>]) -> ([usize; 256], u8) {
+    let mut areas = [0usize; 256];
+    labels.iter().flatten().for_each(|&label| areas[usize::from(label)] += 1);
+    // The first of equals.
+    let background = (0..=u8::MAX).rev().max_by_key(|&label| areas[usize::from(label)]).unwrap_or(0);
+    (areas, background)
+}
+
+/// The label that fits best over the clip, and its J, if there is one beside the background's.
+pub(crate) fn best_label(labels: &[Vec<u8>], truths: &[Vec<bool>]) -> Option<(u8, f64)> {
+    let (areas, background) = areas(labels);
+    let of = |label: u8| mean(&each(&masks(labels, label), truths));
+    let there = (0..NOTHING_SAID).filter(|&label| label != background && areas[usize::from(label)] > 0);
+    there.map(|label| (label, of(label))).reduce(|a, b| if b.1 > a.1 { b } else { a })
+}
+
 /// J between the first and the last frame of what OpenCV made of the first mask, if it ran.
 fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -> Result<Option<f64>, Failure> {
     let found = crate::cases::labels(&options.out.join("baseline").join(&case.name), data)?;
     Ok(found.map(|labels| between(&masks(&labels, 1), truths)))
 }
 
-/// Clips that belong together in the tables.
-fn groups(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
-    let old = |row: &&Row| OLD.contains(&row.clip.as_str());
+/// Clips that belong together in the tables, by the name of each.
+pub(crate) fn groups_of<R>(rows: &[R], name: impl Fn(&R) -> &str) -> Vec<(&'static str, Vec<&R>)> {
+    let old = |row: &&R| OLD.contains(&name(row));
     let groups = [
         ("all", rows.iter().collect::<Vec<_>>()),
         ("old", rows.iter().filter(old).collect()),
@@ -152,6 +164,6 @@ pub(crate) fn table(rows: &[Row], clips: bool) -> String {
         rows.iter().for_each(|row| line(&row.clip, &[row]));
         return text;
     }
-    groups(rows).iter().for_each(|(name, rows)| line(&format!("{name} ({})", rows.len()), rows));
+    groups_of(rows, |row| &row.clip).iter().for_each(|(name, rows)| line(&format!("{name} ({})", rows.len()), rows));
     text
 }

@@ -42,9 +42,17 @@ impl<'a> Session<'a> {
         quality: Quality,
         pairs: &Path,
     ) -> std::result::Result<Session<'a>, Failure> {
-        fs::create_dir_all(pairs)?;
         let pair = SegmentOptions { quality, ..SegmentOptions::default() };
-        let mut segmenter = ClipSegmenter::new(ClipOptions { pair, ..ClipOptions::default() })?;
+        Session::open_with(ClipSegmenter::new(ClipOptions { pair, ..ClipOptions::default() })?, frames, pairs)
+    }
+
+    /// The same with a segmenter that has no frames yet.
+    pub(crate) fn open_with(
+        mut segmenter: ClipSegmenter,
+        frames: &'a [Frame],
+        pairs: &Path,
+    ) -> std::result::Result<Session<'a>, Failure> {
+        fs::create_dir_all(pairs)?;
         for (index, frame) in frames.iter().enumerate() {
             let file = pairs.join(index.to_string());
             let known = fs::read(&file).ok().and_then(|bytes| FramePairs::from_bytes(&bytes).ok());

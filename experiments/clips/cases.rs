@@ -70,6 +70,19 @@ type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// All clips, those of `shared` only if it is there; with `quick` every fourth of the generated clips and none of the real ones.
 pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
+    let mut cases = generated();
+    if quick {
+        cases.retain(|case| case.in_ablation);
+    }
+    let real = shared.join("data").join("clips");
+    if !quick && real.is_dir() {
+        cases.extend(of_folders(&real)?);
+    }
+    Ok(cases)
+}
+
+/// The generated clips.
+pub(crate) fn generated() -> Vec<Case> {
     let mut cases = Vec::new();
     for (k, (events, objects)) in GENERATED.into_iter().enumerate() {
         let seed = SEED + k as u64;
@@ -78,16 +91,9 @@ pub(crate) fn all(shared: &Path, quick: bool) -> Result<Vec<Case>> {
             ClipSceneOptions { frames, objects, events: events.to_vec(), seed, ..ClipSceneOptions::default() };
         let words = events.iter().map(|&event| word(event)).collect::<Vec<_>>().join("-");
         let name = format!("{seed}-{}", if words.is_empty() { "plain" } else { &words });
-        let fourth = k % 4 == 2;
-        if !quick || fourth {
-            cases.push(Case::generated(name, options, fourth));
-        }
+        cases.push(Case::generated(name, options, k % 4 == 2));
     }
-    let real = shared.join("data").join("clips");
-    if !quick && real.is_dir() {
-        cases.extend(of_folders(&real)?);
-    }
-    Ok(cases)
+    cases
 }
 
 /// The real clips in the folders of `real`.
