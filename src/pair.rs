@@ -149,7 +149,7 @@ struct Search {
 
 impl Search {
     fn new(pair: Pair, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search {
-        let Solved { pair, labelled, .. } = background::solve(pair, &[], settings, stages);
+        let Solved { pair, labelled } = background::solve(pair, &[], settings, stages);
         Search { mirror, pair, labelled }
     }
 

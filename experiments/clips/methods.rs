@@ -42,9 +42,7 @@ impl Method {
         Method::Knn,
     ];
 
-    pub(crate) const ABLATIONS: [Method; 7] = [
-        Method::Without(ClipPart::MirrorImages),
-        Method::Without(ClipPart::WarmStart),
+    pub(crate) const ABLATIONS: [Method; 5] = [
         Method::Without(ClipPart::BothDirections),
         Method::Without(ClipPart::Carrying),
         Method::Without(ClipPart::Colours),
@@ -67,8 +65,6 @@ impl Method {
             Method::Flow => "flow",
             Method::Mog2 => "mog2",
             Method::Knn => "knn",
-            Method::Without(ClipPart::MirrorImages) => "no-mirror-images",
-            Method::Without(ClipPart::WarmStart) => "no-warm-start",
             Method::Without(ClipPart::BothDirections) => "no-both-directions",
             Method::Without(ClipPart::Carrying) => "no-carrying",
             Method::Without(ClipPart::Colours) => "no-colours",
@@ -88,8 +84,6 @@ impl Method {
             Method::Flow => "OpenCV, DIS flow",
             Method::Mog2 => "OpenCV, MOG2",
             Method::Knn => "OpenCV, KNN",
-            Method::Without(ClipPart::MirrorImages) => "without mirror images",
-            Method::Without(ClipPart::WarmStart) => "without a warm start",
             Method::Without(ClipPart::BothDirections) => "without the evidence of backward pairs",
             Method::Without(ClipPart::Carrying) => "without the evidence of other frames",
             Method::Without(ClipPart::Colours) => "without colours",

@@ -19,7 +19,7 @@ use crate::labelling::solver::MAX_LABELS;
 use crate::order::{descending, sort_few};
 use object::{Apart, Object};
 use sharing::share;
-use sight::{Sight, is_still, telling};
+use sight::{Sight, telling};
 
 // The constants below were set by hand on ten real clips and on tests/clip.rs, and were not varied.
 
@@ -101,7 +101,8 @@ impl Identities {
         };
         let return_flow = last.onward.as_ref().filter(|flow| flow.measured);
         let mut carried = carried_labels(labels, back, return_flow, UNKNOWN);
-        if !is_still(back) {
+        // Where nothing is seen to move, an object may be hidden.
+        if !record.repeats {
             self.objects.iter_mut().for_each(Object::move_on);
             self.follow_velocities(labels, mask, record.size()[0], &mut carried);
         }

@@ -15,6 +15,8 @@ pub(crate) struct Record {
     pub(crate) index: usize,
     /// In a stream, which describes a frame when it leaves.
     pub(crate) frame: Option<Rc<Frame>>,
+    /// Whether it shows the frame before again.
+    pub(crate) repeats: bool,
     /// Quantised colour of every working pixel.
     pub(crate) palette: Palette,
     /// Prices of borders between labels, in units of the smoothness. They take less memory than the pictures whose edges they follow.

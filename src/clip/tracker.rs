@@ -9,20 +9,15 @@ use super::record::{Record, unit_borders};
 use super::round::{Foreground, Round};
 use super::{ClipOptions, MAX_LOOK_AHEAD};
 use crate::error::{Error, Result};
-use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::options::Quality;
 use crate::pair::settings::Settings;
-use crate::pair::solution::{Prior, Solution, solve};
-use crate::workspace::{self, Buffer};
+use crate::pair::solution::{Expected, Prior, Solution, solve};
+use crate::workspace;
 
-/// Frames that a frame of a whole clip waits for, half of them in each round. Evidence from eight frames away has decayed to a sixth in
-/// the first round and to a seventeenth in the second.
+/// Frames that a frame of a whole clip waits for, half of them in each round. Evidence from eight frames away has decayed to a sixth.
 const WHOLE_CLIP: usize = 16;
-/// Share of a frame's evidence that is left a frame later, in each round. Of ten real clips, .9 for the first and .85 for the second
-/// change J by less than .001.
-const DECAYS: [f32; 2] = [0.8, 0.7];
 /// Weight of the pairs' odds in the second round; on ten real clips .8 costs .003 J, …
 const SECOND_ROUND_ODDS: f32 = 0.5;
 /// … and what the cut of the first round adds for or against an object, nats; 2.5 costs .003.
@@ -32,10 +27,6 @@ const FIRST_CUT: f32 = 1.5;
 /// covered by semantic versioning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipPart {
-    /// Mirror images of the frames, in which pairs are searched by turns.
-    MirrorImages,
-    /// Motions of the pair before as candidates.
-    WarmStart,
     /// Evidence of the pair with the frame before; its motions are still used.
     BothDirections,
     /// Evidence of other frames.
@@ -62,7 +53,7 @@ pub(crate) struct Tracker {
     last: Option<Newest>,
     /// Whether the newest frame waits for its pair with the next one.
     waits: bool,
-    /// What is expected of the next pair.
+    /// What a fast stream expects of the next pair.
     prior: Option<Prior>,
     rounds: [Round; 2],
     identities: Identities,
@@ -73,6 +64,8 @@ pub(crate) struct Tracker {
 struct Newest {
     frame: Rc<Frame>,
     pyramid: Rc<FramePyramid>,
+    /// Whether it shows the frame before again.
+    repeats: bool,
     /// Odds and flow of the pair with the frame before.
     back: Option<(Plane, Flow)>,
 }
@@ -101,7 +94,7 @@ impl Tracker {
         let delays = options.look_ahead.map_or([WHOLE_CLIP / 2; 2], |frames| [frames, 0]);
         let solver = Settings::solver(options.pair.quality);
         let [carrying, colours] = [ClipPart::Carrying, ClipPart::Colours].map(|part| without == Some(part));
-        let rounds = [0, 1].map(|k| Round::new(DECAYS[k], delays[k], solver).without(carrying, colours));
+        let rounds = [0, 1].map(|k| Round::new(delays[k], solver).without(carrying, colours));
         let identities = Identities::new();
         Ok(Tracker {
             options,
@@ -139,32 +132,20 @@ impl Tracker {
         let _call = workspace::begin(size);
         let settings = self.options.settings(size);
         let pyramid = Rc::new(settings.pyramid(&frame));
-        let newest = Newest { frame: Rc::new(frame), pyramid, back: None };
+        let mut newest = Newest { frame: Rc::new(frame), pyramid, repeats: false, back: None };
         let Some(last) = self.last.take() else {
             self.waits = self.options.look_ahead != Some(0);
             self.last = Some(newest.clone());
             let tracked = if self.waits { None } else { self.advance(newest, None, None) };
             return Ok((tracked, Pairs::default()));
         };
+        newest.repeats = last.frame.colours() == newest.frame.colours();
         let pairs = known.unwrap_or_else(|| match self.options.look_ahead {
-            _ if last.frame.colours() == newest.frame.colours() => self.repeated(&newest, &settings),
-            None => self.both_ways(&last, &newest, &settings),
+            _ if newest.repeats => self.repeated(&newest, &settings),
+            None => both_ways(&last, &newest, &settings),
             Some(_) => self.backward(&last, &newest, &settings),
         });
         Ok((self.take(last, newest, pairs.clone()), pairs))
-    }
-
-    /// In a whole clip a frame has a pair with each of its neighbours.
-    fn both_ways(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-        let [mirror, other] = self.mirrors(settings);
-        let onward = self.solve(mirror, [last, newest], self.prior.as_ref(), None, settings);
-        let back = self.solve(other, [newest, last], Some(&onward.reversed()), None, settings);
-        if onward.is_cut() && back.is_cut() {
-            return Pairs::default();
-        }
-        let prior = Some(back.reversed());
-        let [onward, back] = [onward, back].map(|solution| Some((odds(&solution), flow(solution))));
-        Pairs { onward, back, prior }
     }
 
     /// A frame that is repeated, as where the rate of frames was raised, has the flow of a scene at rest but says nothing of what moves. The
@@ -176,18 +157,19 @@ impl Tracker {
         Pairs { onward, back: Some(told()), prior: self.prior.clone() }
     }
 
-    /// In a stream a frame has its pair with the frame before, near what was found there. Only the first frame may wait for the next.
+    /// In a stream a frame has its pair with the frame before; a fast one follows what was found there. Only the first frame may wait for the next.
     fn backward(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
-        let [mirror, other] = self.mirrors(settings);
-        // A fast stream follows what moves as the frame before did.
-        let followed = last.back.as_ref().filter(|_| settings.follows && self.has(ClipPart::WarmStart));
-        let expected = followed.map(|(_, flow)| continued_labels(flow));
-        let back = self.solve(mirror, [newest, last], self.prior.as_ref(), expected, settings);
+        let labels = last.back.as_ref().map(|(_, flow)| continued_labels(flow));
+        let expected = match (&self.prior, labels) {
+            (Some(prior), Some(labels)) => Expected::Labels(prior, labels),
+            _ => Expected::Nothing,
+        };
+        let back = solve_view([newest, last], settings, expected);
         if back.is_cut() {
             return Pairs::default();
         }
-        let onward = self.waits.then(|| self.solve(other, [last, newest], None, None, settings));
-        let prior = Some(back.prior());
+        let onward = self.waits.then(|| solve_view([last, newest], settings, Expected::Nothing));
+        let prior = back.prior();
         let [onward, back] = [onward, Some(back)].map(|view| view.map(|solution| (odds(&solution), flow(solution))));
         Pairs { onward, back, prior }
     }
@@ -195,36 +177,6 @@ impl Tracker {
     /// Whether a part takes part.
     pub(crate) fn has(&self, part: ClipPart) -> bool {
         self.without != Some(part)
-    }
-
-    /// The mirror images in which the newest pair is solved, and the same frames the other way round. Where the evidence is weak, what a
-    /// search finds depends on the order of the pixels. The image changes from pair to pair, so that this averages out along the clip.
-    fn mirrors(&self, settings: &Settings) -> [Mirror; 2] {
-        if !(settings.mirror_images && self.has(ClipPart::MirrorImages)) {
-            return [Mirror::ALL[0]; 2];
-        }
-        let k = self.count % Mirror::ALL.len();
-        [Mirror::ALL[k], Mirror::ALL[Mirror::ALL.len() - 1 - k]]
-    }
-
-    fn solve(
-        &self,
-        mirror: Mirror,
-        [first, second]: [&Newest; 2],
-        prior: Option<&Prior>,
-        expected: Option<Buffer<u8>>,
-        settings: &Settings,
-    ) -> Solution {
-        let prior = prior.filter(|_| self.has(ClipPart::WarmStart));
-        if mirror == Mirror::ALL[0] {
-            return solve(&first.frame, &first.pyramid, &second.pyramid, settings, prior, expected);
-        }
-        let size = settings.working_size([first.frame.width(), first.frame.height()]);
-        let prior = prior.map(|prior| prior.mirrored(mirror, size));
-        let [first, second] = [first, second].map(|newest| mirror.frame(&newest.frame));
-        let [pyramid, other] = [&first, &second].map(|frame| settings.pyramid(frame));
-        // Only the best quality has mirror images, and only a fast stream follows labels.
-        solve(&first, &pyramid, &other, settings, prior.as_ref(), None).mirrored(mirror, size)
     }
 
     /// Goes on with what the pairs of the last frame and the newest one have told.
@@ -277,7 +229,7 @@ impl Tracker {
     /// Hands a frame to the rounds, with what is known of its way to the next one.
     fn advance(
         &mut self,
-        Newest { frame, pyramid, back }: Newest,
+        Newest { frame, pyramid, repeats, back }: Newest,
         onward_odds: Option<Plane>,
         onward: Option<Flow>,
     ) -> Option<Tracked> {
@@ -301,7 +253,7 @@ impl Tracker {
         let appearance = pyramid.appearance(&frame);
         let (palette, unit_borders) = (appearance.palette.clone(), unit_borders(appearance));
         let frame = Some(frame).filter(|_| self.keeps_frames);
-        let record = Rc::new(Record { index: self.count, frame, palette, unit_borders, onward, back });
+        let record = Rc::new(Record { index: self.count, frame, repeats, palette, unit_borders, onward, back });
         self.count += 1;
         let foreground = self.rounds[0].push(record, odds)?;
         self.second_round(foreground)
@@ -336,4 +288,20 @@ impl Tracker {
         };
         Tracked { record, labels, odds, goes_on }
     }
+}
+
+/// In a whole clip a frame has a pair with each of its neighbours.
+fn both_ways(last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
+    let onward = solve_view([last, newest], settings, Expected::Nothing);
+    let back = solve_view([newest, last], settings, Expected::Motions(&onward.reversed()));
+    if onward.is_cut() && back.is_cut() {
+        return Pairs::default();
+    }
+    let [onward, back] = [onward, back].map(|solution| Some((odds(&solution), flow(solution))));
+    Pairs { onward, back, prior: None }
+}
+
+/// What the first of two frames shows when it is compared with the second.
+fn solve_view([first, second]: [&Newest; 2], settings: &Settings, expected: Expected<'_>) -> Solution {
+    solve(&first.frame, &first.pyramid, &second.pyramid, settings, expected)
 }

@@ -44,23 +44,26 @@ pub struct ClipSegmenter {
     frames: Vec<FrameState>,
     /// Of every frame so far.
     hashes: Vec<u64>,
-    /// Of what the pairs of the newest frame follow from: the options and all frames so far.
-    history: u64,
+    /// Of the options.
+    options: u64,
+    /// Of what the pairs of the newest frame follow from.
+    origin: u64,
 }
 
-/// What the pairs of a frame have told: nearly all the work of [`ClipSegmenter::push`].
+/// What the pairs of a frame with the one before have told: nearly all the work of [`ClipSegmenter::push`].
 ///
-/// A clip that was interrupted goes on from there: [`ClipSegmenter::push_known`] does not solve the frame's pairs again.
+/// A clip that was interrupted goes on from there: [`ClipSegmenter::push_known`] does not solve the frame's pairs again. Without a look-ahead
+/// they follow from the two frames and the options alone, so that several segmenters can each solve a part of a clip for another one.
 #[derive(Clone, Debug)]
 pub struct FramePairs {
-    history: u64,
+    origin: u64,
     pairs: KeptPairs,
 }
 
-saved!(FramePairs { history, pairs });
+saved!(FramePairs { origin, pairs });
 
 /// The bytes of [`FramePairs`] and of a [`SegmentedClip`].
-const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR3 ", env!("CARGO_PKG_VERSION"), "\n") };
+const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR4 ", env!("CARGO_PKG_VERSION"), "\n") };
 const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP4 ", env!("CARGO_PKG_VERSION"), "\n") };
 
 impl FramePairs {
@@ -102,8 +105,8 @@ impl ClipSegmenter {
         let ClipOptions { pair: SegmentOptions { motions, quality, .. }, look_ahead } = *tracker.options();
         let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
         let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
-        let history = hash(0, &[motions, u8::from(quality == Quality::Best), look_ahead]);
-        Ok(ClipSegmenter { tracker, frames: Vec::new(), hashes: Vec::new(), history })
+        let options = hash(0, &[motions, u8::from(quality == Quality::Best), look_ahead]);
+        Ok(ClipSegmenter { tracker, frames: Vec::new(), hashes: Vec::new(), options, origin: options })
     }
 
     /// Takes the next frame. What it returns need not be kept.
@@ -112,14 +115,14 @@ impl ClipSegmenter {
     /// [`Error::FrameSizeMismatch`]; the clip may go on with another frame.
     pub fn push(&mut self, frame: Frame) -> Result<FramePairs> {
         let pairs = self.take(frame, None)?;
-        Ok(FramePairs { history: self.history, pairs: pairs.kept() })
+        Ok(FramePairs { origin: self.origin, pairs: pairs.kept() })
     }
 
     /// Takes the next frame, whose pairs were solved before by [`push`](Self::push).
     ///
     /// # Errors
     /// [`Error::FrameSizeMismatch`], and [`Error::InvalidOption`] for pairs that were not solved with these options, of this frame and
-    /// all those before it; the frame can be pushed then.
+    /// the one before it, with a look-ahead all those before it; the frame can be pushed then.
     pub fn push_known(&mut self, frame: Frame, pairs: &FramePairs) -> Result<()> {
         self.take(frame, Some(pairs)).map(|_| ())
     }
@@ -127,17 +130,21 @@ impl ClipSegmenter {
     fn take(&mut self, frame: Frame, known: Option<&FramePairs>) -> Result<Pairs> {
         let size = [frame.width(), frame.height()];
         let own = frame.hash();
-        let history = hash(self.history, &own.to_le_bytes());
+        // A stream follows what it found in the frames before.
+        let before = match (self.tracker.options().look_ahead, self.hashes.last()) {
+            (None, Some(last)) => hash(self.options, &last.to_le_bytes()),
+            _ => self.origin,
+        };
+        let origin = hash(before, &own.to_le_bytes());
         let working = self.tracker.options().settings(size).working_size(size);
-        let is_of_these =
-            |known: &FramePairs| known.history == history && known.pairs.is_valid(working[0] * working[1]);
+        let is_of_these = |known: &FramePairs| known.origin == origin && known.pairs.is_valid(working[0] * working[1]);
         if !known.is_none_or(is_of_these) {
             return Err(invalid("pairs", "they are of other frames or options"));
         }
         let (tracked, pairs) = self.tracker.push(frame, known.map(|known| known.pairs.pairs(working)))?;
         self.frames.extend(tracked.map(FrameState::new));
         self.hashes.push(own);
-        self.history = history;
+        self.origin = origin;
         Ok(pairs)
     }
 

@@ -18,11 +18,10 @@ use crate::progress::Stages;
 /// on plain ground, and less than 45 % of nearly all pairs of 30 real sequences with moving cameras.
 const EXPECTED: f32 = 0.8;
 
-/// A pair whose change of brightness is removed, its labels, and the cost of the motions that were selected.
+/// A pair whose change of brightness is removed, and its labels.
 pub(super) struct Solved {
     pub(super) pair: Pair,
     pub(super) labelled: Labelled,
-    pub(super) cost: f64,
 }
 
 /// Solves a pair under the hypothesis with the shorter description. `likely` are motions of objects to look for.
@@ -55,12 +54,12 @@ fn under(
     settings: &Settings,
     stages: &mut Stages<'_>,
 ) -> Solved {
-    let (found, cost) = with_dominant(&pair, background, likely, settings, stages);
+    let found = with_dominant(&pair, background, likely, settings, stages);
     stages.begin("refinement");
     let found = refine(&pair, found, settings);
     stages.begin("labels");
     let labelled = label(&pair, found, settings);
-    Solved { pair, labelled, cost }
+    Solved { pair, labelled }
 }
 
 /// Whether noise explains half of the pixels at rest.

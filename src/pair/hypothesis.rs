@@ -105,35 +105,20 @@ fn cost_of(selected: &[ScoredMotion]) -> f64 {
     total(&smallest_cost(selected))
 }
 
-/// The motions selected among those expected, without a search for others, and their cost. The first is the dominant one.
-pub(super) fn expected(
-    pair: &Pair,
-    dominant: AffineMotion,
-    objects: &[AffineMotion],
-    settings: &Settings,
-) -> (Found, f64) {
-    let level = &pair.levels[pair.selection];
-    let mut selected = vec![ScoredMotion::new(level, dominant)];
-    let runner_up = add_motions(level, &mut selected, objects, settings.deflation(0));
-    settings.refit(level, &mut selected, 1);
-    let cost = cost_of(&selected);
-    (Found { selected, runner_up }, cost)
-}
-
 /// Motions that were found at another size, scaled to this one. The first is the dominant one.
 pub(super) fn known(pair: &Pair, motions: &[AffineMotion], runner_up: Option<AffineMotion>) -> Found {
     let level = &pair.levels[pair.selection];
     Found { selected: motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect(), runner_up }
 }
 
-/// The motions selected beside the dominant one, and their cost.
+/// The motions selected beside the dominant one.
 pub(super) fn with_dominant(
     pair: &Pair,
     dominant: AffineMotion,
     others: &[AffineMotion],
     settings: &Settings,
     stages: &mut Stages<'_>,
-) -> (Found, f64) {
+) -> Found {
     let level = &pair.levels[pair.base];
     stages.begin("measurements");
     let flow = local_flow(&pair.levels, &dominant, pair.base);
@@ -151,8 +136,7 @@ pub(super) fn with_dominant(
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(0));
     settings.refit(level, &mut selected, ROUNDS[0]);
-    let cost = cost_of(&selected);
-    (Found { selected, runner_up }, cost)
+    Found { selected, runner_up }
 }
 
 /// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels.

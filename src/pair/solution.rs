@@ -3,7 +3,6 @@
 use super::background::{self, Solved};
 use super::settings::Settings;
 use super::{Pair, hypothesis, labels};
-use crate::frame::mirror::Mirror;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
@@ -26,10 +25,8 @@ pub(crate) struct Solution {
     pub(crate) probabilities: Vec<Plane>,
     /// The group of every motion, named by its smallest label: motions of one rigid background share one.
     pub(crate) groups: Vec<usize>,
-    /// Cost up to which its motions are enough for the pair that follows.
-    enough: f64,
-    /// Cost after the last search.
-    searched: f64,
+    /// What a fast stream expects of the next pair.
+    prior: Option<Prior>,
     /// Mean of the smallest cost of any motion, as a share of the largest cost there is.
     unexplained: f32,
 }
@@ -44,32 +41,25 @@ impl Solution {
     }
 }
 
-/// What is expected of a pair.
+/// What a fast stream expects of a pair: that everything keeps its motion.
 #[derive(Clone, Debug)]
 pub(crate) struct Prior {
     /// Motions, pixels of the working size; the first is that of the background.
     pub(crate) motions: Vec<AffineMotion>,
-    /// Cost up to which these motions are enough. Else a search adds others.
+    /// Cost up to which these motions are enough.
     pub(crate) enough: f64,
     /// Cost after the last search. Motions that are followed are searched anew at the latest when they cost much more.
     pub(crate) searched: f64,
 }
 
-/// Expected motions are enough where they cost no more than this share more than expected. Not varied.
-const TOLERANCE: f64 = 0.05;
-/// The same for motions that are followed without a look at others. Chosen on ten real clips: .05 costs .006 J.
-const TOLERANCE_FOLLOWED: f64 = 0.02;
-/// Motions that are followed may cost this share more than after the last search as long as none is found missing. Chosen on ten real clips: .1
+/// Motions are followed without a look at others where they cost no more than this share more than expected. Chosen on ten real clips: .05
+/// costs .006 J.
+const TOLERANCE: f64 = 0.02;
+/// They may cost this share more than after the last search as long as none is found missing. Chosen on ten real clips: .1
 /// costs .017 J there, and nothing in generated ones.
 const TOLERANCE_SEARCHED: f64 = 0.05;
 
 impl Prior {
-    /// What is expected of a mirror image of the frames. `size` is the working size.
-    pub(crate) fn mirrored(&self, mirror: Mirror, size: [usize; 2]) -> Prior {
-        let motions = self.motions.iter().map(|motion| mirror.motion(motion, size)).collect();
-        Prior { motions, ..*self }
-    }
-
     /// Whether a prior from outside the program can be used.
     pub(crate) fn is_valid(&self) -> bool {
         !self.motions.is_empty() && self.motions.iter().all(AffineMotion::is_finite)
@@ -77,68 +67,52 @@ impl Prior {
 }
 
 impl Solution {
-    /// The solution of a mirror image of the frames, as that of the frames themselves. `size` is the working size.
-    pub(crate) fn mirrored(mut self, mirror: Mirror, size: [usize; 2]) -> Solution {
-        self.motions.iter_mut().for_each(|motion| *motion = mirror.motion(motion, size));
-        mirror.reorder(&mut self.labels, size[0]);
-        self.probabilities.iter_mut().for_each(|plane| mirror.reorder(plane.values_mut(), size[0]));
-        self
+    /// What a fast stream expects of the next pair.
+    pub(crate) fn prior(&self) -> Option<Prior> {
+        self.prior.clone()
     }
 
-    /// What to expect of a pair in which everything keeps its motion; no search where that explains it about as well.
-    pub(crate) fn prior(&self) -> Prior {
-        Prior { motions: self.motions.clone(), enough: self.enough, searched: self.searched }
-    }
-
-    /// What to expect of the pair the other way round. There is always a search.
-    pub(crate) fn reversed(&self) -> Prior {
-        let motions = self.motions.iter().map(|motion| inverse(motion).unwrap_or(*motion)).collect();
-        Prior { motions, enough: f64::NEG_INFINITY, searched: f64::NEG_INFINITY }
+    /// The motions of its objects, the other way round.
+    pub(crate) fn reversed(&self) -> Vec<AffineMotion> {
+        self.motions[BACKGROUND + 1..].iter().map(|motion| inverse(motion).unwrap_or(*motion)).collect()
     }
 }
 
-/// Solves the pair of a frame and another one, whose pyramid is `second`. The motions of a prior are candidates, and all there are where
-/// they explain the pair; `expected` are labels of these motions that are likely to go on.
+/// What is known before a pair is solved.
+pub(crate) enum Expected<'a> {
+    Nothing,
+    /// Objects may have these motions.
+    Motions(&'a [AffineMotion]),
+    /// The labels of a prior's motions are likely to go on. Where they do not explain the pair, its motions are candidates.
+    Labels(&'a Prior, Buffer<u8>),
+}
+
+/// Solves the pair of a frame and another one, whose pyramid is `second`.
 pub(crate) fn solve(
     first: &Frame,
     pyramid: &FramePyramid,
     second: &FramePyramid,
     settings: &Settings,
-    prior: Option<&Prior>,
-    expected: Option<Buffer<u8>>,
+    expected: Expected<'_>,
 ) -> Solution {
     let mut ignored = |_| {};
     let mut stages = Stages::new(super::STAGES, &mut ignored);
     let mut pair = Pair::new(first, pyramid, second, None, settings);
-    let likely = prior.map_or(&[][..], |prior| &prior.motions[BACKGROUND + 1..]);
-    let prior = prior.filter(|prior| prior.enough > 0.0);
-    let (labelled, [enough, searched]) = match (prior, expected) {
+    let (likely, followed) = match expected {
+        Expected::Nothing => (&[][..], None),
+        Expected::Motions(motions) => (motions, None),
         // Frames so narrow that they are not halved to the size of drafts are not followed.
-        (Some(prior), Some(labels)) if pair.draft == 0 && pair.selection == 0 => {
-            follow(&mut pair, prior, labels, settings)
-        }
-        (Some(prior), _) => {
-            let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], settings.dominant_search());
-            let (found, cost) = hypothesis::expected(&pair, dominant, likely, settings);
-            let is_enough = cost < prior.enough + settings.price[0];
-            is_enough.then(|| {
-                let found = hypothesis::refine(&pair, found, settings);
-                (labels::label(&pair, found, settings), [(1.0 + TOLERANCE) * cost, cost])
-            })
-        }
-        _ => None,
-    }
-    .unwrap_or_else(|| {
-        let Solved { pair: solved, labelled, cost } =
+        Expected::Labels(prior, labels) => (
+            &prior.motions[BACKGROUND + 1..],
+            (pair.draft == 0 && pair.selection == 0).then(|| follow(&mut pair, prior, labels, settings)).flatten(),
+        ),
+    };
+    let (labelled, limits) = followed.unwrap_or_else(|| {
+        let Solved { pair: solved, labelled } =
             background::solve(Pair::new(first, pyramid, second, None, settings), likely, settings, &mut stages);
         pair = solved;
-        let limits = if settings.follows {
-            let cost = hypothesis::cost(&pair, &labelled.motions);
-            [(1.0 + TOLERANCE_FOLLOWED) * cost, cost]
-        } else {
-            [(1.0 + TOLERANCE) * cost, cost]
-        };
-        (labelled, limits)
+        let cost = if settings.follows { hypothesis::cost(&pair, &labelled.motions) } else { 0.0 };
+        (labelled, [(1.0 + TOLERANCE) * cost, cost])
     });
     let level = pair.finest();
     let costs = costs_where_seen(level, &labelled.motions);
@@ -147,15 +121,9 @@ pub(crate) fn solve(
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
     let probabilities = probabilities(&costs, &labelled.labels);
     let groups = groups(&labelled.motions, &labelled.labels, level.width(), pair.reduction);
-    Solution {
-        motions: labelled.motions,
-        labels: labelled.labels,
-        probabilities,
-        groups,
-        enough,
-        searched,
-        unexplained,
-    }
+    let [enough, searched] = limits;
+    let prior = settings.follows.then(|| Prior { motions: labelled.motions.clone(), enough, searched });
+    Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, prior, unexplained }
 }
 
 /// The labels and motions with which the expected ones go on, the cost up to which they are enough afterwards, and that after the last search;
@@ -172,9 +140,9 @@ fn follow(
     // Costs rise when a motion is missing, but also when more is occluded.
     let enough = if cost < prior.enough {
         // Else costs that rise little by little would never lead to a look for others.
-        prior.enough.min((1.0 + TOLERANCE_FOLLOWED) * cost)
+        prior.enough.min((1.0 + TOLERANCE) * cost)
     } else if cost < (1.0 + TOLERANCE_SEARCHED) * prior.searched && !hypothesis::is_missing(pair, &found, settings) {
-        (1.0 + TOLERANCE_FOLLOWED) * cost
+        (1.0 + TOLERANCE) * cost
     } else {
         return None;
     };
