@@ -185,15 +185,4 @@ impl<A: Saved, B: Saved> Saved for (A, B) {
 
 saved!(AffineMotion { matrix });
 
-/// Only streams follow motions; the pairs of a whole clip do not need the cost after the last search.
-impl Saved for Prior {
-    fn write(&self, bytes: &mut Vec<u8>) {
-        self.motions.write(bytes);
-        self.enough.write(bytes);
-    }
-
-    fn read(bytes: &mut &[u8]) -> Option<Prior> {
-        let (motions, enough) = Saved::read(bytes)?;
-        Some(Prior { motions, enough, searched: enough })
-    }
-}
+saved!(Prior { motions, enough, searched });

@@ -157,7 +157,8 @@ impl Tracker {
         Pairs { onward, back: Some(told()), prior: self.prior.clone() }
     }
 
-    /// In a stream a frame has its pair with the frame before; a fast one follows what was found there. Only the first frame may wait for the next.
+    /// In a stream a frame has its pair with the frame before; a fast one follows what was found there. Only the first frame may wait for the
+    /// next.
     fn backward(&self, last: &Newest, newest: &Newest, settings: &Settings) -> Pairs {
         let labels = last.back.as_ref().map(|(_, flow)| continued_labels(flow));
         let expected = match (&self.prior, labels) {
