@@ -258,7 +258,7 @@ impl ClipCorrection {
     /// Of one that another object takes over in some frame nothing needs to be said.
     fn speak(&self, clip: &mut SegmentedClip) {
         let size @ [width, height] = clip.working_size();
-        let step = clip.size()[0].div_ceil(width).next_power_of_two();
+        let step = clip.working_step();
         let mut named: Vec<[bool; 256]> = Vec::new();
         let mut erased: Vec<[bool; 256]> = Vec::new();
         let mut taken = [false; 256];
@@ -464,7 +464,7 @@ impl SegmentedClip {
     /// corner of.
     fn layer_of(&self, labels: &[u8], odds: &dyn Fn(usize, usize) -> f32) -> Option<Layer> {
         let ([width, height], [w, h]) = (self.size(), self.working_size());
-        let step = width.div_ceil(w).next_power_of_two();
+        let step = self.working_step();
         labels.iter().any(|&label| label != NOTHING_SAID).then(|| {
             let odds = Plane::from_fn(w, h, |x, y| {
                 let p = (y * step).min(height - 1) * width + (x * step).min(width - 1);

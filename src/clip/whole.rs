@@ -345,7 +345,7 @@ impl SegmentedClip {
         let found = working(&labels, &odds, false).labels;
         let full = self.overlaid(index, &found, &persons, &|label| self.numbers[usize::from(label)]);
         let [w, h] = self.working_size();
-        let step = self.size[0].div_ceil(w).next_power_of_two();
+        let step = self.working_step();
         let layer = state.layer.as_ref().map(|layer| layer.odds.odds(w, h)).zip(self.above(index));
         for p in 0..w * h {
             let q = (p / w * step).min(self.size[1] - 1) * self.size[0] + (p % w * step).min(self.size[0] - 1);
@@ -601,6 +601,11 @@ impl SegmentedClip {
     /// Width and height of the working size.
     pub(super) fn working_size(&self) -> [usize; 2] {
         self.settings().working_size(self.size)
+    }
+
+    /// Full-size pixels for each pixel of the working size, along a side.
+    pub(super) fn working_step(&self) -> usize {
+        self.size[0].div_ceil(self.working_size()[0]).next_power_of_two()
     }
 
     /// Labels and odds of a frame as the clip was segmented.

@@ -7,19 +7,7 @@ import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { PAIR, type Upload, chooseMotions, differences, done, expect, labelsOnCanvas, mergeWith, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
-
-type Place = readonly [number, number];
-
-/** Draws a stroke between two points of the picture, 0…1, without waiting for the result. */
-async function draw(page: Page, from: Place, to: Place): Promise<void> {
-  const box = (await page.locator('.layers').boundingBox())!;
-  const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
-  await page.mouse.move(...at(from));
-  await page.mouse.down();
-  await page.mouse.move(...at(to), { steps: 4 });
-  await page.mouse.up();
-}
+import { PAIR, type Place, type Upload, chooseMotions, differences, done, drag, expect, labelsOnCanvas, mergeWith, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
 
 /** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
 async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
@@ -124,7 +112,7 @@ test('a stroke that is undone while it is being applied stays undone', async ({ 
   await open(page);
   const found = await labelsOnCanvas(page);
   await brush(page, 1);
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await page.keyboard.press('Control+z');
   await done(page);
   await expect(page.locator('#status')).toHaveText('Undone.');
@@ -175,9 +163,9 @@ test('strokes, names, colours and undo are restored with their frames', async ({
   await rows.nth(1).locator('.motion-name').press('Enter');
   await rows.nth(1).locator('.swatch').fill('#112233');
   await brush(page, 1);
-  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
-  await draw(page, [0.8, 0.8], [0.9, 0.8]);
+  await drag(page, [0.8, 0.8], [0.9, 0.8]);
   await done(page);
   await page.locator('#undo').click();
   await rows.nth(1).locator('.swatch').fill(`#${PALETTE[1]!.map((c) => c.toString(16).padStart(2, '0')).join('')}`);
@@ -205,7 +193,7 @@ test('strokes, names, colours and undo are restored with their frames', async ({
 test('a stroke drawn just before a step is kept', async ({ page }) => {
   await openClip(page, await frames(4));
   await brush(page, 1);
-  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await page.keyboard.press('.'); // while it is being applied
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f2.png');
   await done(page);
@@ -241,7 +229,7 @@ test('corrections are restored when frames are opened again in any way', async (
   };
   await pair();
   await brush(page, 1);
-  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
 
   // Replaced and put back.
@@ -284,7 +272,7 @@ test('corrections survive the camera', async ({ page, context }) => {
   await withoutStorage(page);
   await open(page);
   await brush(page, 1);
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live/, { timeout: 20_000 });
   await expect(strokes(page)).toHaveCount(0);
@@ -301,7 +289,7 @@ test('corrections survive the camera', async ({ page, context }) => {
 test('corrections are scaled to another working size', async ({ page }) => {
   await openClip(page, await frames(3, 800, 480));
   await brush(page, 1);
-  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
   await openAdvanced(page);
   await page.getByLabel('Working size').selectOption('640');
@@ -319,7 +307,7 @@ test('strokes and names follow their masks to a result with other settings', asy
   await rows.nth(2).locator('.motion-name').fill('Car');
   await rows.nth(2).locator('.motion-name').press('Enter');
   await brush(page, 1);
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await done(page);
   const painted = await labelsOnCanvas(page);
 
@@ -358,7 +346,7 @@ test('leaving the page asks first only with unsaved corrections', async ({ page 
 
   await openClip(page, await frames(3));
   await brush(page, 1);
-  await draw(page, [0.8, 0.2], [0.9, 0.2]);
+  await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
   expect(await warns(page)).toBe(true);
   await step(page, 1, 'f2.png');
@@ -388,7 +376,7 @@ test('an exported file includes strokes that are still being applied', async ({ 
 test('a name that is being typed survives a new result', async ({ page }) => {
   await open(page);
   await brush(page, 1);
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
   const name = page.locator('#motions > li').nth(1).locator('.motion-name');
   await name.focus();
   await page.keyboard.press('Control+a');
@@ -407,12 +395,12 @@ test('a stroke has the colour of its mask, also of a merged one', async ({ page 
   await mergeWith(rows.nth(1), 0);
   await rows.nth(0).locator('.motion-words').click();
   await page.locator('#tools [value=brush]').check();
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await done(page);
   const colour = `rgb(${PALETTE[0]!.join(' ')})`;
   await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
   await page.locator('#tools [value=eraser]').check();
-  await draw(page, [0.7, 0.3], [0.8, 0.3]);
+  await drag(page, [0.7, 0.3], [0.8, 0.3]);
   await done(page);
   await expect(strokes(page).last()).toHaveAttribute('stroke', 'rgb(20 20 20)');
   await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
@@ -424,7 +412,7 @@ test('a stroke without effect is rejected with a message', async ({ page }) => {
   await done(page);
   await page.locator('#tools [value=eraser]').check();
   await page.locator('#motions > li').first().locator('.motion-words').click();
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await expect(page.locator('#notice')).toContainText('There is no other mask that these pixels could belong to.');
   await expect(strokes(page)).toHaveCount(0);
 });
@@ -443,7 +431,7 @@ test('the status describes the last action', async ({ page }) => {
   await expect(status).toHaveText(new RegExp(`^${groups - 1 === 1 ? 'One object' : `${groups - 1} objects`} found in [\\d.]+\\sm?s\\.$`));
 
   await brush(page, 1);
-  await draw(page, [0.7, 0.2], [0.8, 0.2]);
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await expect(status).toHaveText(/^Masks updated with your stroke in [\d.]+\sm?s\.$/);
   await page.locator('#undo').click();
   await expect(status).toHaveText('Undone.');

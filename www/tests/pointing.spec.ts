@@ -2,9 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { axe, clipFrames, differences, done, expect, labelsOnCanvas, open, test, upload } from './support.js';
-
-type Place = readonly [number, number];
+import { type Place, axe, clipFrames, differences, drag, expect, goTo, labelsOnCanvas, openSegmented, test } from './support.js';
 
 const [WIDTH, HEIGHT, RADIUS] = [200, 140, 0.16 * 140];
 
@@ -23,45 +21,13 @@ function overlap(labels: Uint8Array, own: number, frame: number): number {
   return both / either;
 }
 
-async function openSegmented(page: Page): Promise<void> {
-  await open(page, 'groups');
-  await upload(page, await clipFrames(8));
-  await expect(page.locator('#clip-name')).toContainText('8 frames');
-  await done(page);
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await settled(page);
-}
-
-async function settled(page: Page): Promise<void> {
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
-}
-
-async function goTo(page: Page, index: number): Promise<void> {
-  const track = page.getByRole('slider', { name: 'Current frame' });
-  const box = (await track.boundingBox())!;
-  const count = Number(await track.getAttribute('aria-valuemax')) + 1;
-  await track.click({ position: { x: ((index + 0.5) * box.width) / count, y: 10 } });
-  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
-  await done(page);
-}
-
-/** Drags between two points of the picture, 0…1. */
-async function drag(page: Page, from: Place, to: Place): Promise<void> {
-  const box = (await page.locator('.layers').boundingBox())!;
-  const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
-  await page.mouse.move(...at(from));
-  await page.mouse.down();
-  await page.mouse.move(...at(to), { steps: 4 });
-  await page.mouse.up();
-}
-
 const tool = (page: Page) => page.getByRole('radio', { name: 'Box: a new object' });
 /** Around the disc in frame 3, from corner to corner, and its middle. */
 const AROUND = [[0.13, 0.18], [0.39, 0.58]] as const;
 const MIDDLE: Place = [0.26, 0.38];
 
 test('a box makes a new object in its frame and in the others, and undo takes it back', async ({ page }) => {
-  await openSegmented(page);
+  await openSegmented(page, await clipFrames(8));
   await goTo(page, 3);
   const before = await labelsOnCanvas(page);
   const objects = page.locator('#objects > li');
@@ -90,7 +56,7 @@ test('a box makes a new object in its frame and in the others, and undo takes it
 });
 
 test('a press, and the keyboard, point to an object as well', async ({ page }) => {
-  await openSegmented(page);
+  await openSegmented(page, await clipFrames(8));
   await goTo(page, 3);
   const before = await labelsOnCanvas(page);
   const own = Math.max(...before) + 1;
@@ -127,7 +93,7 @@ test('a press, and the keyboard, point to an object as well', async ({ page }) =
 });
 
 test('objects one after another keep what they have, and a pair has no box', async ({ page }) => {
-  await openSegmented(page);
+  await openSegmented(page, await clipFrames(8));
   await goTo(page, 3);
   const own = Math.max(...(await labelsOnCanvas(page))) + 1;
   await tool(page).check();
@@ -147,7 +113,7 @@ test.describe('on a phone', () => {
   test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
   test('the tools are large enough, and a finger draws a box; two fingers draw none', async ({ page }) => {
-    await openSegmented(page);
+    await openSegmented(page, await clipFrames(8));
     await goTo(page, 3);
     for (const label of await page.locator('#tools fieldset label').all()) {
       const { width, height } = (await label.boundingBox())!;

@@ -6,7 +6,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openAdvanced, openExport, openSampleClip, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipFrames, clipInNode, differences, done, expect, goTo, labelsOnCanvas, open, openAdvanced, openExport, openSampleClip, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
@@ -60,15 +60,6 @@ function fileInBrowser(page: Page): Promise<string> {
 async function namesInBrowser(page: Page): Promise<unknown> {
   const { clip } = JSON.parse((await fileInBrowser(page)).split('\n')[1]!) as { clip: { names: unknown } };
   return clip.names;
-}
-
-async function goTo(page: Page, index: number): Promise<void> {
-  const track = page.getByRole('slider', { name: 'Current frame' });
-  const box = (await track.boundingBox())!;
-  const count = Number(await track.getAttribute('aria-valuemax')) + 1;
-  await track.click({ position: { x: ((index + 0.5) * box.width) / count, y: 10 } });
-  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
-  await done(page);
 }
 
 async function rename(page: Page, row: number, name: string): Promise<void> {

@@ -2,47 +2,12 @@
 
 import { type Page } from '@playwright/test';
 
-import { type Upload, axe, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, test, upload } from './support.js';
-
-type Place = readonly [number, number];
-
-/** Opens frames as a clip and segments it. */
-async function openSegmented(page: Page, files: Upload[]): Promise<void> {
-  await open(page, 'groups');
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
-  await done(page);
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await settled(page);
-}
-
-async function settled(page: Page): Promise<void> {
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
-}
-
-async function goTo(page: Page, index: number): Promise<void> {
-  const track = page.getByRole('slider', { name: 'Current frame' });
-  const box = (await track.boundingBox())!;
-  const count = Number(await track.getAttribute('aria-valuemax')) + 1;
-  await track.click({ position: { x: ((index + 0.5) * box.width) / count, y: 10 } });
-  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
-  await done(page);
-}
+import { axe, clipDone, clipFrames, clipInNode, differences, drag, expect, goTo, labelsOnCanvas, open, openSegmented, test, upload } from './support.js';
 
 /** The masks of a frame, shown. */
 async function masksOf(page: Page, index: number): Promise<Uint8Array> {
   await goTo(page, index);
   return labelsOnCanvas(page);
-}
-
-/** Draws a stroke between two points of the picture, 0…1. */
-async function paint(page: Page, from: Place, to: Place): Promise<void> {
-  const box = (await page.locator('.layers').boundingBox())!;
-  const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
-  await page.mouse.move(...at(from));
-  await page.mouse.down();
-  await page.mouse.move(...at(to), { steps: 4 });
-  await page.mouse.up();
 }
 
 async function selectNew(page: Page): Promise<void> {
@@ -81,8 +46,8 @@ test('frames are redrawn as a correction changes them, with its progress', async
     }).observe(document.querySelector('#clip-detail')!, { childList: true, characterData: true, subtree: true });
   });
   const before = await labelsOnCanvas(page);
-  await paint(page, ...OVER_DISC);
-  await settled(page);
+  await drag(page, ...OVER_DISC);
+  await clipDone(page);
   const told = await page.evaluate(() => (window as unknown as { told: string[] }).told);
   expect(told.length).toBeGreaterThan(1);
   expect(told[0]).toBe('Carrying your correction to other frames… 1 so far false');
@@ -108,8 +73,8 @@ test('a frame that is not the corrected one has its new masks before the correct
     new MutationObserver(() => requestAnimationFrame(look)).observe(document.querySelector('#clip-detail')!, { childList: true, characterData: true, subtree: true });
     document.querySelector('.layers')!.addEventListener('pointerup', () => document.querySelector<HTMLInputElement>('#look [value=second]')!.click());
   });
-  await paint(page, ...OVER_DISC);
-  await settled(page);
+  await drag(page, ...OVER_DISC);
+  await clipDone(page);
   const drawn = await page.evaluate(() => (window as unknown as { drawn: string[] }).drawn);
   expect(new Set(drawn).size).toBeGreaterThan(1);
 });
@@ -123,8 +88,8 @@ test('Escape takes back the correction that spreads, and nothing else', async ({
   const kept = [await masksOf(page, 12), await masksOf(page, 3)];
   await selectNew(page);
   await pressAtFirstChange(page, 'Escape');
-  await paint(page, ...OVER_DISC);
-  await settled(page);
+  await drag(page, ...OVER_DISC);
+  await clipDone(page);
   await expect(page.locator('#clip-status')).toHaveText('Undone.');
   await expect(page.locator('#clip-cancel')).toBeHidden();
   expect(differences(await labelsOnCanvas(page), kept[1]!)).toBe(0);
@@ -136,7 +101,7 @@ test('Escape takes back the correction that spreads, and nothing else', async ({
   await page.getByRole('button', { name: 'Redo' }).click();
   expect(differences(await labelsOnCanvas(page), kept[0]!)).toBe(0);
   await goTo(page, 3);
-  await paint(page, ...OVER_DISC);
+  await drag(page, ...OVER_DISC);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
   expect((await labelsOnCanvas(page))[DISC_IN_3]).toBe(3);
 });
@@ -158,7 +123,7 @@ async function twoStrokes(page: Page, key: 'Escape' | 'z'): Promise<Uint8Array> 
       });
     }
   }, [OVER_DISC, BESIDE]);
-  await settled(page);
+  await clipDone(page);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
   return labelsOnCanvas(page);
 }
@@ -184,7 +149,7 @@ test('corrections of others leave objects with a name or a lock as they are', as
   const taken = async (label: number): Promise<number> => {
     await goTo(page, 3);
     await selectNew(page);
-    await paint(page, [0.26, 0.38], [0.5, 0.38]);
+    await drag(page, [0.26, 0.38], [0.5, 0.38]);
     await expect(page.locator('#clip-status')).toHaveText(/^Corrected/);
     const masks = await labelsOnCanvas(page);
     expect([masks[DISC_IN_3 + 4], masks[DISC_IN_3 + 40]]).toEqual([label, 3]);
@@ -208,7 +173,7 @@ test('corrections of others leave objects with a name or a lock as they are', as
   expect(await taken(1)).toBe(0);
   await goTo(page, 3);
   await selectNew(page);
-  await paint(page, [0.24, 0.36], [0.28, 0.4]);
+  await drag(page, [0.24, 0.36], [0.28, 0.4]);
   await expect(page.locator('#notice-sentence')).toHaveText('What you painted belongs to a locked object. Unlock it first.');
   await page.locator('#notice-close').click();
   await lock.click();
@@ -221,7 +186,7 @@ test('corrections of others leave objects with a name or a lock as they are', as
   await goTo(page, 3);
   await row.locator('summary').focus();
   await page.locator('#tools [value=eraser]').check();
-  await paint(page, [0.2, 0.3], [0.3, 0.3]);
+  await drag(page, [0.2, 0.3], [0.3, 0.3]);
   await expect(page.locator('#clip-status')).toHaveText(/^Corrected: the masks of \d+ frames have changed/);
 });
 

@@ -57,6 +57,39 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
   await done(page);
 }
 
+/** Opens frames as a clip and segments it. */
+export async function openSegmented(page: Page, files: Upload[]): Promise<void> {
+  await open(page, 'groups');
+  await upload(page, files);
+  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await clipDone(page);
+}
+
+/** Goes to a frame of the clip by the track of its frames. */
+export async function goTo(page: Page, index: number): Promise<void> {
+  const track = page.getByRole('slider', { name: 'Current frame' });
+  const box = (await track.boundingBox())!;
+  const count = Number(await track.getAttribute('aria-valuemax')) + 1;
+  await track.click({ position: { x: ((index + 0.5) * box.width) / count, y: 10 } });
+  await expect(page.locator('#caption')).toHaveText(`Frame ${index}`);
+  await done(page);
+}
+
+/** A point of the picture, 0…1 from its left and its top. */
+export type Place = readonly [number, number];
+
+/** Drags between two points of the picture, without waiting for the result. */
+export async function drag(page: Page, from: Place, to: Place): Promise<void> {
+  const box = (await page.locator('.layers').boundingBox())!;
+  const at = ([x, y]: Place): [number, number] => [box.x + x * box.width, box.y + y * box.height];
+  await page.mouse.move(...at(from));
+  await page.mouse.down();
+  await page.mouse.move(...at(to), { steps: 4 });
+  await page.mouse.up();
+}
+
 /** The frames of the clip that opens the page. */
 export async function sampleClip(): Promise<Upload[]> {
   const folder = new URL('../public/samples/passing-cars/frames/', import.meta.url);

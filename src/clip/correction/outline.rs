@@ -123,7 +123,7 @@ pub(in crate::clip) fn outline(
 fn said_of(clip: &SegmentedClip, index: usize, shown: &[u8], mask: &[u8], number: u8) -> Vec<u8> {
     let persons = clip.persons_in(index);
     let ([width, _], [w, h]) = (clip.size(), clip.working_size());
-    let (step, (found, _)) = (width.div_ceil(w).next_power_of_two(), clip.found(index));
+    let (step, (found, _)) = (clip.working_step(), clip.found(index));
     let before = clip.frames[index].said.as_ref().map(|said| said.labels.values());
     let mut sizes = [[0usize; 2]; 256];
     for (&label, &inside) in shown.iter().zip(mask) {
