@@ -17,6 +17,7 @@ mod placing;
 mod still;
 mod sweep;
 mod track;
+mod view;
 mod world;
 
 use super::evidence::{Flow, KeptOdds};

@@ -1,7 +1,8 @@
 //! An object as a whole: where it was last seen whole, and by which shift its pixels are found again, whatever the pairs know of its motion.
 
 use super::constants::Constants;
-use super::look::{COARSE, Look};
+use super::look::Look;
+use super::view::View;
 use crate::clip::evidence::Flow;
 use crate::frame::Plane;
 use crate::order::median;
@@ -9,160 +10,142 @@ use crate::order::median;
 /// A shift of an object, pixels of the working size.
 pub(super) type Shift = [f32; 2];
 
-/// Pixels of the object that are compared.
-const COMPARED: usize = 150;
-/// How far around the expected shift, coarse pixels.
-const SEARCH: isize = 12;
-/// Squared colour difference beyond which it does not matter.
-const TRUNCATION: f32 = 600.0;
-/// What a pixel outside costs, as a share of that.
-const OUTSIDE: f32 = 0.7;
 /// Pixels of an object below which it is not searched.
 const FEWEST: f32 = 80.0;
 /// An object is seen whole while it has this share of the pixels that it had …
 const SEEN: f32 = 0.85;
-/// … of which this share is expected a frame later.
+/// … of which this share is expected a frame later, and this while it is hidden.
 const SHRINKING: f32 = 0.97;
+const HIDDEN: f32 = 0.99;
+/// Cost of a shift close to the one expected up to which no other place is looked for: that may be another object that looks like it.
+const CLOSE: f32 = 0.3;
+/// While more than this share is left, an object has changed, and is not hidden, …
+const CHANGED: f32 = 0.5;
+/// … if less than this share of what is left looks as before.
+const SAME: f32 = 0.7;
+/// Share of the last step in the velocity.
+const LATEST: f32 = 0.3;
 
 /// The object where it was last seen whole.
 #[derive(Clone, Debug)]
 pub(super) struct Whole {
-    pub(super) mask: Plane,
-    fine: [Plane; 3],
-    coarse: [Plane; 3],
+    pub(super) view: View,
     centre: [f32; 2],
-    /// From there to the frame that the sweep has reached, and the last step of it.
+    /// From there to the frame that the sweep has reached, and how far it goes in a frame.
     shift: Shift,
-    step: Shift,
-    /// Whether it is seen whole in that frame.
+    velocity: Option<Shift>,
+    /// How many frames ago that was.
+    frames: usize,
+    /// Whether nearly all of it is seen now, and which share.
     pub(super) now: bool,
+    pub(super) share: f32,
     /// Pixels that it has.
     pixels: f32,
     /// Whether all of its mask was said once; else its pixels may be few because they were too many before.
     known: bool,
 }
 
+/// Where an object is in a frame.
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    /// From where it was seen whole.
+    pub(super) shift: Shift,
+    /// Whether it is seen there; else it is taken to move on.
+    found: bool,
+    /// Of an object that is hidden, which pixels look as it does there, and which ones it may have.
+    pub(super) hidden: Option<[Plane; 2]>,
+}
+
 impl Whole {
     pub(super) fn new(mask: &Plane, look: &Look, centre: [f32; 2], known: bool) -> Whole {
-        let pixels = mask.values().iter().sum();
         Whole {
-            mask: mask.clone(),
-            fine: look.fine.clone(),
-            coarse: look.coarse.clone(),
+            view: View::new(mask, look),
             centre,
             shift: [0.0; 2],
-            step: [0.0; 2],
+            velocity: None,
+            frames: 0,
             now: true,
-            pixels,
+            share: 1.0,
+            pixels: mask.values().iter().sum(),
             known,
         }
     }
 
-    /// The object a frame later. While much of it is hidden, it stays what it was, and moves on.
-    pub(super) fn gone_on(self, mask: &Plane, look: &Look, centre: [f32; 2], shift: Option<Shift>) -> Whole {
+    /// The object a frame later. While part of it is hidden, it stays what it was, and moves on.
+    pub(super) fn gone_on(self, mask: &Plane, look: &Look, centre: [f32; 2], placed: Option<&Placed>) -> Whole {
         let pixels: f32 = mask.values().iter().sum();
-        let expected = SHRINKING * self.pixels;
-        let shift = shift.unwrap_or(self.shift);
-        let before = if self.now { [0.0; 2] } else { self.shift };
-        let step = [shift[0] - before[0], shift[1] - before[1]];
-        if self.known && pixels < SEEN * expected {
-            return Whole { shift, step, now: false, pixels: expected, ..self };
+        let expected = self.pixels * if self.now { SHRINKING } else { HIDDEN };
+        let (shift, found) = placed.map_or((self.shift, false), |placed| (placed.shift, placed.found));
+        let velocity = self.velocity.unwrap_or_default();
+        let onward = |share: f32, step: Shift| [0, 1].map(|k| velocity[k] + share * (step[k] - velocity[k]));
+        let has_changed = || {
+            let alike = self.view.alike(look, shift, &[]);
+            let same = mask.values().iter().zip(alike.values()).filter(|(mask, alike)| **mask > 0.5 && **alike > 0.5);
+            pixels > CHANGED * expected && (same.count() as f32) < SAME * pixels
+        };
+        let is_hidden = self.known && pixels < SEEN * expected && !has_changed();
+        let is_partly = self.known && pixels < SHRINKING * self.pixels && pixels >= SEEN * expected;
+        if is_hidden || is_partly || self.known && self.frames > 0 && pixels < SHRINKING * self.pixels {
+            // What it is off by came in all the frames since.
+            let share = match self.velocity {
+                None => 1.0,
+                Some(_) if found && self.frames > 0 => 1.0 / (self.frames as f32 + 2.0),
+                Some(_) => 0.0,
+            };
+            let velocity = Some(onward(share, [0, 1].map(|k| shift[k] - self.shift[k])));
+            let (frames, share) = (self.frames + 1, pixels / expected);
+            return Whole { shift, velocity, frames, now: !is_hidden, share, pixels: expected, ..self };
         }
-        Whole { step, pixels: pixels.max(expected), ..Whole::new(mask, look, centre, self.known) }
+        let step = [0, 1].map(|k| (centre[k] - self.centre[k]) / (self.frames as f32 + 1.0));
+        let velocity = Some(self.velocity.map_or(step, |_| onward(LATEST, step)));
+        Whole { velocity, pixels: pixels.max(expected), ..Whole::new(mask, look, centre, self.known) }
     }
 
-    /// The centre of an object that is partly hidden.
-    pub(super) fn expected_centre(&self, shift: Option<Shift>) -> Option<[f32; 2]> {
-        shift.filter(|_| !self.now).map(|[dx, dy]| [self.centre[0] + dx, self.centre[1] + dy])
+    /// The object when the sweep turns: it goes back where it came from.
+    pub(super) fn turned(&self) -> Whole {
+        let velocity = self.velocity.map(|velocity| velocity.map(|speed| -speed));
+        Whole { velocity, ..self.clone() }
     }
 
-    /// The shift from where it was seen whole to a frame; none for an object that is too small. `flow` leads to that frame from the one
-    /// before it.
-    pub(super) fn shift_to(&self, look: &Look, flow: &Flow, constants: &Constants) -> Option<Shift> {
-        let inside: Vec<usize> = (0..look.pixels()).filter(|&p| self.mask.values()[p] > 0.5).collect();
+    /// The centre of an object that is hidden.
+    pub(super) fn expected_centre(&self, placed: Option<&Placed>) -> Option<[f32; 2]> {
+        placed.filter(|_| !self.now).map(|placed| [0, 1].map(|k| self.centre[k] + placed.shift[k]))
+    }
+
+    /// Where the object is in a frame; none for one that is too small. `flow` leads to that frame from the one before it. Objects in front
+    /// of it have the pixels that are `covered`.
+    pub(super) fn place(&self, look: &Look, flow: &Flow, covered: &[bool], constants: &Constants) -> Option<Placed> {
+        let [width, height] = look.size;
+        let inside: Vec<usize> = (0..look.pixels()).filter(|&p| self.view.mask.values()[p] > 0.5).collect();
         if (inside.len() as f32) < FEWEST {
             return None;
         }
-        let width = look.size[0];
+        let velocity = self.velocity.unwrap_or_default();
+        let onward = [0, 1].map(|k| self.shift[k] + velocity[k]);
+        let again = || self.view.seen_again(look, onward, self.frames, covered, constants);
         if !self.now {
-            return Some([self.shift[0] + self.step[0], self.shift[1] + self.step[1]]);
+            let seen = again();
+            let shift = seen.unwrap_or(onward);
+            let alike = self.view.alike(look, shift, covered);
+            let around = self.view.around(look, shift, self.frames, covered);
+            return Some(Placed { shift, found: seen.is_some(), hidden: Some([alike, around]) });
         }
-        let along = |k: usize| {
-            let flows: Vec<f32> = inside.iter().map(|&p| flow.at(p % width, p / width)[k] as f32).collect();
-            median(&flows).unwrap_or(0.0)
-        };
-        Some(self.nearest(look, [along(0), along(1)], constants))
-    }
-
-    /// The best shift near the one expected: first of all at a quarter of the size, then around that and around the one expected.
-    fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> Shift {
-        let quarter = expected.map(|shift| shift / COARSE as f32);
-        let [coarse, fine] = [(&self.coarse, &look.coarse, COARSE), (&self.fine, &look.fine, 1)]
-            .map(|(before, here, side)| Comparison { before, here, pixels: self.pixels_of(before, side) });
-        let price = |steps: f32| constants.shift * steps;
-        let best = coarse.best(around(quarter, SEARCH), &|shift| price(distance(shift, quarter)));
-        let near = best.map(|shift| shift * COARSE as f32);
-        let both = around(near, COARSE as isize).chain(around(expected, 1));
-        fine.best(both, &|shift| price(distance(shift, expected) / COARSE as f32))
-    }
-
-    /// Pixels of the object that are compared, in planes of which a pixel is so many of the working size wide.
-    fn pixels_of(&self, [plane, ..]: &[Plane; 3], side: usize) -> Vec<usize> {
-        let width = plane.width();
-        let is_inside = |&p: &usize| {
-            let (x, y) = (p % width * side, p / width * side);
-            x < self.mask.width() && y < self.mask.height() && self.mask.at(x, y) > 0.5
-        };
-        let inside: Vec<usize> = (0..width * plane.height()).filter(is_inside).collect();
-        inside.iter().copied().step_by((inside.len() / COMPARED).max(1)).collect()
-    }
-}
-
-/// Colours of the object before, and of a frame.
-struct Comparison<'a> {
-    before: &'a [Plane; 3],
-    here: &'a [Plane; 3],
-    pixels: Vec<usize>,
-}
-
-impl Comparison<'_> {
-    /// The first of the shifts with the least difference and price.
-    fn best(&self, shifts: impl Iterator<Item = [isize; 2]>, price: &dyn Fn(Shift) -> f32) -> Shift {
-        let mut best = (f32::INFINITY, [0.0; 2]);
-        for at in shifts {
-            let shift = at.map(|shift| shift as f32);
-            let cost = self.difference(at) + price(shift);
-            if cost < best.0 {
-                best = (cost, shift);
-            }
+        let placed = |shift: Shift| Some(Placed { shift, found: true, hidden: None });
+        if let Some(shift) = (self.frames > 0).then(again).flatten() {
+            return placed(shift);
         }
-        best.1
+        let at = |at: usize, k: usize, size: usize| ((at as f32 + self.shift[k] + 0.5).max(0.0) as usize).min(size - 1);
+        let along = [0, 1].map(|k| {
+            let flow = |&p: &usize| flow.at(at(p % width, 0, width), at(p / width, 1, height))[k] as f32;
+            self.shift[k] + median(&inside.iter().map(flow).collect::<Vec<f32>>()).unwrap_or(0.0)
+        });
+        let [(by_flow, one), (by_velocity, other)] =
+            [along, onward].map(|expected| self.view.close(look, expected, constants));
+        if one.min(other) < CLOSE {
+            return placed(if other < one { by_velocity } else { by_flow });
+        }
+        placed(self.view.nearest(look, along, constants))
     }
-
-    /// Mean difference of the colours, 0 to 1.
-    fn difference(&self, [dx, dy]: [isize; 2]) -> f32 {
-        let (width, height) = (self.here[0].width(), self.here[0].height());
-        let of_pixel = |&p: &usize| {
-            let (x, y) = ((p % width) as isize + dx, (p / width) as isize + dy);
-            if x < 0 || y < 0 || x >= width as isize || y >= height as isize {
-                return OUTSIDE;
-            }
-            let q = y as usize * width + x as usize;
-            let steps = self.before.iter().zip(self.here).map(|(before, here)| before.values()[p] - here.values()[q]);
-            (steps.map(|step| step * step).sum::<f32>() / TRUNCATION).min(1.0)
-        };
-        self.pixels.iter().map(of_pixel).sum::<f32>() / self.pixels.len().max(1) as f32
-    }
-}
-
-/// Whole shifts within a distance.
-fn around(middle: Shift, reach: isize) -> impl Iterator<Item = [isize; 2]> {
-    let [x, y] = middle.map(|shift| libm::roundf(shift) as isize);
-    (-reach..=reach).flat_map(move |dy| (-reach..=reach).map(move |dx| [x + dx, y + dy]))
-}
-
-fn distance([x, y]: Shift, [u, v]: Shift) -> f32 {
-    libm::hypotf(x - u, y - v)
 }
 
 #[cfg(test)]
@@ -200,27 +183,34 @@ mod tests {
         Whole::new(&mask(&first, [16, 20]), &first, [28.0, 32.0], true)
     }
 
+    fn place(whole: &Whole, look: &Look) -> Option<Placed> {
+        whole.place(look, &Flow::still(SIZE), &vec![false; look.pixels()], &constants())
+    }
+
     #[test]
     fn a_patch_that_has_moved_is_found() {
-        let still = Flow::still(SIZE);
-        for [dx, dy] in [[12, 8], [40, -16], [0, 0]] {
+        for [dx, dy] in [[12, 8], [40, -16], [0, 0], [3, -5]] {
             let here = look([16 + dx, 20 + dy].map(|at: isize| at as usize));
-            let shift = begun().shift_to(&here, &still, &constants());
-            assert_eq!(shift, Some([dx as f32, dy as f32]), "the pairs know nothing of its motion");
+            let shift = place(&begun(), &here).unwrap().shift;
+            assert_eq!(shift, [dx as f32, dy as f32], "the pairs know nothing of its motion");
         }
-        let small = begun();
-        let few = Whole { mask: Plane::filled(SIZE[0], SIZE[1], 0.0), ..small };
-        assert_eq!(few.shift_to(&look([16, 20]), &still, &constants()), None);
+        let first = look([16, 20]);
+        let nothing = Plane::filled(SIZE[0], SIZE[1], 0.0);
+        assert!(place(&Whole::new(&nothing, &first, [28.0, 32.0], true), &first).is_none());
+    }
+
+    /// The object a frame later, whole.
+    fn moved_on(seen: &Look, corner: [usize; 2]) -> Whole {
+        let placed = place(&begun(), seen);
+        let centre = corner.map(|at| at as f32 + 12.0);
+        begun().gone_on(&mask(seen, corner), seen, centre, placed.as_ref())
     }
 
     #[test]
     fn one_that_is_hidden_moves_on() {
-        let (still, gone) = (Flow::still(SIZE), look([200, 200]));
-        let seen = look([24, 24]);
-        let shift = begun().shift_to(&seen, &still, &constants());
-        assert_eq!(shift, Some([8.0, 4.0]));
-        let mut whole = begun().gone_on(&mask(&seen, [24, 24]), &seen, [36.0, 36.0], shift);
-        assert!(whole.now && whole.expected_centre(shift).is_none());
+        let (gone, seen) = (look([200, 200]), look([24, 24]));
+        let mut whole = moved_on(&seen, [24, 24]);
+        assert!(whole.now && whole.expected_centre(place(&whole, &seen).as_ref()).is_none());
         // It comes behind something until two thirds of it are left, and then nothing.
         let covered = |p: usize| p % SIZE[0] >= 48;
         let partly = look_behind([32, 28], 48);
@@ -229,19 +219,32 @@ mod tests {
         for k in 1..4 {
             let (here, mask) =
                 if k == 1 { (&partly, left.clone()) } else { (&gone, Plane::filled(SIZE[0], SIZE[1], 0.0)) };
-            let shift = whole.shift_to(here, &still, &constants());
-            assert_eq!(shift, Some([8.0 * k as f32, 4.0 * k as f32]), "frame {k}");
-            whole = whole.gone_on(&mask, here, [0.0; 2], shift);
+            let placed = place(&whole, here);
+            assert_eq!(placed.as_ref().unwrap().shift, [8.0 * k as f32, 4.0 * k as f32], "frame {k}");
+            whole = whole.gone_on(&mask, here, [0.0; 2], placed.as_ref());
             assert!(!whole.now);
-            assert_eq!(whole.expected_centre(shift), Some([36.0 + 8.0 * k as f32, 36.0 + 4.0 * k as f32]));
+            assert_eq!(whole.expected_centre(placed.as_ref()), Some([36.0 + 8.0 * k as f32, 36.0 + 4.0 * k as f32]));
         }
         // What it looked like is kept until it comes out again.
-        assert_eq!(whole.mask, mask(&seen, [24, 24]));
-        let place = [24 + 32, 24 + 16];
-        let out = look(place);
-        let shift = whole.shift_to(&out, &still, &constants());
-        whole = whole.gone_on(&mask(&out, place), &out, [68.0, 52.0], shift);
+        assert_eq!(whole.view.mask, mask(&seen, [24, 24]));
+        let corner = [24 + 32, 24 + 16];
+        let out = look(corner);
+        let placed = place(&whole, &out);
+        whole = whole.gone_on(&mask(&out, corner), &out, [68.0, 52.0], placed.as_ref());
         assert!(whole.now);
-        assert_eq!(whole.mask, mask(&out, place));
+        assert_eq!(whole.view.mask, mask(&out, corner));
+    }
+
+    #[test]
+    fn one_that_has_changed_is_not_hidden() {
+        let seen = look([24, 24]);
+        let whole = moved_on(&seen, [24, 24]);
+        // Two thirds of what it was, in another colour.
+        let left = |p: usize| (32..48).contains(&(p % SIZE[0])) && (28..52).contains(&(p / SIZE[0]));
+        let other = Look::painted(SIZE, |x, y| if left(y * SIZE[0] + x) { [40, 200, 60] } else { [110, 120, 115] });
+        let mask = other.plane(&left);
+        let whole = whole.clone().gone_on(&mask, &other, [39.5, 39.5], place(&whole, &other).as_ref());
+        assert!(whole.now);
+        assert_eq!(whole.view.mask, mask);
     }
 }

@@ -10,7 +10,7 @@ use super::constants::Constants;
 use super::evidence::Evidence;
 use super::look::Look;
 use super::memory::{Memory, Part};
-use super::placing::{Shift, Whole};
+use super::placing::{Placed, Whole};
 use crate::clip::evidence::Flow;
 use crate::frame::Plane;
 use crate::frame::area::Area;
@@ -40,6 +40,8 @@ const NOWHERE: f32 = -9.0;
 const UNSAID: f32 = 0.1;
 /// Ground around the object that is looked at, pixels of the working size.
 const AROUND: usize = 24;
+/// Weight of what is seen of a hidden object, in carried labels.
+const HIDDEN: f32 = 3.0;
 /// Blur of carried labels, pixels.
 const BLUR: f32 = 1.5;
 /// Share of a carried label below which the object is not expected at a pixel …
@@ -77,7 +79,9 @@ pub(super) struct Expected {
     pub(super) area: Area,
     pub(super) odds: Vec<f32>,
     centre: [f32; 2],
-    shift: Option<Shift>,
+    placed: Option<Placed>,
+    /// How much each pixel is awaited to be that of a hidden object.
+    pub(super) awaited: Option<Plane>,
 }
 
 /// The object in the frame that a sweep has reached.
@@ -110,7 +114,8 @@ impl Sweep {
             memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, |p| front.side(p));
             evidence.learn(found, &front.mask, true);
         }
-        Sweep { front: self.front.clone(), memory, evidence }
+        let front = self.front.as_ref().map(|front| Front { whole: front.whole.turned(), ..front.clone() });
+        Sweep { front, memory, evidence }
     }
 
     /// Learns what the object looks like in a frame where it was found, before it begins.
@@ -166,32 +171,72 @@ impl Sweep {
         claim
     }
 
+    /// The share of the object that was seen last.
+    pub(super) fn share(&self) -> f32 {
+        self.front.as_ref().map_or(0.0, |front| front.whole.share)
+    }
+
+    /// Where the object is in the next frame.
+    pub(super) fn place(
+        &self,
+        look: &Look,
+        given: &Given<'_>,
+        covered: &[bool],
+        constants: &Constants,
+    ) -> Option<Placed> {
+        let front = self.front.as_ref()?;
+        let still = Flow::still(look.size);
+        let [_, from] = given.flows.unwrap_or([&still, &still]);
+        front.whole.place(look, from, covered, constants)
+    }
+
+    /// Marks where the object is expected.
+    pub(super) fn cover(&self, placed: &Placed, covered: &mut [bool]) {
+        if let Some(front) = &self.front {
+            front.whole.view.cover(placed.shift, covered);
+        }
+    }
+
     /// What is expected in the next frame.
-    pub(super) fn expect(&mut self, look: &Look, given: &Given<'_>, constants: &Constants) -> Option<Expected> {
+    pub(super) fn expect(
+        &mut self,
+        look: &Look,
+        given: &Given<'_>,
+        placed: Option<Placed>,
+        constants: &Constants,
+    ) -> Option<Expected> {
         let front = self.front.as_ref()?;
         let [width, height] = look.size;
         let still = Flow::still(look.size);
-        let [to, from] = given.flows.unwrap_or([&still, &still]);
-        let shift = front.whole.shift_to(look, from, constants);
+        let [to, _] = given.flows.unwrap_or([&still, &still]);
         let soft = gaussian(&front.mask, BLUR);
-        let all = if front.whole.now { soft.clone() } else { gaussian(&front.whole.mask, BLUR) };
+        let all = if front.whole.now { soft.clone() } else { gaussian(&front.whole.view.mask, BLUR) };
         let near = |p: usize| {
             let (x, y) = ((p % width) as f32, (p / width) as f32);
             let [u, v] = to.at(p % width, p / width);
             let along = Footprint::new(x + u as f32, y + v as f32, width, height).sample(soft.values());
-            let with_all = shift.map(|[dx, dy]| {
+            let with_all = placed.as_ref().map(|Placed { shift: [dx, dy], .. }| {
                 let footprint = Footprint::new(x - dx, y - dy, width, height);
                 if footprint.inside { footprint.sample(all.values()) } else { 0.0 }
             });
             [along, with_all.unwrap_or(along)]
         };
-        let both: Vec<[f32; 2]> = (0..width * height).map(near).collect();
+        let mut both: Vec<[f32; 2]> = (0..width * height).map(near).collect();
+        let hidden = placed.as_ref().and_then(|placed| placed.hidden.as_ref());
+        let mut awaited = None;
+        if let Some([alike, around]) = hidden {
+            let alike = gaussian(alike, BLUR);
+            both.iter_mut().zip(alike.values()).for_each(|(both, &alike)| *both = [both[0].max(alike); 2]);
+            awaited = Some(look.plane_of(&|p| alike.values()[p] + around.values()[p]));
+        }
+        let weight = constants.carried * if hidden.is_some() { HIDDEN } else { 1.0 };
         let reached = |p: &usize| both[*p][0] > FEW || both[*p][1] > FEW || soft.values()[*p] > FEW;
         let area = Area::of(&(0..width * height).filter(reached).collect::<Vec<usize>>(), width);
         let area = if area.width() == 0 { look.area() } else { area.grown(AROUND, width, height) };
         let carried = look.plane_of(&|p| 0.5 * (both[p][0] + both[p][1]));
         let central = look.plane_of(&|p| if carried.values()[p] > CENTRAL { carried.values()[p] } else { 0.0 });
-        let centre = front.whole.expected_centre(shift).or_else(|| centre_of(&central)).unwrap_or(front.centre);
+        let centre =
+            front.whole.expected_centre(placed.as_ref()).or_else(|| centre_of(&central)).unwrap_or(front.centre);
         let learns = given.speaks && given.spreads;
         if let Some(memory) = self.memory.as_mut().filter(|_| learns) {
             memory.learn_said(look, centre, given.said);
@@ -199,18 +244,22 @@ impl Sweep {
         let remembered = self.memory.as_ref().map(|memory| memory.read(look, &area, centre, constants));
         let odds = area.pixels(width).enumerate().map(|(k, p)| {
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
-            let carried = logit(carried.values()[p]);
             let found = self.evidence.ratio(given.found[p]);
-            let z = constants.bias + constants.carried * carried + constants.memory * memory + constants.found * found;
-            z.clamp(-MOST, MOST)
+            let z = constants.bias
+                + weight * logit(carried.values()[p])
+                + constants.memory * memory
+                + constants.found * found;
+            // What neither was its own nor looks as it did is not of a hidden object, whatever its colours.
+            let most = if hidden.is_some() && carried.values()[p] < FEW { -1.0 } else { MOST };
+            z.clamp(-MOST, most)
         });
         let odds = odds.collect();
-        Some(Expected { area, odds, centre, shift })
+        Some(Expected { area, odds, centre, placed, awaited })
     }
 
     /// Comes to the next frame, with what was expected of it and what is said there.
     pub(super) fn step(&mut self, look: &Look, given: &Given<'_>, expected: Expected, constants: &Constants) -> Claim {
-        let Expected { area, odds, centre, shift } = expected;
+        let Expected { area, odds, centre, placed, .. } = expected;
         let solve = |said| solved(look, area.clone(), odds.clone(), said, constants);
         let contradicts = |claim: &Claim, said: &[Said]| {
             let mut pixels = claim.area.pixels(look.size[0]).zip(&claim.mask);
@@ -239,7 +288,7 @@ impl Sweep {
         let mask = goes_on.as_ref().unwrap_or(&claim).plane(look);
         if let Some(front) = self.front.take() {
             let seen = centre_of(&mask).unwrap_or(centre);
-            let whole = front.whole.gone_on(&mask, look, seen, shift);
+            let whole = front.whole.gone_on(&mask, look, seen, placed.as_ref());
             let centre = if whole.now { seen } else { centre };
             self.arrive(look, given, Front { mask, centre, whole }, [true, false], constants);
         }

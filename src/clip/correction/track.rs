@@ -66,18 +66,11 @@ impl Track {
         }
     }
 
-    /// What is expected of the object in a frame, if the sweep has begun. The one backward may have turned in a frame that it has yet to
-    /// come to again, because other objects are followed from later ones.
-    pub(super) fn expect(
-        &mut self,
-        t: usize,
-        way: Way,
-        look: &Look,
-        given: &Given<'_>,
-        constants: &Constants,
-    ) -> Option<Expected> {
+    /// The sweep that comes to a frame, if it has begun. The one backward may have turned in a frame that it has yet to come to again,
+    /// because other objects are followed from later ones.
+    pub(super) fn coming(&mut self, t: usize, way: Way) -> Option<&mut Sweep> {
         let is_ahead = way == Way::Backward && self.first(way).is_none_or(|last| t >= last);
-        if is_ahead { None } else { self.sweep(way).expect(look, given, constants) }
+        if is_ahead { None } else { Some(self.sweep(way)) }
     }
 
     /// The object's claim in a frame.

@@ -1,0 +1,269 @@
+//! A view of an object, as it was once seen, and where that is seen again.
+
+use super::constants::Constants;
+use super::look::{COARSE, Look};
+use super::placing::Shift;
+use crate::frame::Plane;
+use crate::frame::area::Area;
+use crate::frame::filter::gaussian;
+use crate::order::median;
+
+/// Pixels of the object that are compared.
+const COMPARED: usize = 150;
+/// How far around the expected shift, coarse pixels.
+const SEARCH: isize = 12;
+/// How far around the best of these, pixels.
+const NEAR: isize = 3;
+/// How far around where a hidden object is expected, pixels: after one frame, and how much that grows with each.
+const REACH: [f32; 2] = [2.0, 0.5];
+/// Squared colour difference beyond which it does not matter.
+const TRUNCATION: f32 = 600.0;
+/// What a pixel costs that cannot be seen, as a share of that.
+const UNSEEN: f32 = 0.7;
+/// A hidden object is seen where its pixels cost at most this, and so much less than elsewhere.
+const FOUND: [f32; 2] = [0.7, 0.1];
+/// Share of the truncation beyond which a pixel does not look alike.
+const ALIKE: f32 = 0.5;
+/// How much less well its place is known with each frame, pixels.
+const BLUR: f32 = 0.3;
+
+/// The object's pixels and their colours.
+#[derive(Clone, Debug)]
+pub(super) struct View {
+    /// 1 at the object's pixels.
+    pub(super) mask: Plane,
+    /// Where these are, and all colours there.
+    area: Area,
+    colours: Vec<[f32; 3]>,
+    samples: Vec<Sample>,
+}
+
+/// A pixel of the object, its colours, and those at a quarter of the size.
+#[derive(Clone, Debug)]
+struct Sample {
+    at: [usize; 2],
+    fine: [f32; 3],
+    coarse: [f32; 3],
+}
+
+/// Colours of a pixel.
+fn at(planes: &[Plane; 3], p: usize) -> [f32; 3] {
+    planes.each_ref().map(|plane| plane.values()[p])
+}
+
+/// Squared difference of colours, as a share of the truncation.
+fn difference(one: [f32; 3], other: [f32; 3]) -> f32 {
+    let steps: [f32; 3] = std::array::from_fn(|k| one[k] - other[k]);
+    (steps.map(|step| step * step).iter().sum::<f32>() / TRUNCATION).min(1.0)
+}
+
+/// The pixel that (x, y) is shifted to, if it is inside.
+fn shifted([x, y]: [usize; 2], [dx, dy]: Shift, [width, height]: [usize; 2]) -> Option<usize> {
+    let (x, y) = (libm::roundf(x as f32 + dx), libm::roundf(y as f32 + dy));
+    let inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+    inside.then(|| y as usize * width + x as usize)
+}
+
+impl View {
+    pub(super) fn new(mask: &Plane, look: &Look) -> View {
+        let width = look.size[0];
+        let inside: Vec<usize> = (0..look.pixels()).filter(|&p| mask.values()[p] > 0.5).collect();
+        let area = if inside.is_empty() { Area::whole(0, 0) } else { Area::of(&inside, width) };
+        let colours = area.pixels(width).map(|p| at(&look.fine, p)).collect();
+        let of_coarse = |p: &usize| (p % width).is_multiple_of(COARSE) && (p / width).is_multiple_of(COARSE);
+        let corners: Vec<usize> = inside.into_iter().filter(of_coarse).collect();
+        let coarse_width = look.coarse[0].width();
+        let sample = |&p: &usize| Sample {
+            at: [p % width, p / width],
+            fine: at(&look.fine, p),
+            coarse: at(&look.coarse, p / width / COARSE * coarse_width + p % width / COARSE),
+        };
+        let samples = corners.iter().step_by((corners.len() / COMPARED).max(1)).map(sample).collect();
+        View { mask: mask.clone(), area, colours, samples }
+    }
+
+    /// The best shift near the one expected.
+    pub(super) fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> Shift {
+        let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) * COARSE as f32);
+        let size = [look.coarse[0].width(), look.coarse[0].height()];
+        let cost = |shift: Shift| {
+            let of_sample = |sample: &Sample| {
+                let to = shifted(sample.at.map(|at| at / COARSE), shift.map(|shift| shift / COARSE as f32), size);
+                to.map_or(UNSEEN, |q| difference(sample.coarse, at(&look.coarse, q)))
+            };
+            self.mean(of_sample)
+        };
+        let coarse = best_of(SEARCH, COARSE as f32, middle, middle, constants, cost).0;
+        best_of(NEAR, 1.0, coarse, expected, constants, |shift| self.cost(look, shift, &[])).0
+    }
+
+    /// The best shift close to the one expected, and what it costs.
+    pub(super) fn close(&self, look: &Look, expected: Shift, constants: &Constants) -> (Shift, f32) {
+        best_of(NEAR, 1.0, expected, expected, constants, |shift| self.cost(look, shift, &[]))
+    }
+
+    /// The shift at which part of it is seen near the one expected, so many frames after it was seen whole; others have the pixels that
+    /// are `covered`.
+    pub(super) fn seen_again(
+        &self,
+        look: &Look,
+        expected: Shift,
+        frames: usize,
+        covered: &[bool],
+        constants: &Constants,
+    ) -> Option<Shift> {
+        let reach = ((REACH[0] + REACH[1] * frames as f32) as isize).min(SEARCH);
+        let mut costs = Vec::new();
+        let (best, least) = best_of(reach, 1.0, expected, expected, constants, |shift| {
+            costs.push(self.cost(look, shift, covered));
+            costs[costs.len() - 1]
+        });
+        let usual = median(&costs).unwrap_or(0.0);
+        (least < FOUND[0] && usual - least > FOUND[1]).then_some(best)
+    }
+
+    fn cost(&self, look: &Look, shift: Shift, covered: &[bool]) -> f32 {
+        self.mean(|sample| match shifted(sample.at, shift, look.size) {
+            Some(q) if covered.get(q) != Some(&true) => difference(sample.fine, at(&look.fine, q)),
+            _ => UNSEEN,
+        })
+    }
+
+    fn mean(&self, of_sample: impl Fn(&Sample) -> f32) -> f32 {
+        self.samples.iter().map(of_sample).sum::<f32>() / self.samples.len().max(1) as f32
+    }
+
+    /// Pixels of a frame that look as the object does there, 0…1, unless they are covered.
+    pub(super) fn alike(&self, look: &Look, shift: Shift, covered: &[bool]) -> Plane {
+        let mut alike = Plane::filled(look.size[0], look.size[1], 0.0);
+        for (at_pixel, q) in self.pixels(shift) {
+            if covered.get(q) == Some(&true) {
+                continue;
+            }
+            // Its place is known to a pixel.
+            let near = |at: usize, range: &std::ops::Range<usize>| at.max(range.start + 1) - 1..(at + 2).min(range.end);
+            let mut least = 1.0f32;
+            for y in near(at_pixel[1], &self.area.rows) {
+                for x in near(at_pixel[0], &self.area.columns) {
+                    let colours = self.colours[self.area.index_of(y * look.size[0] + x, look.size[0])];
+                    least = least.min(difference(colours, at(&look.fine, q)) / ALIKE);
+                }
+            }
+            alike.values_mut()[q] = 1.0 - least;
+        }
+        alike
+    }
+
+    /// Where the object may be so many frames after it was seen whole, 0…1, unless that is covered.
+    pub(super) fn around(&self, look: &Look, shift: Shift, frames: usize, covered: &[bool]) -> Plane {
+        let mut there = vec![false; look.pixels()];
+        self.cover(shift, &mut there);
+        let wide = gaussian(&look.plane(&|p| there[p]), 1.0 + BLUR * frames as f32);
+        look.plane_of(&|p| if covered[p] { 0.0 } else { (2.0 * wide.values()[p]).min(1.0) })
+    }
+
+    /// Marks the pixels that the object is at.
+    pub(super) fn cover(&self, shift: Shift, covered: &mut [bool]) {
+        self.pixels(shift).for_each(|(_, q)| covered[q] = true);
+    }
+
+    /// The object's pixels, and which ones of a frame they are.
+    fn pixels(&self, shift: Shift) -> impl Iterator<Item = ([usize; 2], usize)> {
+        let size @ [width, _] = [self.mask.width(), self.mask.height()];
+        let inside = self.area.pixels(width).filter(|&p| self.mask.values()[p] > 0.5);
+        inside.filter_map(move |p| {
+            let at = [p % width, p / width];
+            shifted(at, shift, size).map(|q| (at, q))
+        })
+    }
+}
+
+/// The shift of least cost in steps around a middle, and its cost; to be away from the one expected has a price.
+fn best_of(
+    reach: isize,
+    step: f32,
+    middle: Shift,
+    expected: Shift,
+    constants: &Constants,
+    mut cost: impl FnMut(Shift) -> f32,
+) -> (Shift, f32) {
+    let mut best = (f32::INFINITY, middle, f32::INFINITY);
+    for dy in -reach..=reach {
+        for dx in -reach..=reach {
+            let shift = [middle[0] + step * dx as f32, middle[1] + step * dy as f32];
+            let away = [0, 1].map(|k| (shift[k] - expected[k]) / COARSE as f32);
+            let cost = cost(shift);
+            let total = cost + constants.shift * libm::sqrtf(away[0] * away[0] + away[1] * away[1]);
+            if total < best.0 {
+                best = (total, shift, cost);
+            }
+        }
+    }
+    (best.1, best.2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::constants::constants;
+    use super::*;
+    use crate::Random;
+
+    const SIZE: [usize; 2] = [128, 96];
+
+    /// Patches of one coarse texture at places, the last ones in front, over grey ground.
+    fn look(corners: &[[usize; 2]]) -> Look {
+        let mut random = Random::from_seed(5);
+        let texture: Vec<[u8; 3]> =
+            (0..36).map(|_| std::array::from_fn(|_| random.uniform(20.0, 230.0) as u8)).collect();
+        Look::painted(SIZE, |x, y| {
+            let of = |&[left, top]: &[usize; 2]| match (x.checked_sub(left), y.checked_sub(top)) {
+                (Some(u), Some(v)) if u < 24 && v < 24 => Some(texture[v / 4 * 6 + u / 4]),
+                _ => None,
+            };
+            corners.iter().rev().find_map(of).unwrap_or([110, 120, 115])
+        })
+    }
+
+    fn inside(look: &Look, [left, top]: [usize; 2]) -> Plane {
+        look.plane(&|p| (left..left + 24).contains(&(p % SIZE[0])) && (top..top + 24).contains(&(p / SIZE[0])))
+    }
+
+    fn view() -> View {
+        let first = look(&[[16, 20]]);
+        View::new(&inside(&first, [16, 20]), &first)
+    }
+
+    #[test]
+    fn what_comes_out_behind_its_like_is_found() {
+        // The one in front is 10 columns to the left: so many are seen.
+        let here = look(&[[60, 40], [50, 40]]);
+        let mut covered = vec![false; here.pixels()];
+        view().cover([34.0, 20.0], &mut covered);
+        assert_eq!(covered.iter().filter(|covered| **covered).count(), 24 * 24);
+        let expected = [42.0, 22.0];
+        let shift = view().seen_again(&here, expected, 8, &covered, &constants());
+        assert_eq!(shift, Some([44.0, 20.0]));
+        let alike = view().alike(&here, [44.0, 20.0], &covered);
+        let (mut out, mut elsewhere) = (0, 0);
+        for (p, alike) in alike.values().iter().enumerate().filter(|(_, alike)| **alike > 0.5) {
+            assert!(*alike <= 1.0 && !covered[p]);
+            let is_out = (74..84).contains(&(p % SIZE[0])) && (40..64).contains(&(p / SIZE[0]));
+            *(if is_out { &mut out } else { &mut elsewhere }) += 1;
+        }
+        assert!(out > 200 && elsewhere == 0, "{out} of 240, {elsewhere}");
+        // Nothing of it is seen.
+        assert_eq!(view().seen_again(&look(&[]), expected, 8, &covered, &constants()), None);
+    }
+
+    #[test]
+    fn where_it_may_be_grows_with_time() {
+        let here = look(&[]);
+        let covered: Vec<bool> = (0..here.pixels()).map(|p| p % SIZE[0] < 40).collect();
+        let sizes = [1, 8, 20].map(|frames| {
+            let around = view().around(&here, [16.0, 20.0], frames, &covered);
+            assert!((0..here.pixels()).all(|p| !covered[p] || around.values()[p] == 0.0));
+            around.values().iter().filter(|&&share| share > 0.1).count()
+        });
+        assert!(16 * 24 <= sizes[0] && sizes[0] < sizes[1] && sizes[1] < sizes[2], "{sizes:?}");
+    }
+}
