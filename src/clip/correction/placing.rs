@@ -16,7 +16,7 @@ const FEWEST: f32 = 80.0;
 const SEEN: f32 = 0.85;
 /// … of which this share is expected a frame later, and this while it is hidden.
 const SHRINKING: f32 = 0.97;
-const HIDDEN: f32 = 0.99;
+const HIDDEN: f32 = 1.0;
 /// Cost of a shift close to the one expected up to which no other place is looked for: that may be another object that looks like it.
 const CLOSE: f32 = 0.3;
 /// While more than this share is left, an object has changed, and is not hidden, …

@@ -210,7 +210,7 @@ impl Sweep {
         let still = Flow::still(look.size);
         let [to, _] = given.flows.unwrap_or([&still, &still]);
         let soft = gaussian(&front.mask, BLUR);
-        let all = if front.whole.now { soft.clone() } else { gaussian(&front.whole.view.mask, BLUR) };
+        let all = gaussian(&front.whole.view.mask, BLUR);
         let near = |p: usize| {
             let (x, y) = ((p % width) as f32, (p / width) as f32);
             let [u, v] = to.at(p % width, p / width);
