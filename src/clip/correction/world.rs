@@ -137,6 +137,7 @@ pub(super) fn of_object(said: &[u8], number: u8) -> Vec<Said> {
 mod tests {
     use super::super::constants::constants;
     use super::*;
+    use crate::Random;
     use crate::clip::layer::Spread;
     use crate::motion::AffineMotion;
 
@@ -179,7 +180,10 @@ mod tests {
     #[test]
     fn one_comes_out_behind_its_like() {
         // Cut from one cloth; the first passes behind the second, which stands still, and is quite hidden for a while.
-        let cloth = |u: usize, v: usize| [60 + 20 * (u / 5 % 3 * 2 + v / 6 % 2) as u8, 70 + 25 * (v / 5 % 4) as u8, 60];
+        let mut random = Random::from_seed(7);
+        let patches: Vec<[u8; 3]> =
+            (0..10 * 8).map(|_| [20, 30, 25].map(|step| 60 + step * random.uniform(0.0, 4.0) as u8)).collect();
+        let cloth = |u: usize, v: usize| patches[v / 4 * 10 + u / 4];
         let place = |t: usize| 8 + 4 * t;
         let (second, top) = (34, 16);
         let owner = |t: usize, x: usize, y: usize| match y.checked_sub(top) {
