@@ -117,9 +117,9 @@ impl Memory {
         centre: [f32; 2],
         part: Part,
         weight: f32,
-        sides: impl Fn(usize) -> usize,
+        sides: &dyn Fn(usize) -> usize,
     ) {
-        self.learn_within(look, &look.area(), centre, part, weight, &sides);
+        self.learn_within(look, &look.area(), centre, part, weight, sides);
     }
 
     /// [`learn`](Self::learn) from an area. Not generic: each call would have a copy of its own.
@@ -160,7 +160,7 @@ impl Memory {
     /// Learns what is said of a frame.
     pub(super) fn learn_said(&mut self, look: &Look, centre: [f32; 2], said: Option<&[Said]>) {
         let Some(said) = said else { return };
-        self.learn(look, centre, Part::Given, 1.0, |p| match said[p] {
+        self.learn(look, centre, Part::Given, 1.0, &|p| match said[p] {
             Said::Object => 0,
             Said::Other => 1,
             Said::Nothing => 2,
@@ -330,7 +330,7 @@ mod tests {
     fn memory_of(look: &Look, part: Part) -> Memory {
         let side = |p: usize| usize::from(!is_object(p % SIZE[0], p / SIZE[0]));
         let mut memory = Memory::of(&look.plane(&|p| side(p) == 0), &constants());
-        memory.learn(look, CENTRE, part, 1.0, side);
+        memory.learn(look, CENTRE, part, 1.0, &side);
         memory
     }
 
@@ -368,7 +368,7 @@ mod tests {
         assert_eq!(memory.trust(red), [1.0, 1.0]);
         assert!(at(&memory, &look, [32, 48], CENTRE) > 0.9);
         // Half of it is ground: so is what was found of the other half.
-        memory.learn(&look, CENTRE, Part::Given, 1.0, |p| {
+        memory.learn(&look, CENTRE, Part::Given, 1.0, &|p| {
             if is_object(p % SIZE[0], p / SIZE[0]) && p / SIZE[0] < 48 { 1 } else { 2 }
         });
         let [object, ground] = memory.trust(red);

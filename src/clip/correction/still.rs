@@ -57,7 +57,7 @@ impl Still {
         let found_weight = constants.survey * SURVEYED as f32;
         for (doubted, weight) in [(false, found_weight), (true, found_weight * trust.abs())] {
             let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
-            memory.learn(look, centre, Part::Found, weight, side);
+            memory.learn(look, centre, Part::Found, weight, &side);
         }
         let remembered = memory.read(look, &look.area(), centre, &constants);
         let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, of_colour))| {

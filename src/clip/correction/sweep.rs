@@ -111,7 +111,7 @@ impl Sweep {
         let (mut memory, mut evidence) = (self.memory.clone(), Evidence::default());
         if let (Some(memory), Some(front)) = (&mut memory, &self.front) {
             memory.forget_recent();
-            memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, |p| front.side(p));
+            memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, &|p| front.side(p));
             evidence.learn(found, &front.mask, true);
         }
         let front = self.front.as_ref().map(|front| Front { whole: front.whole.turned(), ..front.clone() });
@@ -123,7 +123,7 @@ impl Sweep {
         let mask = look.plane(inside);
         let Some(centre) = centre_of(&mask) else { return };
         let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
-        memory.learn(look, centre, Part::Found, constants.survey, |p| usize::from(mask.values()[p] < 0.5));
+        memory.learn(look, centre, Part::Found, constants.survey, &|p| usize::from(mask.values()[p] < 0.5));
     }
 
     /// Takes what a frame shows of the object for what it looks like.
@@ -131,7 +131,7 @@ impl Sweep {
         let mask = look.plane(inside);
         let Some(centre) = centre_of(&mask) else { return };
         let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
-        memory.learn(look, centre, Part::Recent, 1.0, |p| usize::from(mask.values()[p] < 0.5));
+        memory.learn(look, centre, Part::Recent, 1.0, &|p| usize::from(mask.values()[p] < 0.5));
     }
 
     /// The first frame. `number` is what the object is called where it was found.
@@ -156,7 +156,7 @@ impl Sweep {
             if !is_found {
                 // Most of what nothing is said of is ground.
                 let is_said = |p: usize| given.said.is_some_and(|said| said[p] != Said::Nothing);
-                memory.learn(look, centre, Part::Recent, UNSAID, |p| if is_said(p) { 2 } else { 1 });
+                memory.learn(look, centre, Part::Recent, UNSAID, &|p| if is_said(p) { 2 } else { 1 });
             }
             let remembered = memory.read(look, &area, centre, constants);
             for ((odds, remembered), trust) in odds.iter_mut().zip(remembered).zip(memory.trusts(look)) {
@@ -308,7 +308,7 @@ impl Sweep {
         if let Some(memory) = self.memory.as_mut().filter(|_| front.whole.now) {
             memory.fade(constants.decay);
             if knows_little {
-                memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, |p| front.side(p));
+                memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, &|p| front.side(p));
             }
         }
         self.evidence.learn(given.found, &front.mask, begins);

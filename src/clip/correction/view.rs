@@ -86,20 +86,20 @@ impl View {
     pub(super) fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> Shift {
         let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) * COARSE as f32);
         let size = [look.coarse[0].width(), look.coarse[0].height()];
-        let cost = |shift: Shift| {
+        let mut cost = |shift: Shift| {
             let of_sample = |sample: &Sample| {
                 let to = shifted(sample.at.map(|at| at / COARSE), shift.map(|shift| shift / COARSE as f32), size);
                 to.map_or(UNSEEN, |q| difference(sample.coarse, at(&look.coarse, q)))
             };
             self.mean(of_sample)
         };
-        let coarse = best_of(SEARCH, COARSE as f32, middle, middle, constants, cost).0;
-        best_of(NEAR, 1.0, coarse, expected, constants, |shift| self.cost(look, shift, &[])).0
+        let coarse = best_of(SEARCH, COARSE as f32, middle, middle, constants, &mut cost).0;
+        best_of(NEAR, 1.0, coarse, expected, constants, &mut |shift| self.cost(look, shift, &[])).0
     }
 
     /// The best shift close to the one expected, and what it costs.
     pub(super) fn close(&self, look: &Look, expected: Shift, constants: &Constants) -> (Shift, f32) {
-        best_of(NEAR, 1.0, expected, expected, constants, |shift| self.cost(look, shift, &[]))
+        best_of(NEAR, 1.0, expected, expected, constants, &mut |shift| self.cost(look, shift, &[]))
     }
 
     /// The shift at which part of it is seen near the one expected, so many frames after it was seen whole; others have the pixels that
@@ -114,7 +114,7 @@ impl View {
     ) -> Option<Shift> {
         let reach = ((REACH[0] + REACH[1] * frames as f32) as isize).min(SEARCH);
         let mut costs = Vec::new();
-        let (best, least) = best_of(reach, 1.0, expected, expected, constants, |shift| {
+        let (best, least) = best_of(reach, 1.0, expected, expected, constants, &mut |shift| {
             costs.push(self.cost(look, shift, covered));
             costs[costs.len() - 1]
         });
@@ -185,7 +185,7 @@ fn best_of(
     middle: Shift,
     expected: Shift,
     constants: &Constants,
-    mut cost: impl FnMut(Shift) -> f32,
+    cost: &mut dyn FnMut(Shift) -> f32,
 ) -> (Shift, f32) {
     let mut best = (f32::INFINITY, middle, f32::INFINITY);
     for dy in -reach..=reach {
