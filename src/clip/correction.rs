@@ -4,8 +4,9 @@
 //! what is said of one object changes no other. Where two objects of a person claim a pixel, the one that had it keeps it.
 //!
 //! 1. The corrected frame tells which objects it speaks of, or takes pixels from.
-//! 2. Each is followed forward from the first frame that speaks of it, and backward from the last (`correction/track.rs`).
-//! 3. The claims of a frame become its layer over the labels found automatically (`clip/layer.rs`).
+//! 2. What all frames say of an object is learnt, and how it looks where it was found.
+//! 3. Each is followed forward from the first frame that speaks of it, and backward from the last (`correction/track.rs`).
+//! 4. The claims of a frame become its layer over the labels found automatically (`clip/layer.rs`).
 
 mod constants;
 mod evidence;
@@ -80,8 +81,9 @@ pub struct ClipCorrection {
     worlds: Vec<World>,
     /// The frame that is wanted, and what for.
     next: Option<(usize, Pass)>,
-    /// Frames that are still to be surveyed, and for which object, and those that speak for themselves.
-    survey: Vec<(usize, u8)>,
+    /// Frames that are still to be surveyed, and for which object that was found, or for what is said there.
+    survey: Vec<(usize, Option<u8>)>,
+    /// Frames that speak for themselves.
     alone: Vec<usize>,
     /// Whether the layer of each frame of the scene is up to date.
     done: Vec<bool>,
@@ -93,7 +95,7 @@ pub struct ClipCorrection {
 /// What a frame is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pass {
-    /// To learn what objects look like that were found automatically.
+    /// To learn what objects look like, as they were found automatically and as is said.
     Survey,
     /// Because it speaks of an object, and no sweep comes to it.
     Alone,
@@ -160,11 +162,17 @@ impl ClipCorrection {
             None => {}
             Some(Pass::Survey) => {
                 let found = clip.found_at(index, look.size);
+                let said = clip.said_at(index, look.size, look.step);
                 while let Some((_, number)) = self.survey.pop_if(|(t, _)| *t == index) {
-                    let tracks = self.worlds.iter_mut().flat_map(|world| &mut world.tracks);
-                    tracks
-                        .filter(|track| track.number == number)
-                        .for_each(|track| track.survey(&look, &found, &constants));
+                    for track in self.worlds.iter_mut().flat_map(|world| &mut world.tracks) {
+                        match (number, &said) {
+                            (Some(number), _) if track.number == number => track.survey(&look, &found, &constants),
+                            (None, Some((said, _))) if track.is_for_all(index) => {
+                                track.hear(&look, said, &found, &constants);
+                            }
+                            _ => {}
+                        }
+                    }
                 }
                 self.next = self.after_survey();
             }
@@ -236,8 +244,10 @@ impl ClipCorrection {
             }
             let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds(t, number)).collect();
             let count = there.len().min(SURVEYED);
-            self.survey.extend((0..count).map(|k| (there[k * there.len() / count], number)));
+            self.survey.extend((0..count).map(|k| (there[k * there.len() / count], Some(number))));
         }
+        let tracks = || self.worlds.iter().flat_map(|world| &world.tracks);
+        self.survey.extend((first..=last).filter(|&t| tracks().any(|track| track.is_for_all(t))).map(|t| (t, None)));
         sort_few(&mut self.survey, |(one, _), (other, _)| other.cmp(one));
         let [forward, backward] = [Way::Forward, Way::Backward].map(|way| self.first(way));
         let is_swept = |t: usize| forward.is_some_and(|from| t >= from) || backward.is_some_and(|from| t <= from);

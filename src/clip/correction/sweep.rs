@@ -56,6 +56,8 @@ pub(super) struct Given<'a> {
     pub(super) said: Option<&'a [Said]>,
     /// Whether what is said speaks of the object. Else it counts only where it contradicts the sweep.
     pub(super) speaks: bool,
+    /// Whether that is for all frames.
+    pub(super) is_for_all: bool,
     /// Whether what is said goes on from here.
     pub(super) spreads: bool,
     /// Labels found automatically.
@@ -98,6 +100,8 @@ pub(super) struct Sweep {
     front: Option<Front>,
     memory: Option<Memory>,
     evidence: Evidence,
+    /// Whether it knows already what is said for all frames.
+    has_heard: bool,
 }
 
 impl Sweep {
@@ -115,7 +119,7 @@ impl Sweep {
             evidence.learn(found, &front.mask, true);
         }
         let front = self.front.as_ref().map(|front| Front { whole: front.whole.turned(), ..front.clone() });
-        Sweep { front, memory, evidence }
+        Sweep { front, memory, evidence, has_heard: self.has_heard }
     }
 
     /// Learns what the object looks like in a frame where it was found, before it begins.
@@ -134,6 +138,15 @@ impl Sweep {
         memory.learn(look, centre, Part::Recent, 1.0, &|p| usize::from(mask.values()[p] < 0.5));
     }
 
+    /// Learns what is said in some frame for all frames.
+    pub(super) fn hear(&mut self, look: &Look, said: &[Said], found: &[u8], number: u8, constants: &Constants) {
+        let shown = shown(look, Some(said), found, number);
+        let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&shown, constants));
+        memory.learn_said(look, centre, Some(said));
+        self.has_heard = true;
+    }
+
     /// The first frame. `number` is what the object is called where it was found.
     pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, number: u8, constants: &Constants) -> Claim {
         let is_found = given.found.contains(&number);
@@ -143,14 +156,13 @@ impl Sweep {
             false => NOWHERE,
         };
         let mut odds: Vec<f32> = (0..look.pixels()).map(unsaid).collect();
-        let shown = look.plane(&|p| match given.said.map_or(Said::Nothing, |said| said[p]) {
-            Said::Nothing => odds[p] > 0.0,
-            said => said == Said::Object,
-        });
+        let shown = shown(look, given.said, given.found, number);
         let partly = given.said.is_none_or(|said| said.contains(&Said::Nothing));
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
         let memory = self.memory.get_or_insert_with(|| Memory::of(&shown, constants));
-        memory.learn_said(look, centre, given.said);
+        if !(self.has_heard && given.is_for_all) {
+            memory.learn_said(look, centre, given.said);
+        }
         let area = look.area();
         if partly {
             if !is_found {
@@ -237,7 +249,7 @@ impl Sweep {
         let central = look.plane_of(&|p| if carried.values()[p] > CENTRAL { carried.values()[p] } else { 0.0 });
         let centre =
             front.whole.expected_centre(placed.as_ref()).or_else(|| centre_of(&central)).unwrap_or(front.centre);
-        let learns = given.speaks && given.spreads;
+        let learns = given.speaks && given.spreads && !(self.has_heard && given.is_for_all);
         if let Some(memory) = self.memory.as_mut().filter(|_| learns) {
             memory.learn_said(look, centre, given.said);
         }
@@ -314,6 +326,14 @@ impl Sweep {
         self.evidence.learn(given.found, &front.mask, begins);
         self.front = Some(front);
     }
+}
+
+/// The object in a frame that speaks of it: what is said, and what was found of it elsewhere.
+fn shown(look: &Look, said: Option<&[Said]>, found: &[u8], number: u8) -> Plane {
+    look.plane(&|p| match said.map_or(Said::Nothing, |said| said[p]) {
+        Said::Nothing => found[p] == number,
+        said => said == Said::Object,
+    })
 }
 
 impl Front {

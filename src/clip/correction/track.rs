@@ -4,6 +4,7 @@
 use super::constants::Constants;
 use super::look::Look;
 use super::sweep::{Claim, Expected, Given, Sweep, cut};
+use super::world::of_object;
 use crate::clip::layer::Spread;
 use crate::frame::area::Area;
 
@@ -47,6 +48,11 @@ impl Track {
         self.starts.iter().any(|(start, _)| *start == t)
     }
 
+    /// Whether a frame speaks of it for all frames.
+    pub(super) fn is_for_all(&self, t: usize) -> bool {
+        self.starts.contains(&(t, Spread::Both))
+    }
+
     /// Takes what a frame shows of the object for what it looks like.
     pub(super) fn know(&mut self, look: &Look, now: &[u8], constants: &Constants) {
         self.forward.know(look, &|p| now[p] == self.number, constants);
@@ -56,6 +62,14 @@ impl Track {
     pub(super) fn survey(&mut self, look: &Look, found: &[u8], constants: &Constants) {
         for sweep in [&mut self.forward, &mut self.backward] {
             sweep.survey(look, &|p| found[p] == self.number, constants);
+        }
+    }
+
+    /// Learns what is said for all frames, before any sweep begins.
+    pub(super) fn hear(&mut self, look: &Look, said: &[u8], found: &[u8], constants: &Constants) {
+        let said = of_object(said, self.number);
+        for sweep in [&mut self.forward, &mut self.backward] {
+            sweep.hear(look, &said, found, self.number, constants);
         }
     }
 

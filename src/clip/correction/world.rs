@@ -54,6 +54,7 @@ impl World {
             .map(|(track, said)| Given {
                 said: said.as_deref(),
                 speaks: track.speaks(t),
+                is_for_all: track.is_for_all(t),
                 spreads: known.said.is_none_or(|(_, spreads)| spreads[way as usize]),
                 found: known.found,
                 flows: known.flows,
