@@ -179,6 +179,40 @@ mod tests {
     }
 
     #[test]
+    fn what_is_said_later_counts_before_it() {
+        // Found as one; a stroke on the left part here, and in a later frame one that says what the right part is not.
+        let place = |x: usize, y: usize| match (20..44).contains(&y) {
+            true if (20..44).contains(&x) => 1,
+            true if (44..68).contains(&x) => 2,
+            _ => 0,
+        };
+        let look = Look::painted(SIZE, |x, y| [[110, 120, 115], [190, 70, 60], [60, 80, 190]][place(x, y)]);
+        let at = |p: usize| place(p % SIZE[0], p / SIZE[0]);
+        let found: Vec<u8> = (0..look.pixels()).map(|p| u8::from(at(p) > 0)).collect();
+        let stroke = |part: usize, label: u8| -> Vec<u8> {
+            let is_in = |p: &usize| at(*p) == part && (28..36).contains(&(p / SIZE[0]));
+            (0..look.pixels()).map(|p| if is_in(&p) { label } else { crate::clip::whole::NOTHING_SAID }).collect()
+        };
+        let (here, later) = (stroke(1, 1), stroke(2, 0));
+        let shares = [false, true].map(|hears| {
+            let mut track = Track::new(1, vec![(0, Spread::Both), (3, Spread::Both)], 4);
+            for said in [&here, &later].into_iter().filter(|_| hears) {
+                track.hear(&look, said, &found, &constants());
+            }
+            let mut world = World { tracks: vec![track], decides: vec![1] };
+            let known = Known { said: Some((&here, [true; 2])), found: &found, flows: None };
+            let claims = world.visit(0, Way::Forward, true, &look, &known, &constants());
+            let claim = claims[0].1.as_ref().unwrap();
+            let of = |part: usize| {
+                let pixels = claim.area.pixels(SIZE[0]).zip(&claim.mask);
+                pixels.filter(|(p, inside)| **inside > 0 && at(*p) == part).count()
+            };
+            [of(1), of(2)]
+        });
+        assert_eq!(shares, [[24 * 24, 24 * 24], [24 * 24, 0]]);
+    }
+
+    #[test]
     fn one_comes_out_behind_its_like() {
         // Cut from one cloth; the first passes behind the second, which stands still, and is quite hidden for a while.
         let mut random = Random::from_seed(7);
