@@ -141,7 +141,7 @@ impl Whole {
         });
         let [(by_flow, one), (by_velocity, other)] =
             [along, onward].map(|expected| self.view.close(look, expected, constants));
-        if one.min(other) < CLOSE {
+        if self.frames > 0 || one.min(other) < CLOSE {
             return placed(if other < one { by_velocity } else { by_flow });
         }
         placed(self.view.nearest(look, along, constants))
