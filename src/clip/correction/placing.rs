@@ -14,9 +14,8 @@ pub(super) type Shift = [f32; 2];
 const FEWEST: f32 = 80.0;
 /// An object is seen whole while it has this share of the pixels that it had …
 const SEEN: f32 = 0.85;
-/// … of which this share is expected a frame later, and this while it is hidden.
+/// … of which this share is expected a frame later.
 const SHRINKING: f32 = 0.97;
-const HIDDEN: f32 = 1.0;
 /// Cost of a shift close to the one expected up to which no other place is looked for: that may be another object that looks like it.
 const CLOSE: f32 = 0.3;
 /// While more than this share is left, an object has changed, and is not hidden, …
@@ -74,7 +73,7 @@ impl Whole {
     /// The object a frame later. While part of it is hidden, it stays what it was, and moves on.
     pub(super) fn gone_on(self, mask: &Plane, look: &Look, centre: [f32; 2], placed: Option<&Placed>) -> Whole {
         let pixels: f32 = mask.values().iter().sum();
-        let expected = self.pixels * if self.now { SHRINKING } else { HIDDEN };
+        let expected = if self.now { SHRINKING * self.pixels } else { self.pixels };
         let (shift, found) = placed.map_or((self.shift, false), |placed| (placed.shift, placed.found));
         let velocity = self.velocity.unwrap_or_default();
         let onward = |share: f32, step: Shift| [0, 1].map(|k| velocity[k] + share * (step[k] - velocity[k]));
