@@ -27,8 +27,7 @@ struct Opened<'a> {
 fn score(clips: &[&Opened<'_>], options: &Options, constants: [f32; 10]) -> Result<f64, Failure> {
     let of_clip = |clip: &&Opened<'_>| {
         vary_propagation(constants);
-        let row = measure::figures_of(clip.case, clip.data, clip.session.clone(), options)?;
-        Ok(0.5 * (row.mask + row.rounds[1]))
+        measure::score(clip.case, clip.data, &clip.session, options)
     };
     Ok(mean(&in_parallel(clips, of_clip)?))
 }

@@ -9,7 +9,7 @@ use veronese::clip::Prompt;
 use crate::cases::{Case, Data};
 use crate::overlap::{between, each, masks, mean, of_label, worst};
 use crate::robot::{NOTHING_SAID, View, depths};
-use crate::session::Session;
+use crate::session::{Effort, Session};
 use crate::{Failure, Options, dump};
 
 /// Clips that had part in setting constants before the others came.
@@ -61,7 +61,7 @@ pub(crate) struct Pointed {
 pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let data = case.load()?;
     let automatic = open(case, &data, options)?;
-    figures_of(case, &data, automatic, options)
+    figures_of(case, &data, &automatic, options)
 }
 
 /// The clip as it is segmented when nothing is said.
@@ -70,52 +70,30 @@ pub(crate) fn open<'a>(case: &Case, data: &'a Data, options: &Options) -> Result
 }
 
 /// All figures of a clip that is segmented.
-pub(crate) fn figures_of(case: &Case, data: &Data, automatic: Session<'_>, options: &Options) -> Result<Row, Failure> {
-    let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
-    let truths: Vec<Vec<bool>> = data.truths.iter().map(|truth| of_label(truth, 1)).collect();
-    let (count, pixels) = (truths.len(), truths[0].len());
+fn figures_of(case: &Case, data: &Data, automatic: &Session<'_>, options: &Options) -> Result<Row, Failure> {
+    let width = width_of(case, data)?;
+    let truths = truths_of(data);
     dump::write(options, case, "auto", data, &automatic.labels)?;
 
     let (_, background) = areas(&automatic.labels);
     let moving = |labels: &Vec<u8>| labels.iter().map(|&label| label != background && label != NOTHING_SAID).collect();
     let auto = mean(&each(&automatic.labels.iter().map(moving).collect::<Vec<_>>(), &truths));
-    let (label, click) = best_label(&automatic.labels, &truths)
-        .unwrap_or_else(|| (NEW, mean(&each(&vec![vec![false; pixels]; count], &truths))));
-    let label = if click < FITS { NEW } else { label };
-
-    let mut session = automatic.clone();
-    let given: Vec<u8> = truths[0].iter().map(|&object| if object { GIVEN } else { 0 }).collect();
-    session.correct(0, &given)?;
-    let mask = between(&masks(&session.labels, GIVEN), &truths);
+    let (session, mask) = given(automatic, &truths)?;
     dump::write(options, case, "mask", data, &session.labels)?;
     let mut effort = session.effort;
-
-    let [boxed, touched] = prompts(&truths[0], width).map(|prompt| pointed(&automatic, prompt, &truths));
+    let [boxed, touched] = prompts(&truths[0], width).map(|prompt| pointed(automatic, prompt, &truths));
     let (boxed, touched) = (boxed?, touched?);
-
-    let mut session = automatic;
-    let (mut rounds, mut round_seconds) = (vec![click], Vec::new());
-    let mut said: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
-    for round in 1..=options.rounds {
-        let found = masks(&session.labels, label);
-        let worst = worst(&each(&found, &truths));
-        let said = said.entry(worst).or_insert_with(|| vec![NOTHING_SAID; pixels]);
-        View { width, truth: &truths[worst], found: &found[worst] }.draw(label, |_| true, said);
-        let before = session.effort.time;
-        session.correct(worst, said)?;
-        round_seconds.push((session.effort.time - before).as_secs_f64());
-        rounds.push(mean(&each(&masks(&session.labels, label), &truths)));
-        dump::write(options, case, &format!("round-{round}"), data, &session.labels)?;
-    }
-    effort.time += session.effort.time;
-    effort.frames += session.effort.frames;
+    let Rounds { click, rounds, seconds: round_seconds, effort: of_rounds } =
+        corrected(case, data, automatic, options)?;
+    effort.time += of_rounds.time;
+    effort.frames += of_rounds.frames;
     let baseline = baseline(case, data, options, &truths)?;
     let baseline_boxed = baseline_boxed(case, data, options, &truths)?;
     let (clip, quality, frame_milliseconds) = (case.name.clone(), options.quality_name().into(), effort.per_frame());
     Ok(Row {
         clip,
         quality,
-        frames: count,
+        frames: truths.len(),
         auto,
         click,
         mask,
@@ -127,6 +105,62 @@ pub(crate) fn figures_of(case: &Case, data: &Data, automatic: Session<'_>, optio
         baseline,
         baseline_boxed,
     })
+}
+
+/// Mean J of a mask given and of the last round of strokes.
+pub(crate) fn score(case: &Case, data: &Data, automatic: &Session<'_>, options: &Options) -> Result<f64, Failure> {
+    let (_, mask) = given(automatic, &truths_of(data))?;
+    let corrected = corrected(case, data, automatic, options)?;
+    Ok(0.5 * (mask + corrected.rounds.last().copied().unwrap_or(corrected.click)))
+}
+
+fn width_of(case: &Case, data: &Data) -> Result<usize, Failure> {
+    Ok(data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width())
+}
+
+fn truths_of(data: &Data) -> Vec<Vec<bool>> {
+    data.truths.iter().map(|truth| of_label(truth, 1)).collect()
+}
+
+/// The clip with the true mask of its first frame, and the object's J in the others.
+fn given<'a>(automatic: &Session<'a>, truths: &[Vec<bool>]) -> Result<(Session<'a>, f64), Failure> {
+    let mut session = automatic.clone();
+    let given: Vec<u8> = truths[0].iter().map(|&object| if object { GIVEN } else { 0 }).collect();
+    session.correct(0, &given)?;
+    let mask = between(&masks(&session.labels, GIVEN), truths);
+    Ok((session, mask))
+}
+
+/// What a click gives, and rounds of strokes after it.
+struct Rounds {
+    click: f64,
+    /// J, that of the click first.
+    rounds: Vec<f64>,
+    seconds: Vec<f64>,
+    effort: Effort,
+}
+
+fn corrected(case: &Case, data: &Data, automatic: &Session<'_>, options: &Options) -> Result<Rounds, Failure> {
+    let (width, truths) = (width_of(case, data)?, truths_of(data));
+    let (count, pixels) = (truths.len(), truths[0].len());
+    let (label, click) = best_label(&automatic.labels, &truths)
+        .unwrap_or_else(|| (NEW, mean(&each(&vec![vec![false; pixels]; count], &truths))));
+    let label = if click < FITS { NEW } else { label };
+    let mut session = automatic.clone();
+    let (mut rounds, mut seconds) = (vec![click], Vec::new());
+    let mut said: BTreeMap<usize, Vec<u8>> = BTreeMap::new();
+    for round in 1..=options.rounds {
+        let found = masks(&session.labels, label);
+        let worst = worst(&each(&found, &truths));
+        let said = said.entry(worst).or_insert_with(|| vec![NOTHING_SAID; pixels]);
+        View { width, truth: &truths[worst], found: &found[worst] }.draw(label, |_| true, said);
+        let before = session.effort.time;
+        session.correct(worst, said)?;
+        seconds.push((session.effort.time - before).as_secs_f64());
+        rounds.push(mean(&each(&masks(&session.labels, label), &truths)));
+        dump::write(options, case, &format!("round-{round}"), data, &session.labels)?;
+    }
+    Ok(Rounds { click, rounds, seconds, effort: session.effort })
 }
 
 /// The smallest box around a mask, and a click at its deepest pixel, the first of equals.
