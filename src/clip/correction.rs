@@ -158,33 +158,36 @@ impl ClipCorrection {
             // The frame is here already.
             pass = self.next.filter(|(wanted, _)| *wanted == index).map(|(_, pass)| pass);
         }
-        match pass {
-            None => {}
-            Some(Pass::Survey) => {
-                let found = clip.found_at(index, look.size);
-                let said = clip.said_at(index, look.size, look.step);
-                while let Some((_, number)) = self.survey.pop_if(|(t, _)| *t == index) {
-                    for track in self.worlds.iter_mut().flat_map(|world| &mut world.tracks) {
-                        match (number, &said) {
-                            (Some(number), _) if track.number == number => track.survey(&look, &found, &constants),
-                            (None, Some((said, _))) if track.is_for_all(index) => {
-                                track.hear(&look, said, &found, &constants);
+        // A frame may be wanted for several things after one another.
+        while let Some(now) = pass {
+            match now {
+                Pass::Survey => {
+                    let found = clip.found_at(index, look.size);
+                    let said = clip.said_at(index, look.size, look.step);
+                    while let Some((_, number)) = self.survey.pop_if(|(t, _)| *t == index) {
+                        for track in self.worlds.iter_mut().flat_map(|world| &mut world.tracks) {
+                            match (number, &said) {
+                                (Some(number), _) if track.number == number => track.survey(&look, &found, &constants),
+                                (None, Some((said, _))) if track.is_for_all(index) => {
+                                    track.hear(&look, said, &found, &constants);
+                                }
+                                _ => {}
                             }
-                            _ => {}
                         }
                     }
+                    self.next = self.after_survey();
                 }
-                self.next = self.after_survey();
+                Pass::Alone => {
+                    // Nothing is followed yet.
+                    self.visit(clip, frame, &look, index, Way::Backward, &constants);
+                    self.next = self.after_survey();
+                }
+                Pass::Sweep(way) => {
+                    self.visit(clip, frame, &look, index, way, &constants);
+                    self.next = self.after(index, way);
+                }
             }
-            Some(Pass::Alone) => {
-                // Nothing is followed yet.
-                self.visit(clip, frame, &look, index, Way::Backward, &constants);
-                self.next = self.after_survey();
-            }
-            Some(Pass::Sweep(way)) => {
-                self.visit(clip, frame, &look, index, way, &constants);
-                self.next = self.after(index, way);
-            }
+            pass = self.next.filter(|(wanted, _)| *wanted == index).map(|(_, pass)| pass);
         }
         if self.next.is_none() {
             self.finish(clip);
