@@ -122,7 +122,7 @@ impl Memory {
         self.learn_within(look, &look.area(), centre, part, weight, sides);
     }
 
-    /// [`learn`](Self::learn) from an area. Not generic: each call would have a copy of its own.
+    /// [`learn`](Self::learn) from an area. Not generic, as `learn`: each call would have a copy of its own.
     pub(super) fn learn_within(
         &mut self,
         look: &Look,

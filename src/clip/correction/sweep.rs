@@ -147,6 +147,11 @@ impl Sweep {
         self.has_heard = true;
     }
 
+    /// Whether it has learnt already what is said of a frame.
+    fn knows(&self, given: &Given<'_>) -> bool {
+        self.has_heard && given.is_for_all
+    }
+
     /// The first frame. `number` is what the object is called where it was found.
     pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, number: u8, constants: &Constants) -> Claim {
         let is_found = given.found.contains(&number);
@@ -159,8 +164,9 @@ impl Sweep {
         let shown = shown(look, given.said, given.found, number);
         let partly = given.said.is_none_or(|said| said.contains(&Said::Nothing));
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
+        let knows = self.knows(given);
         let memory = self.memory.get_or_insert_with(|| Memory::of(&shown, constants));
-        if !(self.has_heard && given.is_for_all) {
+        if !knows {
             memory.learn_said(look, centre, given.said);
         }
         let area = look.area();
@@ -249,7 +255,7 @@ impl Sweep {
         let central = look.plane_of(&|p| if carried.values()[p] > CENTRAL { carried.values()[p] } else { 0.0 });
         let centre =
             front.whole.expected_centre(placed.as_ref()).or_else(|| centre_of(&central)).unwrap_or(front.centre);
-        let learns = given.speaks && given.spreads && !(self.has_heard && given.is_for_all);
+        let learns = given.speaks && given.spreads && !self.knows(given);
         if let Some(memory) = self.memory.as_mut().filter(|_| learns) {
             memory.learn_said(look, centre, given.said);
         }
