@@ -10,6 +10,8 @@ import { decodeImage } from 'veronese/codecs';
 const OVERLAP = 0.85;
 /** Share of the pixels in an outline of a clip that have the object's number. */
 const COVERED = 0.97;
+/** Pixels outside the outline of a clip that have the object's number, as a share of those inside: cars have shadows right below them. */
+const OUTSIDE = 0.4;
 /** Largest displacement of a background at rest, pixels. */
 const REST = 0.1;
 
@@ -82,6 +84,9 @@ async function checkClip({ folder, objects }, quality) {
       const pixels = [...labels.keys()].filter((p) => contains(outline, p, width));
       const covered = pixels.filter((p) => labels[p] === k + 1).length / pixels.length;
       assert.ok(covered >= COVERED, `${covered.toFixed(3)} of ${name} in frame ${index}`);
+      const all = labels.filter((label) => label === k + 1).length;
+      const outside = all / pixels.length - covered;
+      assert.ok(outside <= OUTSIDE, `${outside.toFixed(3)} around ${name} in frame ${index}`);
     }
   }
   assert.deepEqual([...seen.keys()].sort(), objects.map((_, k) => k + 1));

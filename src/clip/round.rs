@@ -41,12 +41,12 @@ const COLOUR_REACH: usize = 16;
 #[derive(Debug)]
 pub(crate) struct Round {
     /// Share of the evidence that is left after a frame.
-    decay: f32,
+    pub(super) decay: f32,
     /// Frames that each frame waits for.
     delay: usize,
     solver: Solver,
     /// Weight of the colours.
-    colours_weight: f32,
+    pub(super) colours_weight: f32,
     waiting: VecDeque<Waiting>,
     /// Evidence of the newest frame with that of the frames before it.
     past: Option<Plane>,
@@ -76,13 +76,6 @@ impl Round {
     pub(crate) fn new(delay: usize, solver: Solver) -> Round {
         let (decay, colours_weight) = (DECAY, COLOUR_WEIGHT);
         Round { decay, delay, solver, colours_weight, waiting: VecDeque::new(), past: None, colours: VecDeque::new() }
-    }
-
-    /// The same without one of its parts, for ablation studies.
-    pub(crate) fn without(self, carrying: bool, colours: bool) -> Round {
-        let decay = if carrying { 0.0 } else { self.decay };
-        let colours_weight = if colours { 0.0 } else { self.colours_weight };
-        Round { decay, colours_weight, ..self }
     }
 
     /// Takes the next frame with its own odds; returns one that has waited long enough.

@@ -39,7 +39,7 @@ impl StreamSegmenter {
     /// range.
     pub fn new(options: ClipOptions) -> Result<StreamSegmenter> {
         let look_ahead = Some(options.look_ahead.unwrap_or(MAX_LOOK_AHEAD));
-        Ok(StreamSegmenter { tracker: Tracker::new(ClipOptions { look_ahead, ..options }, true, None)? })
+        Ok(StreamSegmenter { tracker: Tracker::new(ClipOptions { look_ahead, ..options }, true)? })
     }
 
     /// Takes the next frame. Returns a frame that has waited long enough, if there is one.

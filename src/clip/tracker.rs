@@ -43,6 +43,8 @@ pub enum ClipPart {
 #[derive(Debug)]
 pub(crate) struct Tracker {
     options: ClipOptions,
+    /// What is left out.
+    #[cfg(feature = "ablation")]
     without: Option<ClipPart>,
     /// Whether frames are kept until they leave, to be described then.
     keeps_frames: bool,
@@ -83,8 +85,8 @@ pub(crate) struct Tracked {
 }
 
 impl Tracker {
-    /// A tracker that keeps frames until they leave, or only what it needs of them; in ablation studies without one part.
-    pub(crate) fn new(options: ClipOptions, keeps_frames: bool, without: Option<ClipPart>) -> Result<Tracker> {
+    /// A tracker that keeps frames until they leave, or only what it needs of them.
+    pub(crate) fn new(options: ClipOptions, keeps_frames: bool) -> Result<Tracker> {
         options.pair.motions.validate()?;
         if options.look_ahead.is_some_and(|frames| frames > MAX_LOOK_AHEAD) {
             let reason = format!("must be 0 to {MAX_LOOK_AHEAD}");
@@ -93,12 +95,12 @@ impl Tracker {
         // A stream has its frames' future in the first round alone.
         let delays = options.look_ahead.map_or([WHOLE_CLIP / 2; 2], |frames| [frames, 0]);
         let solver = Settings::solver(options.pair.quality);
-        let [carrying, colours] = [ClipPart::Carrying, ClipPart::Colours].map(|part| without == Some(part));
-        let rounds = [0, 1].map(|k| Round::new(delays[k], solver).without(carrying, colours));
+        let rounds = [0, 1].map(|k| Round::new(delays[k], solver));
         let identities = Identities::new();
         Ok(Tracker {
             options,
-            without,
+            #[cfg(feature = "ablation")]
+            without: None,
             keeps_frames,
             size: None,
             count: 0,
@@ -108,6 +110,18 @@ impl Tracker {
             rounds,
             identities,
         })
+    }
+
+    /// The same without one part, for ablation studies.
+    #[cfg(feature = "ablation")]
+    pub(crate) fn without(mut self, part: ClipPart) -> Tracker {
+        self.without = Some(part);
+        self.rounds.iter_mut().for_each(|round| match part {
+            ClipPart::Carrying => round.decay = 0.0,
+            ClipPart::Colours => round.colours_weight = 0.0,
+            _ => {}
+        });
+        self
     }
 
     pub(crate) fn options(&self) -> &ClipOptions {
@@ -177,7 +191,13 @@ impl Tracker {
 
     /// Whether a part takes part.
     pub(crate) fn has(&self, part: ClipPart) -> bool {
-        self.without != Some(part)
+        #[cfg(feature = "ablation")]
+        return self.without != Some(part);
+        #[cfg(not(feature = "ablation"))]
+        {
+            let _ = part;
+            true
+        }
     }
 
     /// Goes on with what the pairs of the last frame and the newest one have told.

@@ -63,7 +63,7 @@ pub struct FramePairs {
 saved!(FramePairs { origin, pairs });
 
 /// The bytes of [`FramePairs`] and of a [`SegmentedClip`].
-const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR4 ", env!("CARGO_PKG_VERSION"), "\n") };
+const PAIRS: Format = Format { name: "pairs", mark: concat!("VERPAIR5 ", env!("CARGO_PKG_VERSION"), "\n") };
 const CLIP: Format = Format { name: "state", mark: concat!("VERCLIP4 ", env!("CARGO_PKG_VERSION"), "\n") };
 
 impl FramePairs {
@@ -87,7 +87,7 @@ impl ClipSegmenter {
     /// # Errors
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
-        ClipSegmenter::with(Tracker::new(options, false, None)?)
+        ClipSegmenter::with(Tracker::new(options, false)?)
     }
 
     /// [`new`](Self::new) without one part, for ablation studies.
@@ -97,7 +97,7 @@ impl ClipSegmenter {
     #[cfg(feature = "ablation")]
     #[doc(hidden)]
     pub fn without(part: ClipPart, options: ClipOptions) -> Result<ClipSegmenter> {
-        ClipSegmenter::with(Tracker::new(options, false, Some(part))?)
+        ClipSegmenter::with(Tracker::new(options, false)?.without(part))
     }
 
     fn with(tracker: Tracker) -> Result<ClipSegmenter> {

@@ -214,10 +214,11 @@ impl Settings {
     }
 
     /// The settings for the pairs of a clip. They do not wait for linear terms: fast streams lost by it, in small frames unrelated ones were
-    /// explained too well for a cut to be seen, and whole clips gained no more than chance.
+    /// explained too well for a cut to be seen, and whole clips gained no more than chance. Shadows are given back with both qualities, as they
+    /// would be carried from frame to frame.
     pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let [dominant, refinement] = [Convergence::Translation; 2];
-        Settings { dominant, refinement, ..Settings::new(options, size) }
+        Settings { dominant, refinement, returns_shadows: true, ..Settings::new(options, size) }
     }
 
     /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.

@@ -5,10 +5,10 @@ use super::settings::Settings;
 use super::{Pair, hypothesis, labels};
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
-use crate::labelling::BACKGROUND;
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::groups::groups;
 use crate::labelling::terms::views::{cheapest, costs_where_seen};
+use crate::labelling::{BACKGROUND, is_background};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::view::cost::{CostModel, inverse};
@@ -107,18 +107,26 @@ pub(crate) fn solve(
             (pair.draft == 0 && pair.selection == 0).then(|| follow(&mut pair, prior, labels, settings)).flatten(),
         ),
     };
-    let (labelled, limits) = followed.unwrap_or_else(|| {
+    let (mut labelled, limits) = followed.unwrap_or_else(|| {
         let Solved { pair: solved, labelled } =
             background::solve(Pair::new(first, pyramid, second, None, settings), likely, settings, &mut stages);
         pair = solved;
         let cost = if settings.follows { hypothesis::cost(&pair, &labelled.motions) } else { 0.0 };
         (labelled, [(1.0 + TOLERANCE) * cost, cost])
     });
+    let with_shadows = labelled.labels.clone();
+    labels::return_shadows(&pair, &mut labelled, settings);
     let level = pair.finest();
-    let costs = costs_where_seen(level, &labelled.motions);
+    let mut costs = costs_where_seen(level, &labelled.motions);
     let most = CostModel::labels().truncation;
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
+    // Where a shadow was given back to the background, a change of light explains it as well as any motion does.
+    for (p, cost) in costs[BACKGROUND].values_mut().iter_mut().enumerate() {
+        if is_background(labelled.labels[p]) && !is_background(with_shadows[p]) {
+            *cost = smallest.values()[p];
+        }
+    }
     let probabilities = probabilities(&costs, &labelled.labels);
     let groups = groups(&labelled.motions, &labelled.labels, level.width(), pair.reduction);
     let [enough, searched] = limits;
