@@ -49,8 +49,9 @@ function fileInBrowser(page: Page): Promise<string> {
     if (folder === null) return text;
     for await (const name of folder.keys()) {
       const file = await folder.getFileHandle(name).then((handle) => handle.getFile()).catch(() => null);
-      if (file === null) return ''; // it is being replaced
-      text = await new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
+      // It may be replaced, also while it is read.
+      const unpacked = file && new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
+      text = (await unpacked?.catch(() => '')) ?? '';
     }
     return text;
   });
