@@ -1,7 +1,6 @@
 //! The image pipeline: the stages that turn two frames into masks, in order.
 
 mod background;
-mod consensus;
 mod evidence;
 mod hypothesis;
 pub(crate) mod labels;
@@ -18,11 +17,8 @@ use std::rc::Rc;
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
 use crate::estimation::dominant::{DominantSearch, RIDGE, dominant_motion, dominant_motion_near};
-use crate::frame::mirror::Mirror;
+use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
-use crate::frame::{Frame, Plane};
-use crate::labelling::BACKGROUND;
-use crate::labelling::regions::groups::groups;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
@@ -33,8 +29,6 @@ use crate::view::cost::{View, noise};
 use crate::view::level::{Level, levels};
 use crate::workspace;
 use background::Solved;
-use consensus::{Finding, consensus, foreground};
-use labels::Labelled;
 use settings::Settings;
 
 /// Iterations that refine the dominant motion once the brightness is known. Chosen on generated scenes.
@@ -62,7 +56,7 @@ pub fn segment_pair(
     segment_with(first, second, before, options, Settings::new(options, size(first)), progress)
 }
 
-/// [`segment_pair`] without one part of the pipeline and in a single search, without the mirror images, for ablation studies.
+/// [`segment_pair`] without one part of the pipeline, for ablation studies.
 ///
 /// # Errors
 /// As [`segment_pair`].
@@ -75,7 +69,7 @@ pub fn segment_pair_without(
     before: Option<&Frame>,
     options: &SegmentOptions,
 ) -> Result<Segmentation> {
-    let mut settings = Settings { without: Some(part), mirror_images: false, ..Settings::new(options, size(first)) };
+    let mut settings = Settings { without: Some(part), ..Settings::new(options, size(first)) };
     if part == Part::Coherence {
         settings.coherence.smoothness = 0.0;
     }
@@ -109,72 +103,20 @@ fn segment_with(
     options.motions.validate()?;
     check_sizes(first, second, before)?;
     let _call = workspace::begin([first.width(), first.height()]);
-    let images = if settings.mirror_images { &Mirror::ALL[..] } else { &Mirror::ALL[..1] };
     let detail = settings.of_detail(options, size(first));
-    let rounds = images.len() + usize::from(detail.is_some());
-    let mut stages = Stages::in_rounds(STAGES, rounds, progress);
-    let mut searches: Vec<Search> = Vec::with_capacity(images.len());
-    for (round, &mirror) in images.iter().enumerate() {
-        stages.begin_round(round);
-        // One mirror image at a time.
-        let pair = Pair::of_frames([first, second], before, mirror, &settings);
-        searches.push(Search::new(pair, mirror, &settings, &mut stages));
-    }
-    let noise = searches.iter().map(|search| search.pair.finest().noise).fold(f32::INFINITY, f32::min);
-    let findings: Vec<Finding> = searches.iter().map(|search| search.finding(noise)).collect();
-    let consensus = consensus(&findings);
-    let mut search = searches.swap_remove(consensus.chosen);
-    let level = search.pair.finest();
-    let agreement = Plane::from_buffer(level.width(), level.height(), consensus.agreement);
-    drop(searches);
+    let mut stages = Stages::in_rounds(STAGES, 1 + usize::from(detail.is_some()), progress);
+    stages.begin_round(0);
+    let pair = Pair::of_frames([first, second], before, &settings);
+    let mut solved = background::solve(pair, &[], &settings, &mut stages);
     if let Some(settings) = detail {
-        stages.begin_round(images.len());
-        let pair = Pair::of_frames([first, second], before, search.mirror, &settings);
-        search = search.continued(pair, &settings, &mut stages);
+        stages.begin_round(1);
+        let pair = Pair::of_frames([first, second], before, &settings);
+        solved = solved.continued(pair, &settings, &mut stages);
     }
-    labels::return_shadows(&search.pair, &mut search.labelled, &settings);
+    let Solved { pair, mut labelled } = solved;
+    labels::return_shadows(&pair, &mut labelled, &settings);
     stages.begin("masks");
-    let Search { mirror, pair, labelled } = search;
-    Ok(report::report(&pair, labelled, agreement, mirror, &settings, [first, second], options))
-}
-
-/// The search of the frames or of one of their mirror images.
-struct Search {
-    mirror: Mirror,
-    pair: Pair,
-    labelled: Labelled,
-}
-
-impl Search {
-    fn new(pair: Pair, mirror: Mirror, settings: &Settings, stages: &mut Stages<'_>) -> Search {
-        let Solved { pair, labelled } = background::solve(pair, &[], settings, stages);
-        Search { mirror, pair, labelled }
-    }
-
-    /// The search carried on at the working size of `pair`, from the motions that were found.
-    fn continued(self, mut pair: Pair, settings: &Settings, stages: &mut Stages<'_>) -> Search {
-        let scale = self.pair.reduction / pair.reduction;
-        let motions: Vec<AffineMotion> = self.labelled.motions.iter().map(|motion| motion.scaled(scale)).collect();
-        let runner_up = self.labelled.runner_up.map(|motion| motion.scaled(scale));
-        stages.begin("dominant");
-        pair.take_dominant(&motions[BACKGROUND], settings.has(Part::Brightness));
-        stages.begin("refinement");
-        let found = hypothesis::refine(&pair, hypothesis::known(&pair, &motions, runner_up), settings);
-        stages.begin("labels");
-        let labelled = labels::label(&pair, found, settings);
-        Search { mirror: self.mirror, pair, labelled }
-    }
-
-    /// What was found, in the frames themselves. Descriptions can be compared only if they assume the same noise.
-    fn finding(&self, noise: f32) -> Finding {
-        let Labelled { motions, labels, .. } = &self.labelled;
-        let level = self.pair.finest();
-        let mut foreground = foreground(labels, &groups(motions, labels, level.width(), self.pair.reduction));
-        let mut labels = labels.clone();
-        self.mirror.reorder(&mut foreground, level.width());
-        self.mirror.reorder(&mut labels, level.width());
-        Finding { foreground, labels, length: self.labelled.length(level, noise) }
-    }
+    Ok(report::report(&pair, labelled, &settings, [first, second], options))
 }
 
 fn size(frame: &Frame) -> [usize; 2] {
@@ -210,14 +152,12 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// The pair of a mirror image of two frames.
-    fn of_frames([first, second]: [&Frame; 2], before: Option<&Frame>, mirror: Mirror, settings: &Settings) -> Pair {
-        let second = settings.pyramid(&mirror.frame(second));
-        let before = before.map(|frame| settings.pyramid(&mirror.frame(frame)));
-        let first = mirror.frame(first);
-        let pyramid = settings.pyramid(&first);
+    /// The pair of two frames.
+    fn of_frames([first, second]: [&Frame; 2], before: Option<&Frame>, settings: &Settings) -> Pair {
+        let [pyramid, second] = [first, second].map(|frame| settings.pyramid(frame));
+        let before = before.map(|frame| settings.pyramid(frame));
         // The pyramids end here: the pair has the planes to itself and need not copy what it changes.
-        Pair::new(&first, &pyramid, &second, before.as_ref(), settings)
+        Pair::new(first, &pyramid, &second, before.as_ref(), settings)
     }
 
     /// `pyramid` is that of `first`.

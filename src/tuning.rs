@@ -20,16 +20,12 @@ pub enum Tuned {
     Ridge,
     /// Blur that softens the border of a region before its motion is refined.
     RegionBlur,
-    /// Bonus of the zero motion in the search for the dominant one.
-    StaticBonus,
     /// Window over which costs are averaged during selection.
     SelectionWindow,
     /// Window over which the gain of a motion is averaged.
     GainWindow,
     /// Gain per pixel that does not count.
     GainMargin,
-    /// Gain that pays for a motion in the selection.
-    SelectionPrice,
     /// Price of a border between labels.
     Smoothness,
     /// Share of it that remains at the strongest edge.
@@ -62,8 +58,6 @@ pub enum Tuned {
     SmallestShare,
     /// Weight of a pixel of a coarser level.
     CoarsePixel,
-    /// How far around its region an object competes after a split.
-    CompetitionShare,
     /// Jump of the flow, as a share of the largest, below which motions form a group.
     GroupTolerance,
     /// The largest such jump, as a share of the frame's longer side.

@@ -2,16 +2,12 @@
 
 use super::alignment::{Alignment, Convergence, Freedom, Support, align};
 use crate::motion::AffineMotion;
-use crate::tuning::{Tuned, tuned};
 use crate::view::brightness::Photometric;
 use crate::view::cost::{CostModel, cost_with, total};
 use crate::view::level::Level;
 
 /// Reach of the search for a start at the coarsest level, pixels of that level. Its square is the price. Not varied.
 const REACH: i32 = 3;
-/// How much cheaper than the zero motion (in summed costs) another motion must be. Static cameras are common, and a small wrong
-/// motion of the background does more harm later than missing a small true one here. Insensitive.
-const STATIC_BONUS: f64 = 20.0;
 /// Mean cost per pixel of length that decides ties for the shorter shift.
 const LENGTH_PRICE: f64 = 1e-3;
 /// Prior against linear terms: most of the frame determines them. Chosen on generated scenes.
@@ -135,9 +131,5 @@ fn static_candidate(level: &Level, mut photometric: Photometric, brightness: boo
         photometric = photometric.refined_at_rest(level);
     }
     let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::estimation()));
-    (
-        cost - tuned(Tuned::StaticBonus, STATIC_BONUS) / (level.stride * level.stride) as f64,
-        AffineMotion::STATIC,
-        photometric,
-    )
+    (cost, AffineMotion::STATIC, photometric)
 }

@@ -4,7 +4,6 @@ pub(crate) mod area;
 mod derivatives;
 pub(crate) mod filter;
 pub(crate) mod lab;
-pub(crate) mod mirror;
 pub(crate) mod palette;
 pub(crate) mod picture;
 mod plane;

@@ -5,7 +5,7 @@
 //! solved to the end, each with objects and a change of brightness of its own, and the one that describes the frames in fewer nats is taken.
 
 use super::Pair;
-use super::hypothesis::{refine, with_dominant};
+use super::hypothesis::{known, refine, with_dominant};
 use super::labels::{Labelled, label};
 use super::settings::{Part, Settings};
 use crate::estimation::selection::ScoredMotion;
@@ -22,6 +22,22 @@ const EXPECTED: f32 = 0.8;
 pub(super) struct Solved {
     pub(super) pair: Pair,
     pub(super) labelled: Labelled,
+}
+
+impl Solved {
+    /// The search carried on at the working size of `pair`, from the motions that were found.
+    pub(super) fn continued(self, mut pair: Pair, settings: &Settings, stages: &mut Stages<'_>) -> Solved {
+        let scale = self.pair.reduction / pair.reduction;
+        let motions: Vec<AffineMotion> = self.labelled.motions.iter().map(|motion| motion.scaled(scale)).collect();
+        let runner_up = self.labelled.runner_up.map(|motion| motion.scaled(scale));
+        stages.begin("dominant");
+        pair.take_dominant(&motions[BACKGROUND], settings.has(Part::Brightness));
+        stages.begin("refinement");
+        let found = refine(&pair, known(&pair, &motions, runner_up), settings);
+        stages.begin("labels");
+        let labelled = label(&pair, found, settings);
+        Solved { pair, labelled }
+    }
 }
 
 /// Solves a pair under the hypothesis with the shorter description. `likely` are motions of objects to look for.

@@ -17,17 +17,18 @@ pub(super) fn evidence(pair: &Pair, labelled: &Labelled, settings: &Settings) ->
     let level = &pair.levels[pair.base];
     let width = level.width();
     let n = labelled.motions.len();
-    let motions: Vec<AffineMotion> =
+    let mut motions: Vec<AffineMotion> =
         labelled.motions.iter().chain(&labelled.runner_up).copied().take(MAX_MOTIONS).collect();
     let mut raw = estimation_costs(level, &motions);
     let mut costs = label_costs(level, &motions, settings.coherence);
     let borders = borders(pair, pair.base, settings);
     let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
-    let one_more = (motions.len() > n).then(|| length(&raw, &solve(&costs), width));
+    let one_more = (motions.len() > n).then(|| length(&motions, &raw, &solve(&costs), width));
+    motions.truncate(n);
     raw.truncate(n);
     costs.truncate(n);
     let mut labels = solve(&costs);
-    let mut candidates = vec![Candidate { motions: n, score: length(&raw, &labels, width) }];
+    let mut candidates = vec![Candidate { motions: n, score: length(&motions, &raw, &labels, width) }];
     if n < MAX_MOTIONS {
         // A motion without pixels costs its six parameters.
         let unused = candidates[0].score + price_of_motion(labels.len());
@@ -36,10 +37,11 @@ pub(super) fn evidence(pair: &Pair, labelled: &Labelled, settings: &Settings) ->
     while raw.len() > 1 {
         let worths = worth(&raw, &labels, width);
         let Some((weakest, _)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
+        motions.remove(weakest);
         raw.remove(weakest);
         costs.remove(weakest);
         labels = solve(&costs);
-        candidates.push(Candidate { motions: raw.len(), score: length(&raw, &labels, width) });
+        candidates.push(Candidate { motions: raw.len(), score: length(&motions, &raw, &labels, width) });
     }
     candidates.reverse();
     candidates

@@ -9,6 +9,7 @@ use crate::estimation::proposal::local_flow::local_flow;
 use crate::estimation::proposal::tiles::from_tiles;
 use crate::estimation::selection::{Deflation, ScoredMotion, add_motions, fine_proposals, prune, refit, smallest_cost};
 use crate::frame::filter::eroded;
+use crate::labelling::regions::description::price_on;
 use crate::labelling::{BACKGROUND, mask_of};
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
@@ -30,10 +31,15 @@ impl Settings {
         DominantSearch { brightness: self.has(Part::Brightness), convergence: self.dominant }
     }
 
-    /// How motions are added at the selection level (0) and at finer levels (1).
-    fn deflation(&self, stage: usize) -> Deflation {
+    /// What pays for a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
+    fn price(&self, level: &Level) -> f64 {
+        if self.least > 1 { 1.0 } else { price_on(level) }
+    }
+
+    /// How motions are added on a level.
+    fn deflation(&self, level: &Level) -> Deflation {
         Deflation {
-            price: self.price[stage],
+            price: self.price(level),
             most: self.most,
             tries: self.tries,
             window: self.gain_window,
@@ -73,7 +79,7 @@ pub(super) fn followed(
     settings.refit(level, &mut selected, ROUNDS[0]);
     let all: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
     if settings.least == 1 {
-        prune(&mut selected, settings.price[0]);
+        prune(&mut selected, settings.price(level));
     }
     let cost = cost_of(&selected);
     let number = |motion: &AffineMotion| selected.iter().position(|scored| scored.motion == *motion);
@@ -88,7 +94,7 @@ pub(super) fn is_missing(pair: &Pair, found: &Found, settings: &Settings) -> boo
     let dominant = &found.selected[BACKGROUND].motion;
     let flow = local_flow(&pair.levels, dominant, pair.base);
     let proposals = from_tiles(base, dominant, &flow, settings.tiles);
-    let (known, how) = (found.selected.len(), settings.deflation(0));
+    let (known, how) = (found.selected.len(), settings.deflation(level));
     let mut selected = found.selected.clone();
     add_motions(level, &mut selected, &proposals, Deflation { most: how.most.min(known + 1), ..how });
     selected.len() > known
@@ -134,7 +140,7 @@ pub(super) fn with_dominant(
     stages.begin("selection");
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
-    let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(0));
+    let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(level));
     settings.refit(level, &mut selected, ROUNDS[0]);
     Found { selected, runner_up }
 }
@@ -144,13 +150,13 @@ pub(super) fn refine(pair: &Pair, found: Found, settings: &Settings) -> Found {
     let Found { mut selected, mut runner_up } = found;
     settings.refit(&pair.levels[pair.selection], &mut selected, ROUNDS[1]);
     if settings.least == 1 {
-        prune(&mut selected, settings.price[0]);
+        prune(&mut selected, settings.price(&pair.levels[pair.selection]));
     }
     for level in pair.levels[..pair.selection].iter().rev() {
         let level = &level.thinned(FINE_THINNING);
         selected = selected.iter().map(|l| ScoredMotion::new(level, l.motion)).collect();
         if settings.has(Part::FinerLevels) {
-            let how = Deflation { tries: FINE_TRIES, ..settings.deflation(1) };
+            let how = Deflation { tries: FINE_TRIES, ..settings.deflation(level) };
             let proposals = fine_proposals(level, &selected);
             runner_up = add_motions(level, &mut selected, &proposals, how).or(runner_up);
         }

@@ -9,9 +9,9 @@ use super::hypothesis::Found;
 use super::settings::{Part, Settings};
 use crate::components::absorb_small;
 use crate::frame::Plane;
-use crate::labelling::regions::description::{counts, length, price_of_motion, smallest_share, worth};
+use crate::labelling::regions::description::{counts, length, price_of_motion, smallest_share, weight_of_pixel, worth};
 use crate::labelling::regions::merging::best_merger;
-use crate::labelling::regions::splitting::{split_bodies, split_components};
+use crate::labelling::regions::splitting::split_bodies;
 use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
 use crate::labelling::shadows;
 use crate::labelling::solver::Solver;
@@ -21,18 +21,10 @@ use crate::labelling::terms::smoothness::Borders;
 use crate::labelling::terms::visibility::{hidden_under, with_visibility};
 use crate::labelling::{BACKGROUND, is_background, objects};
 use crate::motion::AffineMotion;
-use crate::tuning::{Tuned, tuned};
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// After a split, an object competes only this far around its region, as a share of the square root of its pixel count …
-const COMPETITION_SHARE: f64 = 0.25;
-/// … and at least this many pixels of the working size. Chosen on generated scenes.
-const SMALLEST_COMPETITION: usize = 12;
-/// Weight of a pixel of a coarser level, in working pixels. It stands for four, but their noise is not independent. Confirmed on real
-/// pairs.
-const COARSE_PIXEL: f32 = 2.0;
 /// Smoothness on a coarser level, as a share of that at the working size: borders have half as many pixels. Chosen on generated scenes.
 const COARSE_SMOOTHNESS: f32 = 0.7;
 
@@ -51,7 +43,7 @@ impl Labelled {
     /// Description length of both frames on the level of the working size if their noise is as given, nats.
     pub(super) fn length(&self, level: &Level, noise: f32) -> f64 {
         let level = Level { noise, ..level.clone() };
-        length(&estimation_costs(&level, &self.motions), &self.labels, level.width())
+        length(&self.motions, &estimation_costs(&level, &self.motions), &self.labels, level.width())
     }
 }
 
@@ -68,8 +60,6 @@ pub(crate) struct LabelState<'a> {
     /// Estimation costs, from which description lengths are computed.
     raw: Vec<Plane>,
     pub(super) labels: Buffer<u8>,
-    /// For every label, the pixels at which it may not compete; empty if all labels compete everywhere.
-    excluded: Vec<Buffer<bool>>,
     /// The motion pruned last, or the best one rejected by the selection.
     runner_up: Option<AffineMotion>,
 }
@@ -135,14 +125,9 @@ pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders
 pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation())).collect();
     if level.index > 0 {
-        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= nats_of_pixel(level));
+        raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= weight_of_pixel(level));
     }
     raw
-}
-
-/// Weight of a pixel of a level, in working pixels.
-fn nats_of_pixel(level: &Level) -> f32 {
-    if level.index > 0 { tuned(Tuned::CoarsePixel, COARSE_PIXEL) } else { 1.0 }
 }
 
 impl<'a> LabelState<'a> {
@@ -172,7 +157,6 @@ impl<'a> LabelState<'a> {
             uncorrected: LabelCosts::new(level, &motions, settings.coherence),
             raw: Vec::new(),
             labels,
-            excluded: Vec::new(),
             motions,
             runner_up: None,
         }
@@ -235,7 +219,6 @@ impl<'a> LabelState<'a> {
             variance_inflation: &self.uncorrected.variance_inflation,
             shares: self.uncorrected.shares.as_ref(),
             hidden: &hidden,
-            excluded: &self.excluded,
             colours: colours.as_ref(),
         };
         let fine = WorkingLevel {
@@ -271,9 +254,6 @@ impl<'a> LabelState<'a> {
         self.costs.remove(k);
         self.uncorrected.costs.remove(k);
         self.raw.remove(k);
-        if k < self.excluded.len() {
-            self.excluded.remove(k);
-        }
     }
 
     /// Corrects for occlusion. Takes several rounds, since what is occluded depends on the masks.
@@ -305,7 +285,7 @@ impl<'a> LabelState<'a> {
             pixels.map(|(cost, _)| f64::from(*cost)).sum()
         };
         let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
-        if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(self.labels.len()) {
+        if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(counts(&self.labels, 1)[0]) {
             self.motions[BACKGROUND] = AffineMotion::STATIC;
             self.recompute_costs();
             self.solve();
@@ -325,8 +305,7 @@ impl<'a> LabelState<'a> {
     /// Merges regions that one motion explains better than two.
     fn merge(&mut self) {
         while self.motions.len() > self.settings.least && self.settings.has(Part::ModelSelection) {
-            let pixel = nats_of_pixel(self.level);
-            let Some(merger) = best_merger(self.level, &self.motions, &self.raw, &self.labels, pixel) else { break };
+            let Some(merger) = best_merger(self.level, &self.motions, &self.raw, &self.labels) else { break };
             let [kept, gone] = merger.labels;
             self.motions[kept] = merger.motion;
             self.motions.remove(gone);
@@ -337,12 +316,7 @@ impl<'a> LabelState<'a> {
                     _ => *label,
                 };
             }
-            if gone < self.excluded.len() {
-                let other = self.excluded.remove(gone);
-                self.excluded[kept].iter_mut().zip(&other).for_each(|(excluded, other)| *excluded &= other);
-            }
             self.recompute_costs();
-            self.add_exclusion_costs();
             self.update_occlusion();
             self.solve();
         }
@@ -356,39 +330,13 @@ impl<'a> LabelState<'a> {
         let level = self.level;
         self.clean(level.width());
         let most = self.settings.most + PARTS;
-        let parts = split_components(level, &mut self.motions, &mut self.labels, most);
-        let bodies = split_bodies(level, &mut self.motions, &mut self.labels, most);
-        if !(parts || bodies) {
+        if !split_bodies(level, &mut self.motions, &mut self.labels, most) {
             return false;
         }
         self.recompute_costs();
-        self.restrict_to_surroundings();
         self.update_occlusion();
         self.solve();
         true
-    }
-
-    /// Lets objects compete only near their own regions, so that two bodies with similar motions do not take each other's pixels.
-    fn restrict_to_surroundings(&mut self) {
-        let (width, height) = self.size();
-        let sizes = counts(&self.labels, self.motions.len());
-        self.excluded = vec![Buffer::filled(self.labels.len(), false)];
-        for k in objects(self.motions.len()) {
-            let smallest = SMALLEST_COMPETITION >> self.level.index;
-            let reach =
-                smallest.max((tuned(Tuned::CompetitionShare, COMPETITION_SHARE) * (sizes[k] as f64).sqrt()) as usize);
-            let near = near_label(&self.labels, k as u8, width, height, reach);
-            self.excluded.push(near.iter().map(|near| !near).collect());
-        }
-        self.add_exclusion_costs();
-    }
-
-    /// Makes labels expensive where they may not compete.
-    fn add_exclusion_costs(&mut self) {
-        for (cost, excluded) in self.uncorrected.costs.iter_mut().zip(&self.excluded) {
-            let pixels = cost.values_mut().iter_mut().zip(excluded);
-            pixels.filter(|(_, excluded)| **excluded).for_each(|(c, _)| *c += CostModel::estimation().truncation);
-        }
     }
 
     /// Gives small components to the labels around them and removes motions without pixels. Rows of labels are `width` long.
@@ -419,29 +367,4 @@ fn absorb_small_components(labels: &mut [u8], width: usize, motions: usize) -> V
         .collect();
     labels.iter_mut().for_each(|l| *l = renumbered[usize::from(*l)]);
     sizes
-}
-
-/// Which pixels lie within `reach` of a label in Chebyshev distance.
-fn near_label(labels: &[u8], label: u8, width: usize, height: usize, reach: usize) -> Buffer<bool> {
-    let spread = |line: &mut dyn FnMut(usize) -> (bool, usize), length: usize, out: &mut [bool]| {
-        let mut last: Option<usize> = None;
-        for k in 0..length {
-            let (set, p) = line(k);
-            if set {
-                last = Some(k);
-            }
-            out[p] |= last.is_some_and(|l| k - l <= reach);
-        }
-    };
-    let mut rows = Buffer::filled(labels.len(), false);
-    for y in 0..height {
-        spread(&mut |k| (labels[y * width + k] == label, y * width + k), width, &mut rows);
-        spread(&mut |k| (labels[y * width + width - 1 - k] == label, y * width + width - 1 - k), width, &mut rows);
-    }
-    let mut near = Buffer::filled(labels.len(), false);
-    for x in 0..width {
-        spread(&mut |k| (rows[k * width + x], k * width + x), height, &mut near);
-        spread(&mut |k| (rows[(height - 1 - k) * width + x], (height - 1 - k) * width + x), height, &mut near);
-    }
-    near
 }

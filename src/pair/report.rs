@@ -16,7 +16,6 @@ use super::evidence::evidence;
 use super::labels::Labelled;
 use super::settings::{Part, Settings};
 use crate::answer::{Candidate, UNLABELLED};
-use crate::frame::mirror::Mirror;
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
@@ -90,13 +89,10 @@ pub struct PairEvidence {
     pub candidates: Vec<Candidate>,
 }
 
-/// The result of a pair of mirror images, for the frames themselves. The confidence needs the `agreement` of all searches about the
-/// foreground of the frames.
+/// The result of a pair.
 pub(super) fn report(
     pair: &Pair,
     labelled: Labelled,
-    mut agreement: Plane,
-    mirror: Mirror,
     settings: &Settings,
     [first, second]: [&Frame; 2],
     options: &SegmentOptions,
@@ -113,7 +109,7 @@ pub(super) fn report(
     let mut sure = probabilities(&costs, &labelled.labels);
     let unknown = options.mark_unknown.then(|| unknown::unknown(pair, &labelled, &sure));
     let full = if settings.has(Part::GuidedEnlarging) {
-        upsample(&labelled.labels, size, labelled.motions.len(), mirror.frame(first).luminance())
+        upsample(&labelled.labels, size, labelled.motions.len(), first.luminance())
     } else {
         nearest(&labelled.labels, size, first, pair.reduction)
     };
@@ -121,12 +117,9 @@ pub(super) fn report(
     let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order);
     let groups = junctions::groups(&junctions, &order.iter().map(|&k| grouping[k]).collect::<Vec<usize>>());
     let mut confidence = options.confidence.then(|| {
-        let width = agreement.width();
-        mirror.reorder(agreement.values_mut(), width);
-        let agreement = enlarged(&agreement, size[0], size[1]);
         let mut group_of = vec![0; labelled.motions.len()];
         order.iter().zip(&groups).for_each(|(&k, &group)| group_of[k] = group);
-        doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, &agreement);
+        doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of);
         confidence(&sure, &full, first.width())
     });
     drop(costs);
@@ -140,11 +133,7 @@ pub(super) fn report(
     for (sure, _) in confidence.iter_mut().flatten().zip(&labels).filter(|(_, label)| **label == UNLABELLED) {
         *sure = 0;
     }
-    mirror.reorder(&mut labels, first.width());
-    confidence.iter_mut().for_each(|confidence| mirror.reorder(confidence, first.width()));
-    let matrix =
-        |&k: &usize| mirror.motion(&labelled.motions[k].scaled(pair.reduction), [first.width(), first.height()]);
-    let matrices: Vec<AffineMotion> = order.iter().map(matrix).collect();
+    let matrices: Vec<AffineMotion> = order.iter().map(|&k| labelled.motions[k].scaled(pair.reduction)).collect();
     let motions = describe(&matrices, &groups, &labels, first.luminance(), second.luminance());
     Segmentation {
         width: first.width(),

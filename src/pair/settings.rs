@@ -41,14 +41,10 @@ pub enum Part {
     Shadows,
     /// Upsampling along the edges of the full-size frame.
     GuidedEnlarging,
-    /// Searches of the frames' mirror images, which no ablation includes.
-    MirrorImages,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    /// Whether the mirror images of the frames are searched as well.
-    pub(crate) mirror_images: bool,
     /// How often the frames are halved to reach the working size.
     pub(crate) halvings: usize,
     /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
@@ -71,8 +67,6 @@ pub(crate) struct Settings {
     pub(crate) dominant: Convergence,
     /// … and when motions are refined on their pixels during selection.
     pub(crate) refinement: Convergence,
-    /// Gain that pays for a motion in the first selection and at finer levels (costs summed over the pixels looked at).
-    pub(crate) price: [f64; 2],
     /// Largest number of motions.
     pub(crate) most: usize,
     /// Number of motions below which none is taken away again.
@@ -116,8 +110,6 @@ const CONVERGING: [Convergence; 2] =
     [Convergence::Every { patience: 2, prior: 1.0 }, Convergence::Every { patience: 3, prior: 0.1 }];
 /// Price of an object's pixel, costs: 1/40 of the largest. Chosen on generated scenes.
 const OBJECT_BIAS: f32 = 0.05;
-/// Gains that pay for a motion in the first selection and, on a quarter of the pixels, at finer levels. Chosen on generated scenes.
-const PRICE: [f64; 2] = [60.0, 30.0];
 
 /// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.
 fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
@@ -149,7 +141,6 @@ impl Settings {
             if halvings > 0 { (WORK_SIDE_BEST, SMOOTHNESS[1]) } else { (SELECTION_SIDE, SMOOTHNESS[0]) };
         let converging = CONVERGING[usize::from(halvings > 0)];
         let best = Settings {
-            mirror_images: true,
             halvings,
             base_side: BASE_SIDE,
             selection_side: fine_side,
@@ -161,7 +152,6 @@ impl Settings {
             tries: 6,
             dominant: converging,
             refinement: converging,
-            price: PRICE.map(|price| tuned(Tuned::SelectionPrice, price)),
             most: 7,
             least: 1,
             gain_window: tuned(Tuned::GainWindow, 2.0),
@@ -181,7 +171,6 @@ impl Settings {
         let mut settings = match options.quality {
             Quality::Best => best,
             Quality::Fast => Settings {
-                mirror_images: false,
                 dominant: CONVERGING[0],
                 refinement: Convergence::Translation,
                 returns_shadows: false,
@@ -208,7 +197,6 @@ impl Settings {
             // The caller knows better than the price: anything that helps is added, nothing needed is taken away.
             settings.most = n;
             settings.least = n;
-            settings.price = [1.0, 1.0];
         }
         settings
     }

@@ -3,10 +3,17 @@
 
 use crate::frame::Plane;
 use crate::labelling::{BACKGROUND, across_borders};
+use crate::motion::AffineMotion;
 use crate::tuning::{Tuned, tuned};
+use crate::view::level::Level;
 
-/// Nats for the six parameters of a motion, per ln N: 6/2 (Schwarz, Annals of Statistics 6(2), 1978).
+/// Entries of a motion; no motion is described with fewer pixels.
+const ENTRIES: usize = 6;
+/// Nats for the parameters of a motion, per ln N: 6/2 (Schwarz, Annals of Statistics 6(2), 1978).
 const PER_LOG_PIXELS: f64 = 3.0;
+/// Weight of a pixel of a coarser level, or of a sample of the pixels, in working pixels. It stands for four, but their noise is not
+/// independent. Confirmed on real pairs.
+const COARSE_PIXEL: f32 = 2.0;
 /// Nats per pixel of border. Chosen on generated scenes, confirmed on real pairs.
 const PER_BORDER_PIXEL: f64 = 0.5;
 /// Regions smaller than this share of the frame are not objects. Chosen on generated scenes.
@@ -14,9 +21,14 @@ const SMALLEST_SHARE: f64 = 0.004;
 /// Worth of a region that is too small to be an object, nats: less than that of any other.
 const TOO_SMALL: f64 = -1e9;
 
-/// Nats for the six parameters of a motion in a frame of N = `pixels`: (6/2) ln N.
+/// Nats for the six parameters of a motion with so many pixels: (6/2) ln N.
 pub(crate) fn price_of_motion(pixels: usize) -> f64 {
-    tuned(Tuned::MotionPrice, PER_LOG_PIXELS) * libm::log(pixels as f64)
+    tuned(Tuned::MotionPrice, PER_LOG_PIXELS) * libm::log(pixels.max(ENTRIES) as f64)
+}
+
+/// Nats by which two motions with so many pixels each need more parameters than one with all of them.
+pub(super) fn price_of_two(pixels: [usize; 2]) -> f64 {
+    pixels.iter().map(|&n| price_of_motion(n)).sum::<f64>() - price_of_motion(pixels.iter().sum())
 }
 
 /// Nats for a border of some pixels.
@@ -24,26 +36,39 @@ pub(super) fn price_of_border(pixels: usize) -> f64 {
     tuned(Tuned::BorderPrice, PER_BORDER_PIXEL) * pixels as f64
 }
 
+/// Weight of a pixel of a level, in working pixels.
+pub(crate) fn weight_of_pixel(level: &Level) -> f32 {
+    if level.pixel() > 1.0 { tuned(Tuned::CoarsePixel, COARSE_PIXEL) } else { 1.0 }
+}
+
+/// The same as [`price_of_motion`], in summed costs of the pixels of a level.
+pub(crate) fn price_on(level: &Level) -> f64 {
+    2.0 * price_of_motion(level.width() * level.height()) / f64::from(weight_of_pixel(level))
+}
+
 /// Share of the frame below which a region is not an object.
 pub(crate) fn smallest_share() -> f64 {
     tuned(Tuned::SmallestShare, SMALLEST_SHARE)
 }
 
-/// Description length in nats of both frames by n motions and labels: residuals, six parameters per motion, borders.
+/// Description length in nats of both frames by motions and labels: residuals, six parameters per motion, borders. Rest needs no
+/// parameters.
 ///
 /// `raw` as in [`worth`].
-pub(crate) fn length(raw: &[Plane], labels: &[u8], width: usize) -> f64 {
+pub(crate) fn length(motions: &[AffineMotion], raw: &[Plane], labels: &[u8], width: usize) -> f64 {
     let left_over: f64 = labels.iter().enumerate().map(|(p, &l)| f64::from(raw[usize::from(l)].values()[p])).sum();
+    let pixels = counts(labels, motions.len());
+    let moving = motions.iter().zip(pixels).filter(|(motion, _)| **motion != AffineMotion::STATIC);
+    let parameters: f64 = moving.map(|(_, pixels)| price_of_motion(pixels)).sum();
     // Every pair of neighbours is counted by both of its labels.
-    let borders = border_lengths(labels, raw.len(), width).iter().sum::<usize>() / 2;
-    0.5 * left_over + raw.len() as f64 * price_of_motion(labels.len()) + price_of_border(borders)
+    let borders = border_lengths(labels, motions.len(), width).iter().sum::<usize>() / 2;
+    0.5 * left_over + parameters + price_of_border(borders)
 }
 
-/// Nats that each object saves beyond its price; infinite for the dominant motion, element 0.
+/// Nats that each object saves beyond its price, its parameters and its border; infinite for the dominant motion, element 0.
 ///
 /// `raw[k]` are the estimation costs of motion k; half a cost is a nat.
 pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
-    let pixels = labels.len();
     let counts = counts(labels, raw.len());
     let borders = border_lengths(labels, raw.len(), width);
     let sums = sums(raw, labels);
@@ -52,11 +77,12 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
             if k == BACKGROUND {
                 return f64::INFINITY;
             }
-            if (counts[k] as f64) < smallest_share() * pixels as f64 {
+            if (counts[k] as f64) < smallest_share() * labels.len() as f64 {
                 return TOO_SMALL + counts[k] as f64;
             }
-            let other = (0..raw.len()).filter(|&m| m != k).map(|m| sums[k][m]).fold(f64::INFINITY, f64::min);
-            0.5 * (other - sums[k][k]) - price_of_motion(pixels) - price_of_border(borders[k])
+            let lost = |m: usize| 0.5 * (sums[k][m] - sums[k][k]) - price_of_two([counts[k], counts[m]]);
+            let others = (0..raw.len()).filter(|&m| m != k);
+            others.map(lost).fold(f64::INFINITY, f64::min) - price_of_border(borders[k])
         })
         .collect()
 }
@@ -70,6 +96,16 @@ pub(crate) fn sums(raw: &[Plane], labels: &[u8]) -> Vec<Vec<f64>> {
         }
     }
     sums
+}
+
+/// Length of the border between each two labels, indexed with the smaller label first.
+pub(super) fn between(labels: &[u8], of: usize, width: usize) -> Vec<Vec<usize>> {
+    let mut between = vec![vec![0; of]; of];
+    across_borders(labels, width, &mut |p, q| {
+        let (a, b) = (labels[p], labels[q]);
+        between[usize::from(a.min(b))][usize::from(a.max(b))] += 1;
+    });
+    between
 }
 
 /// Number of pixels of each label.

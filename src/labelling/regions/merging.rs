@@ -5,12 +5,12 @@
 //! which leaves the true background motion to count as another object. To decide whether one motion is enough, one is refined on
 //! both regions together.
 
-use super::description::sums;
+use super::description::{between, counts, price_of_border, price_of_two, sums, weight_of_pixel};
 use super::splitting::aligned_on;
 use crate::estimation::alignment::ridge_of_label;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::labelling::{across_borders, pixels};
+use crate::labelling::{BACKGROUND, pixels};
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
@@ -24,26 +24,19 @@ pub(crate) struct Merger {
     pub(crate) motion: AffineMotion,
 }
 
-/// The two touching regions that gain most from a common motion; none if two motions are always better.
-///
-/// The shorter description of one motion does not count: it would merge bodies that move nearly alike. `raw` as in
-/// [`worth`](super::description::worth); `pixel` is the weight of a pixel in it.
-pub(crate) fn best_merger(
-    level: &Level,
-    motions: &[AffineMotion],
-    raw: &[Plane],
-    labels: &[u8],
-    pixel: f32,
-) -> Option<Merger> {
+/// The two touching regions whose description a common motion shortens most; none if two motions are always better. `raw` as in
+/// [`worth`](super::description::worth).
+pub(crate) fn best_merger(level: &Level, motions: &[AffineMotion], raw: &[Plane], labels: &[u8]) -> Option<Merger> {
     let width = level.width();
-    let touching = touching(labels, motions.len(), width);
-    let sums = sums(raw, labels);
+    let pixel = weight_of_pixel(level);
+    let between = between(labels, motions.len(), width);
+    let (sums, counts) = (sums(raw, labels), counts(labels, motions.len()));
     let mut best: Option<(f64, Merger)> = None;
     for (a, b) in (0..motions.len()).flat_map(|a| (a + 1..motions.len()).map(move |b| (a, b))) {
         let both = |k: usize| sums[a][k] + sums[b][k];
         let better = if both(a) <= both(b) { a } else { b };
         // The dominant motion was refined on nearly the whole frame; one more object would not change it.
-        if !touching[a][b] || better == 0 {
+        if between[a][b] == 0 || better == BACKGROUND {
             continue;
         }
         let region = pixels(labels, |label| [a, b].contains(&label));
@@ -53,22 +46,13 @@ pub(crate) fn best_merger(
         let area = Area::of(&region, width);
         let cost = cost_within(level, &area, &motion, CostModel::estimation());
         let together: f64 = region.iter().map(|&p| f64::from(pixel * cost.values()[area.index_of(p, width)])).sum();
-        let gain = sums[a][a] + sums[b][b] - together;
+        let saved = price_of_two([counts[a], counts[b]]) + price_of_border(between[a][b]);
+        let gain = 0.5 * (sums[a][a] + sums[b][b] - together) + saved;
         if gain > best.as_ref().map_or(0.0, |(most, _)| *most) {
             best = Some((gain, Merger { labels: [a, b], motion }));
         }
     }
     best.map(|(_, merger)| merger)
-}
-
-/// Which labels are neighbours somewhere, indexed with the smaller label first.
-fn touching(labels: &[u8], of: usize, width: usize) -> Vec<Vec<bool>> {
-    let mut touching = vec![vec![false; of]; of];
-    across_borders(labels, width, &mut |p, q| {
-        let (a, b) = (labels[p], labels[q]);
-        touching[usize::from(a.min(b))][usize::from(a.max(b))] = true;
-    });
-    touching
 }
 
 #[cfg(test)]
@@ -103,7 +87,7 @@ mod tests {
 
     fn merger(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Option<Merger> {
         let raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation())).collect();
-        best_merger(level, motions, &raw, labels, 1.0)
+        best_merger(level, motions, &raw, labels)
     }
 
     fn near(motion: &AffineMotion, x: f64, y: f64, flow: [f64; 2]) -> bool {

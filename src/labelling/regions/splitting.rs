@@ -1,14 +1,13 @@
-//! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in parts.
+//! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in two parts.
 
-use super::description::{price_of_border, price_of_motion, smallest_share};
+use super::description::{price_of_border, price_of_two, smallest_share, weight_of_pixel};
 use crate::components::{Connectivity, components};
-use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
+use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label};
 use crate::frame::Plane;
 use crate::frame::area::Area;
-use crate::frame::filter::{eroded, gaussian};
+use crate::frame::filter::gaussian;
 use crate::labelling::{objects, pixels};
 use crate::motion::AffineMotion;
-use crate::order::descending;
 use crate::view::brightness::Photometric;
 use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
@@ -24,11 +23,8 @@ const REACH: usize = 8;
 const ROUNDS: usize = 3;
 /// Smallest share of the region that counts as a half. Not varied.
 const SMALLEST_HALF: f64 = 0.1;
-/// Iterations in which a motion is refined on a part …
-const ITERATIONS: usize = 4;
-/// … and on a half in each round, with a stronger prior: halves are small. Chosen on generated scenes.
-const ITERATIONS_ON_HALF: usize = 3;
-const RIDGE_OF_HALF: f64 = 3e-2;
+/// Iterations in which a motion is refined on a part in each round. Chosen on generated scenes.
+const ITERATIONS: usize = 3;
 
 fn smallest_part(pixels: usize) -> usize {
     SMALLEST_PART.max((smallest_share() * pixels as f64) as usize)
@@ -46,63 +42,8 @@ pub(super) fn aligned_on(
     align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
 }
 
-/// Splits objects into connected components where separate motions pay for themselves. Returns whether anything changed.
-pub(crate) fn split_components(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
-    let (width, height) = (level.width(), level.height());
-    let found = components(labels, width, Connectivity::Eight);
-    let by_size = descending(found.list.iter().map(|c| c.size as f64));
-    let mut changed = false;
-    for label in objects(motions.len()) {
-        let parts: Vec<usize> = by_size
-            .iter()
-            .copied()
-            .filter(|&k| usize::from(found.list[k].label) == label && found.list[k].size >= smallest_part(labels.len()))
-            .collect();
-        if parts.len() < 2 {
-            continue;
-        }
-        let mut fits = Vec::new();
-        for &part in &parts {
-            let mask: Buffer<f32> = found.of.iter().map(|&id| if id as usize == part { 1.0 } else { 0.0 }).collect();
-            let inner = softened(&eroded(&Plane::from_buffer(width, height, mask)));
-            let motion = aligned_on(level, &motions[label], &inner, ITERATIONS, ridge_of_label(label));
-            let [x0, y0, x1, y1] = found.list[part].bounds;
-            let area = Area { columns: x0..x1 + 1, rows: y0..y1 + 1 };
-            let [together, alone] =
-                [motions[label], motion].map(|m| cost_within(level, &area, &m, CostModel::estimation()));
-            let mut gain = 0.0;
-            for y in area.rows.clone() {
-                for x in area.columns.clone().filter(|&x| found.of[y * width + x] as usize == part) {
-                    gain += 0.5 * f64::from(together.at(x - x0, y - y0) - alone.at(x - x0, y - y0));
-                }
-            }
-            fits.push((gain, motion, part));
-        }
-        if fits.iter().map(|f| f.0).sum::<f64>() < price_of_motion(labels.len()) {
-            continue;
-        }
-        if fits[0].0 > 0.0 {
-            motions[label] = fits[0].1;
-        }
-        for (_, motion, part) in fits.into_iter().skip(1) {
-            if motions.len() >= most {
-                break;
-            }
-            let new = motions.len() as u8;
-            motions.push(motion);
-            for (slot, &id) in labels.iter_mut().zip(&found.of) {
-                if id as usize == part {
-                    *slot = new;
-                }
-            }
-            changed = true;
-        }
-    }
-    changed
-}
-
-/// Splits objects into two bodies where that pays. Starts from the halves along the long axis; motions are fitted to the halves and
-/// pixels reassigned to the better one.
+/// Splits objects into two bodies where that shortens the description. Whether the largest of the parts that are not connected is one is
+/// tried first. Then motions are fitted to the halves along the long axis, and pixels reassigned to the better one.
 pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, labels: &mut [u8], most: usize) -> bool {
     let mut changed = false;
     for label in objects(motions.len()) {
@@ -113,7 +54,11 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
         if region.len() < 2 * smallest_part(labels.len()) {
             continue;
         }
-        if let Some((pair, second)) = two_bodies(level, &motions[label], &region) {
+        let known = (label, &motions[label]);
+        let split = apart(&region, level.width())
+            .and_then(|parts| two_bodies(level, known, &region, parts, 0))
+            .or_else(|| two_bodies(level, known, &region, far_half(&region, level.width()), ROUNDS));
+        if let Some((pair, second)) = split {
             motions[label] = pair[0];
             motions.push(pair[1]);
             let new = (motions.len() - 1) as u8;
@@ -124,21 +69,30 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
     changed
 }
 
-/// Two motions that explain a region better than one by more than their price, and which of its pixels belong to the second.
-fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<([AffineMotion; 2], Buffer<bool>)> {
+/// Two motions that shorten the description of a region, and which of its pixels belong to the second. Pixels are reassigned in so many
+/// rounds.
+fn two_bodies(
+    level: &Level,
+    (label, motion): (usize, &AffineMotion),
+    region: &[usize],
+    mut second: Buffer<bool>,
+    rounds: usize,
+) -> Option<([AffineMotion; 2], Buffer<bool>)> {
     let (width, height) = (level.width(), level.height());
     let around = Area::of(region, width).grown(REACH, width, height);
-    let mut second = far_half(region, width);
     let mut pair = [*motion; 2];
-    for _ in 0..ROUNDS {
+    for round in 0..=rounds {
         let mut costs = Vec::with_capacity(2);
         for (side, motion) in pair.iter_mut().enumerate() {
             let mut mask = Plane::filled(width, height, 0.0);
             for (&p, &s) in region.iter().zip(&second) {
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
-            *motion = aligned_on(level, motion, &mask, ITERATIONS_ON_HALF, RIDGE_OF_HALF);
+            *motion = aligned_on(level, motion, &mask, ITERATIONS, ridge_of_label(label));
             costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation()), WINDOW));
+        }
+        if round == rounds {
+            break;
         }
         for (&p, s) in region.iter().zip(&mut second) {
             let place = around.index_of(p, width);
@@ -155,8 +109,21 @@ fn two_bodies(level: &Level, motion: &AffineMotion, region: &[usize]) -> Option<
         let place = around.index_of(p, width);
         gain += 0.5 * f64::from(one.values()[place] - two[usize::from(s)].values()[place]);
     }
-    let price = price_of_motion(width * height) + price_of_border(inner_border(region, &second, width, height));
+    gain *= f64::from(weight_of_pixel(level));
+    let of_second = second.iter().filter(|s| **s).count();
+    let price = price_of_two([region.len() - of_second, of_second])
+        + price_of_border(inner_border(region, &second, width, height));
     (gain > price).then_some((pair, second))
+}
+
+/// Which pixels of a region are not connected with most of it; none if all of them are.
+fn apart(region: &[usize], width: usize) -> Option<Buffer<bool>> {
+    let mut mask = Buffer::filled((region.last()? / width + 1) * width, 0u8);
+    region.iter().for_each(|&p| mask[p] = 1);
+    let found = components(&mask, width, Connectivity::Eight);
+    let parts = found.list.iter().enumerate().filter(|(_, part)| part.label == 1);
+    let (largest, part) = parts.max_by_key(|(_, part)| part.size)?;
+    (part.size < region.len()).then(|| region.iter().map(|&p| found.of[p] as usize != largest).collect())
 }
 
 /// Which pixels of a region lie beyond its centre along its long axis.

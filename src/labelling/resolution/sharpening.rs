@@ -41,8 +41,6 @@ pub(crate) struct CoarseLabelling<'a> {
     pub(crate) shares: Option<&'a Plane>,
     /// For every label, the pixels at which it may be occluded.
     pub(crate) hidden: &'a [Buffer<bool>],
-    /// For every label, the pixels at which it may not compete; may be empty.
-    pub(crate) excluded: &'a [Buffer<bool>],
     pub(crate) colours: Option<&'a ColourPrices>,
 }
 
@@ -242,10 +240,6 @@ impl<'a> Comparisons<'a> {
                         *c += across + if x == 0 || x + 1 == width { border } else { 0.0 };
                     }
                 }
-                if let Some(excluded) = coarse.excluded.get(label) {
-                    let excluded = row.iter_mut().zip(places).filter(|(_, p)| excluded[**p]);
-                    excluded.for_each(|(c, _)| *c += CostModel::estimation().truncation);
-                }
                 if let Some(hidden) = coarse.hidden.get(label) {
                     let most = most_where_hidden(label, fine.coherence.object_bias);
                     row.iter_mut().zip(places).filter(|(_, p)| hidden[**p]).for_each(|(c, _)| *c = c.min(most));
@@ -317,7 +311,6 @@ mod tests {
             variance_inflation: &uncorrected.variance_inflation,
             shares: None,
             hidden: &hidden,
-            excluded: &[],
             colours: None,
         };
         let picture = Picture { luminance: first.clone(), colours: [0; 3].map(|_| first.clone()) };

@@ -3,11 +3,11 @@
 //! That a motion is right does not make its pixels an object: in real scenes, parts of the background at another depth move otherwise too.
 //!
 //! ```text
-//! ln Q/(1−Q) = α ln P/(1−P) + β a − γ √b − δ m + ε        of an object's pixel
+//! ln Q/(1−Q) = α ln P/(1−P) − β √b − γ m + δ        of an object's pixel
 //! ```
-//! P is the probability of its motion and a the agreement of the searches that the pixel is foreground. The share of the object's outline
-//! that lies on the frame's border is b: objects lie within the frame more often than parts of the background do. The mean cost of all
-//! pixels under their own motions is m: where affine motions do not explain the frames, more regions are found that are none.
+//! P is the probability of its motion. The share of the object's outline that lies on the frame's border is b: objects lie within the frame
+//! more often than parts of the background do. The mean cost of all pixels under their own motions is m: where affine motions do not
+//! explain the frames, more regions are found that are none.
 //!
 //! The weights are a maximum likelihood fit to real pairs and generated scenes, with both qualities; docs/masks.md says which, and has the
 //! measurement on others.
@@ -17,36 +17,27 @@ use crate::labelling::regions::description::{border_lengths, counts};
 
 /// α: weight of the probability of the motion.
 const MOTION: f64 = 0.55;
-/// β: weight of the agreement of the searches.
-const AGREEMENT: f64 = 2.72;
-/// γ: weight of the frame's border.
+/// β: weight of the frame's border.
 const FRAME_BORDER: f64 = 5.64;
-/// δ: weight of the mean cost.
+/// γ: weight of the mean cost.
 const MISFIT: f64 = 5.32;
-/// ε.
-const CONSTANT: f64 = 1.08;
+/// δ.
+const CONSTANT: f64 = 2.89;
 /// Smallest and largest P that are told apart. A safeguard.
 const LIMITS: [f32; 2] = [0.002, 0.998];
 
-/// Turns the probabilities of the motions of objects into those of being one. `agreement` is the probability of foreground by the other
-/// searches.
-pub(super) fn doubt_objects(
-    probabilities: &mut [Plane],
-    costs: &[Plane],
-    labels: &[u8],
-    groups: &[usize],
-    agreement: &Plane,
-) {
+/// Turns the probabilities of the motions of objects into those of being one.
+pub(super) fn doubt_objects(probabilities: &mut [Plane], costs: &[Plane], labels: &[u8], groups: &[usize]) {
+    let Some(width) = probabilities.first().map(Plane::width) else { return };
     let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
     let misfit = own.sum::<f64>() / labels.len() as f64;
     let largest = largest(groups, labels);
-    let on_border = shares_on_frame_border(labels, groups.len(), agreement.width());
+    let on_border = shares_on_frame_border(labels, groups.len(), width);
     for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != largest) {
         let constant = CONSTANT - FRAME_BORDER * libm::sqrt(on_border[k]) - MISFIT * misfit;
-        for (p, agreement) in plane.values_mut().iter_mut().zip(agreement.values()) {
+        for p in plane.values_mut() {
             let probable = f64::from(p.clamp(LIMITS[0], LIMITS[1]));
-            let log_odds =
-                MOTION * libm::log(probable / (1.0 - probable)) + AGREEMENT * f64::from(*agreement) + constant;
+            let log_odds = MOTION * libm::log(probable / (1.0 - probable)) + constant;
             *p = 1.0 / (1.0 + libm::expf(-log_odds as f32));
         }
     }
@@ -82,10 +73,10 @@ mod tests {
         (0..96).map(|p| u8::from((x..x + 3).contains(&(p % 12)) && (2..5).contains(&(p / 12)))).collect()
     }
 
-    fn doubted(labels: &[u8], groups: &[usize], agreement: f32, cost: f32) -> [f32; 2] {
+    fn doubted(labels: &[u8], groups: &[usize], cost: f32) -> [f32; 2] {
         let plane = |value| Plane::filled(12, 8, value);
         let mut probabilities = [plane(0.9), plane(0.9)];
-        doubt_objects(&mut probabilities, &[plane(cost), plane(cost)], labels, groups, &plane(agreement));
+        doubt_objects(&mut probabilities, &[plane(cost), plane(cost)], labels, groups);
         probabilities.map(|plane| plane.at(5, 3))
     }
 
@@ -107,11 +98,10 @@ mod tests {
 
     #[test]
     fn only_objects_are_doubted_and_by_all_evidence() {
-        let [background, object] = doubted(&square(4), &[0, 1], 0.8, 0.4);
+        let [background, object] = doubted(&square(4), &[0, 1], 0.4);
         assert_eq!(background, 0.9);
-        assert!(object < doubted(&square(4), &[0, 1], 0.9, 0.4)[1], "less agreement");
-        assert!(object < doubted(&square(4), &[0, 1], 0.8, 0.3)[1], "more misfit");
-        assert!(object > doubted(&square(0), &[0, 1], 0.8, 0.4)[1], "cut by the frame");
-        assert_eq!(doubted(&square(0), &[0, 0], 0.2, 0.9), [0.9, 0.9], "a part of the background");
+        assert!(object < doubted(&square(4), &[0, 1], 0.3)[1], "more misfit");
+        assert!(object > doubted(&square(0), &[0, 1], 0.4)[1], "cut by the frame");
+        assert_eq!(doubted(&square(0), &[0, 0], 0.9), [0.9, 0.9], "a part of the background");
     }
 }
