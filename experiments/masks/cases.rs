@@ -377,3 +377,15 @@ pub(crate) fn baseline(folder: &Path) -> Result<Option<Baseline>> {
     let milliseconds = result["ms"]["total"].as_f64().unwrap_or(f64::NAN);
     Ok(Some(Baseline { labels, motions, milliseconds }))
 }
+
+/// Scenes of seeds nothing was tuned on.
+pub(crate) fn unseen() -> Vec<Case> {
+    let mut cases = Vec::new();
+    series(&mut cases, Set::Generated, 50_000, &[(200, 150), (320, 240), (640, 480)]);
+    series(&mut cases, Set::Colour, 51_000, &[(200, 150), (320, 240)]);
+    for k in 0..6 {
+        let seed = 56_000 + k;
+        cases.push(Case { name: format!("bare-{seed}"), set: Set::Bare, sub_pixel: false, source: Source::Bare(seed) });
+    }
+    cases
+}

@@ -1,0 +1,8 @@
+#![allow(dead_code)]
+use crate::boundary;
+#[path = "../masks/cases.rs"]
+pub(crate) mod cases;
+#[path = "../masks/outcome.rs"]
+pub(crate) mod outcome;
+#[path = "../masks/scores.rs"]
+pub(crate) mod scores;
