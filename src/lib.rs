@@ -134,6 +134,7 @@ mod lanes;
 pub mod linear;
 mod literal;
 mod measurements;
+mod model;
 mod motion;
 mod options;
 mod order;
@@ -144,7 +145,6 @@ mod progress;
 mod random;
 pub mod refinement;
 pub mod scene;
-mod tuning;
 mod view;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
@@ -156,17 +156,16 @@ pub use error::{Error, Result};
 pub use frame::{Derivatives, Frame, MAX_SIDE, MIN_SIDE, Plane, derivatives};
 pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair};
 pub use measurements::{Measurements, Normalisation};
-pub use motion::AffineMotion;
-pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
-#[doc(hidden)]
-pub use pair::Part;
-pub use pair::{Junction, PairEvidence, Segmentation, SegmentedMotion, segment_pair};
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
-pub use pair::{segment_pair_varied, segment_pair_without};
+pub use model::Model;
+pub use motion::AffineMotion;
+pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub use pair::segment_pair_with;
+pub use pair::{Junction, PairEvidence, Segmentation, SegmentedMotion, segment_pair};
 pub use points::fit_motions;
 pub use progress::{Progress, Stage};
 pub use random::Random;
-#[doc(hidden)]
-pub use tuning::Tuned;
 pub use workspace::release_workspace;

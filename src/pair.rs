@@ -9,32 +9,24 @@ pub(crate) mod settings;
 pub(crate) mod solution;
 
 pub use report::{Junction, PairEvidence, Segmentation, SegmentedMotion};
-#[doc(hidden)]
-pub use settings::Part;
 
 use std::rc::Rc;
 
 use crate::error::{Error, Result};
 use crate::estimation::alignment::{Alignment, Support, align};
-use crate::estimation::dominant::{DominantSearch, RIDGE, dominant_motion, dominant_motion_near};
+use crate::estimation::dominant::{DominantSearch, dominant_motion, dominant_motion_near};
 use crate::frame::Frame;
 use crate::frame::pyramid::{Appearance, FramePyramid};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
-#[cfg(feature = "ablation")]
-use crate::tuning::{Tuned, varied};
 use crate::view::brightness::Photometric;
 use crate::view::cost::{View, noise};
 use crate::view::level::{Level, levels};
 use crate::workspace;
 use background::Solved;
 use settings::Settings;
-
-/// Iterations that refine the dominant motion once the brightness is known. Chosen on generated scenes.
-const ITERATIONS: usize = 3;
-/// How often the change of brightness of a background at rest is measured: before its noise is known, and after. Not varied.
-const BRIGHTNESS_ROUNDS: usize = 2;
 
 /// The stages of [`segment_pair`], in order.
 const STAGES: &[&str] =
@@ -53,43 +45,23 @@ pub fn segment_pair(
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
-    segment_with(first, second, before, options, Settings::new(options, size(first)), progress)
+    segment_with(first, second, before, options, Settings::new(options, size(first), &Model::DEFAULT), progress)
 }
 
-/// [`segment_pair`] without one part of the pipeline, for ablation studies.
+/// [`segment_pair`] with other constants, for studies and fits.
 ///
 /// # Errors
 /// As [`segment_pair`].
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
-pub fn segment_pair_without(
-    part: Part,
+pub fn segment_pair_with(
+    model: &'static Model,
     first: &Frame,
     second: &Frame,
     before: Option<&Frame>,
     options: &SegmentOptions,
 ) -> Result<Segmentation> {
-    let mut settings = Settings { without: Some(part), ..Settings::new(options, size(first)) };
-    if part == Part::Coherence {
-        settings.coherence.smoothness = 0.0;
-    }
-    segment_with(first, second, before, options, settings, &mut |_| {})
-}
-
-/// [`segment_pair`] with a tuned constant multiplied by `factor`, for sensitivity studies.
-///
-/// # Errors
-/// As [`segment_pair`].
-#[cfg(feature = "ablation")]
-#[doc(hidden)]
-pub fn segment_pair_varied(
-    constant: Tuned,
-    factor: f32,
-    first: &Frame,
-    second: &Frame,
-    options: &SegmentOptions,
-) -> Result<Segmentation> {
-    varied(constant, factor, || segment_pair(first, second, None, options, &mut |_| {}))
+    segment_with(first, second, before, options, Settings::new(options, size(first), model), &mut |_| {})
 }
 
 fn segment_with(
@@ -168,7 +140,7 @@ impl Pair {
         before: Option<&FramePyramid>,
         settings: &Settings,
     ) -> Pair {
-        let levels = levels(&pyramid.levels, &second.levels, before.map(|before| &before.levels[..]));
+        let levels = levels(&pyramid.levels, &second.levels, before.map(|before| &before.levels[..]), settings.model);
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
@@ -196,8 +168,12 @@ impl Pair {
         self.remove(photometric, View::Second);
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];
+            let model = base.model;
             base.noise = noise(base, &motion);
-            let how = Alignment { convergence: search.convergence, ..Alignment::of_region(ITERATIONS, RIDGE) };
+            let how = Alignment {
+                convergence: search.convergence,
+                ..Alignment::of_region(model.iterations_settling, model.ridge_dominant, model)
+            };
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
         }
         self.measure_along(&motion, search.brightness);
@@ -217,7 +193,8 @@ impl Pair {
     fn take_rest(&mut self, objects: &[AffineMotion], labels: &[u8], brightness: bool) {
         let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(objects).copied().collect();
         let width = self.finest().width();
-        for _ in 0..if brightness { BRIGHTNESS_ROUNDS } else { 0 } {
+        let rounds = if brightness { self.finest().model.brightness_rounds } else { 0 };
+        for _ in 0..rounds {
             let level = &self.levels[self.base];
             let label = |x: usize, y: usize| usize::from(labels[(y << level.index) * width + (x << level.index)]);
             let photometric = Photometric::along_labels(level, &motions, &label);

@@ -1,30 +1,30 @@
 //! The ablation: the same cases with one part of the pipeline left out.
 
-use veronese::Part;
-
 use crate::cases::{Case, Set};
 use crate::measure::Measured;
 use crate::outcome::Variant;
 use crate::summary::Summary;
 
-/// The variants of the pipeline, in the order of the table.
-const VARIANTS: [(Variant, &str); 16] = [
-    (Variant::Whole, "**nothing**"),
-    (Variant::Without(Part::Brightness), "gain and bias"),
-    (Variant::Without(Part::StaticHypothesis), "static background hypothesis"),
-    (Variant::Without(Part::Algebra), "algebraic candidates"),
-    (Variant::Without(Part::Windows), "candidates from windows"),
-    (Variant::Without(Part::FinerLevels), "candidates on finer levels"),
-    (Variant::Without(Part::Refinement), "refinement on the images"),
-    (Variant::Without(Part::Coherence), "smoothness"),
-    (Variant::Without(Part::Edges), "smoothness lower at edges"),
-    (Variant::Without(Part::Visibility), "occlusion handling"),
-    (Variant::Without(Part::Splitting), "region splitting"),
-    (Variant::Without(Part::ModelSelection), "label cost"),
-    (Variant::Without(Part::Colour), "colour"),
-    (Variant::Without(Part::Shadows), "return of shadows"),
-    (Variant::Without(Part::GuidedEnlarging), "guided upsampling"),
-    (Variant::ThreeFrames, "*with the frame before*"),
+const THREE_FRAMES: &str = "*with the frame before*";
+
+/// What is left out, and the constants that leave it out, in the order of the table.
+const LEFT_OUT: [(&str, &[(&str, f64)]); 16] = [
+    ("**nothing**", &[]),
+    ("gain and bias", &[("brightness_steps", 0.0)]),
+    ("static background hypothesis", &[("rest", 0.0)]),
+    ("algebraic candidates", &[("degrees", 0.0), ("degrees_fast", 0.0)]),
+    ("candidates from windows", &[("tiles", 0.0), ("tiles_fast", 0.0)]),
+    ("candidates on finer levels", &[("fine_most", 0.0)]),
+    ("refinement on the images", &[("refit_rounds", 0.0), ("refit_rounds_last", 0.0), ("refit_rounds_fine", 0.0)]),
+    ("smoothness", &[("smoothness", 0.0), ("smoothness_halved", 0.0)]),
+    ("smoothness lower at edges", &[("edge_share", 1.0)]),
+    ("occlusion handling", &[("hidden", 1e3)]),
+    ("larger variance where nothing fits", &[("largest_inflation", 1.0)]),
+    ("region splitting", &[("smallest_part", 1e9)]),
+    ("price of motions and borders", &[("motion_price", 0.0), ("border_price", 0.0)]),
+    ("colour", &[("colour_price", 0.0)]),
+    ("return of shadows", &[("shadow_price", 1e9)]),
+    ("guided upsampling", &[("flat_variance", 1e9)]),
 ];
 
 /// One form of the pipeline: its scores with `best` and with `fast`.
@@ -44,7 +44,7 @@ pub(crate) struct Scored {
 
 /// The variants of the pipeline.
 pub(crate) fn variants() -> Vec<Variant> {
-    VARIANTS.map(|(variant, _)| variant).to_vec()
+    LEFT_OUT.iter().map(|(_, values)| Variant::with(values)).chain([Variant::ThreeFrames]).collect()
 }
 
 /// Whether the ablation includes a case: generated scenes of one to four objects, those with a bare ground, and the real pairs
@@ -56,14 +56,15 @@ pub(crate) fn takes_part(case: &Case) -> bool {
 /// The rows of the table; empty if no case is included.
 pub(crate) fn worths(measured: &[Measured]) -> Vec<Worth> {
     let mut rows = Vec::new();
-    for (k, (variant, title)) in VARIANTS.into_iter().enumerate() {
+    let titles = LEFT_OUT.iter().map(|(title, _)| *title).chain([THREE_FRAMES]);
+    for (k, title) in titles.enumerate() {
         let scored = |quality: usize| {
             let of = |sets: &[Set]| {
                 let own = measured.iter().filter(|one| sets.contains(&one.case.set));
                 Summary::of(own.filter_map(|one| one.variants.get(k).map(|both| (&one.case, &both[quality]))))
             };
             // The real pairs have no frame before.
-            let pairs = Some(of(&[Set::Sequences])).filter(|pairs| pairs.cases > 0 && variant != Variant::ThreeFrames);
+            let pairs = Some(of(&[Set::Sequences])).filter(|pairs| pairs.cases > 0 && title != THREE_FRAMES);
             Scored { scenes: of(&[Set::Generated, Set::Colour]), bare: of(&[Set::Bare]), pairs }
         };
         let with = [0, 1].map(scored);

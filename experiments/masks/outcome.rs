@@ -3,8 +3,7 @@
 use std::time::Instant;
 
 use veronese::{
-    AffineMotion, Part, Quality, Result, SegmentOptions, Segmentation, Tuned, UNLABELLED, segment_pair,
-    segment_pair_varied, segment_pair_without,
+    AffineMotion, Model, Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair, segment_pair_with,
 };
 
 use super::cases::Data;
@@ -73,12 +72,22 @@ pub(crate) fn outcome(
 pub(crate) enum Variant {
     /// As it is.
     Whole,
-    /// Without one part.
-    Without(Part),
     /// With the frame before the first, where there is one.
     ThreeFrames,
-    /// With a constant multiplied by a factor.
-    Varied(Tuned, f32),
+    /// With other constants.
+    With(&'static Model),
+}
+
+impl Variant {
+    /// With some constants set to other values.
+    pub(crate) fn with(values: &[(&str, f64)]) -> Variant {
+        let mut model = Model::DEFAULT;
+        for (name, value) in values {
+            assert!(model.set(name, *value), "there is no constant {name}");
+        }
+        // Kept to the end of the program: there are some dozens.
+        Variant::With(Box::leak(Box::new(model)))
+    }
 }
 
 /// What a form of the pipeline gives with the quality of a method.
@@ -90,8 +99,7 @@ pub(crate) fn of_variant(variant: Variant, method: Method, data: &Data) -> Resul
     let found = match variant {
         Variant::Whole => segment_pair(first, second, None, &options, &mut |_| {})?,
         Variant::ThreeFrames => segment_pair(first, second, data.before.as_ref(), &options, &mut |_| {})?,
-        Variant::Without(part) => segment_pair_without(part, first, second, None, &options)?,
-        Variant::Varied(constant, factor) => segment_pair_varied(constant, factor, first, second, &options)?,
+        Variant::With(model) => segment_pair_with(model, first, second, None, &options)?,
     };
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     Ok(outcome(method, data, &found.labels, &grouped(&found), &[], milliseconds))

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use serde_json::{Value, json};
-use veronese::Tuned;
+use veronese::Model;
 
 use crate::Failure;
 use crate::cases::{Case, Set, a_third};
@@ -12,40 +12,9 @@ use crate::parallel::in_parallel;
 use crate::scores::Scores;
 
 /// What a constant is multiplied by.
-const FACTORS: [f32; 2] = [0.5, 1.5];
+const FACTORS: [f64; 2] = [0.5, 1.5];
 /// A mean change of more standard errors than this is set in bold type.
 const SIGNIFICANT: f64 = 2.0;
-
-/// The constants, each with what it is and its name in the sources, in the order of the pipeline.
-const CONSTANTS: [(Tuned, &str); 30] = [
-    (Tuned::PositionSigma, "position error of a correct motion, `POSITION_SIGMA`"),
-    (Tuned::EstimationTruncation, "largest cost in estimation, `ESTIMATION_TRUNCATION`"),
-    (Tuned::LabelTruncation, "largest cost of a label, `LABEL_TRUNCATION`"),
-    (Tuned::Robustness, "robustness of the alignment, all stages"),
-    (Tuned::Ridge, "prior against linear terms, all stages"),
-    (Tuned::RegionBlur, "soft border of a region, `REGION_BLUR`"),
-    (Tuned::SelectionWindow, "window of costs in selection, `selection::WINDOW`"),
-    (Tuned::GainWindow, "window of gains, `gain_window`"),
-    (Tuned::GainMargin, "gain that does not count, `deflation::MARGIN`"),
-    (Tuned::Smoothness, "price of a border, `smoothness`"),
-    (Tuned::EdgeShare, "share of it left at an edge, `EDGE_SHARE`"),
-    (Tuned::EdgeStep, "step that makes an edge, `SMALLEST_STEP` and `NOISE_STEPS`"),
-    (Tuned::ColourShare, "weight of a step in colour, `COLOUR_SHARE`"),
-    (Tuned::FrameBorder, "price along the frame's border, `FRAME_BORDER`"),
-    (Tuned::ObjectBias, "price of an object's pixel, `object_bias`"),
-    (Tuned::HiddenCost, "largest cost of an occluded pixel, `HIDDEN`"),
-    (Tuned::ExpectedMisfit, "misfit that noise explains, `EXPECTED`"),
-    (Tuned::LargestInflation, "largest inflation of the deviation, `LARGEST`"),
-    (Tuned::InflationWindow, "window of the inflation, `variance_inflation::WINDOW`"),
-    (Tuned::ColourPrice, "cost of an improbable colour, `PRICE_PER_NAT`"),
-    (Tuned::LargestColourPrice, "largest cost of a colour, `LARGEST_PRICE`"),
-    (Tuned::MotionPrice, "description of a motion, `price_of_motion`"),
-    (Tuned::BorderPrice, "description of a border, `PER_BORDER_PIXEL`"),
-    (Tuned::SmallestShare, "smallest region, `SMALLEST_SHARE`"),
-    (Tuned::CoarsePixel, "weight of a coarse pixel, `COARSE_PIXEL`"),
-    (Tuned::GroupTolerance, "jump within a group, `RELATIVE_TOLERANCE`"),
-    (Tuned::LargestGroupTolerance, "largest jump within a group, `LARGEST_TOLERANCE`"),
-];
 
 /// A figure of a table, on the sets it is computed on.
 struct Column {
@@ -84,9 +53,15 @@ pub(crate) fn chosen(cases: Vec<Case>) -> Vec<Case> {
     chosen
 }
 
+/// The value of a constant.
+fn value(name: &str) -> f64 {
+    Model::DEFAULT.get(name).unwrap_or(f64::NAN)
+}
+
 /// Measures all cases with all constants.
 pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Varied>, Failure> {
-    let constants = CONSTANTS.iter().flat_map(|&(constant, _)| FACTORS.map(|factor| Variant::Varied(constant, factor)));
+    let varied = |name: &&'static str| FACTORS.map(|factor| Variant::with(&[(*name, factor * value(name))]));
+    let constants = Model::NAMES.iter().flat_map(varied);
     let variants: Vec<Variant> = std::iter::once(Variant::Whole).chain(constants).collect();
     in_parallel(cases, |case| {
         let data = case.load().map_err(|error| error.to_string())?;
@@ -141,7 +116,7 @@ fn variant(k: usize, f: usize) -> usize {
 
 /// The changes as values for programs.
 pub(crate) fn json(measured: &[Varied]) -> Value {
-    let rows = CONSTANTS.iter().enumerate().flat_map(|(k, (_, title))| {
+    let rows = Model::NAMES.iter().enumerate().flat_map(|(k, title)| {
         FACTORS.iter().enumerate().map(move |(f, factor)| {
             let figures = COLUMNS.iter().map(|column| {
                 let change = Change::of(measured, column, variant(k, f));
@@ -164,7 +139,7 @@ pub(crate) fn table(measured: &[Varied]) -> String {
     );
     COLUMNS.iter().for_each(|column| _ = write!(text, " {} |", column.title));
     let _ = writeln!(text, "\n|---{}|", "|---".repeat(COLUMNS.len()));
-    for (k, (_, title)) in CONSTANTS.iter().enumerate() {
+    for (k, title) in Model::NAMES.iter().enumerate() {
         let _ = write!(text, "| {title} |");
         for column in &COLUMNS {
             let [less, more] = [0, 1].map(|f| Change::of(measured, column, variant(k, f)).cell());

@@ -28,6 +28,7 @@ use super::whole::{NOTHING_SAID, SegmentedClip};
 use crate::error::Result;
 use crate::frame::{Frame, Plane};
 use crate::labelling::resolution::upsampling::upsample;
+use crate::model::Model;
 use crate::order::sort_few;
 use crate::workspace::{self, Buffer};
 use constants::Constants;
@@ -441,7 +442,7 @@ impl ClipCorrection {
             let Some(claim) = claim.as_ref().filter(|claim| claim.mask.contains(&1)) else { continue };
             let mut mask = vec![0u8; look.pixels()];
             claim.area.pixels(look.size[0]).zip(&claim.mask).for_each(|(p, &inside)| mask[p] = inside);
-            let full = upsample(&mask, look.size, 2, frame.luminance());
+            let full = upsample(&mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
             for p in (0..full.len()).filter(|&p| full[p] > 0 && !held[p]) {
                 let odds = claim.at(look.pixel(p, width), look.size[0]).max(f32::MIN_POSITIVE);
                 if odds > best[p] {

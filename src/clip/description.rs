@@ -5,6 +5,7 @@ use super::{ClipFrame, ClipObject};
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::resolution::upsampling::upsample;
+use crate::model::Model;
 use crate::motion::AffineMotion;
 
 /// A frame at the working size.
@@ -43,7 +44,7 @@ impl WorkingFrame<'_> {
     pub(crate) fn upsampled(&self, luminance: &Plane) -> Vec<u8> {
         let size = [self.odds.width(), self.odds.height()];
         let of = self.labels.iter().max().map_or(1, |&most| usize::from(most) + 1);
-        upsample(self.labels, size, of, luminance)
+        upsample(self.labels, size, of, luminance, &Model::DEFAULT)
     }
 
     fn reduction(&self, width: usize) -> usize {

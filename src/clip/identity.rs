@@ -14,8 +14,8 @@ use std::rc::Rc;
 use super::carry::carried_labels;
 use super::record::Record;
 use crate::components::{Components, Connectivity, components};
-use crate::labelling::regions::description::smallest_share;
 use crate::labelling::solver::MAX_LABELS;
+use crate::model::Model;
 use crate::order::{descending, sort_few};
 use object::{Apart, Object};
 use sharing::share;
@@ -73,7 +73,7 @@ impl Identities {
     /// The object of every working pixel of the next frame, 0 for the background; `mask` is 1 on its foreground.
     pub(crate) fn assign(&mut self, record: &Rc<Record>, mask: &[u8]) -> Vec<u8> {
         let mut carried = self.carried(record, mask);
-        let smallest = (smallest_share() * mask.len() as f64) as usize / 2;
+        let smallest = (Model::DEFAULT.smallest_share * mask.len() as f64) as usize / 2;
         let emerged = self.emerge(record, mask, smallest, &mut carried);
         let mut labels = vec![0u8; mask.len()];
         let mut unclaimed = Vec::new();

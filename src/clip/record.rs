@@ -7,6 +7,7 @@ use crate::frame::Frame;
 use crate::frame::palette::Palette;
 use crate::frame::pyramid::Appearance;
 use crate::labelling::terms::smoothness::Borders;
+use crate::model::Model;
 
 /// A frame with the evidence of its pairs. Rounds over the clip share it.
 #[derive(Debug)]
@@ -41,7 +42,7 @@ impl Record {
 
 /// Prices of borders along the edges of a frame, in units of the smoothness.
 pub(crate) fn unit_borders(appearance: &Appearance) -> Borders {
-    Borders::new(&appearance.pictures[0], EDGE_NOISE, 1.0)
+    Borders::new(&appearance.pictures[0], EDGE_NOISE, 1.0, &Model::DEFAULT)
 }
 
 /// Noise that the edges of a frame stand out from, grey levels. Frames of clips are compressed more often than noisy. Not varied.

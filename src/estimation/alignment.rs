@@ -10,10 +10,10 @@ use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::lanes::whole;
+use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::tuning::{Tuned, tuned};
 use crate::view::brightness::Photometric;
-use crate::view::cost::{CostModel, lane_sum};
+use crate::view::cost::lane_sum;
 use crate::view::level::Level;
 use crate::workspace::{Buffer, kept};
 
@@ -47,19 +47,14 @@ pub(crate) struct Alignment {
     pub(crate) photometric: bool,
 }
 
-/// Robustness on the pixels of a region: two standard deviations have a quarter of the full weight. Chosen on generated scenes.
-const REGION_ROBUSTNESS: f32 = 4.0;
-/// Priors of the dominant motion, which most of the frame determines, and of the motion of an object. Chosen on generated scenes.
-const RIDGES: [f64; 2] = [1e-4, 1e-2];
-
 impl Alignment {
     /// A motion refined on the pixels of its region, with known brightness.
-    pub(crate) fn of_region(iterations: usize, ridge: f64) -> Alignment {
+    pub(crate) fn of_region(iterations: usize, ridge: f64, model: &Model) -> Alignment {
         Alignment {
             freedom: Freedom::Affine,
             iterations,
             convergence: Convergence::Translation,
-            robustness: REGION_ROBUSTNESS,
+            robustness: model.robustness,
             ridge,
             photometric: false,
         }
@@ -76,29 +71,19 @@ impl Alignment {
 }
 
 /// Ridge prior for the motion of a label's region; label 0 is the dominant motion.
-pub(crate) fn ridge_of_label(label: usize) -> f64 {
-    RIDGES[usize::from(label > 0)]
+pub(crate) fn ridge_of_label(label: usize, model: &Model) -> f64 {
+    if label > 0 { model.ridge_object } else { model.ridge_background }
 }
-
-/// Standard deviation of the blur that softens the border of a region before its motion is refined, pixels. Chosen on generated scenes.
-const REGION_BLUR: f32 = 0.7;
 
 /// A region with a soft border.
-pub(crate) fn softened(region: &Plane) -> Plane {
-    gaussian(region, tuned(Tuned::RegionBlur, REGION_BLUR))
+pub(crate) fn softened(region: &Plane, model: &Model) -> Plane {
+    gaussian(region, model.region_blur)
 }
 
-/// A step shorter than this, pixels of the level, ends the iteration: a fiftieth of the position error of a correct motion.
-const SMALL_STEP: f64 = 0.003;
 /// Steps are measured at this distance from the centre, as a share of the width and height of the support together: halfway to its border.
 const DISTANCE: f64 = 0.125;
 /// Below this sum of support weights a motion is left as it is: two pixels for each of its six entries.
 const SMALLEST_SUPPORT: f64 = 12.0;
-/// Largest linear entry, a zoom by 40 % or a rotation by 23°. Estimates beyond it have diverged, and the cost would reward them for
-/// moving pixels out of the frame. A safeguard.
-const LARGEST_LINEAR: f64 = 0.4;
-/// A pixel of less weight does not count.
-const SMALLEST_WEIGHT: f32 = 1e-3;
 
 /// Unknowns: the six entries of A (in centred coordinates), bias, gain.
 const UNKNOWNS: usize = 8;
@@ -128,13 +113,13 @@ impl<'a> Support<'a> {
     }
 
     /// The pixels of positive weight.
-    pub(crate) fn weighted(weights: &'a Plane) -> Support<'a> {
+    pub(crate) fn weighted(weights: &'a Plane, model: &Model) -> Support<'a> {
         let (mut left, mut right) = (usize::MAX, 0);
         let (mut top, mut bottom) = (usize::MAX, 0);
         let (mut sum, mut sx, mut sy) = (0.0, 0.0, 0.0);
         for y in 0..weights.height() {
             for (x, &w) in weights.row(y).iter().enumerate() {
-                if w > SMALLEST_WEIGHT {
+                if w > model.smallest_weight {
                     (left, right) = (left.min(x), right.max(x + 1));
                     (top, bottom) = (top.min(y), y + 1);
                     let w = f64::from(w);
@@ -182,10 +167,10 @@ pub(crate) fn align(
         photometric.bias -= step[6];
         photometric.gain -= step[7];
         apply(&mut scaled, &step, support.centre, scale);
-        if [0, 1, 3, 4].into_iter().any(|k| scaled.matrix[k].abs() > LARGEST_LINEAR) {
+        if [0, 1, 3, 4].into_iter().any(|k| scaled.matrix[k].abs() > level.model.largest_linear) {
             return *motion;
         }
-        if length(&step, distance) < SMALL_STEP {
+        if length(&step, distance) < level.model.small_step {
             break;
         }
     }
@@ -201,7 +186,7 @@ fn length(step: &Right, distance: f64) -> f64 {
 /// Adds the prior, and replaces the equations of unknowns that are not free by "the step is zero".
 fn constrain(normal: &mut Normal, how: Alignment) {
     let linear = [0, 1, 3, 4];
-    let ridge = tuned(Tuned::Ridge, how.ridge);
+    let ridge = how.ridge;
     for (i, of) in linear.into_iter().zip([2, 2, 5, 5]) {
         normal[(i, i)] += ridge * normal[(of, of)];
     }
@@ -291,8 +276,8 @@ impl RowBuffers {
     ) {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
-        let robustness = tuned(Tuned::Robustness, how.robustness);
-        let position_sigma = CostModel::estimation().position_sigma * CostModel::estimation().position_sigma;
+        let (robustness, smallest) = (how.robustness, level.model.smallest_weight);
+        let position_sigma = level.model.position_sigma * level.model.position_sigma;
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
         // The mean of both gradients, per pixel of this level.
         let half = 0.5 * level.stride as f32;
@@ -316,7 +301,7 @@ impl RowBuffers {
                 Some(weights) => given[..n].copy_from_slice(&weights[chunk.clone()]),
                 None => given[..n].fill(1.0),
             }
-            if given.iter().all(|&weight| weight <= SMALLEST_WEIGHT) {
+            if given.iter().all(|&weight| weight <= smallest) {
                 // Nothing counts here, as in much of the box around a region.
                 (*weight, *residuals, *gx, *gy) = ([0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK], [0.0; CHUNK]);
                 continue;
@@ -335,7 +320,7 @@ impl RowBuffers {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
                 let information = 1.0 / (noise + position_sigma * energy[k]);
                 let robust = robustness / (robustness + residual * residual * information);
-                let counts = at.inside(k) & if given[k] > SMALLEST_WEIGHT { u32::MAX } else { 0 };
+                let counts = at.inside(k) & if given[k] > smallest { u32::MAX } else { 0 };
                 let counted = |value: f32| f32::from_bits(value.to_bits() & counts);
                 weights_of[k] = counted(given[k] * information * robust * robust);
                 gx_of[k] = counted(half * (dx[k] + second_dx[k]));
@@ -437,7 +422,7 @@ mod tests {
         let levels = build(first, second, None, 64);
         let level = &levels[0];
         let mut photometric = Photometric::default();
-        let how = Alignment { robustness: 9.0, photometric: true, ..Alignment::of_region(30, 0.0) };
+        let how = Alignment { robustness: 9.0, photometric: true, ..Alignment::of_region(30, 0.0, &Model::DEFAULT) };
         let found = align(level, &AffineMotion::STATIC, &Support::everything(level), &mut photometric, how);
         for (x, y) in [(5.0, 5.0), (90.0, 10.0), (40.0, 75.0)] {
             let ([u, v], [p, q]) = (truth.flow(x, y), found.flow(x, y));
@@ -458,7 +443,7 @@ mod tests {
         });
         let level = &build(first, second, None, 64)[0];
         let error = |convergence| {
-            let how = Alignment { convergence, ..Alignment::of_region(30, 1.0) };
+            let how = Alignment { convergence, ..Alignment::of_region(30, 1.0, &Model::DEFAULT) };
             let found =
                 align(level, &AffineMotion::STATIC, &Support::everything(level), &mut Photometric::default(), how);
             (found.matrix[0] - truth.matrix[0]).abs() + (found.matrix[4] - truth.matrix[4]).abs()
@@ -475,7 +460,7 @@ mod tests {
             &start,
             &Support::everything(level),
             &mut Photometric::default(),
-            Alignment::of_region(5, 1e-3),
+            Alignment::of_region(5, 1e-3, &Model::DEFAULT),
         );
         assert!(found.is_finite());
         assert!(start.relative_error(&found) < 1e-9);

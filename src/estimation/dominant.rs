@@ -6,20 +6,6 @@ use crate::view::brightness::Photometric;
 use crate::view::cost::{CostModel, cost_with, total};
 use crate::view::level::Level;
 
-/// Reach of the search for a start at the coarsest level, pixels of that level. Its square is the price. Not varied.
-const REACH: i32 = 3;
-/// Mean cost per pixel of length that decides ties for the shorter shift.
-const LENGTH_PRICE: f64 = 1e-3;
-/// Prior against linear terms: most of the frame determines them. Chosen on generated scenes.
-pub(crate) const RIDGE: f64 = 1e-3;
-/// Iterations with a translation at the coarsest level, and with an affine motion at every level. Chosen on generated scenes.
-const ITERATIONS: [usize; 2] = [6, 5];
-/// Robustness of the translation, of the affine motions, and of a last fit at the base level: strict only when the motion is nearly
-/// right. Chosen on generated scenes.
-const ROBUSTNESS: [f32; 3] = [9.0, 6.0, 2.0];
-/// At the base level every second pixel of every second row is enough.
-const THINNING: usize = 2;
-
 /// How the dominant motion is found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DominantSearch {
@@ -33,7 +19,7 @@ pub(crate) struct DominantSearch {
 pub(crate) fn dominant_motion(levels: &[Level], base: usize, how: DominantSearch) -> (AffineMotion, Photometric) {
     let coarsest = &levels[levels.len() - 1];
     let start = match how.brightness {
-        true => Photometric::from_moments(&coarsest.first, &coarsest.second),
+        true => Photometric::from_moments(&coarsest.first, &coarsest.second, coarsest.model),
         false => Photometric::default(),
     };
     let mut candidates = vec![AffineMotion::STATIC];
@@ -41,11 +27,11 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, how: DominantSearch
     if shift != AffineMotion::STATIC {
         candidates.push(shift);
     }
-    let finest = &levels[base].thinned(THINNING);
+    let finest = &levels[base].thinned(levels[base].model.thinning);
     let mut best = static_candidate(finest, start, how.brightness);
     for candidate in candidates {
         let (motion, photometric) = descend(levels, base, finest, candidate, start, how);
-        let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation()));
+        let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)));
         if sum < best.0 {
             best = (sum, motion, photometric);
         }
@@ -60,14 +46,14 @@ pub(crate) fn dominant_motion_near(
     expected: &AffineMotion,
     how: DominantSearch,
 ) -> (AffineMotion, Photometric) {
-    let finest = &levels[base].thinned(THINNING);
+    let finest = &levels[base].thinned(levels[base].model.thinning);
     let start = match how.brightness {
-        true => Photometric::from_moments(&finest.first, &finest.second),
+        true => Photometric::from_moments(&finest.first, &finest.second, finest.model),
         false => Photometric::default(),
     };
     let mut best = static_candidate(finest, start, how.brightness);
     let (motion, photometric) = descend(&levels[..=base], base, finest, *expected, start, how);
-    let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation()));
+    let sum = total(&cost_with(finest, &motion, photometric, CostModel::estimation(finest.model)));
     if sum < best.0 {
         best = (sum, motion, photometric);
     }
@@ -77,12 +63,14 @@ pub(crate) fn dominant_motion_near(
 /// The whole-pixel shift at the coarsest level with the smallest cost.
 fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
     let mut best = (f64::INFINITY, AffineMotion::STATIC);
-    for dx in -REACH..=REACH {
-        for dy in -REACH..=REACH {
+    let reach = level.model.reach;
+    for dx in -reach..=reach {
+        for dy in -reach..=reach {
             let (dx, dy) = (f64::from(dx), f64::from(dy));
             let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
-            let plane = cost_with(level, &shift, photometric, CostModel::estimation());
-            let cost = total(&plane) / plane.values().len() as f64 + LENGTH_PRICE * (dx * dx + dy * dy).sqrt();
+            let plane = cost_with(level, &shift, photometric, CostModel::estimation(level.model));
+            let cost =
+                total(&plane) / plane.values().len() as f64 + level.model.length_price * (dx * dx + dy * dy).sqrt();
             if cost < best.0 {
                 best = (cost, shift);
             }
@@ -100,17 +88,22 @@ fn descend(
     mut photometric: Photometric,
     how: DominantSearch,
 ) -> (AffineMotion, Photometric) {
+    let model = levels[base].model;
     let affine = Alignment {
         freedom: Freedom::Affine,
-        iterations: ITERATIONS[1],
+        iterations: model.iterations_dominant,
         convergence: how.convergence,
-        robustness: ROBUSTNESS[1],
-        ridge: RIDGE,
+        robustness: model.robustness_dominant,
+        ridge: model.ridge_dominant,
         photometric: how.brightness,
     };
-    let translation =
-        Alignment { freedom: Freedom::Translation, iterations: ITERATIONS[0], robustness: ROBUSTNESS[0], ..affine };
-    let strict = Alignment { robustness: ROBUSTNESS[2], ..affine };
+    let translation = Alignment {
+        freedom: Freedom::Translation,
+        iterations: model.iterations_translation,
+        robustness: model.robustness_translation,
+        ..affine
+    };
+    let strict = Alignment { robustness: model.robustness_strict, ..affine };
     for (index, level) in levels.iter().enumerate().skip(base).rev() {
         let level = if index == base { finest } else { level };
         let support = Support::everything(level);
@@ -130,6 +123,6 @@ fn static_candidate(level: &Level, mut photometric: Photometric, brightness: boo
     if brightness {
         photometric = photometric.refined_at_rest(level);
     }
-    let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::estimation()));
+    let cost = total(&cost_with(level, &AffineMotion::STATIC, photometric, CostModel::estimation(level.model)));
     (cost, AffineMotion::STATIC, photometric)
 }

@@ -19,29 +19,21 @@ use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::labelling::mask_of;
 use crate::lanes::each_with;
-
-/// β: weight of the windowed cost.
-const COST_WEIGHT: f32 = 3.5;
-/// γ: weight of the surrounding labels.
-const NEIGHBOUR_WEIGHT: f32 = 2.25;
-/// δ: weight of the pixel's own label.
-const OWN_LABEL_WEIGHT: f32 = 1.4;
-/// u: windowed cost above which a motion does not explain a pixel; the largest cost is 2. The share of it is that of `markUnknown`.
-const UNEXPLAINED_COST: f32 = 1.4;
-/// Standard deviations of the windows of costs and of labels, working pixels. Not part of the fit.
-const WINDOWS: [f32; 2] = [8.0, 3.0];
+use crate::model::Model;
 
 /// Probability, 0…1, of every motion at every pixel; `costs[k]` is the label cost of motion k.
-pub(crate) fn probabilities(costs: &[Plane], labels: &[u8]) -> Vec<Plane> {
+pub(crate) fn probabilities(costs: &[Plane], labels: &[u8], model: &Model) -> Vec<Plane> {
+    let (of_cost, of_own) = (model.confidence_cost, model.confidence_own);
+    let of_neighbours = model.confidence_neighbours;
     let Some((width, height)) = costs.first().map(|plane| (plane.width(), plane.height())) else { return Vec::new() };
-    let mut total = Plane::filled(width, height, libm::expf(-COST_WEIGHT * UNEXPLAINED_COST));
+    let mut total = Plane::filled(width, height, libm::expf(-of_cost * model.unexplained));
     let mut weights: Vec<Plane> = Vec::with_capacity(costs.len());
     for (k, cost) in costs.iter().enumerate() {
-        let mut weight = gaussian(cost, WINDOWS[0]);
+        let mut weight = gaussian(cost, model.confidence_window);
         let own = mask_of(labels, k as u8, width, height);
-        let around = gaussian(&own, WINDOWS[1]);
+        let around = gaussian(&own, model.confidence_label_window);
         each_with(weight.values_mut(), [around.values(), own.values()], |cost, [near, own]| {
-            power_of_two_f32(LOG2_E * (NEIGHBOUR_WEIGHT * near + OWN_LABEL_WEIGHT * own - COST_WEIGHT * cost))
+            power_of_two_f32(LOG2_E * (of_neighbours * near + of_own * own - of_cost * cost))
         });
         total.values_mut().iter_mut().zip(weight.values()).for_each(|(t, w)| *t += w);
         weights.push(weight);
@@ -76,7 +68,7 @@ mod tests {
     #[test]
     fn texture_makes_sure_and_borders_and_flat_areas_do_not() {
         let (costs, labels) = halves();
-        let found = probabilities(&costs, &labels);
+        let found = probabilities(&costs, &labels, &Model::DEFAULT);
         for (a, b) in found[0].values().iter().zip(found[1].values()) {
             assert!((0.0..=1.0).contains(a) && a + b <= 1.0 + 1e-6);
         }
@@ -91,7 +83,7 @@ mod tests {
     #[test]
     fn what_no_motion_explains_is_not_sure() {
         let costs = vec![Plane::from_fn(64, 64, |x, _| if x < 32 { 0.5 } else { 2.0 })];
-        let found = probabilities(&costs, &[0; 64 * 64]);
+        let found = probabilities(&costs, &[0; 64 * 64], &Model::DEFAULT);
         assert!(
             found[0].at(5, 30) > 0.99 && found[0].at(60, 30) < 0.9,
             "{} {}",

@@ -21,27 +21,12 @@ use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::frame::palette::{COLOURS, Palette, brighter};
 use crate::frame::warp::warp;
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// Standard deviation of the window in which light changes as one, pixels of the working size. Varied on one pair only, where 5 leaves more of the
-/// shadow.
-const WINDOW: f32 = 3.0;
-/// How often the change of light is computed, each time from the pixels that the last one explains.
-const ROUNDS: usize = 3;
-/// P: price of a change of light at a pixel. Chosen on the 62 real pairs whose J it changes most: .5 takes flat parts of objects for shadows,
-/// and costs generated scenes .012 of mean IoU.
-const PRICE: f32 = 1.5;
-/// Mean weight of a window up to which its light is unknown. Not varied, nor are the next four.
-const LEAST_WEIGHT: f32 = 1e-3;
-/// Largest weight of a colour, nats.
-const MOST: f32 = 2.0;
-/// Smallest probability of a colour.
-const PRIOR: f32 = 1e-3;
-/// Pixels from which the colours of objects are known.
-const FEWEST: f32 = 100.0;
 /// Cost that no pixel of the background pays.
 const NEVER: f32 = 100.0;
 
@@ -55,15 +40,15 @@ pub(crate) fn return_shadows(
     solver: Solver,
 ) {
     let lit = cost_of_light(level, &motions[BACKGROUND]);
-    let Some(ratios) = colour_ratios(palette, labels, &lit) else { return };
+    let Some(ratios) = colour_ratios(palette, labels, &lit, level.model) else { return };
     let (width, height) = (level.width(), level.height());
     let mut given_back = Plane::filled(width, height, 0.0);
     let mut kept = Plane::filled(width, height, NEVER);
     for k in objects(motions.len()) {
-        let own = cost(level, &motions[k], CostModel::labels());
+        let own = cost(level, &motions[k], CostModel::labels(level.model));
         let values = kept.values_mut().iter_mut().zip(given_back.values_mut()).zip(own.values()).zip(lit.values());
         for (p, (((kept, given_back), own), lit)) in values.enumerate().filter(|(p, _)| usize::from(labels[*p]) == k) {
-            (*kept, *given_back) = (*own, lit + PRICE + ratios[palette.index(p)]);
+            (*kept, *given_back) = (*own, lit + level.model.shadow_price + ratios[palette.index(p)]);
         }
     }
     let found = borders.solve(&[given_back, kept], solver);
@@ -76,18 +61,19 @@ pub(crate) fn return_shadows(
 
 /// Cost of the background's motion with a smooth change of light.
 fn cost_of_light(level: &Level, background: &AffineMotion) -> Plane {
-    let model = CostModel::labels();
+    let (model, window) = (CostModel::labels(level.model), level.model.shadow_window);
     let mut difference = warp(&level.second, &level.scaled(background));
     difference.values_mut().iter_mut().zip(level.first.values()).for_each(|(second, first)| *second -= first);
     let (noise, position) = (level.noise * level.noise, model.position_sigma * model.position_sigma);
     let mut weights = Plane::filled(level.width(), level.height(), 1.0);
     let mut costs = weights.clone();
-    for _ in 0..ROUNDS {
+    for _ in 0..level.model.shadow_rounds {
         let mut weighted = difference.clone();
         weighted.values_mut().iter_mut().zip(weights.values()).for_each(|(difference, weight)| *difference *= weight);
-        let (sums, totals) = (gaussian(&weighted, WINDOW), gaussian(&weights, WINDOW));
+        let (sums, totals) = (gaussian(&weighted, window), gaussian(&weights, window));
         for (p, (cost, weight)) in costs.values_mut().iter_mut().zip(weights.values_mut()).enumerate() {
-            let residual = difference.values()[p] - sums.values()[p] / totals.values()[p].max(LEAST_WEIGHT);
+            let residual =
+                difference.values()[p] - sums.values()[p] / totals.values()[p].max(level.model.shadow_weight);
             let square = residual * residual / (noise + position * level.energy.values()[p]);
             *cost = square / (1.0 + square / model.truncation);
             let explained = 1.0 - *cost / model.truncation;
@@ -98,10 +84,10 @@ fn cost_of_light(level: &Level, background: &AffineMotion) -> Plane {
 }
 
 /// Log-likelihood ratio of object against ground of every colour, nats; none where there are too few pixels to learn from.
-fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane) -> Option<Buffer<f32>> {
+fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -> Option<Buffer<f32>> {
     let mut counts = Buffer::filled(COLOURS, [0.0f32; 2]);
     let mut totals = [0.0f32; 2];
-    let unexplained = CostModel::labels().outside();
+    let unexplained = CostModel::labels(model).outside();
     for (p, (&label, &lit)) in labels.iter().zip(lit.values()).enumerate() {
         let side = usize::from(!is_background(label));
         if side == 0 || lit >= unexplained {
@@ -110,11 +96,13 @@ fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane) -> Option<Buffer
         }
     }
     let [ground, object] = totals;
+    let (prior, most) = (model.shadow_prior, model.shadow_most);
     let ratio = |(colour, &[of_ground, of_object]): (usize, &[f32; 2])| {
         let of_ground = brighter(colour).map_or(of_ground, |brighter| f32::max(of_ground, counts[brighter][0]));
-        libm::logf((of_object / object + PRIOR) / (of_ground / ground + PRIOR)).clamp(-MOST, MOST)
+        libm::logf((of_object / object + prior) / (of_ground / ground + prior)).clamp(-most, most)
     };
-    (ground >= FEWEST && object >= FEWEST).then(|| counts.iter().enumerate().map(ratio).collect())
+    (ground >= model.shadow_fewest && object >= model.shadow_fewest)
+        .then(|| counts.iter().enumerate().map(ratio).collect())
 }
 
 #[cfg(test)]

@@ -7,16 +7,12 @@
 use super::Pair;
 use super::hypothesis::{known, refine, with_dominant};
 use super::labels::{Labelled, label};
-use super::settings::{Part, Settings};
+use super::settings::Settings;
 use crate::estimation::selection::ScoredMotion;
 use crate::labelling::BACKGROUND;
 use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::progress::Stages;
-
-/// Largest windowed cost that noise alone explains; its mean is .6. At rest it explains 53 to 75 % of the pixels of real and generated cars
-/// on plain ground, and less than 45 % of nearly all pairs of 30 real sequences with moving cameras.
-const EXPECTED: f32 = 0.8;
 
 /// A pair whose change of brightness is removed, and its labels.
 pub(super) struct Solved {
@@ -31,7 +27,7 @@ impl Solved {
         let motions: Vec<AffineMotion> = self.labelled.motions.iter().map(|motion| motion.scaled(scale)).collect();
         let runner_up = self.labelled.runner_up.map(|motion| motion.scaled(scale));
         stages.begin("dominant");
-        pair.take_dominant(&motions[BACKGROUND], settings.has(Part::Brightness));
+        pair.take_dominant(&motions[BACKGROUND], settings.brightness());
         stages.begin("refinement");
         let found = refine(&pair, known(&pair, &motions, runner_up), settings);
         stages.begin("labels");
@@ -47,10 +43,10 @@ pub(super) fn solve(mut pair: Pair, likely: &[AffineMotion], settings: &Settings
     let dominant = pair.find_dominant(settings.dominant_search());
     let moving = under(pair, dominant, likely, settings, stages);
     let mut known = moving.labelled.motions.clone();
-    if known[BACKGROUND] == AffineMotion::STATIC || !settings.has(Part::StaticHypothesis) {
+    if known[BACKGROUND] == AffineMotion::STATIC {
         return moving;
     }
-    at_rest.take_rest(&known[BACKGROUND + 1..], &moving.labelled.labels, settings.has(Part::Brightness));
+    at_rest.take_rest(&known[BACKGROUND + 1..], &moving.labelled.labels, settings.brightness());
     if !rest_is_likely(&at_rest) {
         return moving;
     }
@@ -80,6 +76,7 @@ fn under(
 
 /// Whether noise explains half of the pixels at rest.
 fn rest_is_likely(pair: &Pair) -> bool {
-    let at_rest = ScoredMotion::new(&pair.levels[pair.base], AffineMotion::STATIC);
-    median(at_rest.cost.values()).is_some_and(|cost| cost < EXPECTED)
+    let level = &pair.levels[pair.base];
+    let at_rest = ScoredMotion::new(level, AffineMotion::STATIC);
+    median(at_rest.cost.values()).is_some_and(|cost| cost < level.model.rest)
 }

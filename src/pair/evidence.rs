@@ -23,25 +23,25 @@ pub(super) fn evidence(pair: &Pair, labelled: &Labelled, settings: &Settings) ->
     let mut costs = label_costs(level, &motions, settings.coherence);
     let borders = borders(pair, pair.base, settings);
     let solve = |costs: &[Plane]| borders.solve(costs, Solver::LIGHT);
-    let one_more = (motions.len() > n).then(|| length(&motions, &raw, &solve(&costs), width));
+    let one_more = (motions.len() > n).then(|| length(&motions, &raw, &solve(&costs), width, level.model));
     motions.truncate(n);
     raw.truncate(n);
     costs.truncate(n);
     let mut labels = solve(&costs);
-    let mut candidates = vec![Candidate { motions: n, score: length(&motions, &raw, &labels, width) }];
+    let mut candidates = vec![Candidate { motions: n, score: length(&motions, &raw, &labels, width, level.model) }];
     if n < MAX_MOTIONS {
         // A motion without pixels costs its six parameters.
-        let unused = candidates[0].score + price_of_motion(labels.len());
+        let unused = candidates[0].score + price_of_motion(labels.len(), level.model);
         candidates.insert(0, Candidate { motions: n + 1, score: one_more.map_or(unused, |score| score.min(unused)) });
     }
     while raw.len() > 1 {
-        let worths = worth(&raw, &labels, width);
+        let worths = worth(&raw, &labels, width, level.model);
         let Some((weakest, _)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
         motions.remove(weakest);
         raw.remove(weakest);
         costs.remove(weakest);
         labels = solve(&costs);
-        candidates.push(Candidate { motions: raw.len(), score: length(&motions, &raw, &labels, width) });
+        candidates.push(Candidate { motions: raw.len(), score: length(&motions, &raw, &labels, width, level.model) });
     }
     candidates.reverse();
     candidates

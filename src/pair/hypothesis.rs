@@ -1,7 +1,7 @@
 //! The motions of a pair: they are proposed and selected beside the dominant one, then refined level by level.
 
 use super::Pair;
-use super::settings::{Part, Settings};
+use super::settings::Settings;
 use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
 use crate::estimation::dominant::DominantSearch;
 use crate::estimation::proposal::algebraic::from_algebra;
@@ -17,18 +17,10 @@ use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
 
-/// Rounds of refinement after the first selection, of the winning hypothesis, and at each finer level. Chosen on generated scenes.
-const ROUNDS: [usize; 3] = [1, 2, 1];
-/// Distance of the pixels looked at on finer levels, and proposals tried there in each round. For speed.
-const FINE_THINNING: usize = 2;
-const FINE_TRIES: usize = 2;
-/// Iterations in which the motion of a pixel that goes on is refined. Not varied.
-const ITERATIONS: usize = 3;
-
 impl Settings {
     /// How the dominant motion is found.
     pub(super) fn dominant_search(&self) -> DominantSearch {
-        DominantSearch { brightness: self.has(Part::Brightness), convergence: self.dominant }
+        DominantSearch { brightness: self.brightness(), convergence: self.dominant }
     }
 
     /// What pays for a motion on a level, in summed costs. Who gives the number of motions knows better: anything that helps is added.
@@ -48,7 +40,7 @@ impl Settings {
     }
 
     fn refit(&self, level: &Level, selected: &mut [ScoredMotion], rounds: usize) {
-        refit(level, selected, if self.has(Part::Refinement) { rounds } else { 0 }, self.refinement);
+        refit(level, selected, rounds, self.refinement);
     }
 }
 
@@ -68,15 +60,15 @@ pub(super) fn followed(
     settings: &Settings,
 ) -> (Found, f64) {
     let level = &pair.levels[pair.selection];
-    let (width, height) = (level.width(), level.height());
+    let (width, height, model) = (level.width(), level.height(), level.model);
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     for (label, motion) in (BACKGROUND + 1..).zip(objects) {
-        let region = softened(&eroded(&mask_of(labels, label as u8, width, height)));
-        let how = Alignment::of_region(ITERATIONS, ridge_of_label(label));
-        let motion = align(level, motion, &Support::weighted(&region), &mut Photometric::default(), how);
+        let region = softened(&eroded(&mask_of(labels, label as u8, width, height)), model);
+        let how = Alignment::of_region(model.follow_iterations, ridge_of_label(label, model), model);
+        let motion = align(level, motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
         selected.push(ScoredMotion::new(level, motion));
     }
-    settings.refit(level, &mut selected, ROUNDS[0]);
+    settings.refit(level, &mut selected, settings.model.refit_rounds);
     let all: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
     if settings.least == 1 {
         prune(&mut selected, settings.price(level));
@@ -129,38 +121,31 @@ pub(super) fn with_dominant(
     stages.begin("measurements");
     let flow = local_flow(&pair.levels, &dominant, pair.base);
     stages.begin("algebra");
-    let mut proposals = Vec::new();
-    if settings.has(Part::Algebra) {
-        proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements);
-    }
-    if settings.has(Part::Windows) {
-        proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
-    }
+    let mut proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements);
+    proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
     proposals.extend(others);
     stages.begin("selection");
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(level));
-    settings.refit(level, &mut selected, ROUNDS[0]);
+    settings.refit(level, &mut selected, settings.model.refit_rounds);
     Found { selected, runner_up }
 }
 
 /// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels.
 pub(super) fn refine(pair: &Pair, found: Found, settings: &Settings) -> Found {
     let Found { mut selected, mut runner_up } = found;
-    settings.refit(&pair.levels[pair.selection], &mut selected, ROUNDS[1]);
+    settings.refit(&pair.levels[pair.selection], &mut selected, settings.model.refit_rounds_last);
     if settings.least == 1 {
         prune(&mut selected, settings.price(&pair.levels[pair.selection]));
     }
     for level in pair.levels[..pair.selection].iter().rev() {
-        let level = &level.thinned(FINE_THINNING);
+        let level = &level.thinned(settings.model.thinning);
         selected = selected.iter().map(|l| ScoredMotion::new(level, l.motion)).collect();
-        if settings.has(Part::FinerLevels) {
-            let how = Deflation { tries: FINE_TRIES, ..settings.deflation(level) };
-            let proposals = fine_proposals(level, &selected);
-            runner_up = add_motions(level, &mut selected, &proposals, how).or(runner_up);
-        }
-        settings.refit(level, &mut selected, ROUNDS[2]);
+        let how = Deflation { tries: settings.model.tries_fine, ..settings.deflation(level) };
+        let proposals = fine_proposals(level, &selected);
+        runner_up = add_motions(level, &mut selected, &proposals, how).or(runner_up);
+        settings.refit(level, &mut selected, settings.model.refit_rounds_fine);
     }
     Found { selected, runner_up }
 }

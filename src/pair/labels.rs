@@ -6,10 +6,10 @@
 
 use super::Pair;
 use super::hypothesis::Found;
-use super::settings::{Part, Settings};
+use super::settings::Settings;
 use crate::components::absorb_small;
 use crate::frame::Plane;
-use crate::labelling::regions::description::{counts, length, price_of_motion, smallest_share, weight_of_pixel, worth};
+use crate::labelling::regions::description::{counts, length, price_of_motion, weight_of_pixel, worth};
 use crate::labelling::regions::merging::best_merger;
 use crate::labelling::regions::splitting::split_bodies;
 use crate::labelling::resolution::sharpening::{CoarseLabelling, WorkingLevel, sharpened};
@@ -20,16 +20,11 @@ use crate::labelling::terms::data::LabelCosts;
 use crate::labelling::terms::smoothness::Borders;
 use crate::labelling::terms::visibility::{hidden_under, with_visibility};
 use crate::labelling::{BACKGROUND, is_background, objects};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
-
-/// Smoothness on a coarser level, as a share of that at the working size: borders have half as many pixels. Chosen on generated scenes.
-const COARSE_SMOOTHNESS: f32 = 0.7;
-
-/// Motions that splitting may add beyond the largest number of selected ones. Not varied.
-const PARTS: usize = 3;
 
 /// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
@@ -43,7 +38,7 @@ impl Labelled {
     /// Description length of both frames on the level of the working size if their noise is as given, nats.
     pub(super) fn length(&self, level: &Level, noise: f32) -> f64 {
         let level = Level { noise, ..level.clone() };
-        length(&self.motions, &estimation_costs(&level, &self.motions), &self.labels, level.width())
+        length(&self.motions, &estimation_costs(&level, &self.motions), &self.labels, level.width(), level.model)
     }
 }
 
@@ -86,7 +81,7 @@ pub(super) fn label_on(pair: &Pair, found: Found, expected: Buffer<u8>, settings
     state.labels = expected;
     state.prune();
     state.try_static_background();
-    if state.motions.len() > 1 && settings.has(Part::Visibility) {
+    if state.motions.len() > 1 {
         state.update_occlusion();
     }
     state.regroup();
@@ -98,13 +93,13 @@ pub(super) fn label_on(pair: &Pair, found: Found, expected: Buffer<u8>, settings
 
 /// Gives shadows of objects back to the background.
 pub(super) fn return_shadows(pair: &Pair, labelled: &mut Labelled, settings: &Settings) {
-    if labelled.motions.len() < 2 || !settings.returns_shadows || !settings.has(Part::Shadows) {
+    if labelled.motions.len() < 2 || !settings.returns_shadows {
         return;
     }
     let (palette, borders) = (&pair.appearance.palette, borders(pair, 0, settings));
     let Labelled { motions, labels, .. } = labelled;
     shadows::return_shadows(pair.finest(), palette, &borders, motions, labels, settings.coherence.solver);
-    let sizes = absorb_small_components(labels, pair.finest().width(), motions.len());
+    let sizes = absorb_small_components(labels, pair.finest().width(), motions.len(), settings.model);
     for k in objects(sizes.len()).rev().filter(|&k| sizes[k] == 0) {
         motions.remove(k);
     }
@@ -113,17 +108,13 @@ pub(super) fn return_shadows(pair: &Pair, labelled: &mut Labelled, settings: &Se
 /// Smoothness weights on a level.
 pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders {
     let level = &pair.levels[index];
-    let smoothness = settings.coherence.smoothness * if index == 0 { 1.0 } else { COARSE_SMOOTHNESS };
-    if settings.has(Part::Edges) {
-        Borders::new(&pair.appearance.pictures[index], level.noise, smoothness)
-    } else {
-        Borders::uniform(level.width(), level.height(), smoothness)
-    }
+    let smoothness = settings.coherence.smoothness * if index == 0 { 1.0 } else { level.model.coarse_smoothness };
+    Borders::new(&pair.appearance.pictures[index], level.noise, smoothness, level.model)
 }
 
 /// Estimation costs of every motion on a level, in units of working pixels.
 pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
-    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation())).collect();
+    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation(level.model))).collect();
     if level.index > 0 {
         raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= weight_of_pixel(level));
     }
@@ -189,13 +180,13 @@ impl<'a> LabelState<'a> {
     }
 
     fn uses_colour(&self) -> bool {
-        self.motions.len() > 1 && self.settings.has(Part::Colour)
+        self.motions.len() > 1
     }
 
     /// Adds the costs of the colours.
     pub(super) fn add_colour_costs(&mut self, pair: &Pair) {
         if self.uses_colour() {
-            add_colours(&mut self.costs, &pair.appearance.palette, &self.labels);
+            add_colours(&mut self.costs, &pair.appearance.palette, &self.labels, self.level.model);
         }
     }
 
@@ -207,10 +198,10 @@ impl<'a> LabelState<'a> {
     /// Turns draft labels into labels of the working size.
     fn sharpen(&mut self, pair: &Pair) {
         let step = 1 << pair.draft;
-        let colours = self
-            .uses_colour()
-            .then(|| ColourPrices::learned(&pair.appearance.palette.thinned(step), &self.costs, &self.labels));
-        let visible = self.motions.len() < 2 || !self.settings.has(Part::Visibility);
+        let colours = self.uses_colour().then(|| {
+            ColourPrices::learned(&pair.appearance.palette.thinned(step), &self.costs, &self.labels, self.level.model)
+        });
+        let visible = self.motions.len() < 2;
         let hidden = if visible { Vec::new() } else { hidden_under(self.level, &self.motions, &self.labels) };
         let coarse = CoarseLabelling {
             width: self.level.width(),
@@ -223,7 +214,7 @@ impl<'a> LabelState<'a> {
         };
         let fine = WorkingLevel {
             level: pair.finest(),
-            picture: self.settings.has(Part::Edges).then(|| &pair.appearance.pictures[0]),
+            picture: &pair.appearance.pictures[0],
             palette: &pair.appearance.palette,
             motions: &self.motions,
             coherence: self.settings.coherence,
@@ -234,10 +225,8 @@ impl<'a> LabelState<'a> {
     /// Removes the least worthy motion and solves again, as long as there is one that does not pay for itself.
     fn prune(&mut self) {
         let most = self.settings.most;
-        while self.motions.len() > self.settings.least
-            && (self.settings.has(Part::ModelSelection) || self.motions.len() > most)
-        {
-            let worths = worth(&self.raw, &self.labels, self.size().0);
+        while self.motions.len() > self.settings.least {
+            let worths = worth(&self.raw, &self.labels, self.size().0, self.level.model);
             let Some((weakest, value)) = worths.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)) else { break };
             if *value > 0.0 && self.motions.len() <= most {
                 break;
@@ -258,7 +247,7 @@ impl<'a> LabelState<'a> {
 
     /// Corrects for occlusion. Takes several rounds, since what is occluded depends on the masks.
     fn correct_occlusion(&mut self) {
-        if self.motions.len() < 2 || !self.settings.has(Part::Visibility) {
+        if self.motions.len() < 2 {
             return;
         }
         for _ in 0..self.settings.visibility_rounds {
@@ -277,7 +266,7 @@ impl<'a> LabelState<'a> {
     /// Makes the background static if that shortens the description: the zero motion costs no parameters. A dominant motion that was
     /// fitted across objects on a flat background is recognised here, once the objects have motions of their own.
     fn try_static_background(&mut self) {
-        if self.motions[BACKGROUND] == AffineMotion::STATIC || !self.settings.has(Part::StaticHypothesis) {
+        if self.motions[BACKGROUND] == AffineMotion::STATIC {
             return;
         }
         let own = |plane: &Plane| -> f64 {
@@ -285,7 +274,8 @@ impl<'a> LabelState<'a> {
             pixels.map(|(cost, _)| f64::from(*cost)).sum()
         };
         let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
-        if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(counts(&self.labels, 1)[0]) {
+        if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(counts(&self.labels, 1)[0], self.level.model)
+        {
             self.motions[BACKGROUND] = AffineMotion::STATIC;
             self.recompute_costs();
             self.solve();
@@ -304,7 +294,7 @@ impl<'a> LabelState<'a> {
 
     /// Merges regions that one motion explains better than two.
     fn merge(&mut self) {
-        while self.motions.len() > self.settings.least && self.settings.has(Part::ModelSelection) {
+        while self.motions.len() > self.settings.least {
             let Some(merger) = best_merger(self.level, &self.motions, &self.raw, &self.labels) else { break };
             let [kept, gone] = merger.labels;
             self.motions[kept] = merger.motion;
@@ -324,12 +314,12 @@ impl<'a> LabelState<'a> {
 
     /// Splits regions that contain several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
-        if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
+        if self.motions.len() < 2 || self.settings.least > 1 {
             return false;
         }
         let level = self.level;
         self.clean(level.width());
-        let most = self.settings.most + PARTS;
+        let most = self.settings.most + level.model.parts;
         if !split_bodies(level, &mut self.motions, &mut self.labels, most) {
             return false;
         }
@@ -341,7 +331,7 @@ impl<'a> LabelState<'a> {
 
     /// Gives small components to the labels around them and removes motions without pixels. Rows of labels are `width` long.
     fn clean(&mut self, width: usize) {
-        let sizes = absorb_small_components(&mut self.labels, width, self.motions.len());
+        let sizes = absorb_small_components(&mut self.labels, width, self.motions.len(), self.level.model);
         for k in objects(sizes.len()).rev().filter(|&k| sizes[k] == 0) {
             self.remove(k);
         }
@@ -351,8 +341,8 @@ impl<'a> LabelState<'a> {
 /// Gives small components of labels, in rows of `width`, to the labels around them. Returns the pixels of each of the motions; afterwards the
 /// labels are numbered as if there were no objects without pixels.
 #[inline(never)]
-fn absorb_small_components(labels: &mut [u8], width: usize, motions: usize) -> Vec<usize> {
-    let smallest = (smallest_share() * labels.len() as f64) as usize;
+fn absorb_small_components(labels: &mut [u8], width: usize, motions: usize, model: &Model) -> Vec<usize> {
+    let smallest = (model.smallest_share * labels.len() as f64) as usize;
     absorb_small(labels, width, smallest);
     let sizes = counts(labels, motions);
     let mut next = 0u8;

@@ -14,7 +14,7 @@ pub(crate) use statistics::describe;
 use super::Pair;
 use super::evidence::evidence;
 use super::labels::Labelled;
-use super::settings::{Part, Settings};
+use super::settings::Settings;
 use crate::answer::{Candidate, UNLABELLED};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
@@ -98,28 +98,24 @@ pub(super) fn report(
     options: &SegmentOptions,
 ) -> Segmentation {
     let level = pair.finest();
-    let size = [level.width(), level.height()];
+    let (size, model) = ([level.width(), level.height()], level.model);
     let candidates = evidence(pair, &labelled, settings);
-    let grouping = groups(&labelled.motions, &labelled.labels, size[0], pair.reduction);
+    let grouping = groups(&labelled.motions, &labelled.labels, size[0], pair.reduction, model);
     let costs = if options.mark_unknown || options.confidence {
         costs_where_seen(level, &labelled.motions)
     } else {
         Vec::new()
     };
-    let mut sure = probabilities(&costs, &labelled.labels);
+    let mut sure = probabilities(&costs, &labelled.labels, model);
     let unknown = options.mark_unknown.then(|| unknown::unknown(pair, &labelled, &sure));
-    let full = if settings.has(Part::GuidedEnlarging) {
-        upsample(&labelled.labels, size, labelled.motions.len(), first.luminance())
-    } else {
-        nearest(&labelled.labels, size, first, pair.reduction)
-    };
+    let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance(), model);
     let order = by_size(&full, labelled.motions.len());
-    let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order);
-    let groups = junctions::groups(&junctions, &order.iter().map(|&k| grouping[k]).collect::<Vec<usize>>());
+    let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order, model);
+    let groups = junctions::groups(&junctions, &order.iter().map(|&k| grouping[k]).collect::<Vec<usize>>(), model);
     let mut confidence = options.confidence.then(|| {
         let mut group_of = vec![0; labelled.motions.len()];
         order.iter().zip(&groups).for_each(|(&k, &group)| group_of[k] = group);
-        doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of);
+        doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, model);
         confidence(&sure, &full, first.width())
     });
     drop(costs);
@@ -168,11 +164,6 @@ fn by_size(labels: &[u8], of: usize) -> Buffer<usize> {
     let mut order = descending(sizes.iter().map(|&s| s as f64));
     order.retain(|&k| sizes[k] > 0);
     order
-}
-
-/// Labels enlarged by nearest neighbour.
-fn nearest(labels: &[u8], size: [usize; 2], frame: &Frame, reduction: f64) -> Vec<u8> {
-    (0..frame.width() * frame.height()).map(|p| labels[working_pixel(p, frame.width(), size, reduction)]).collect()
 }
 
 /// The working pixel that a full-size pixel belongs to.

@@ -1,47 +1,12 @@
-//! Every number of the pipeline that depends on the quality, an option or the size of the frames. Unless something else is said they were
-//! chosen on generated scenes, those of `fast` for speed. Numbers that never change are constants beside the code that uses them.
+//! What depends on the quality, an option or the size of the frames. The numbers themselves are those of the [`Model`].
 
 use crate::estimation::alignment::Convergence;
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, MIN_SIDE};
 use crate::labelling::coherence::Coherence;
 use crate::labelling::solver::Solver;
+use crate::model::Model;
 use crate::options::{MotionCount, Quality, SegmentOptions};
-use crate::tuning::{Tuned, tuned};
-
-/// A part of the pipeline that can be left out, for ablation studies. Without the feature `ablation` all parts are enabled. Not covered by
-/// semantic versioning.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
-    /// Estimation of gain and bias between the frames.
-    Brightness,
-    /// The hypothesis of a static background.
-    StaticHypothesis,
-    /// Candidate motions from the multibody constraint.
-    Algebra,
-    /// Candidate motions from single windows.
-    Windows,
-    /// Candidates and selection on levels finer than that of the first selection.
-    FinerLevels,
-    /// Refinement of motions on the pixels they explain best, after each stage of the selection.
-    Refinement,
-    /// Lower smoothness cost along image edges.
-    Edges,
-    /// The smoothness cost.
-    Coherence,
-    /// Correction of the costs for occlusion.
-    Visibility,
-    /// Splitting of regions into separate bodies.
-    Splitting,
-    /// Removal of motions that do not pay for their description.
-    ModelSelection,
-    /// The colour term.
-    Colour,
-    /// Shadows given back to the background.
-    Shadows,
-    /// Upsampling along the edges of the full-size frame.
-    GuidedEnlarging,
-}
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
@@ -81,35 +46,9 @@ pub(crate) struct Settings {
     pub(crate) returns_shadows: bool,
     /// Whether a pair starts from the labels of the one before, where there is one.
     pub(crate) follows: bool,
-    /// What is left out.
-    #[cfg(feature = "ablation")]
-    pub(crate) without: Option<Part>,
+    /// The numbers that never change.
+    pub(crate) model: &'static Model,
 }
-
-/// Longer side of the working size at most, pixels. Chosen on generated scenes.
-const WORK_SIDE_BEST: usize = 480;
-/// The same for the detail of frames that are halved more than once to that size. Chosen on generated scenes.
-const DETAIL_SIDE: usize = 960;
-/// Frames whose longer side has more pixels than this are large: most of their time passes at full size, so that a larger working size
-/// costs little.
-const LARGE: usize = 960;
-/// The longer side of the working size at most with quality `fast`, of other frames and of large ones. For speed.
-const WORK_SIDE_FAST: [usize; 2] = [320, 480];
-/// The same in a stream. The second keeps at least 160 pixels.
-const WORK_SIDE_STREAM: [usize; 2] = [BASE_SIDE, 319];
-/// Longer side of the level on which motions are selected and labels drafted at most, pixels, unless frames are halved. Chosen on generated
-/// scenes.
-const SELECTION_SIDE: usize = 320;
-/// Longer side of the base level at most, pixels. Chosen on generated scenes.
-const BASE_SIDE: usize = 224;
-/// λ of frames at their original size, chosen on generated scenes, and of frames that were halved, chosen on real pairs.
-const SMOOTHNESS: [f32; 2] = [8.0, 12.0];
-/// How the linear terms of motions converge in frames at their original size, where a motion with little prior spans two small bodies that
-/// move alike, and in frames that were halved. The latter was chosen on real pairs, where priors of .01 to .3 differ by less than chance.
-const CONVERGING: [Convergence; 2] =
-    [Convergence::Every { patience: 2, prior: 1.0 }, Convergence::Every { patience: 3, prior: 0.1 }];
-/// Price of an object's pixel, costs: 1/40 of the largest. Chosen on generated scenes.
-const OBJECT_BIAS: f32 = 0.05;
 
 /// How often frames are halved until their longer side is at most `work_side`, or their shorter side would be too short.
 fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
@@ -121,71 +60,77 @@ fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
     halvings
 }
 
-/// How often frames are halved with quality `fast`, with these sides of the working size.
-fn fast_halvings([side, of_large]: [usize; 2], size: [usize; 2]) -> usize {
-    halvings_to(if size[0].max(size[1]) > LARGE { of_large } else { side }, size)
+/// How often frames are halved with quality `fast`, to this side of the working size and, where they are large, to that.
+fn fast_halvings([side, of_large]: [usize; 2], size: [usize; 2], model: &Model) -> usize {
+    halvings_to(if size[0].max(size[1]) > model.detail_side { of_large } else { side }, size)
 }
 
 /// λ of quality `fast` for frames that are halved so many times.
-fn fast_smoothness(halvings: usize) -> f32 {
-    tuned(Tuned::Smoothness, SMOOTHNESS[usize::from(halvings > 1)])
+fn fast_smoothness(halvings: usize, model: &Model) -> f32 {
+    if halvings > 1 { model.smoothness_halved } else { model.smoothness }
 }
 
 impl Settings {
     /// The settings for a pair of frames of the given width and height.
-    pub(crate) fn new(options: &SegmentOptions, size: [usize; 2]) -> Settings {
-        let halvings = halvings_to(WORK_SIDE_BEST, size);
+    pub(crate) fn new(options: &SegmentOptions, size: [usize; 2], model: &'static Model) -> Settings {
+        let halvings = halvings_to(model.work_side, size);
         // Halving averages the noise; what remains is model error, which neighbours share. Motions are then best selected at the working
         // size itself, with a higher smoothness. For frames at their original size, a coarser level averages the noise.
-        let (fine_side, smoothness) =
-            if halvings > 0 { (WORK_SIDE_BEST, SMOOTHNESS[1]) } else { (SELECTION_SIDE, SMOOTHNESS[0]) };
-        let converging = CONVERGING[usize::from(halvings > 0)];
+        let whole = Convergence::Every { patience: model.patience, prior: 1.0 };
+        let (fine_side, smoothness, converging) = if halvings > 0 {
+            let prior = model.prior_halved;
+            (model.work_side, model.smoothness_halved, Convergence::Every { patience: model.patience_halved, prior })
+        } else {
+            (model.work_side_fast, model.smoothness, whole)
+        };
         let best = Settings {
             halvings,
-            base_side: BASE_SIDE,
+            base_side: model.base_side,
             selection_side: fine_side,
             draft_side: fine_side,
-            smallest_side: 24,
-            degrees: 3,
-            measurements: 2000,
-            tiles: 48,
-            tries: 6,
+            smallest_side: model.smallest_side,
+            degrees: model.degrees,
+            measurements: model.measurements,
+            tiles: model.tiles,
+            tries: model.tries,
             dominant: converging,
             refinement: converging,
-            most: 7,
+            most: model.most,
             least: 1,
-            gain_window: tuned(Tuned::GainWindow, 2.0),
-            visibility_rounds: 2,
+            gain_window: model.gain_window,
+            visibility_rounds: model.visibility_rounds,
             coherence: Coherence {
-                smoothness: tuned(Tuned::Smoothness, smoothness),
-                object_bias: tuned(Tuned::ObjectBias, OBJECT_BIAS),
+                smoothness,
+                object_bias: model.object_bias,
                 draft_solver: Solver::FAST,
                 solver: Solver::BEST,
                 sharpening: Solver::BEST,
             },
             returns_shadows: true,
             follows: false,
-            #[cfg(feature = "ablation")]
-            without: None,
+            model,
         };
         let mut settings = match options.quality {
             Quality::Best => best,
             Quality::Fast => Settings {
-                dominant: CONVERGING[0],
+                dominant: whole,
                 refinement: Convergence::Translation,
                 returns_shadows: false,
-                halvings: fast_halvings(WORK_SIDE_FAST, size),
+                halvings: fast_halvings([model.work_side_fast, model.work_side], size, model),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
-                selection_side: BASE_SIDE,
-                draft_side: BASE_SIDE,
-                degrees: 2,
-                measurements: 1000,
-                tiles: 24,
-                tries: 1,
-                visibility_rounds: 1,
-                gain_window: tuned(Tuned::GainWindow, 1.5),
+                selection_side: model.base_side,
+                draft_side: model.base_side,
+                degrees: model.degrees_fast,
+                measurements: model.measurements_fast,
+                tiles: model.tiles_fast,
+                tries: model.tries_fast,
+                visibility_rounds: model.visibility_rounds_fast,
+                gain_window: model.gain_window_fast,
                 coherence: Coherence {
-                    smoothness: fast_smoothness(fast_halvings(WORK_SIDE_FAST, size)),
+                    smoothness: fast_smoothness(
+                        fast_halvings([model.work_side_fast, model.work_side], size, model),
+                        model,
+                    ),
                     solver: Solver::FAST,
                     sharpening: Solver::LIGHT,
                     ..best.coherence
@@ -206,7 +151,7 @@ impl Settings {
     /// would be carried from frame to frame.
     pub(crate) fn of_clip(options: &SegmentOptions, size: [usize; 2]) -> Settings {
         let [dominant, refinement] = [Convergence::Translation; 2];
-        Settings { dominant, refinement, returns_shadows: true, ..Settings::new(options, size) }
+        Settings { dominant, refinement, returns_shadows: true, ..Settings::new(options, size, &Model::DEFAULT) }
     }
 
     /// The settings for the pairs of a stream. A fast one selects motions and drafts labels at the working size.
@@ -215,18 +160,19 @@ impl Settings {
         if options.quality == Quality::Best {
             return settings;
         }
-        let halvings = fast_halvings(WORK_SIDE_STREAM, size);
-        let coherence = Coherence { smoothness: fast_smoothness(halvings), ..settings.coherence };
-        let [_, fine_side] = WORK_SIDE_STREAM;
+        let (model, sides) = (settings.model, [settings.model.base_side, settings.model.work_side_stream]);
+        let halvings = fast_halvings(sides, size, model);
+        let coherence = Coherence { smoothness: fast_smoothness(halvings, model), ..settings.coherence };
+        let fine_side = model.work_side_stream;
         Settings { halvings, selection_side: fine_side, draft_side: fine_side, coherence, follows: true, ..settings }
     }
 
     /// The settings with which a search is carried on at a finer working size, so that large frames get their detail; none where quality
     /// `fast` or the size of the frames asks for no more.
     pub(crate) fn of_detail(&self, options: &SegmentOptions, size: [usize; 2]) -> Option<Settings> {
-        let halvings = halvings_to(DETAIL_SIDE, size);
+        let halvings = halvings_to(self.model.detail_side, size);
         let wanted = options.quality == Quality::Best && self.halvings > 1 && halvings < self.halvings;
-        wanted.then_some(Settings { halvings, draft_side: DETAIL_SIDE, ..*self })
+        wanted.then_some(Settings { halvings, draft_side: self.model.detail_side, ..*self })
     }
 
     /// The solver of final labels.
@@ -247,14 +193,8 @@ impl Settings {
         FramePyramid::new(frame, self.halvings, self.smallest_side)
     }
 
-    /// Whether a part takes part.
-    pub(crate) fn has(&self, part: Part) -> bool {
-        #[cfg(feature = "ablation")]
-        return self.without != Some(part);
-        #[cfg(not(feature = "ablation"))]
-        {
-            let _ = part;
-            true
-        }
+    /// Whether a change of brightness is estimated.
+    pub(crate) fn brightness(&self) -> bool {
+        self.model.brightness_steps > 0
     }
 }

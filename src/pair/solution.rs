@@ -9,9 +9,10 @@ use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::groups::groups;
 use crate::labelling::terms::views::{cheapest, costs_where_seen};
 use crate::labelling::{BACKGROUND, is_background};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
-use crate::view::cost::{CostModel, inverse};
+use crate::view::cost::inverse;
 use crate::workspace::Buffer;
 
 /// What a pair tells about its first frame. The background has label [`BACKGROUND`](crate::labelling::BACKGROUND).
@@ -31,13 +32,10 @@ pub(crate) struct Solution {
     unexplained: f32,
 }
 
-/// Share of the largest cost, in the mean, above which two frames show different scenes. Not varied; tests/clip.rs has a cut.
-const CUT: f32 = 0.5;
-
 impl Solution {
     /// Whether the frames have so little in common that there must be a cut between them.
     pub(crate) fn is_cut(&self) -> bool {
-        self.unexplained > CUT
+        self.unexplained > Model::DEFAULT.cut
     }
 }
 
@@ -51,13 +49,6 @@ pub(crate) struct Prior {
     /// Cost after the last search. Motions that are followed are searched anew at the latest when they cost much more.
     pub(crate) searched: f64,
 }
-
-/// Motions are followed without a look at others where they cost no more than this share more than expected. Chosen on ten real clips: .05
-/// costs .006 J.
-const TOLERANCE: f64 = 0.02;
-/// They may cost this share more than after the last search as long as none is found missing. Chosen on ten real clips: .1
-/// costs .017 J there, and nothing in generated ones.
-const TOLERANCE_SEARCHED: f64 = 0.05;
 
 impl Prior {
     /// Whether a prior from outside the program can be used.
@@ -95,6 +86,7 @@ pub(crate) fn solve(
     settings: &Settings,
     expected: Expected<'_>,
 ) -> Solution {
+    let model = settings.model;
     let mut ignored = |_| {};
     let mut stages = Stages::new(super::STAGES, &mut ignored);
     let mut pair = Pair::new(first, pyramid, second, None, settings);
@@ -112,13 +104,13 @@ pub(crate) fn solve(
             background::solve(Pair::new(first, pyramid, second, None, settings), likely, settings, &mut stages);
         pair = solved;
         let cost = if settings.follows { hypothesis::cost(&pair, &labelled.motions) } else { 0.0 };
-        (labelled, [(1.0 + TOLERANCE) * cost, cost])
+        (labelled, [(1.0 + model.follow_tolerance) * cost, cost])
     });
     let with_shadows = labelled.labels.clone();
     labels::return_shadows(&pair, &mut labelled, settings);
     let level = pair.finest();
     let mut costs = costs_where_seen(level, &labelled.motions);
-    let most = CostModel::labels().truncation;
+    let most = model.label_truncation;
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
     // Where a shadow was given back to the background, a change of light explains it as well as any motion does.
@@ -127,8 +119,8 @@ pub(crate) fn solve(
             *cost = smallest.values()[p];
         }
     }
-    let probabilities = probabilities(&costs, &labelled.labels);
-    let groups = groups(&labelled.motions, &labelled.labels, level.width(), pair.reduction);
+    let probabilities = probabilities(&costs, &labelled.labels, model);
+    let groups = groups(&labelled.motions, &labelled.labels, level.width(), pair.reduction, model);
     let [enough, searched] = limits;
     let prior = settings.follows.then(|| Prior { motions: labelled.motions.clone(), enough, searched });
     Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, prior, unexplained }
@@ -142,15 +134,18 @@ fn follow(
     mut labels: Buffer<u8>,
     settings: &Settings,
 ) -> Option<(labels::Labelled, [f64; 2])> {
+    let model = settings.model;
     let dominant = pair.find_dominant_near(&prior.motions[BACKGROUND], settings.dominant_search());
     let objects = &prior.motions[BACKGROUND + 1..];
     let (found, cost) = hypothesis::followed(pair, dominant, objects, &mut labels, settings);
     // Costs rise when a motion is missing, but also when more is occluded.
     let enough = if cost < prior.enough {
         // Else costs that rise little by little would never lead to a look for others.
-        prior.enough.min((1.0 + TOLERANCE) * cost)
-    } else if cost < (1.0 + TOLERANCE_SEARCHED) * prior.searched && !hypothesis::is_missing(pair, &found, settings) {
-        (1.0 + TOLERANCE) * cost
+        prior.enough.min((1.0 + model.follow_tolerance) * cost)
+    } else if cost < (1.0 + model.follow_tolerance_searched) * prior.searched
+        && !hypothesis::is_missing(pair, &found, settings)
+    {
+        (1.0 + model.follow_tolerance) * cost
     } else {
         return None;
     };

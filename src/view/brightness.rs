@@ -5,6 +5,7 @@ use std::rc::Rc;
 use super::cost::{View, inverse, total};
 use crate::frame::Plane;
 use crate::frame::warp::Footprint;
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::level::Level;
 
@@ -17,25 +18,18 @@ pub(crate) struct Photometric {
     pub(crate) gain: f64,
 }
 
-/// Smallest and largest factor of the gain. A safeguard: exposure changes less from frame to frame.
-const GAINS: (f64, f64) = (0.7, 1.4);
-/// Reweighted least squares steps with a known motion; three settle to a tenth of a grey level.
-const STEPS: usize = 3;
-/// Squared residual, in noise variances, at which a pixel's weight has fallen to a quarter: the same as in the alignment of a region.
-const ROBUSTNESS: f64 = 4.0;
-
 impl Photometric {
     /// A first guess from the mean and standard deviation of both frames.
-    pub(crate) fn from_moments(first: &Plane, view: &Plane) -> Photometric {
+    pub(crate) fn from_moments(first: &Plane, view: &Plane, model: &Model) -> Photometric {
         let (first_mean, first_deviation) = mean_and_deviation(first);
         let (view_mean, view_deviation) = mean_and_deviation(view);
-        let gain = (view_deviation / first_deviation.max(1e-3)).clamp(GAINS.0, GAINS.1);
+        let gain = (view_deviation / first_deviation.max(1e-3)).clamp(model.smallest_gain, model.largest_gain);
         Photometric { bias: view_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
     }
 
     /// Refined between the first frame and the second under the zero motion.
     pub(crate) fn refined_at_rest(mut self, level: &Level) -> Photometric {
-        for _ in 0..STEPS {
+        for _ in 0..level.model.brightness_steps {
             self = self.step(level, |x, y| Some(level.second.at(x * level.stride, y * level.stride)));
         }
         self
@@ -72,13 +66,14 @@ impl Photometric {
             let footprint = Footprint::new(px, py, view.width(), view.height());
             footprint.inside.then(|| footprint.sample(view.values()))
         };
-        let start = Photometric::from_moments(&level.first, view);
-        (0..STEPS).fold(start, |photometric, _| photometric.step(level, sample))
+        let start = Photometric::from_moments(&level.first, view, level.model);
+        (0..level.model.brightness_steps).fold(start, |photometric, _| photometric.step(level, sample))
     }
 
     /// One reweighted least squares step between the pixels of the first frame and the samples of the view that belong to them.
     fn step(self, level: &Level, sample: impl Fn(usize, usize) -> Option<f32>) -> Photometric {
         let variance = f64::from(level.noise * level.noise);
+        let robustness = f64::from(level.model.robustness);
         let (mut q, mut qi, mut qii, mut qr, mut qir) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for p in 0..level.first.values().len() {
             let (x, y) = (p % level.width(), p / level.width());
@@ -86,7 +81,7 @@ impl Photometric {
             let first = level.first.values()[p];
             let i = f64::from(first) / 128.0;
             let r = f64::from(value) - f64::from(first) - self.bias - self.gain * i;
-            let robust = ROBUSTNESS / (ROBUSTNESS + r * r / variance);
+            let robust = robustness / (robustness + r * r / variance);
             let w = robust * robust;
             q += w;
             qi += w * i;

@@ -14,19 +14,11 @@ use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::lanes::{LANES, each};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median;
-use crate::tuning::{Tuned, tuned};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
-
-/// Standard deviation of the position predicted by a correct motion, pixels. Chosen on generated scenes.
-const POSITION_SIGMA: f32 = 0.15;
-/// Largest cost of a pixel when motions are estimated: the fit of a motion must feel pixels at two deviations. Chosen on generated scenes.
-const ESTIMATION_TRUNCATION: f32 = 4.0;
-/// Largest cost of a pixel when it is labelled. Chosen on generated scenes with their true motions, confirmed on
-/// real pairs.
-const LABEL_TRUNCATION: f32 = 2.0;
 
 /// The two constants of the cost.
 #[derive(Clone, Copy, Debug)]
@@ -40,17 +32,14 @@ pub(crate) struct CostModel {
 impl CostModel {
     /// For estimating motions.
     #[inline(always)]
-    pub(crate) fn estimation() -> CostModel {
-        CostModel {
-            truncation: tuned(Tuned::EstimationTruncation, ESTIMATION_TRUNCATION),
-            position_sigma: tuned(Tuned::PositionSigma, POSITION_SIGMA),
-        }
+    pub(crate) fn estimation(model: &Model) -> CostModel {
+        CostModel { truncation: model.estimation_truncation, position_sigma: model.position_sigma }
     }
 
     /// For labelling pixels.
     #[inline(always)]
-    pub(crate) fn labels() -> CostModel {
-        CostModel { truncation: tuned(Tuned::LabelTruncation, LABEL_TRUNCATION), ..CostModel::estimation() }
+    pub(crate) fn labels(model: &Model) -> CostModel {
+        CostModel { truncation: model.label_truncation, position_sigma: model.position_sigma }
     }
 
     #[inline(always)]
@@ -225,13 +214,7 @@ pub(crate) fn lane_sum(row: &[f32]) -> f32 {
 /// Standard deviation of the intensity difference along a correct motion, grey levels, from the flatter half of the pixels
 /// (1.4826 × median absolute deviation), between half a grey level and 8.
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
-    /// Rounding both frames to whole grey levels makes up to 0.41.
-    const SMALLEST: f32 = 0.5;
-    /// A safeguard: where no motion fits, misfit passes for noise.
-    const LARGEST: f32 = 8.0;
-    /// About this many pixels are enough, larger levels are sampled: half of them give the deviation to within 2 %.
-    const ENOUGH: f64 = 8192.0;
-    let stride = (level.first.values().len() as f64 / ENOUGH).sqrt().ceil() as usize;
+    let stride = (level.first.values().len() as f64 / level.model.noise_sample).sqrt().ceil() as usize;
     let level = &level.thinned(stride.max(1));
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
@@ -249,9 +232,10 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
             }
         }
     }
-    let Some(centre) = median(&residuals) else { return LARGEST };
+    let Some(centre) = median(&residuals) else { return level.model.largest_noise };
     residuals.iter_mut().for_each(|r| *r = (*r - centre).abs());
-    (1.4826 * median(&residuals).unwrap_or(LARGEST)).clamp(SMALLEST, LARGEST)
+    (1.4826 * median(&residuals).unwrap_or(level.model.largest_noise))
+        .clamp(level.model.smallest_noise, level.model.largest_noise)
 }
 
 #[cfg(test)]
@@ -272,9 +256,9 @@ mod tests {
     #[test]
     fn the_cost_of_an_area_is_that_part_of_the_whole() {
         for level in [level(false), level(true)] {
-            let whole = cost(&level, &MOTION, CostModel::labels());
+            let whole = cost(&level, &MOTION, CostModel::labels(level.model));
             let area = Area { columns: 3..68, rows: 7..31 };
-            let part = cost_within(&level, &area, &MOTION, CostModel::labels());
+            let part = cost_within(&level, &area, &MOTION, CostModel::labels(level.model));
             assert_eq!((part.width(), part.height()), (65, 24));
             for (k, y) in area.rows.clone().enumerate() {
                 for (a, b) in part.row(k).iter().zip(&whole.row(y)[area.columns.clone()]) {
@@ -287,8 +271,8 @@ mod tests {
     #[test]
     fn a_sample_of_the_pixels_costs_what_these_pixels_cost() {
         let level = level(true);
-        let whole = cost(&level, &MOTION, CostModel::estimation());
-        let sample = cost(&level.thinned(3), &MOTION, CostModel::estimation());
+        let whole = cost(&level, &MOTION, CostModel::estimation(level.model));
+        let sample = cost(&level.thinned(3), &MOTION, CostModel::estimation(level.model));
         assert_eq!((sample.width(), sample.height()), (24, 17));
         for (a, b) in sample.values().iter().zip(whole.thinned(3).values()) {
             assert!((a - b).abs() < 1e-3, "{a}, {b}");
@@ -301,7 +285,8 @@ mod tests {
             |shift: f32| Plane::from_fn(150, 20, |x, y| 100.0 + 50.0 * libm::sinf(0.3 * x as f32 + shift + y as f32));
         let levels = build(frame(0.0), frame(0.2), None, 16);
         let motion = AffineMotion::new([0.01, 0.0, -6.0, 0.0, -0.02, 1.5]);
-        let comparison = Comparison::new(&levels[0], View::Second, &motion, CostModel::labels()).unwrap();
+        let comparison =
+            Comparison::new(&levels[0], View::Second, &motion, CostModel::labels(levels[0].model)).unwrap();
         let plane = comparison.plane(&levels[0].area());
         for (left, count) in [(0, 150), (0, 1), (3, 20), (9, 64), (40, 71), (141, 9)] {
             let mut part = vec![f32::NAN; count];

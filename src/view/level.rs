@@ -8,18 +8,11 @@ use crate::frame::pyramid::FrameLevel;
 #[cfg(test)]
 use crate::frame::pyramid::levels_of;
 use crate::frame::warp::RowPath;
+use crate::model::Model;
 use crate::motion::AffineMotion;
 
 /// Correlation of neighbouring pixels' noise after the pre-blur, exp(−1/(4σ²)).
 const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
-/// The same on coarser levels, after the 5-tap filter and halving (measured).
-const NOISE_CORRELATION_HALVED: f32 = 0.4;
-
-/// Noise before it is measured, grey levels: only the first search for the dominant motion uses it. Chosen on generated scenes.
-const INITIAL_NOISE: f32 = 4.0;
-
-/// A sample of a level keeps its shorter side at least this long, pixels. A safeguard for narrow frames.
-const SMALLEST_SAMPLE: usize = 8;
 
 /// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame, times the stride where it is thinned.
 #[derive(Clone, Debug)]
@@ -41,10 +34,17 @@ pub(crate) struct Level {
     pub(crate) noise: f32,
     /// Distance of the first frame's pixels in pixels of the second: 1, or more where the level is [`thinned`](Level::thinned).
     pub(crate) stride: usize,
+    pub(crate) model: &'static Model,
 }
 
 impl Level {
-    fn new(index: u32, first: &FrameLevel, second: &FrameLevel, before: Option<&FrameLevel>) -> Level {
+    fn new(
+        index: u32,
+        first: &FrameLevel,
+        second: &FrameLevel,
+        before: Option<&FrameLevel>,
+        model: &'static Model,
+    ) -> Level {
         Level {
             index,
             first: first.luminance.clone(),
@@ -55,8 +55,9 @@ impl Level {
             second_dx: second.dx.clone(),
             second_dy: second.dy.clone(),
             energy: first.energy(),
-            noise: INITIAL_NOISE,
+            noise: model.initial_noise,
             stride: 1,
+            model,
         }
     }
 
@@ -80,7 +81,7 @@ impl Level {
 
     /// `stride`, or less on a level so small that too few pixels would remain.
     pub(crate) fn thinning(&self, stride: usize) -> usize {
-        stride.min(self.width().min(self.height()) / SMALLEST_SAMPLE).max(1)
+        stride.min(self.width().min(self.height()) / self.model.smallest_sample).max(1)
     }
 
     /// The level with every `stride`-th pixel of every `stride`-th row of the first frame and the whole second frame: a sample of the
@@ -100,6 +101,7 @@ impl Level {
             energy: sample(&self.energy),
             noise: self.noise,
             stride: self.stride * stride,
+            model: self.model,
         }
     }
 
@@ -126,19 +128,24 @@ impl Level {
 
     /// Correlation of the noise of neighbouring pixels.
     pub(crate) fn noise_correlation(&self) -> f32 {
-        if self.index == 0 { NOISE_CORRELATION_FULL } else { NOISE_CORRELATION_HALVED }
+        if self.index == 0 { NOISE_CORRELATION_FULL } else { self.model.noise_correlation }
     }
 }
 
 /// The levels of a pair, from the working size down. All pyramids are those of frames of one size.
-pub(crate) fn levels(first: &[FrameLevel], second: &[FrameLevel], before: Option<&[FrameLevel]>) -> Vec<Level> {
+pub(crate) fn levels(
+    first: &[FrameLevel],
+    second: &[FrameLevel],
+    before: Option<&[FrameLevel]>,
+    model: &'static Model,
+) -> Vec<Level> {
     let pair = first.iter().zip(second).enumerate();
-    pair.map(|(k, (first, second))| Level::new(k as u32, first, second, before.map(|b| &b[k]))).collect()
+    pair.map(|(k, (first, second))| Level::new(k as u32, first, second, before.map(|b| &b[k]), model)).collect()
 }
 
 /// [`levels`] of planes of luminance that need no blur.
 #[cfg(test)]
 pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest: usize) -> Vec<Level> {
     let [first, second] = [first, second].map(|plane| levels_of(plane, smallest));
-    levels(&first, &second, before.map(|plane| levels_of(plane, smallest)).as_deref())
+    levels(&first, &second, before.map(|plane| levels_of(plane, smallest)).as_deref(), &Model::DEFAULT)
 }

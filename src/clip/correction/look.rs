@@ -7,6 +7,7 @@ use crate::frame::lab::lab;
 use crate::frame::picture::{Picture, colours};
 use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
+use crate::model::Model;
 
 /// Noise that edges stand out from, grey levels.
 const EDGE_NOISE: f32 = 1.0;
@@ -52,7 +53,7 @@ impl Look {
         let size = [picture.luminance.width(), picture.luminance.height()];
         let colours = (0..size[0] * size[1]).map(|p| colour(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
-        let borders = Borders::new(&picture, EDGE_NOISE, 1.0);
+        let borders = Borders::new(&picture, EDGE_NOISE, 1.0, &Model::DEFAULT);
         Look { size, step, colours, fine, coarse, borders }
     }
 }

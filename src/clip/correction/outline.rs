@@ -26,6 +26,7 @@ use crate::frame::Frame;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::labelling::resolution::upsampling::upsample;
+use crate::model::Model;
 use crate::workspace;
 
 /// Rounds of learning and cutting of a click's candidates, and of the last fit.
@@ -99,7 +100,7 @@ pub(in crate::clip) fn outline(
     let labels = clip.found_at(index, look.size);
     let found = [Some(labels), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
     let view = View { look: &look, found, constants: constants() };
-    let full = |mask: &[u8]| upsample(mask, look.size, 2, frame.luminance());
+    let full = |mask: &[u8]| upsample(mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
     let mask = match prompt {
         Prompt::Click([x, y]) => {
             let mut mask = full(&view.clicked(look.pixel(y * width + x, width)));

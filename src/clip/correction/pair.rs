@@ -12,11 +12,12 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::BACKGROUND;
 use crate::labelling::resolution::upsampling::upsample;
 use crate::labelling::solver::MAX_LABELS;
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::pair::labels::LabelState;
 use crate::pair::report::{SegmentedMotion, describe};
-use crate::pair::settings::{Part, Settings};
+use crate::pair::settings::Settings;
 use crate::pair::{Pair, check_sizes};
 use crate::progress::{Progress, Stages};
 use crate::workspace;
@@ -72,7 +73,8 @@ pub fn relabel(
     correction.check(first.width() * first.height())?;
     let _call = workspace::begin([first.width(), first.height()]);
     // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
-    let settings = Settings { draft_side: usize::MAX, ..Settings::new(options, [first.width(), first.height()]) };
+    let settings =
+        Settings { draft_side: usize::MAX, ..Settings::new(options, [first.width(), first.height()], &Model::DEFAULT) };
     let mut stages = Stages::new(STAGES, progress);
     let divisions = correction.divisions();
     let mut labels = correction.labels.to_vec();
@@ -180,7 +182,7 @@ impl<'a> Working<'a> {
         let mut pair = Pair::new(first, &pyramid, &other, before.as_ref(), settings);
         let reduction = pair.reduction;
         let motions: Vec<AffineMotion> = correction.motions.iter().map(|m| m.scaled(1.0 / reduction)).collect();
-        pair.take_dominant(&motions[0], settings.has(Part::Brightness));
+        pair.take_dominant(&motions[0], settings.brightness());
         let (width, step) = (first.width(), reduction as usize);
         let (w, h) = (pair.finest().width(), pair.finest().height());
         let middle = |p: usize| {
@@ -249,7 +251,7 @@ impl<'a> Working<'a> {
         let found: Vec<bool> = found.into_iter().map(|pixels| pixels > half).collect();
         let odds = |x, y| self.price(others, y * columns + x) - self.price(object, y * columns + x);
         let mask = self.still.mask(&said, &found, &Plane::from_fn(columns, rows, odds));
-        let full = upsample(&mask, size, 2, self.frame.luminance());
+        let full = upsample(&mask, size, 2, self.frame.luminance(), &Model::DEFAULT);
         let [within, without] = [object, others].map(|side| self.choice(side));
         for (p, (label, &inside)) in labels.iter_mut().zip(&full).enumerate() {
             if inside > 0 && (is_in(*label, others) || *label == UNLABELLED) {

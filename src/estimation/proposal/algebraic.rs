@@ -13,33 +13,14 @@ use crate::embedding::{MultibodyMotion, Refitting, monomials};
 use crate::frame::Plane;
 use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::measurements::Measurements;
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
-use crate::view::cost::CostModel;
 use crate::view::level::Level;
 use crate::workspace::{Buffer, kept};
 
-/// Pixels with shorter gradients (grey levels per pixel) are not used. Chosen on generated scenes, as are all constants below.
-const SMALLEST_GRADIENT: f32 = 1.0;
-/// A pixel takes part when its weight e/(e + [`HALF_WEIGHT`]) exceeds this; e is its squared residual in variances.
-const SMALLEST_WEIGHT: f32 = 0.45;
-const HALF_WEIGHT: f32 = 6.0;
-/// Unit of flow in the coordinates of the polynomial, pixels of the base level.
-const FLOW_UNIT: f64 = 2.0;
-/// Longer flows are discarded, pixels of the base level.
-const LARGEST_FLOW: f64 = 8.0;
-/// Rounds of reweighting of the polynomial.
-const ROUNDS: usize = 5;
-/// Pixels per unknown that it takes to fit a polynomial.
-const PER_UNKNOWN: usize = 2;
-/// Pixels that it takes to make a proposal.
-const SMALLEST_GROUP: usize = 6;
-/// Squared gradient length, (grey levels per pixel)², from which on measurements have about the same length.
-const FLAT: f64 = 4.0;
-/// Distance of an inlier from the polynomial, in medians of all distances.
-const INLIER: f64 = 1.5;
-/// Smallest slope that a measurement is weighted by, in mean slopes. A safeguard against singular points.
-const SMALLEST_SLOPE: f64 = 1e-2;
+/// Entries of a motion; groups of fewer pixels propose none.
+const ENTRIES: usize = 6;
 
 /// The measurements that the dominant motion does not explain, with their weights.
 struct Unexplained {
@@ -58,10 +39,10 @@ pub(crate) fn from_algebra(
     let Some(data) = unexplained(level, dominant, flow, most) else { return Vec::new() };
     let mut motions = Vec::new();
     for degree in 1..=degrees {
-        if data.measurements.len() < PER_UNKNOWN * monomials::unknowns(degree) {
+        if data.measurements.len() < level.model.algebra_per_unknown * monomials::unknowns(degree) {
             break;
         }
-        for [u, v] in flows_of_degree(&data, degree) {
+        for [u, v] in flows_of_degree(&data, degree, level.model) {
             motions.push(translated(dominant, u * level.pixel(), v * level.pixel()));
         }
     }
@@ -70,7 +51,8 @@ pub(crate) fn from_algebra(
 
 fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
-    let position_sigma = CostModel::estimation().position_sigma * CostModel::estimation().position_sigma;
+    let model = level.model;
+    let position_sigma = model.position_sigma * model.position_sigma;
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut places = Buffer::with_capacity(width * height);
@@ -84,20 +66,20 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
             at.sample(level.second.values(), &mut seen);
             for (k, (x, seen)) in chunk.zip(&seen).enumerate() {
                 let (gx, gy) = (local.gx.at(x, y), local.gy.at(x, y));
-                if !at.is_inside(k) || gx * gx + gy * gy <= SMALLEST_GRADIENT * SMALLEST_GRADIENT {
+                if !at.is_inside(k) || gx * gx + gy * gy <= model.algebra_gradient * model.algebra_gradient {
                     continue;
                 }
                 let r = seen - level.first.at(x, y);
                 let e = r * r / (level.noise * level.noise + position_sigma * level.energy.at(x, y));
-                let weight = e / (e + HALF_WEIGHT);
-                if weight > SMALLEST_WEIGHT {
+                let weight = e / (e + model.algebra_half);
+                if weight > model.algebra_weight {
                     places.push(y * width + x);
                     weights.push(weight);
                 }
             }
         }
     }
-    if places.len() < PER_UNKNOWN * monomials::unknowns(1) {
+    if places.len() < model.algebra_per_unknown * monomials::unknowns(1) {
         return None;
     }
     let count = most.min(places.len());
@@ -108,8 +90,8 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
         let at = |plane: &Plane| f64::from(plane.at(x, y));
         let (gx, gy) = (at(&local.gx), at(&local.gy));
         let temporal = at(&local.residual) - gx * at(&flow.u) - gy * at(&flow.v);
-        let length = (gx * gx + gy * gy + FLAT).sqrt();
-        [gx / length, gy / length, temporal / (length * FLOW_UNIT)]
+        let length = (gx * gx + gy * gy + model.algebra_flat).sqrt();
+        [gx / length, gy / length, temporal / (length * model.algebra_unit)]
     };
     let points = || chosen.clone().map(|k| (places[k] % width, places[k] / width));
     let measurements = Measurements::checked(
@@ -123,31 +105,31 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
 }
 
 /// The flows (pixels of the level) that a polynomial of one degree gives, one per group of pixels.
-fn flows_of_degree(data: &Unexplained, degree: usize) -> Vec<[f64; 2]> {
+fn flows_of_degree(data: &Unexplained, degree: usize, model: &Model) -> Vec<[f64; 2]> {
     let refitting = Refitting::new(&data.measurements, degree);
     let mut weights = data.weights.clone();
     let mut readings = Buffer::default();
     let mut close = 0.0;
-    for _ in 0..ROUNDS {
+    for _ in 0..model.algebra_rounds {
         // A weight belongs to a row; only their ratios count.
         let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
         weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
         readings = read_off(&refitting, &refitting.fit(&weights));
         let distances: Buffer<f64> = readings.iter().map(|r| r.distance).collect();
-        close = INLIER * median_f64(&distances).unwrap_or(0.0) + 1e-9;
+        close = model.algebra_inlier * median_f64(&distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
             let relative = r.distance / close;
-            *w = given / ((r.slope + SMALLEST_SLOPE * mean).max(1e-300) * (1.0 + relative * relative));
+            *w = given / ((r.slope + model.algebra_slope * mean).max(1e-300) * (1.0 + relative * relative));
         }
     }
-    group(&readings, data.measurements.positions(), close, 2 * degree + 1)
+    group(&readings, data.measurements.positions(), close, 2 * degree + 1, model)
 }
 
 /// Flow of a measurement, read off the polynomial by differentiation.
 #[derive(Clone, Copy, Default)]
 struct Reading {
-    /// Flow of the factor that vanishes there, in units of [`FLOW_UNIT`] pixels.
+    /// Flow of the factor that vanishes there, in units of `algebra_unit` pixels.
     flow: [f64; 2],
     /// |∂p/∂y|.
     slope: f64,
@@ -168,10 +150,11 @@ fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Buffer<Readi
 }
 
 /// Median flows of clusters of pixels that are similar in flow and position.
-fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize) -> Vec<[f64; 2]> {
+fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize, model: &Model) -> Vec<[f64; 2]> {
+    let largest = model.algebra_largest_flow;
     let sensible = |(r, p): (&Reading, &[f64; 2])| {
-        let [u, v] = r.flow.map(|f| f * FLOW_UNIT);
-        let sensible = u * u + v * v < LARGEST_FLOW * LARGEST_FLOW && r.distance < close;
+        let [u, v] = r.flow.map(|f| f * model.algebra_unit);
+        let sensible = u * u + v * v < largest * largest && r.distance < close;
         sensible.then_some([u, v, p[0], p[1]])
     };
     let points: Buffer<Point> = readings.iter().zip(positions).filter_map(sensible).collect();
@@ -183,7 +166,7 @@ fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize
                 let values: Buffer<f64> = member().map(|p| p[k]).collect();
                 median_f64(&values).unwrap_or(0.0)
             };
-            (member().count() >= SMALLEST_GROUP).then(|| [median(0), median(1)])
+            (member().count() >= ENTRIES).then(|| [median(0), median(1)])
         })
         .collect()
 }

@@ -7,21 +7,9 @@ use crate::frame::Plane;
 use crate::frame::filter::{double, gaussian, median5};
 use crate::frame::warp::{CHUNK, Footprints};
 use crate::lanes::{each_with, whole};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::level::Level;
-
-/// Standard deviation of the window at the base level and at coarser ones, pixels. Chosen on generated scenes, as are all constants below.
-const WINDOW: (f32, f32) = (3.0, 2.0);
-/// Iterations per level.
-const ITERATIONS: usize = 3;
-/// Longest step of one iteration, pixels.
-const LONGEST_STEP: f32 = 1.5;
-/// Information added to every window, 1/pixel², so that flat ones do not move.
-pub(crate) const FLAT: f32 = 0.02;
-/// Squared residual, in variances, at which a pixel's weight has fallen to a half: three standard deviations.
-const ROBUSTNESS: f32 = 9.0;
-/// Variance of the position, pixels²: about that of the cost of a motion.
-pub(crate) const POSITION_VARIANCE: f32 = 0.02;
 
 /// Flow relative to the dominant motion, pixels of the base level, with its certainty.
 pub(crate) struct LocalFlow {
@@ -89,9 +77,10 @@ struct Windows {
 
 fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
+    let (robustness, position) = (1.0 / level.model.flow_robustness, level.model.flow_position_variance);
     let mut weight = s.residual.clone();
     each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| {
-        1.0 / (noise + r * r * (1.0 / ROBUSTNESS) + POSITION_VARIANCE * energy)
+        1.0 / (noise + r * r * robustness + position * energy)
     });
     let summed = |a: &Plane, b: &Plane| {
         let mut product = weight.clone();
@@ -120,13 +109,13 @@ pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize)
                 plane.values_mut().iter_mut().for_each(|f| *f *= 2.0);
             }
         }
-        for iteration in 0..ITERATIONS {
-            let sigma = if index == base { WINDOW.0 } else { WINDOW.1 };
+        for iteration in 0..level.model.flow_iterations {
+            let sigma = if index == base { level.model.flow_window } else { level.model.flow_window_coarse };
             let sums = windows(level, &samples(level, dominant, &u, &v), sigma);
-            step(&mut u, &mut v, &sums);
+            step(&mut u, &mut v, &sums, level.model);
             u = median5(&u);
             v = median5(&v);
-            if index == base && iteration + 1 == ITERATIONS {
+            if index == base && iteration + 1 == level.model.flow_iterations {
                 certainty = smaller_eigenvalue(&sums);
             }
         }
@@ -134,7 +123,8 @@ pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize)
     LocalFlow { u, v, certainty }
 }
 
-fn step(u: &mut Plane, v: &mut Plane, s: &Windows) {
+fn step(u: &mut Plane, v: &mut Plane, s: &Windows, model: &Model) {
+    let (flat, longest) = (model.flow_flat, model.flow_longest_step);
     let sums = [&s.xx, &s.xy, &s.yy, &s.xr, &s.yr].map(Plane::values);
     let flows = u.values_mut().chunks_mut(CHUNK).zip(v.values_mut().chunks_mut(CHUNK));
     for (k, (u, v)) in flows.enumerate() {
@@ -145,12 +135,12 @@ fn step(u: &mut Plane, v: &mut Plane, s: &Windows) {
         let (xr, yr) = (whole(xr, s3), whole(yr, s4));
         let (mut by_u, mut by_v) = ([0.0; CHUNK], [0.0; CHUNK]);
         for k in 0..CHUNK {
-            let (a, c, d) = (xx[k] + FLAT, xy[k], yy[k] + FLAT);
+            let (a, c, d) = (xx[k] + flat, xy[k], yy[k] + flat);
             let (p, q) = (xr[k], yr[k]);
             let per_determinant = 1.0 / (a * d - c * c);
             let (du, dv) = ((c * q - d * p) * per_determinant, (c * p - a * q) * per_determinant);
             let length = (du * du + dv * dv).sqrt();
-            let shorten = if length > LONGEST_STEP { LONGEST_STEP / length } else { 1.0 };
+            let shorten = if length > longest { longest / length } else { 1.0 };
             (by_u[k], by_v[k]) = (du * shorten, dv * shorten);
         }
         each_with(u, [&by_u], |u, [by]| u + by);

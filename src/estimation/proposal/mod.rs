@@ -6,6 +6,7 @@ mod clustering;
 pub(crate) mod local_flow;
 pub(crate) mod tiles;
 
+use crate::model::Model;
 use crate::motion::AffineMotion;
 
 /// A candidate motion, and where it was observed, pixels of the working frame.
@@ -14,9 +15,6 @@ pub(crate) struct Proposal {
     pub(crate) motion: AffineMotion,
     pub(crate) place: [f64; 2],
 }
-
-/// Share of the frame's width and height over which proposals are compared. Not varied: they differ by translations alone.
-const COMPARED: f64 = 0.1;
 
 /// A motion plus a translation.
 pub(crate) fn translated(motion: &AffineMotion, u: f64, v: f64) -> AffineMotion {
@@ -32,13 +30,14 @@ pub(crate) fn distinct(
     tolerance: f64,
     [width, height]: [f64; 2],
     most: usize,
+    model: &Model,
 ) -> Vec<AffineMotion> {
     let mut kept: Vec<AffineMotion> = Vec::new();
     for Proposal { motion, place: [x, y] } in proposals {
         if kept.len() >= most {
             break;
         }
-        let points = [(x, y), (x + COMPARED * width, y), (x, y + COMPARED * height)];
+        let points = [(x, y), (x + model.compared * width, y), (x, y + model.compared * height)];
         let alike = |other: &AffineMotion| {
             points.iter().all(|&(x, y)| {
                 let ([u, v], [p, q]) = (motion.flow(x, y), other.flow(x, y));

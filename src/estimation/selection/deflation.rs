@@ -7,9 +7,9 @@ use crate::estimation::alignment::{Alignment, Convergence, Freedom, Support, ali
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::lanes::{LANES, each_with};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::descending;
-use crate::tuning::{Tuned, tuned};
 use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
@@ -30,21 +30,8 @@ pub(crate) struct Deflation {
     pub(crate) convergence: Convergence,
 }
 
-/// Gain per pixel that does not count: windows across borders and chance produce as much. Chosen on generated scenes.
-const MARGIN: f32 = 0.35;
-/// Proposals are tried on every second pixel of every second row: faster, and the best one is measured on all …
-const THINNING: usize = 2;
-/// … and ranked beforehand by block means; side of a block, pixels.
-const BLOCK: usize = 4;
-/// Regions with at most this many pixels are ignored: as many as a motion has entries.
-const SMALLEST_REGION: usize = 6;
-/// Ridge prior on the linear terms: small regions determine them badly. Chosen on generated scenes.
-const RIDGE: f64 = 2e-2;
-/// Proposals whose estimated gain is below this share of the price are not tried. For speed.
-const SMALLEST_TRIED_GAIN: f64 = 0.25;
-/// Rounds in which a proposal is refined and its region found anew, and iterations in each. Chosen on generated scenes.
-const ROUNDS: usize = 2;
-const ITERATIONS: usize = 3;
+/// Entries of a motion; regions with no more pixels are ignored.
+const ENTRIES: usize = 6;
 
 /// By how much a cost is below the current one at every pixel, averaged over windows.
 fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
@@ -53,8 +40,7 @@ fn improvement(current: &Plane, cost: &Plane, window: f32) -> Plane {
     gaussian(&difference, window)
 }
 
-fn gain_of(improvement: &Plane) -> f64 {
-    let margin = tuned(Tuned::GainMargin, MARGIN);
+fn gain_of(improvement: &Plane, margin: f32) -> f64 {
     // A comparison, because `f32::max` is a call in WebAssembly.
     let gain = |d: f32| if d > margin { d - margin } else { 0.0 };
     let (blocks, rest) = improvement.values().as_chunks::<LANES>();
@@ -85,10 +71,11 @@ fn blocks(plane: &Plane, side: usize) -> Plane {
 }
 
 /// The gain estimated on block means.
-fn rough_gain(current: &Plane, cost: &Plane, window: f32) -> f64 {
+fn rough_gain(current: &Plane, cost: &Plane, window: f32, model: &Model) -> f64 {
+    let block = model.block;
     let mut difference = current.clone();
     each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
-    gain_of(&gaussian(&difference, window / BLOCK as f32)) * (BLOCK * BLOCK) as f64
+    gain_of(&gaussian(&difference, window / block as f32), model.margin) * (block * block) as f64
 }
 
 /// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
@@ -102,14 +89,16 @@ pub(crate) fn add_motions(
     proposals: &[AffineMotion],
     how: Deflation,
 ) -> Option<AffineMotion> {
-    let thinning = level.thinning(THINNING);
+    let model = level.model;
+    let thinning = level.thinning(model.thinning);
     let thinned = level.thinned(thinning);
-    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
+    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, model.block / thinning);
     let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
     loop {
         let current = smallest_cost(selected);
-        let current_blocks = blocks(&current, BLOCK);
-        let gains: Buffer<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window)).collect();
+        let current_blocks = blocks(&current, model.block);
+        let gains: Buffer<f64> =
+            rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window, model)).collect();
         let current_sample = current.thinned(thinning);
         let mut best: Option<(f64, ScoredMotion)> = None;
         let order = descending(gains.iter().copied());
@@ -118,7 +107,7 @@ pub(crate) fn add_motions(
             return next;
         }
         for &k in order.iter().take(how.tries) {
-            if gains[k] < SMALLEST_TRIED_GAIN * how.price {
+            if gains[k] < model.smallest_tried_gain * how.price {
                 break;
             }
             let (gain, scored) = refined(
@@ -142,11 +131,13 @@ pub(crate) fn add_motions(
 fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflation) -> (f64, ScoredMotion) {
     let mut scored = ScoredMotion::new(level, proposal);
     let mut improved = improvement(current, &scored.cost, how.window);
-    let mut gain = gain_of(&improved);
-    for round in 0..ROUNDS {
-        let Some(region) = heaviest_region(&improved, current, &scored.cost) else { break };
-        let support = Support::weighted(&region);
-        let affine = Alignment::of_region(ITERATIONS, RIDGE).until(how.convergence);
+    let model = level.model;
+    let mut gain = gain_of(&improved, model.margin);
+    for round in 0..model.proposal_rounds {
+        let Some(region) = heaviest_region(&improved, current, &scored.cost, model.margin) else { break };
+        let support = Support::weighted(&region, model);
+        let affine =
+            Alignment::of_region(model.proposal_iterations, model.ridge_proposal, model).until(how.convergence);
         let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {
@@ -155,7 +146,7 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflatio
         motion = align(level, &motion, &support, none, affine);
         let refined = ScoredMotion::new(level, motion);
         let refined_improvement = improvement(current, &refined.cost, how.window);
-        let better = gain_of(&refined_improvement);
+        let better = gain_of(&refined_improvement, model.margin);
         if better > gain {
             (scored, improved, gain) = (refined, refined_improvement, better);
         }
@@ -164,9 +155,8 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflatio
 }
 
 /// The connected region in which a cost improves most on the current one, as weights 0 and 1.
-fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Plane> {
+fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane, margin: f32) -> Option<Plane> {
     let (width, height) = (improved.width(), improved.height());
-    let margin = tuned(Tuned::GainMargin, MARGIN);
     let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > margin)).collect();
     let found = components(&mask, width, Connectivity::Eight);
     let mut weights = Buffer::filled(found.list.len(), 0.0f64);
@@ -175,7 +165,7 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane) -> Option<Pl
     }
     let mut heaviest: Option<usize> = None;
     for (k, region) in found.list.iter().enumerate() {
-        let counts = region.label == 1 && region.size > SMALLEST_REGION;
+        let counts = region.label == 1 && region.size > ENTRIES;
         if counts && heaviest.is_none_or(|h| weights[k] > weights[h]) {
             heaviest = Some(k);
         }

@@ -2,7 +2,6 @@
 //! It finds displacements too small for the level of the first selection. Pixels are those of a thinned level.
 
 use super::ScoredMotion;
-use crate::estimation::proposal::local_flow::{FLAT, POSITION_VARIANCE};
 use crate::estimation::proposal::{Proposal, distinct, translated};
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
@@ -12,31 +11,19 @@ use crate::order::descending;
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// Standard deviation of the window, pixels. Chosen on generated scenes, as are all constants below.
-const WINDOW: f32 = 1.33;
-/// Distance of the windows, pixels.
-const STRIDE: usize = 5;
-/// Number of windows considered, the most promising first.
-const WINDOWS: usize = 200;
-/// Proposals kept.
-const MOST: usize = 16;
-/// Shortest and longest step that makes a proposal, pixels.
-const STEPS: (f64, f64) = (0.05, 2.0);
-/// Proposals closer than this are the same, pixels.
-const TOLERANCE: f64 = 0.1;
-
 /// The most promising local corrections of the selected motions.
 pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<AffineMotion> {
     let (width, height) = (level.width(), level.height());
+    let (model, stride, flat) = (level.model, level.model.fine_stride, level.model.flow_flat);
     let winners = winners(selected);
     let [xx, xy, yy, xr, yr] = window_sums(level, selected, &winners);
-    let [columns, rows] = [width, height].map(|size| size.div_ceil(STRIDE));
+    let [columns, rows] = [width, height].map(|size| size.div_ceil(stride));
     let mut gains = Buffer::with_capacity(columns * rows);
     let mut places = Buffer::with_capacity(columns * rows);
     let mut steps = Buffer::with_capacity(columns * rows);
-    for y in (STRIDE / 2..height).step_by(STRIDE) {
-        for x in (STRIDE / 2..width).step_by(STRIDE) {
-            let (a, c, d) = (xx.at(x, y) + FLAT, xy.at(x, y), yy.at(x, y) + FLAT);
+    for y in (stride / 2..height).step_by(stride) {
+        for x in (stride / 2..width).step_by(stride) {
+            let (a, c, d) = (xx.at(x, y) + flat, xy.at(x, y), yy.at(x, y) + flat);
             let (p, q) = (xr.at(x, y), yr.at(x, y));
             let determinant = a * d - c * c;
             let (u, v) = ((c * q - d * p) / determinant, (c * p - a * q) / determinant);
@@ -47,16 +34,22 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<Af
     }
     let order = descending(gains.iter().map(|&gain| f64::from(gain)));
     let pixel = level.pixel();
-    let mut proposals = order.iter().take(WINDOWS).filter_map(|&k| {
+    let mut proposals = order.iter().take(model.fine_windows).filter_map(|&k| {
         let [u, v] = steps[k].map(f64::from);
         let length = (u * u + v * v).sqrt();
         let (x, y) = (places[k] % width, places[k] / width);
-        (STEPS.0 < length && length < STEPS.1).then(|| Proposal {
+        (model.fine_shortest < length && length < model.fine_longest).then(|| Proposal {
             motion: translated(&selected[winners[places[k]]].motion, u * pixel, v * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         })
     });
-    distinct(&mut proposals, TOLERANCE * pixel, [width as f64 * pixel, height as f64 * pixel], MOST)
+    distinct(
+        &mut proposals,
+        model.fine_tolerance * pixel,
+        [width as f64 * pixel, height as f64 * pixel],
+        model.fine_most,
+        model,
+    )
 }
 
 /// Index of the cheapest motion at every pixel.
@@ -88,11 +81,11 @@ fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [
             let gx = half * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
             let gy = half * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
             let r = at.sample(level.second.values()) - level.first.at(x, y);
-            let weight = 1.0 / (noise + POSITION_VARIANCE * level.energy.at(x, y));
+            let weight = 1.0 / (noise + level.model.flow_position_variance * level.energy.at(x, y));
             for (plane, product) in sums.iter_mut().zip([gx * gx, gx * gy, gy * gy, gx * r, gy * r]) {
                 plane.row_mut(y)[x] = weight * product;
             }
         }
     }
-    sums.map(|plane| gaussian(&plane, WINDOW))
+    sums.map(|plane| gaussian(&plane, level.model.fine_window))
 }

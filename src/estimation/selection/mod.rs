@@ -13,12 +13,8 @@ use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::lanes::lower;
 use crate::motion::AffineMotion;
-use crate::tuning::{Tuned, tuned};
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
-
-/// Standard deviation of the window over which costs are averaged during selection, pixels of the second frame. Chosen on generated scenes.
-const WINDOW: f32 = 2.0;
 
 /// A motion and its cost at every pixel of a level, averaged over windows.
 #[derive(Clone, Debug)]
@@ -34,8 +30,8 @@ impl ScoredMotion {
         ScoredMotion {
             motion,
             cost: gaussian(
-                &cost(level, &motion, CostModel::estimation()),
-                tuned(Tuned::SelectionWindow, WINDOW) / level.stride as f32,
+                &cost(level, &motion, CostModel::estimation(level.model)),
+                level.model.selection_window / level.stride as f32,
             ),
         }
     }

@@ -5,25 +5,21 @@ use crate::estimation::alignment::{Alignment, Convergence, Support, align, ridge
 use crate::frame::Plane;
 use crate::frame::filter::eroded;
 use crate::lanes::each_with;
+use crate::model::Model;
 use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
 
-/// Regions with more pixels than this are eroded before their motion is refined: smaller ones would lose too many. Not varied.
-const LARGE: usize = 200;
-/// Motions of regions with fewer pixels than this are not refined. Not varied.
-const SMALLEST_REGION: usize = 20;
-/// Iterations of a refinement. Chosen on generated scenes.
-const ITERATIONS: usize = 2;
-
 /// Refines every motion in `rounds` rounds. A refined motion is kept only if it lowers the cost of its own region.
 pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize, convergence: Convergence) {
+    let model = level.model;
     for _ in 0..rounds {
-        let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k)).collect();
+        let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k, level.model)).collect();
         for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
-            let how = Alignment::of_region(ITERATIONS, ridge_of_label(k)).until(convergence);
-            let motion = align(level, &scored.motion, &Support::weighted(&region), &mut Photometric::default(), how);
+            let how = Alignment::of_region(model.refit_iterations, ridge_of_label(k, model), model).until(convergence);
+            let motion =
+                align(level, &scored.motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
             let refined = ScoredMotion::new(level, motion);
             if weighted_sum(&refined.cost, &region) < weighted_sum(&scored.cost, &region) {
                 *scored = refined;
@@ -39,7 +35,7 @@ fn weighted_sum(cost: &Plane, weights: &Plane) -> f64 {
 }
 
 /// Weights of the pixels where motion `k` is cheapest, eroded and softened.
-fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
+fn region_of(selected: &[ScoredMotion], k: usize, model: &Model) -> Option<Plane> {
     let cost = &selected[k].cost;
     let mut region = Plane::filled(cost.width(), cost.height(), 1.0);
     for (other, scored) in selected.iter().enumerate().filter(|&(other, _)| other != k) {
@@ -49,11 +45,11 @@ fn region_of(selected: &[ScoredMotion], k: usize) -> Option<Plane> {
         });
     }
     let pixels = region.values().iter().filter(|&&w| w > 0.0).count();
-    if pixels < SMALLEST_REGION {
+    if pixels < model.refit_smallest {
         return None;
     }
-    if pixels > LARGE {
+    if pixels > model.refit_large {
         region = eroded(&region);
     }
-    Some(softened(&region))
+    Some(softened(&region, model))
 }

@@ -3,72 +3,58 @@
 
 use crate::frame::Plane;
 use crate::labelling::{BACKGROUND, across_borders};
+use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::tuning::{Tuned, tuned};
 use crate::view::level::Level;
 
 /// Entries of a motion; no motion is described with fewer pixels.
 const ENTRIES: usize = 6;
-/// Nats for the parameters of a motion, per ln N: 6/2 (Schwarz, Annals of Statistics 6(2), 1978).
-const PER_LOG_PIXELS: f64 = 3.0;
-/// Weight of a pixel of a coarser level, or of a sample of the pixels, in working pixels. It stands for four, but their noise is not
-/// independent. Confirmed on real pairs.
-const COARSE_PIXEL: f32 = 2.0;
-/// Nats per pixel of border. Chosen on generated scenes, confirmed on real pairs.
-const PER_BORDER_PIXEL: f64 = 0.5;
-/// Regions smaller than this share of the frame are not objects. Chosen on generated scenes.
-const SMALLEST_SHARE: f64 = 0.004;
 /// Worth of a region that is too small to be an object, nats: less than that of any other.
 const TOO_SMALL: f64 = -1e9;
 
 /// Nats for the six parameters of a motion with so many pixels: (6/2) ln N.
-pub(crate) fn price_of_motion(pixels: usize) -> f64 {
-    tuned(Tuned::MotionPrice, PER_LOG_PIXELS) * libm::log(pixels.max(ENTRIES) as f64)
+pub(crate) fn price_of_motion(pixels: usize, model: &Model) -> f64 {
+    model.motion_price * libm::log(pixels.max(ENTRIES) as f64)
 }
 
 /// Nats by which two motions with so many pixels each need more parameters than one with all of them.
-pub(super) fn price_of_two(pixels: [usize; 2]) -> f64 {
-    pixels.iter().map(|&n| price_of_motion(n)).sum::<f64>() - price_of_motion(pixels.iter().sum())
+pub(super) fn price_of_two(pixels: [usize; 2], model: &Model) -> f64 {
+    pixels.iter().map(|&n| price_of_motion(n, model)).sum::<f64>() - price_of_motion(pixels.iter().sum(), model)
 }
 
 /// Nats for a border of some pixels.
-pub(super) fn price_of_border(pixels: usize) -> f64 {
-    tuned(Tuned::BorderPrice, PER_BORDER_PIXEL) * pixels as f64
+pub(super) fn price_of_border(pixels: usize, model: &Model) -> f64 {
+    model.border_price * pixels as f64
 }
 
 /// Weight of a pixel of a level, in working pixels.
 pub(crate) fn weight_of_pixel(level: &Level) -> f32 {
-    if level.pixel() > 1.0 { tuned(Tuned::CoarsePixel, COARSE_PIXEL) } else { 1.0 }
+    if level.pixel() > 1.0 { level.model.coarse_pixel } else { 1.0 }
 }
 
 /// The same as [`price_of_motion`], in summed costs of the pixels of a level.
 pub(crate) fn price_on(level: &Level) -> f64 {
-    2.0 * price_of_motion(level.width() * level.height()) / f64::from(weight_of_pixel(level))
-}
-
-/// Share of the frame below which a region is not an object.
-pub(crate) fn smallest_share() -> f64 {
-    tuned(Tuned::SmallestShare, SMALLEST_SHARE)
+    2.0 * price_of_motion(level.width() * level.height(), level.model) / f64::from(weight_of_pixel(level))
 }
 
 /// Description length in nats of both frames by motions and labels: residuals, six parameters per motion, borders. Rest needs no
 /// parameters.
 ///
 /// `raw` as in [`worth`].
-pub(crate) fn length(motions: &[AffineMotion], raw: &[Plane], labels: &[u8], width: usize) -> f64 {
+pub(crate) fn length(motions: &[AffineMotion], raw: &[Plane], labels: &[u8], width: usize, model: &Model) -> f64 {
     let left_over: f64 = labels.iter().enumerate().map(|(p, &l)| f64::from(raw[usize::from(l)].values()[p])).sum();
     let pixels = counts(labels, motions.len());
     let moving = motions.iter().zip(pixels).filter(|(motion, _)| **motion != AffineMotion::STATIC);
-    let parameters: f64 = moving.map(|(_, pixels)| price_of_motion(pixels)).sum();
+    let parameters: f64 = moving.map(|(_, pixels)| price_of_motion(pixels, model)).sum();
     // Every pair of neighbours is counted by both of its labels.
     let borders = border_lengths(labels, motions.len(), width).iter().sum::<usize>() / 2;
-    0.5 * left_over + parameters + price_of_border(borders)
+    0.5 * left_over + parameters + price_of_border(borders, model)
 }
 
 /// Nats that each object saves beyond its price, its parameters and its border; infinite for the dominant motion, element 0.
 ///
 /// `raw[k]` are the estimation costs of motion k; half a cost is a nat.
-pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
+pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize, model: &Model) -> Vec<f64> {
     let counts = counts(labels, raw.len());
     let borders = border_lengths(labels, raw.len(), width);
     let sums = sums(raw, labels);
@@ -77,12 +63,12 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize) -> Vec<f64> {
             if k == BACKGROUND {
                 return f64::INFINITY;
             }
-            if (counts[k] as f64) < smallest_share() * labels.len() as f64 {
+            if (counts[k] as f64) < model.smallest_share * labels.len() as f64 {
                 return TOO_SMALL + counts[k] as f64;
             }
-            let lost = |m: usize| 0.5 * (sums[k][m] - sums[k][k]) - price_of_two([counts[k], counts[m]]);
+            let lost = |m: usize| 0.5 * (sums[k][m] - sums[k][k]) - price_of_two([counts[k], counts[m]], model);
             let others = (0..raw.len()).filter(|&m| m != k);
-            others.map(lost).fold(f64::INFINITY, f64::min) - price_of_border(borders[k])
+            others.map(lost).fold(f64::INFINITY, f64::min) - price_of_border(borders[k], model)
         })
         .collect()
 }

@@ -6,36 +6,30 @@
 //! limb would tie a whole animal to the ground.
 
 use crate::labelling::{BACKGROUND, across_borders};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
-use crate::tuning::{Tuned, tuned};
-
-/// Common borders with fewer pixel pairs than this are ignored. Not varied.
-pub(crate) const SHORTEST_BORDER: usize = 12;
-/// Flows that differ by less than this (median along the border, full-size pixels) are continuous. The layers of a rigid background
-/// differ by 0.3 to 1.1 pixels, moving objects by 2 and more (fourteen real pairs) …
-pub(crate) const TOLERANCE: f64 = 0.3;
-/// … or by less than this share of the largest jump of all joins …
-const RELATIVE_TOLERANCE: f64 = 0.3;
-/// … as long as that is less than this share of the frame's longer side: layers of one background differ little. Chosen on real pairs.
-const LARGEST_TOLERANCE: f64 = 0.007;
 
 /// The group of every motion, named by its smallest label. `motions` are in pixels of the labels, each of which is `reduction` pixels
 /// of the frame wide.
-pub(crate) fn groups(motions: &[AffineMotion], labels: &[u8], width: usize, reduction: f64) -> Vec<usize> {
+pub(crate) fn groups(
+    motions: &[AffineMotion],
+    labels: &[u8],
+    width: usize,
+    reduction: f64,
+    model: &Model,
+) -> Vec<usize> {
     let borders = borders(motions, labels, width);
-    let all = joined(motions.len(), borders.clone(), &|_| true);
+    let all = joined(motions.len(), borders.clone(), model, &|_| true);
     let largest = all.iter().fold(0.0f64, |m, j| m.max(j.jump));
     let side = width.max(labels.len() / width) as f64;
-    let least = TOLERANCE / reduction;
-    let tolerance = (tuned(Tuned::GroupTolerance, RELATIVE_TOLERANCE) * largest)
-        .min(tuned(Tuned::LargestGroupTolerance, LARGEST_TOLERANCE) * side)
-        .max(least);
+    let least = model.group_tolerance / reduction;
+    let tolerance = (model.group_relative * largest).min(model.group_largest * side).max(least);
     // Before a camera at rest all layers of a rigid background are at rest: what moves is an object.
     let at_rest = motions[BACKGROUND] == AffineMotion::STATIC;
     let continuous = |join: &Join| join.jump < if at_rest && join.keep == BACKGROUND { least } else { tolerance };
     let mut group: Vec<usize> = (0..motions.len()).collect();
-    for Join { keep, drop, .. } in joined(motions.len(), borders, &continuous) {
+    for Join { keep, drop, .. } in joined(motions.len(), borders, model, &continuous) {
         group.iter_mut().filter(|g| **g == drop).for_each(|g| *g = keep);
     }
     group
@@ -50,9 +44,9 @@ struct Join {
 }
 
 /// Joins regions one after another, smallest jump first, until no two may be joined.
-fn joined(n: usize, mut borders: Vec<Vec<f64>>, may_join: &dyn Fn(&Join) -> bool) -> Vec<Join> {
+fn joined(n: usize, mut borders: Vec<Vec<f64>>, model: &Model, may_join: &dyn Fn(&Join) -> bool) -> Vec<Join> {
     let mut joined = Vec::new();
-    while let Some(next) = closest(n, &mut borders, may_join) {
+    while let Some(next) = closest(n, &mut borders, model, may_join) {
         for other in 0..n {
             let moved = std::mem::take(&mut borders[pair(n, next.drop, other)]);
             if other != next.keep && other != next.drop {
@@ -65,9 +59,9 @@ fn joined(n: usize, mut borders: Vec<Vec<f64>>, may_join: &dyn Fn(&Join) -> bool
 }
 
 /// The pair that may be joined with the smallest jump along a border that is long enough.
-fn closest(n: usize, borders: &mut [Vec<f64>], may_join: &dyn Fn(&Join) -> bool) -> Option<Join> {
+fn closest(n: usize, borders: &mut [Vec<f64>], model: &Model, may_join: &dyn Fn(&Join) -> bool) -> Option<Join> {
     let mut best: Option<Join> = None;
-    for (k, along) in borders.iter_mut().enumerate().filter(|(_, along)| along.len() >= SHORTEST_BORDER) {
+    for (k, along) in borders.iter_mut().enumerate().filter(|(_, along)| along.len() >= model.shortest_border) {
         let Some(jump) = median_f64(along) else { continue };
         let join = Join { keep: k / n, drop: k % n, jump };
         if may_join(&join) && best.as_ref().is_none_or(|best| jump < best.jump) {
@@ -110,7 +104,7 @@ mod tests {
             AffineMotion::new([0.05, 0.0, 0.0, 0.0, 0.0, 0.0]),
             AffineMotion::translation(7.0, 0.0),
         ];
-        assert_eq!(groups(&motions, &labels, 60, 1.0), [0, 0, 2]);
+        assert_eq!(groups(&motions, &labels, 60, 1.0, &Model::DEFAULT), [0, 0, 2]);
     }
 
     #[test]
@@ -130,7 +124,7 @@ mod tests {
             AffineMotion::translation(0.56, 0.0),
             AffineMotion::translation(0.28, 0.0),
         ];
-        let groups = groups(&motions, &labels, width, 1.0);
+        let groups = groups(&motions, &labels, width, 1.0, &Model::DEFAULT);
         assert_ne!(groups[0], groups[1]);
     }
 
@@ -147,7 +141,7 @@ mod tests {
             .collect();
         let groups = |camera: f64| {
             let motions = [0.0, 0.5, 0.1].map(|u| AffineMotion::translation(camera + u, 0.0));
-            groups(&motions, &labels, width, 10.0)
+            groups(&motions, &labels, width, 10.0, &Model::DEFAULT)
         };
         assert_eq!(groups(1.0), [0, 1, 0]);
         assert_eq!(groups(0.0), [0, 1, 2]);
@@ -156,6 +150,9 @@ mod tests {
     #[test]
     fn where_nothing_touches_every_motion_is_its_own_group() {
         let labels = vec![0; 32 * 32];
-        assert_eq!(groups(&[AffineMotion::STATIC, AffineMotion::translation(9.0, 0.0)], &labels, 32, 1.0), [0, 1]);
+        assert_eq!(
+            groups(&[AffineMotion::STATIC, AffineMotion::translation(9.0, 0.0)], &labels, 32, 1.0, &Model::DEFAULT),
+            [0, 1]
+        );
     }
 }

@@ -15,9 +15,6 @@ use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
 
-/// Iterations of the refinement on the joint region, as on a part of a split one.
-const ITERATIONS: usize = 4;
-
 /// Two labels that are one body, the smaller first, and its motion.
 pub(crate) struct Merger {
     pub(crate) labels: [usize; 2],
@@ -42,11 +39,12 @@ pub(crate) fn best_merger(level: &Level, motions: &[AffineMotion], raw: &[Plane]
         let region = pixels(labels, |label| [a, b].contains(&label));
         let mut mask = Plane::filled(width, level.height(), 0.0);
         region.iter().for_each(|&p| mask.values_mut()[p] = 1.0);
-        let motion = aligned_on(level, &motions[better], &mask, ITERATIONS, ridge_of_label(a));
+        let motion =
+            aligned_on(level, &motions[better], &mask, level.model.merge_iterations, ridge_of_label(a, level.model));
         let area = Area::of(&region, width);
-        let cost = cost_within(level, &area, &motion, CostModel::estimation());
+        let cost = cost_within(level, &area, &motion, CostModel::estimation(level.model));
         let together: f64 = region.iter().map(|&p| f64::from(pixel * cost.values()[area.index_of(p, width)])).sum();
-        let saved = price_of_two([counts[a], counts[b]]) + price_of_border(between[a][b]);
+        let saved = price_of_two([counts[a], counts[b]], level.model) + price_of_border(between[a][b], level.model);
         let gain = 0.5 * (sums[a][a] + sums[b][b] - together) + saved;
         if gain > best.as_ref().map_or(0.0, |(most, _)| *most) {
             best = Some((gain, Merger { labels: [a, b], motion }));
@@ -86,7 +84,7 @@ mod tests {
     }
 
     fn merger(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Option<Merger> {
-        let raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation())).collect();
+        let raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation(level.model))).collect();
         best_merger(level, motions, &raw, labels)
     }
 

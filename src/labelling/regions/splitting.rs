@@ -1,33 +1,21 @@
 //! Splitting of regions that contain several bodies, to which a single affine motion was fitted: every region is tried in two parts.
 
-use super::description::{price_of_border, price_of_two, smallest_share, weight_of_pixel};
+use super::description::{price_of_border, price_of_two, weight_of_pixel};
 use crate::components::{Connectivity, components};
 use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label};
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::labelling::{objects, pixels};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::brightness::Photometric;
 use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// Smallest number of pixels of a part: five for each entry of its motion. Only levels below 7500 pixels get there.
-const SMALLEST_PART: usize = 30;
-/// Standard deviation of the window over which the two halves compete, pixels. Chosen on generated scenes …
-const WINDOW: f32 = 2.5;
-/// … and its radius, that of a Gaussian of this deviation.
-const REACH: usize = 8;
-/// Rounds of the two-body split. Chosen on generated scenes.
-const ROUNDS: usize = 3;
-/// Smallest share of the region that counts as a half. Not varied.
-const SMALLEST_HALF: f64 = 0.1;
-/// Iterations in which a motion is refined on a part in each round. Chosen on generated scenes.
-const ITERATIONS: usize = 3;
-
-fn smallest_part(pixels: usize) -> usize {
-    SMALLEST_PART.max((smallest_share() * pixels as f64) as usize)
+fn smallest_part(pixels: usize, model: &Model) -> usize {
+    model.smallest_part.max((model.smallest_share * pixels as f64) as usize)
 }
 
 /// A motion refined on the pixels of a mask.
@@ -38,8 +26,8 @@ pub(super) fn aligned_on(
     iterations: usize,
     ridge: f64,
 ) -> AffineMotion {
-    let how = Alignment::of_region(iterations, ridge);
-    align(level, motion, &Support::weighted(mask), &mut Photometric::default(), how)
+    let how = Alignment::of_region(iterations, ridge, level.model);
+    align(level, motion, &Support::weighted(mask, level.model), &mut Photometric::default(), how)
 }
 
 /// Splits objects into two bodies where that shortens the description. Whether the largest of the parts that are not connected is one is
@@ -51,13 +39,13 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
             break;
         }
         let region = pixels(labels, |l| l == label);
-        if region.len() < 2 * smallest_part(labels.len()) {
+        if region.len() < 2 * smallest_part(labels.len(), level.model) {
             continue;
         }
         let known = (label, &motions[label]);
         let split = apart(&region, level.width())
             .and_then(|parts| two_bodies(level, known, &region, parts, 0))
-            .or_else(|| two_bodies(level, known, &region, far_half(&region, level.width()), ROUNDS));
+            .or_else(|| two_bodies(level, known, &region, far_half(&region, level.width()), level.model.split_rounds));
         if let Some((pair, second)) = split {
             motions[label] = pair[0];
             motions.push(pair[1]);
@@ -79,7 +67,10 @@ fn two_bodies(
     rounds: usize,
 ) -> Option<([AffineMotion; 2], Buffer<bool>)> {
     let (width, height) = (level.width(), level.height());
-    let around = Area::of(region, width).grown(REACH, width, height);
+    let model = level.model;
+    // As far as a Gaussian window of this deviation reaches.
+    let reach = libm::ceilf(3.0 * model.split_window) as usize;
+    let around = Area::of(region, width).grown(reach, width, height);
     let mut pair = [*motion; 2];
     for round in 0..=rounds {
         let mut costs = Vec::with_capacity(2);
@@ -88,8 +79,9 @@ fn two_bodies(
             for (&p, &s) in region.iter().zip(&second) {
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
-            *motion = aligned_on(level, motion, &mask, ITERATIONS, ridge_of_label(label));
-            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation()), WINDOW));
+            *motion = aligned_on(level, motion, &mask, model.split_iterations, ridge_of_label(label, model));
+            costs
+                .push(gaussian(&cost_within(level, &around, motion, CostModel::estimation(model)), model.split_window));
         }
         if round == rounds {
             break;
@@ -99,11 +91,12 @@ fn two_bodies(
             *s = costs[1].values()[place] < costs[0].values()[place];
         }
         let share = second.iter().filter(|s| **s).count() as f64 / region.len() as f64;
-        if !(SMALLEST_HALF..=1.0 - SMALLEST_HALF).contains(&share) {
+        if !(model.smallest_half..=1.0 - model.smallest_half).contains(&share) {
             return None;
         }
     }
-    let [one, two @ ..] = [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::estimation()));
+    let [one, two @ ..] =
+        [*motion, pair[0], pair[1]].map(|m| cost_within(level, &around, &m, CostModel::estimation(model)));
     let mut gain = 0.0;
     for (&p, &s) in region.iter().zip(&second) {
         let place = around.index_of(p, width);
@@ -111,8 +104,8 @@ fn two_bodies(
     }
     gain *= f64::from(weight_of_pixel(level));
     let of_second = second.iter().filter(|s| **s).count();
-    let price = price_of_two([region.len() - of_second, of_second])
-        + price_of_border(inner_border(region, &second, width, height));
+    let price = price_of_two([region.len() - of_second, of_second], model)
+        + price_of_border(inner_border(region, &second, width, height), model);
     (gain > price).then_some((pair, second))
 }
 

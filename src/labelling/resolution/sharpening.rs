@@ -12,7 +12,7 @@ use crate::labelling::coherence::Coherence;
 use crate::labelling::solver::Solver;
 use crate::labelling::terms::colour::ColourPrices;
 use crate::labelling::terms::data::{frame_border_price, to_label_costs};
-use crate::labelling::terms::smoothness::Borders;
+use crate::labelling::terms::smoothness::{Borders, Price};
 use crate::labelling::terms::variance_inflation::inflate_variance;
 use crate::labelling::terms::views::blend_views;
 use crate::labelling::terms::visibility::most_where_hidden;
@@ -47,7 +47,7 @@ pub(crate) struct CoarseLabelling<'a> {
 /// Inputs at the working size.
 pub(crate) struct WorkingLevel<'a> {
     pub(crate) level: &'a Level,
-    pub(crate) picture: Option<&'a Picture>,
+    pub(crate) picture: &'a Picture,
     pub(crate) palette: &'a Palette,
     pub(crate) motions: &'a [AffineMotion],
     pub(crate) coherence: Coherence,
@@ -123,16 +123,15 @@ impl Region {
         };
         let mut costs: Vec<Plane> = present.iter().map(fixed).collect();
         let mut borders = Borders::uniform(area.width(), area.height(), fine.coherence.smoothness);
+        let price = Price::new(fine.level.noise, fine.coherence.smoothness, fine.level.model);
         let corner = [area.columns.start, area.rows.start];
         for tile in &self.tiles {
             comparisons.fill(coarse, fine, tile, corner, &number, &mut costs);
-            if let Some(picture) = fine.picture {
-                // Includes the pixels to the left and above: their weights connect to the tile.
-                let mut around = tile.area.clone();
-                around.columns.start = around.columns.start.max(corner[0] + 1) - 1;
-                around.rows.start = around.rows.start.max(corner[1] + 1) - 1;
-                borders.follow(picture, fine.level.noise, fine.coherence.smoothness, &around, corner);
-            }
+            // Includes the pixels to the left and above: their weights connect to the tile.
+            let mut around = tile.area.clone();
+            around.columns.start = around.columns.start.max(corner[0] + 1) - 1;
+            around.rows.start = around.rows.start.max(corner[1] + 1) - 1;
+            borders.follow(fine.picture, &price, &around, corner);
         }
         let numbered: Buffer<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();
         let solved = borders.solve_from(&costs, solver, &numbered);
@@ -183,7 +182,7 @@ struct Comparisons<'a> {
 impl<'a> Comparisons<'a> {
     fn new(fine: &WorkingLevel<'a>) -> Comparisons<'a> {
         let all = |view| {
-            let one = |motion| Comparison::new(fine.level, view, motion, CostModel::labels());
+            let one = |motion| Comparison::new(fine.level, view, motion, CostModel::labels(fine.level.model));
             fine.motions.iter().map(one).collect()
         };
         Comparisons { second: all(View::Second), before: all(View::Before) }
@@ -205,7 +204,7 @@ impl<'a> Comparisons<'a> {
         let mut rows = vec![[0.0; TILE[0]]; tile.labels.len()];
         let (mut earlier, mut inflation, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]], [0.0; TILE[0]]);
         let mut places = [0; TILE[0]];
-        let border = frame_border_price(fine.coherence);
+        let border = frame_border_price(fine.coherence, fine.level.model);
         for y in tile_rows.clone() {
             places.iter_mut().zip(columns.clone()).for_each(|(place, x)| *place = coarse.pixel(x, y));
             let places = &places[..count];
@@ -227,13 +226,13 @@ impl<'a> Comparisons<'a> {
                         *c = blend_views(*c, *b, shares.values()[p]);
                     }
                 }
-                inflate_variance(row, &inflation);
+                inflate_variance(row, &inflation, fine.level.model);
                 lower(&mut seen, row);
             }
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
                 let label = usize::from(label);
                 let row = &mut row[..count];
-                to_label_costs(label, row, &seen, fine.coherence);
+                to_label_costs(label, row, &seen, fine.coherence, fine.level.model);
                 if label != BACKGROUND {
                     let across = if y == 0 || y + 1 == height { border } else { 0.0 };
                     for (c, x) in row.iter_mut().zip(columns.clone()) {
@@ -241,7 +240,7 @@ impl<'a> Comparisons<'a> {
                     }
                 }
                 if let Some(hidden) = coarse.hidden.get(label) {
-                    let most = most_where_hidden(label, fine.coherence.object_bias);
+                    let most = most_where_hidden(label, fine.coherence.object_bias, fine.level.model);
                     row.iter_mut().zip(places).filter(|(_, p)| hidden[**p]).for_each(|(c, _)| *c = c.min(most));
                 }
                 if let Some(colours) = coarse.colours {
@@ -319,7 +318,7 @@ mod tests {
         let palette = Palette::new(&frame, SIZE[0], SIZE[1]);
         let fine = WorkingLevel {
             level: &levels[0],
-            picture: Some(&picture),
+            picture: &picture,
             palette: &palette,
             motions: &motions,
             coherence: COHERENCE,

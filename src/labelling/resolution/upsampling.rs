@@ -6,17 +6,16 @@
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::lanes::each_with;
+use crate::model::Model;
 use crate::workspace::Buffer;
 
 /// Radius of the filter's windows, full-size pixels. Not varied: the sums below are made for it.
 const RADIUS: usize = 4;
-/// Regularisation of the filter: variance, grey levels², below which a window counts as flat. Chosen on generated scenes.
-const FLAT_VARIANCE: f32 = 40.0;
 /// Side of a tile, full-size pixels. For speed.
 const TILE: usize = 32;
 
 /// Labels at the size of `guide`, from labels at a 2^k-th of it.
-pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, guide: &Plane) -> Vec<u8> {
+pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, guide: &Plane, model: &Model) -> Vec<u8> {
     let (full_width, full_height) = (guide.width(), guide.height());
     if (width, height) == (full_width, full_height) {
         return labels.to_vec();
@@ -31,7 +30,7 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
             let present = grid.present(&tile.grown(2 * RADIUS, full_width, full_height), of);
             match present[..] {
                 [only] => tile.rows.for_each(|y| winner[y * full_width..][tile.columns.clone()].fill(only)),
-                _ => decide(&grid, &present, guide, &tile, &mut winner),
+                _ => decide(&grid, &present, guide, &tile, &mut winner, model),
             }
         }
     }
@@ -39,10 +38,10 @@ pub(crate) fn upsample(labels: &[u8], [width, height]: [usize; 2], of: usize, gu
 }
 
 /// Gives every pixel of a tile the strongest of the labels, the first on ties.
-fn decide(grid: &LabelGrid<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8]) {
+fn decide(grid: &LabelGrid<'_>, labels: &[u8], guide: &Plane, tile: &Area, winner: &mut [u8], model: &Model) {
     let full = (guide.width(), guide.height());
     let guide = Patch::from_fn(tile.grown(2 * RADIUS, full.0, full.1), |x, y| guide.at(x, y));
-    let filter = GuidedFilter::new(&guide, tile, full);
+    let filter = GuidedFilter::new(&guide, tile, full, model.flat_variance);
     let mut best = Patch::from_fn(tile.clone(), |_, _| f32::NEG_INFINITY);
     // The masks sum to one and the filter is linear, so the strengths sum to one: the last is the remainder.
     let mut rest = Patch::from_fn(tile.clone(), |_, _| 1.0);
@@ -222,17 +221,19 @@ struct GuidedFilter {
     full: (usize, usize),
     mean: Patch,
     variance: Patch,
+    /// Variance below which a window counts as flat.
+    flat_variance: f32,
 }
 
 impl GuidedFilter {
-    fn new(guide: &Patch, tile: &Area, full: (usize, usize)) -> GuidedFilter {
+    fn new(guide: &Patch, tile: &Area, full: (usize, usize), flat_variance: f32) -> GuidedFilter {
         let area = tile.grown(RADIUS, full.0, full.1);
         let mean = guide.box_mean(area.clone(), full);
         let mut variance = guide.times(guide).box_mean(area, full);
         for (v, m) in variance.values.iter_mut().zip(&mean.values) {
             *v -= m * m;
         }
-        GuidedFilter { full, mean, variance }
+        GuidedFilter { full, mean, variance, flat_variance }
     }
 
     /// Filters the input in a tile. Guide and input reach 2·RADIUS pixels beyond the tile.
@@ -244,7 +245,7 @@ impl GuidedFilter {
         for ((s, o), (mean, variance)) in slope.values.iter_mut().zip(offset.values.iter_mut()).zip(of_guide) {
             let covariance = *s - mean * *o;
             let variance = if *variance > 0.0 { *variance } else { 0.0 };
-            *s = covariance / (variance + FLAT_VARIANCE);
+            *s = covariance / (variance + self.flat_variance);
             *o -= *s * mean;
         }
         let mut out = slope.box_mean(tile.clone(), self.full);
@@ -267,7 +268,7 @@ mod tests {
         // The true edge lies at x = 33, which half the size cannot resolve.
         let guide = Plane::from_fn(64, 48, |x, _| if x < 33 { 40.0 } else { 200.0 });
         let labels: Vec<u8> = (0..32 * 24).map(|p| u8::from(p % 32 >= 17)).collect();
-        let full = upsample(&labels, [32, 24], 2, &guide);
+        let full = upsample(&labels, [32, 24], 2, &guide, &Model::DEFAULT);
         for y in 4..44 {
             let row: Vec<u8> = full[y * 64..(y + 1) * 64].to_vec();
             let expected: Vec<u8> = (0..64).map(|x| u8::from(x >= 33)).collect();

@@ -7,19 +7,8 @@
 
 use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
-use crate::tuning::{Tuned, tuned};
+use crate::model::Model;
 use crate::workspace::Buffer;
-
-/// Prior probability of every colour under every label: half of an even share of the colours. Not varied.
-const PRIOR: f32 = 1e-3;
-/// Cost per nat of improbability if colours can be trusted entirely. Confirmed on real pairs.
-const PRICE_PER_NAT: f32 = 1.0;
-/// Largest cost of a colour: that of a pixel that a motion does not explain. Insensitive.
-const LARGEST_PRICE: f32 = 2.0;
-/// Summed margins, in costs, below which the colours of a label are unknown: ten pixels of the largest margin. Not varied.
-const SMALLEST_SUPPORT: f32 = 20.0;
-/// Side of the blocks that form the two halves, working pixels. Not varied.
-const BLOCK: usize = 12;
 
 /// Cost of each colour under each label.
 #[derive(Clone, Debug)]
@@ -31,13 +20,12 @@ pub(crate) struct ColourPrices {
 
 impl ColourPrices {
     /// Learned from pixels, weighted by how clearly their motion wins.
-    pub(crate) fn learned(palette: &Palette, costs: &[Plane], labels: &[u8]) -> ColourPrices {
+    pub(crate) fn learned(palette: &Palette, costs: &[Plane], labels: &[u8], model: &Model) -> ColourPrices {
         let n = costs.len();
         let weights = margins(costs, labels);
-        let trust = trust(palette, labels, &weights, n);
-        let mut table = posterior(palette, labels, &weights, n);
-        let price = tuned(Tuned::ColourPrice, PRICE_PER_NAT);
-        let largest = tuned(Tuned::LargestColourPrice, LARGEST_PRICE);
+        let trust = trust(palette, labels, &weights, n, model);
+        let mut table = posterior(palette, labels, &weights, n, model);
+        let (price, largest) = (model.colour_price, model.largest_colour_price);
         table.iter_mut().for_each(|p| *p = (-price * trust * trust * libm::logf(*p)).min(largest));
         ColourPrices { table, labels: n }
     }
@@ -50,8 +38,8 @@ impl ColourPrices {
 }
 
 /// Adds the costs of the colours.
-pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8]) {
-    let prices = ColourPrices::learned(palette, costs, labels);
+pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8], model: &Model) {
+    let prices = ColourPrices::learned(palette, costs, labels, model);
     for (label, cost) in costs.iter_mut().enumerate() {
         cost.values_mut().iter_mut().enumerate().for_each(|(p, c)| *c += prices.of(palette, p, label));
     }
@@ -59,11 +47,11 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8])
 
 /// How well the colours of one half of the blocks predict the labels of the other: information per pixel as a share of the
 /// information needed, averaged over the labels; 0…1.
-fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
-    let half = halves(palette.width(), labels.len());
+fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> f32 {
+    let half = halves(palette.width(), labels.len(), model.colour_block);
     let tables = [0, 1].map(|which| {
         let of_half = |(&weight, &half): (&f32, &u8)| if half == which { weight } else { 0.0 };
-        posterior(palette, labels, &weights.iter().zip(&half).map(of_half).collect::<Buffer<f32>>(), n)
+        posterior(palette, labels, &weights.iter().zip(&half).map(of_half).collect::<Buffer<f32>>(), n, model)
     });
     let mut information = vec![(0.0f32, 0.0f32); n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
@@ -78,10 +66,10 @@ fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> f32 {
 }
 
 /// Which half of the blocks, 0 or 1, every pixel belongs to.
-fn halves(width: usize, pixels: usize) -> Buffer<u8> {
+fn halves(width: usize, pixels: usize, block: usize) -> Buffer<u8> {
     let mut halves = Buffer::with_capacity(pixels);
     for y in 0..pixels / width {
-        halves.extend((0..width).map(|x| ((x / BLOCK + y / BLOCK) % 2) as u8));
+        halves.extend((0..width).map(|x| ((x / block + y / block) % 2) as u8));
     }
     halves
 }
@@ -98,23 +86,24 @@ fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
 
 /// Probability of every label for every colour, all labels equally likely beforehand; from pixels with these weights.
 #[inline(never)]
-fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize) -> Buffer<f32> {
+fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> Buffer<f32> {
+    let smallest = model.colour_support;
     let mut table = Buffer::filled(n * COLOURS, 0.0f32);
     let mut totals = vec![1e-9f32; n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
         table[palette.index(p) * n + usize::from(label)] += weight;
         totals[usize::from(label)] += weight;
     }
-    let known = totals.iter().filter(|&&total| total >= SMALLEST_SUPPORT).count().max(1) as f32;
+    let known = totals.iter().filter(|&&total| total >= smallest).count().max(1) as f32;
     for of_colour in table.chunks_exact_mut(n) {
         let mut sum = 0.0;
-        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= SMALLEST_SUPPORT) {
-            *share = *share / total + PRIOR;
+        for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= smallest) {
+            *share = *share / total + model.colour_prior;
             sum += *share;
         }
         // A label without enough pixels to learn from gets the average probability for every colour.
         let average = if sum > 0.0 { sum / known } else { 1.0 };
-        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < SMALLEST_SUPPORT) {
+        for (share, _) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total < smallest) {
             *share = average;
             sum += average;
         }
@@ -140,7 +129,7 @@ mod tests {
     /// The costs that the colours add.
     fn said(palette: &Palette, costs: &[Plane; 2], labels: &[u8]) -> [Plane; 2] {
         let mut with = costs.clone();
-        add_colours(&mut with, palette, labels);
+        add_colours(&mut with, palette, labels, &Model::DEFAULT);
         for (with, without) in with.iter_mut().zip(costs) {
             with.values_mut().iter_mut().zip(without.values()).for_each(|(w, o)| *w -= o);
         }

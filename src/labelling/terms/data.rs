@@ -6,15 +6,11 @@ use crate::labelling::coherence::Coherence;
 use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_variance};
 use crate::labelling::terms::views::{cheapest, costs_in_views};
 use crate::lanes::{each_with, lower};
+use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::tuning::{Tuned, tuned};
 use crate::view::cost::CostModel;
 use crate::view::level::Level;
 use crate::workspace::Buffer;
-
-/// Share of λ that an object pays for every pixel on the frame's border. Without it the part of an object's outline along the frame's
-/// border would be free, and labels would leak into flat regions there. Confirmed on real pairs.
-const FRAME_BORDER: f32 = 0.375;
 
 /// Label cost of every motion at every pixel; the first is the dominant motion.
 ///
@@ -38,21 +34,21 @@ impl LabelCosts {
     /// Computes them row by row, so that the only intermediate plane is that of the smallest costs.
     pub(crate) fn new(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> LabelCosts {
         let (mut costs, shares) = costs_in_views(level, motions);
-        let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY));
+        let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY), level.model);
         let mut inflation = Plane::unwritten(level.width(), level.height());
         let mut seen = Buffer::unwritten(level.width());
         for y in 0..level.height() {
             inflation_rows.write(y, inflation.row_mut(y));
             seen.fill(f32::INFINITY);
             for cost in &mut costs {
-                inflate_variance(cost.row_mut(y), inflation.row(y));
+                inflate_variance(cost.row_mut(y), inflation.row(y), level.model);
                 lower(&mut seen, cost.row(y));
             }
             for (label, cost) in costs.iter_mut().enumerate() {
-                to_label_costs(label, cost.row_mut(y), &seen, coherence);
+                to_label_costs(label, cost.row_mut(y), &seen, coherence, level.model);
             }
         }
-        costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, coherence));
+        costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, coherence, level.model));
         LabelCosts { costs, shares, variance_inflation: inflation }
     }
 }
@@ -60,8 +56,8 @@ impl LabelCosts {
 /// Turns costs of a motion into those of its label: fills in pixels moved out of the frame and adds the object bias. `seen` is the
 /// smallest cost of any motion that keeps the pixel inside, infinite if there is none.
 #[inline(never)]
-pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence) {
-    let neutral = CostModel::labels().outside();
+pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], coherence: Coherence, model: &Model) {
+    let neutral = CostModel::labels(model).outside();
     let (least, most, object_bias) = match label {
         BACKGROUND => (f32::NEG_INFINITY, neutral, 0.0),
         _ => (neutral, f32::INFINITY, coherence.object_bias),
@@ -74,12 +70,12 @@ pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], cohe
 }
 
 /// Price of an object's pixel on the frame's border, for each of the borders it lies on.
-pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
-    tuned(Tuned::FrameBorder, FRAME_BORDER) * coherence.smoothness
+pub(crate) fn frame_border_price(coherence: Coherence, model: &Model) -> f32 {
+    model.frame_border * coherence.smoothness
 }
 
-fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
-    let price = frame_border_price(coherence);
+fn add_frame_border_price(cost: &mut Plane, coherence: Coherence, model: &Model) {
+    let price = frame_border_price(coherence, model);
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
         cost.row_mut(y).iter_mut().for_each(|c| *c += price);
@@ -119,7 +115,7 @@ mod tests {
         }
         let nowhere = AffineMotion::translation(100.0, 0.0);
         let unseen = label_costs(same, &[nowhere, nowhere], COHERENCE);
-        assert_eq!(unseen[0].at(30, 30), CostModel::labels().outside());
+        assert_eq!(unseen[0].at(30, 30), CostModel::labels(&Model::DEFAULT).outside());
         assert!((unseen[1].at(30, 30) - unseen[0].at(30, 30) - COHERENCE.object_bias).abs() < 1e-6);
     }
 }

@@ -7,18 +7,8 @@ use crate::frame::warp::CHUNK;
 use crate::labelling::solver::potts::Potts;
 use crate::labelling::solver::{Solver, minimise};
 use crate::lanes::whole;
-use crate::tuning::{Tuned, tuned};
+use crate::model::Model;
 use crate::workspace::Buffer;
-
-/// Share of λ that remains at the strongest image edge. Confirmed on real pairs.
-const EDGE_SHARE: f32 = 0.02;
-/// Intensity step at which the rest of λ has fallen to 1/e: at least this many grey levels …
-const SMALLEST_STEP: f32 = 5.0;
-/// … and at least this many noise deviations. Chosen on generated scenes, confirmed on real pairs.
-const NOISE_STEPS: f32 = 4.0;
-
-/// Weight of a step in RGB relative to one in luminance: about 1/√3, so that a grey step counts alike in both.
-const COLOUR_SHARE: f32 = 0.6;
 
 /// Prices of borders between neighbours.
 #[derive(Clone, Debug)]
@@ -28,10 +18,10 @@ pub(crate) struct Borders {
 }
 
 impl Borders {
-    pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32) -> Borders {
+    pub(crate) fn new(picture: &Picture, noise: f32, smoothness: f32, model: &Model) -> Borders {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
         let mut borders = Self::uniform(width, height, smoothness);
-        borders.follow(picture, noise, smoothness, &Area::whole(width, height), [0, 0]);
+        borders.follow(picture, &Price::new(noise, smoothness, model), &Area::whole(width, height), [0, 0]);
         borders
     }
 
@@ -59,10 +49,8 @@ impl Borders {
     }
 
     /// Sets the prices of an area from the edges of the picture. The grid begins at the picture's pixel `corner`.
-    pub(crate) fn follow(&mut self, picture: &Picture, noise: f32, smoothness: f32, area: &Area, corner: [usize; 2]) {
+    pub(crate) fn follow(&mut self, picture: &Picture, price: &Price, area: &Area, corner: [usize; 2]) {
         let (width, height) = (picture.luminance.width(), picture.luminance.height());
-        let step = tuned(Tuned::EdgeStep, SMALLEST_STEP.max(NOISE_STEPS * noise));
-        let price = Price { smoothness, per_step: 1.0 / step };
         let places = area.columns.start - corner[0]..area.columns.end - corner[0];
         for y in area.rows.clone() {
             let start = y * width;
@@ -87,17 +75,24 @@ impl Borders {
 }
 
 /// The price of a border as a function of the step across it.
-struct Price {
+pub(crate) struct Price {
     smoothness: f32,
     /// Reciprocal of the step, grey levels, at which 1 − 1/e of the discount of an edge is reached.
     per_step: f32,
+    edge_share: f32,
+    colour_share: f32,
 }
 
 impl Price {
+    /// The price with a λ in frames with this noise, grey levels.
+    pub(crate) fn new(noise: f32, smoothness: f32, model: &Model) -> Price {
+        let per_step = 1.0 / model.smallest_step.max(model.noise_steps * noise);
+        Price { smoothness, per_step, edge_share: model.edge_share, colour_share: model.colour_share }
+    }
+
     /// Prices between the pixels of two runs; ends with the shorter one.
     fn write<'a>(&self, one: [&'a [f32]; 4], other: [&'a [f32]; 4], prices: &mut [f32]) {
-        let edge_share = tuned(Tuned::EdgeShare, EDGE_SHARE);
-        let colour_share = tuned(Tuned::ColourShare, COLOUR_SHARE);
+        let Price { edge_share, colour_share, .. } = *self;
         for (k, prices) in prices.chunks_mut(CHUNK).enumerate() {
             let mut space = [[0.0; CHUNK]; 8];
             let [s0, s1, s2, s3, s4, s5, s6, s7] = &mut space;
@@ -141,8 +136,8 @@ mod tests {
         let bright = Picture { luminance: step(60.0, 160.0), colours: [0; 3].map(|_| step(60.0, 160.0)) };
         let coloured =
             Picture { luminance: grey.clone(), colours: [step(40.0, 140.0), step(140.0, 76.0), grey.clone()] };
-        let borders = Borders::new(&bright, 1.0, COHERENCE.smoothness);
-        for borders in [&borders, &Borders::new(&coloured, 1.0, COHERENCE.smoothness)] {
+        let borders = Borders::new(&bright, 1.0, COHERENCE.smoothness, &Model::DEFAULT);
+        for borders in [&borders, &Borders::new(&coloured, 1.0, COHERENCE.smoothness, &Model::DEFAULT)] {
             assert_eq!(borders.horizontal.at(10, 10), COHERENCE.smoothness);
             assert!(borders.horizontal.at(31, 10) < 0.03 * COHERENCE.smoothness);
         }

@@ -8,37 +8,30 @@
 use crate::frame::Plane;
 use crate::frame::filter::RowFilter;
 use crate::lanes::{each, each_with};
-use crate::tuning::{Tuned, tuned};
+use crate::model::Model;
 use crate::view::cost::CostModel;
-
-/// Standard deviation of the window in which the fit is judged, pixels.
-const WINDOW: f32 = 4.0;
-/// Largest windowed cost that noise alone explains. Chosen on real pairs.
-const EXPECTED: f32 = 0.5;
-/// Largest factor of the standard deviation. Confirmed on real pairs.
-const LARGEST: f32 = 3.0;
 
 /// Factor of each pixel's variance, computed row by row from the smallest label cost.
 ///
 /// The mean of the saturated costs grows about as the standard deviation of the residuals.
 pub(crate) struct VarianceInflation {
     smallest: Plane,
+    model: &'static Model,
     window: RowFilter,
 }
 
 impl VarianceInflation {
     /// `smallest` is infinite where all motions move a pixel out of every view.
-    pub(crate) fn new(mut smallest: Plane) -> VarianceInflation {
-        each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::labels().outside() });
-        let window = RowFilter::gaussian(smallest.width(), tuned(Tuned::InflationWindow, WINDOW));
-        VarianceInflation { smallest, window }
+    pub(crate) fn new(mut smallest: Plane, model: &'static Model) -> VarianceInflation {
+        each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::labels(model).outside() });
+        let window = RowFilter::gaussian(smallest.width(), model.inflation_window);
+        VarianceInflation { smallest, model, window }
     }
 
     /// Writes the factors of row y.
     pub(crate) fn write(&mut self, y: usize, row: &mut [f32]) {
         self.window.row(&self.smallest, y, row);
-        let expected = tuned(Tuned::ExpectedMisfit, EXPECTED);
-        let largest = tuned(Tuned::LargestInflation, LARGEST);
+        let (expected, largest) = (self.model.expected, self.model.largest_inflation);
         each(row, |m| {
             let ratio = (m / expected).clamp(1.0, largest);
             ratio * ratio
@@ -48,8 +41,8 @@ impl VarianceInflation {
 
 /// Costs with inflated variance: e / (1 + e/T) with e / inflation in place of e. Infinite costs stay infinite.
 #[inline(never)]
-pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32]) {
-    let truncation = CostModel::labels().truncation;
+pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32], model: &Model) {
+    let truncation = model.label_truncation;
     each_with(costs, [inflation], |cost, [inflation]| {
         let share = cost / truncation;
         let allowed = cost / (inflation * (1.0 - share) + share);
@@ -63,11 +56,11 @@ mod tests {
     use crate::labelling::terms::views::cheapest;
 
     fn allow(costs: &mut [Plane]) {
-        let mut inflation = VarianceInflation::new(cheapest(costs, f32::INFINITY));
+        let mut inflation = VarianceInflation::new(cheapest(costs, f32::INFINITY), &Model::DEFAULT);
         let mut row = vec![0.0; costs[0].width()];
         for y in 0..costs[0].height() {
             inflation.write(y, &mut row);
-            costs.iter_mut().for_each(|cost| inflate_variance(cost.row_mut(y), &row));
+            costs.iter_mut().for_each(|cost| inflate_variance(cost.row_mut(y), &row, &Model::DEFAULT));
         }
     }
 
@@ -86,7 +79,10 @@ mod tests {
 
     #[test]
     fn what_is_saturated_or_unseen_stays_so() {
-        let mut costs = [Plane::filled(20, 20, CostModel::labels().truncation), Plane::filled(20, 20, f32::INFINITY)];
+        let mut costs = [
+            Plane::filled(20, 20, CostModel::labels(&Model::DEFAULT).truncation),
+            Plane::filled(20, 20, f32::INFINITY),
+        ];
         let before = costs.clone();
         allow(&mut costs);
         assert_eq!(costs, before);

@@ -6,29 +6,28 @@
 use crate::frame::Plane;
 use crate::frame::filter::gaussian;
 use crate::lanes::{each, lower};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, View, cost_in};
 use crate::view::level::Level;
-
-/// Standard deviation of the window over which the views are compared, pixels. Not varied.
-const WINDOW: f32 = 1.5;
-/// Twice the difference of the smallest costs from which on only the better view counts. Not varied.
-const TRANSITION: f32 = 0.3;
 
 /// Cost of every motion at every pixel, infinite where it moves the pixel out of every view; and the weight of the later view, if
 /// there are two.
 pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Plane>, Option<Plane>) {
     let all = |view| {
-        motions.iter().map(|m| cost_in(level, view, &level.area(), m, CostModel::labels())).collect::<Vec<Plane>>()
+        motions
+            .iter()
+            .map(|m| cost_in(level, view, &level.area(), m, CostModel::labels(level.model)))
+            .collect::<Vec<Plane>>()
     };
     let mut costs = all(View::Second);
     if level.before.is_none() {
         return (costs, None);
     }
     let before = all(View::Before);
-    let mut shares = unexplained(&before);
-    for (share, later) in shares.values_mut().iter_mut().zip(unexplained(&costs).values()) {
-        *share = ((*share - later) / TRANSITION + 0.5).clamp(0.0, 1.0);
+    let mut shares = unexplained(&before, level.model);
+    for (share, later) in shares.values_mut().iter_mut().zip(unexplained(&costs, level.model).values()) {
+        *share = ((*share - later) / level.model.views_transition + 0.5).clamp(0.0, 1.0);
     }
     for (cost, before) in costs.iter_mut().zip(&before) {
         let both = cost.values_mut().iter_mut().zip(before.values());
@@ -40,7 +39,7 @@ pub(crate) fn costs_in_views(level: &Level, motions: &[AffineMotion]) -> (Vec<Pl
 /// [`costs_in_views`] with the neutral cost where a motion moves a pixel out of every view.
 pub(crate) fn costs_where_seen(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
     let (mut costs, _) = costs_in_views(level, motions);
-    let neutral = CostModel::labels().outside();
+    let neutral = CostModel::labels(level.model).outside();
     costs.iter_mut().for_each(|cost| each(cost.values_mut(), |c| if c.is_finite() { c } else { neutral }));
     costs
 }
@@ -56,8 +55,8 @@ pub(crate) fn blend_views(later: f32, earlier: f32, share: f32) -> f32 {
 }
 
 /// The smallest cost of any motion, averaged over windows.
-fn unexplained(costs: &[Plane]) -> Plane {
-    gaussian(&cheapest(costs, CostModel::labels().truncation), WINDOW)
+fn unexplained(costs: &[Plane], model: &Model) -> Plane {
+    gaussian(&cheapest(costs, model.label_truncation), model.views_window)
 }
 
 /// The smallest of the costs at every pixel, at most `most`.

@@ -5,17 +5,13 @@ use crate::frame::filter::eroded;
 use crate::frame::warp::warp;
 use crate::labelling::{BACKGROUND, is_background, mask_of, objects};
 use crate::lanes::each_with;
+use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::tuning::{Tuned, tuned};
 use crate::view::cost::inverse;
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
-/// Largest cost of a motion at a pixel that it moves behind another object: neither for nor against it. Chosen on generated
-/// scenes, confirmed on real pairs.
-const HIDDEN: f32 = 1.5;
-
-/// Costs in which a motion pays no more than [`HIDDEN`] for pixels that it moves behind another object.
+/// Costs in which a motion pays no more than [`Model::hidden`] for pixels that it moves behind another object.
 ///
 /// The dominant motion may be occluded by any object, an object only at pixels labelled as an object so far. Otherwise objects would
 /// grow into the background around others.
@@ -27,7 +23,7 @@ pub(crate) fn with_visibility(
     object_bias: f32,
 ) -> Vec<Plane> {
     let hide = |(k, hidden): (usize, Buffer<bool>)| {
-        let most = most_where_hidden(k, object_bias);
+        let most = most_where_hidden(k, object_bias, level.model);
         let mut out = costs[k].clone();
         for (c, _) in out.values_mut().iter_mut().zip(&hidden).filter(|(_, hidden)| **hidden) {
             *c = c.min(most);
@@ -38,8 +34,8 @@ pub(crate) fn with_visibility(
 }
 
 /// Largest cost of a label where its motion moves a pixel behind another object.
-pub(crate) fn most_where_hidden(label: usize, object_bias: f32) -> f32 {
-    tuned(Tuned::HiddenCost, HIDDEN) + if label == BACKGROUND { 0.0 } else { object_bias }
+pub(crate) fn most_where_hidden(label: usize, object_bias: f32, model: &Model) -> f32 {
+    model.hidden + if label == BACKGROUND { 0.0 } else { object_bias }
 }
 
 /// For every motion, the pixels at which [`with_visibility`] limits its cost.

@@ -14,30 +14,30 @@
 
 use crate::frame::Plane;
 use crate::labelling::regions::description::{border_lengths, counts};
+use crate::model::Model;
 
-/// α: weight of the probability of the motion.
-const MOTION: f64 = 0.55;
-/// β: weight of the frame's border.
-const FRAME_BORDER: f64 = 5.64;
-/// γ: weight of the mean cost.
-const MISFIT: f64 = 5.32;
-/// δ.
-const CONSTANT: f64 = 2.89;
 /// Smallest and largest P that are told apart. A safeguard.
 const LIMITS: [f32; 2] = [0.002, 0.998];
 
 /// Turns the probabilities of the motions of objects into those of being one.
-pub(super) fn doubt_objects(probabilities: &mut [Plane], costs: &[Plane], labels: &[u8], groups: &[usize]) {
+pub(super) fn doubt_objects(
+    probabilities: &mut [Plane],
+    costs: &[Plane],
+    labels: &[u8],
+    groups: &[usize],
+    model: &Model,
+) {
     let Some(width) = probabilities.first().map(Plane::width) else { return };
     let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
     let misfit = own.sum::<f64>() / labels.len() as f64;
     let largest = largest(groups, labels);
     let on_border = shares_on_frame_border(labels, groups.len(), width);
     for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != largest) {
-        let constant = CONSTANT - FRAME_BORDER * libm::sqrt(on_border[k]) - MISFIT * misfit;
+        let constant =
+            model.doubt_constant - model.doubt_frame_border * libm::sqrt(on_border[k]) - model.doubt_misfit * misfit;
         for p in plane.values_mut() {
             let probable = f64::from(p.clamp(LIMITS[0], LIMITS[1]));
-            let log_odds = MOTION * libm::log(probable / (1.0 - probable)) + constant;
+            let log_odds = model.doubt_motion * libm::log(probable / (1.0 - probable)) + constant;
             *p = 1.0 / (1.0 + libm::expf(-log_odds as f32));
         }
     }
@@ -76,7 +76,7 @@ mod tests {
     fn doubted(labels: &[u8], groups: &[usize], cost: f32) -> [f32; 2] {
         let plane = |value| Plane::filled(12, 8, value);
         let mut probabilities = [plane(0.9), plane(0.9)];
-        doubt_objects(&mut probabilities, &[plane(cost), plane(cost)], labels, groups);
+        doubt_objects(&mut probabilities, &[plane(cost), plane(cost)], labels, groups, &Model::DEFAULT);
         probabilities.map(|plane| plane.at(5, 3))
     }
 

@@ -22,26 +22,10 @@ use serde::Serialize;
 use super::doubt::shares_on_frame_border;
 use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::{border_lengths, counts};
-use crate::labelling::regions::groups::{SHORTEST_BORDER, TOLERANCE, borders, pair};
+use crate::labelling::regions::groups::{borders, pair};
+use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
-
-/// α: weight of the jump.
-const JUMP: f64 = 4.7;
-/// β: weight of the frame's border on the outline that has more of it …
-const MORE_ON_FRAME: f64 = 4.9;
-/// γ: … and on the other.
-const LESS_ON_FRAME: f64 = 29.8;
-/// δ: weight of the share of the outline.
-const OUTLINE: f64 = 0.9;
-/// ε.
-const CONSTANT: f64 = 3.1;
-/// Motions whose flow is continuous are one group if they are more likely than this to be one thing …
-const LIKELY: f64 = 0.35;
-/// … and others if they are more likely than this. Both were chosen on real pairs, as far as no generated object becomes background.
-const CERTAIN: f64 = 0.96;
-/// b: a larger share of the outline on the frame's border says no more. Chosen on real pairs.
-const ENOUGH_ON_FRAME: f64 = 0.02;
 
 /// The common border of two motions of a [`Segmentation`](super::Segmentation), and whether they may be one thing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -63,19 +47,20 @@ pub(super) fn junctions(
     width: usize,
     reduction: f64,
     order: &[usize],
+    model: &Model,
 ) -> Vec<Junction> {
     let n = motions.len();
     let sizes = counts(labels, n);
     let outlines = border_lengths(labels, n, width);
     let on_frame = shares_on_frame_border(labels, n, width);
-    let largest = largest_motion(motions, labels, width).max(TOLERANCE / reduction);
+    let largest = largest_motion(motions, labels, width).max(model.group_tolerance / reduction);
     let at_rest = motions[BACKGROUND] == AffineMotion::STATIC;
     let mut borders = borders(motions, labels, width);
     let mut found = Vec::new();
     for (a, &i) in order.iter().enumerate() {
         for (b, &j) in order.iter().enumerate().skip(a + 1) {
             let along = &mut borders[pair(n, i, j)];
-            let Some(jump) = median_f64(along).filter(|_| along.len() >= SHORTEST_BORDER) else { continue };
+            let Some(jump) = median_f64(along).filter(|_| along.len() >= model.shortest_border) else { continue };
             let smaller = if sizes[i] < sizes[j] { i } else { j };
             let [more, less] = [on_frame[i].max(on_frame[j]), on_frame[i].min(on_frame[j])];
             let evidence = Evidence {
@@ -84,7 +69,7 @@ pub(super) fn junctions(
                 outline: along.len() as f64 / outlines[smaller] as f64,
             };
             let border = (along.len() as f64 * reduction) as usize;
-            found.push(Junction { labels: [a as u8, b as u8], likelihood: evidence.likelihood(), border });
+            found.push(Junction { labels: [a as u8, b as u8], likelihood: evidence.likelihood(model), border });
         }
     }
     found
@@ -92,11 +77,11 @@ pub(super) fn junctions(
 
 /// The group of every label of the report, from its `junctions` and the groups by the flow alone: motions whose flow is continuous are one
 /// group unless they are unlikely to be one thing, others if they are certain to be.
-pub(super) fn groups(junctions: &[Junction], by_flow: &[usize]) -> Vec<usize> {
+pub(super) fn groups(junctions: &[Junction], by_flow: &[usize], model: &Model) -> Vec<usize> {
     let mut groups: Vec<usize> = (0..by_flow.len()).collect();
     for Junction { labels, likelihood, .. } in junctions {
         let [one, other] = labels.map(usize::from);
-        let needed = if by_flow[one] == by_flow[other] { LIKELY } else { CERTAIN };
+        let needed = if by_flow[one] == by_flow[other] { model.junction_likely } else { model.junction_certain };
         if *likelihood > needed {
             let [kept, joined] = [groups[one].min(groups[other]), groups[one].max(groups[other])];
             groups.iter_mut().filter(|group| **group == joined).for_each(|group| *group = kept);
@@ -117,11 +102,11 @@ struct Evidence {
 }
 
 impl Evidence {
-    fn likelihood(&self) -> f64 {
+    fn likelihood(&self, model: &Model) -> f64 {
         let [more, less] = self.on_frame;
-        let log_odds = CONSTANT - JUMP * self.jump - MORE_ON_FRAME * more.sqrt()
-            + LESS_ON_FRAME * less.min(ENOUGH_ON_FRAME).sqrt()
-            + OUTLINE * self.outline;
+        let log_odds = model.junction_constant - model.junction_jump * self.jump - model.junction_more * more.sqrt()
+            + model.junction_less * less.min(model.junction_enough).sqrt()
+            + model.junction_outline * self.outline;
         f64::from(1.0 / (1.0 + libm::expf(-log_odds as f32)))
     }
 }
@@ -160,7 +145,7 @@ mod tests {
     #[test]
     fn neighbours_have_a_junction_and_others_have_none() {
         let (motions, labels) = scene();
-        let found = junctions(&motions, &labels, WIDTH, 2.0, &[0, 1, 2, 3]);
+        let found = junctions(&motions, &labels, WIDTH, 2.0, &[0, 1, 2, 3], &Model::DEFAULT);
         let pairs: Vec<[u8; 2]> = found.iter().map(|junction| junction.labels).collect();
         assert_eq!(pairs, [[0, 1], [0, 2], [0, 3], [1, 2]]);
         assert_eq!(found.iter().map(|junction| junction.border).collect::<Vec<_>>(), [100, 80, 80, 40]);
@@ -170,7 +155,7 @@ mod tests {
     #[test]
     fn parts_of_one_thing_are_likelier_to_belong_together_than_thing_and_ground() {
         let (motions, labels) = scene();
-        let found = junctions(&motions, &labels, WIDTH, 2.0, &[0, 1, 2, 3]);
+        let found = junctions(&motions, &labels, WIDTH, 2.0, &[0, 1, 2, 3], &Model::DEFAULT);
         let [ground, _, apart, parts] = [0, 1, 2, 3].map(|k| found[k].likelihood);
         assert!(parts > 0.8 && ground < 0.5 && apart < parts, "{found:?}");
     }
@@ -178,9 +163,9 @@ mod tests {
     #[test]
     fn labels_are_those_of_the_report() {
         let (motions, labels) = scene();
-        let found = junctions(&motions, &labels, WIDTH, 1.0, &[0, 1, 2, 3]);
+        let found = junctions(&motions, &labels, WIDTH, 1.0, &[0, 1, 2, 3], &Model::DEFAULT);
         // The part (2) is numbered before the thing (1), and the thing apart has no pixels in the report.
-        let renumbered = junctions(&motions, &labels, WIDTH, 1.0, &[0, 2, 1]);
+        let renumbered = junctions(&motions, &labels, WIDTH, 1.0, &[0, 2, 1], &Model::DEFAULT);
         assert_eq!(renumbered.iter().map(|junction| junction.labels).collect::<Vec<_>>(), [[0, 1], [0, 2], [1, 2]]);
         let likelihoods = [&renumbered[1], &renumbered[0], &renumbered[2]].map(|junction| junction.likelihood);
         assert_eq!(likelihoods, [&found[0], &found[1], &found[3]].map(|junction| junction.likelihood));
@@ -191,14 +176,14 @@ mod tests {
         let junction = |labels, likelihood| Junction { labels, likelihood, border: 20 };
         let groups = |likelihoods: [f64; 3], by_flow| {
             let [a, b, c] = likelihoods;
-            super::groups(&[junction([0, 1], a), junction([0, 2], b), junction([1, 2], c)], by_flow)
+            super::groups(&[junction([0, 1], a), junction([0, 2], b), junction([1, 2], c)], by_flow, &Model::DEFAULT)
         };
         assert_eq!(groups([0.1, 0.1, 0.6], &[0, 1, 1]), [0, 1, 1]);
         assert_eq!(groups([0.1, 0.1, 0.3], &[0, 1, 1]), [0, 1, 2], "continuous, but unlikely");
         assert_eq!(groups([0.1, 0.8, 0.95], &[0, 1, 2]), [0, 1, 2], "likely, but not continuous");
         assert_eq!(groups([0.1, 0.8, 0.98], &[0, 1, 2]), [0, 1, 1], "not continuous, but certain");
         assert_eq!(groups([0.1, 0.8, 0.95], &[0, 0, 0]), [0, 0, 0], "one by way of another");
-        assert_eq!(super::groups(&[], &[0, 0]), [0, 1], "nothing is known without a common border");
+        assert_eq!(super::groups(&[], &[0, 0], &Model::DEFAULT), [0, 1], "nothing is known without a common border");
     }
 
     #[test]
@@ -211,19 +196,19 @@ mod tests {
             .filter(|(p, _)| p % WIDTH == 25 && p / WIDTH > 20)
             .for_each(|(_, label)| *label = 0);
         let pairs = |found: Vec<Junction>| found.iter().any(|junction| junction.labels == [1, 2]);
-        assert!(!pairs(junctions(&motions, &labels, WIDTH, 2.0, &[0, 1, 2, 3])));
+        assert!(!pairs(junctions(&motions, &labels, WIDTH, 2.0, &[0, 1, 2, 3], &Model::DEFAULT)));
     }
 
     #[test]
     fn all_evidence_counts() {
-        let likelihood = SURE.likelihood();
-        assert!(Evidence { jump: 0.7, ..SURE }.likelihood() < likelihood, "a larger jump");
+        let likelihood = SURE.likelihood(&Model::DEFAULT);
+        assert!(Evidence { jump: 0.7, ..SURE }.likelihood(&Model::DEFAULT) < likelihood, "a larger jump");
         assert!(
-            Evidence { on_frame: [0.2, 0.0], ..SURE }.likelihood() < likelihood,
+            Evidence { on_frame: [0.2, 0.0], ..SURE }.likelihood(&Model::DEFAULT) < likelihood,
             "one region reaches the frame's border"
         );
-        assert!(Evidence { on_frame: [0.2, 0.2], ..SURE }.likelihood() > likelihood, "both do");
-        assert!(Evidence { outline: 0.7, ..SURE }.likelihood() > likelihood, "more of the outline");
+        assert!(Evidence { on_frame: [0.2, 0.2], ..SURE }.likelihood(&Model::DEFAULT) > likelihood, "both do");
+        assert!(Evidence { outline: 0.7, ..SURE }.likelihood(&Model::DEFAULT) > likelihood, "more of the outline");
     }
 
     #[test]
@@ -232,9 +217,14 @@ mod tests {
         let labels: Vec<u8> = (0..WIDTH * 40).map(|p| u8::from(p / WIDTH >= 20)).collect();
         let likelihood = |camera: f64| {
             let motions = [camera, camera + 5.0].map(|u| AffineMotion::translation(u, 0.0));
-            junctions(&motions, &labels, WIDTH, 1.0, &[0, 1])[0].likelihood
+            junctions(&motions, &labels, WIDTH, 1.0, &[0, 1], &Model::DEFAULT)[0].likelihood
         };
-        assert!(likelihood(0.0) < 0.1 && likelihood(1.0) > LIKELY, "{} and {}", likelihood(0.0), likelihood(1.0));
+        assert!(
+            likelihood(0.0) < 0.1 && likelihood(1.0) > Model::DEFAULT.junction_likely,
+            "{} and {}",
+            likelihood(0.0),
+            likelihood(1.0)
+        );
     }
 
     #[test]
@@ -242,6 +232,10 @@ mod tests {
         let (_, labels) = scene();
         let still = [AffineMotion::STATIC; 4];
         assert_eq!(largest_motion(&still, &labels, WIDTH), 0.0);
-        assert!(junctions(&still, &labels, WIDTH, 1.0, &[0, 1, 2, 3]).iter().all(|one| one.likelihood.is_finite()));
+        assert!(
+            junctions(&still, &labels, WIDTH, 1.0, &[0, 1, 2, 3], &Model::DEFAULT)
+                .iter()
+                .all(|one| one.likelihood.is_finite())
+        );
     }
 }

@@ -9,26 +9,17 @@ use crate::pair::labels::Labelled;
 use crate::view::cost::{CostModel, cost};
 use crate::workspace::Buffer;
 
-/// Standard deviation of the window in which a motion must explain a pixel, working pixels. This and the next two were chosen on generated
-/// scenes, where docs/masks.md counts the occluded pixels that are marked.
-const UNKNOWN_WINDOW: f32 = 1.5;
-/// Share of the saturated cost above which the motion does not explain the pixel.
-const UNKNOWN_COST: f32 = 0.7;
-/// Standard deviation of the window in which texture is measured, working pixels.
-const TEXTURE_WINDOW: f32 = 3.0;
-/// Mean squared gradient, in units of the noise variance, below which there is no texture: noise alone has 0.15 to 0.2.
-const NO_TEXTURE: f32 = 0.2;
-
 /// Working pixels that leave the frame, are occluded, are not explained by their own motion, have no texture around them, or
 /// whose label is more likely wrong than right.
 pub(super) fn unknown(pair: &Pair, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
     let level = pair.finest();
-    let limit = UNKNOWN_COST * CostModel::labels().truncation;
-    let texture = gaussian(&level.energy, TEXTURE_WINDOW);
-    let no_texture = NO_TEXTURE * level.noise * level.noise;
+    let model = level.model;
+    let limit = model.unknown_cost * model.label_truncation;
+    let texture = gaussian(&level.energy, model.texture_window);
+    let no_texture = model.no_texture * level.noise * level.noise;
     let mut unknown = hidden(level, &labelled.motions, &labelled.labels);
     for (k, motion) in labelled.motions.iter().enumerate() {
-        let own = gaussian(&cost(level, motion, CostModel::labels()), UNKNOWN_WINDOW);
+        let own = gaussian(&cost(level, motion, CostModel::labels(model)), model.unknown_window);
         let scaled = level.scaled(motion);
         for y in 0..level.height() {
             let path = RowPath::new(&scaled, 0, y);
