@@ -17,7 +17,7 @@ const FACTORS: [f32; 2] = [0.5, 1.5];
 const SIGNIFICANT: f64 = 2.0;
 
 /// The constants, each with what it is and its name in the sources, in the order of the pipeline.
-const CONSTANTS: [(Tuned, &str); 30] = [
+const CONSTANTS: [(Tuned, &str); 27] = [
     (Tuned::PositionSigma, "position error of a correct motion, `POSITION_SIGMA`"),
     (Tuned::EstimationTruncation, "largest cost in estimation, `ESTIMATION_TRUNCATION`"),
     (Tuned::LabelTruncation, "largest cost of a label, `LABEL_TRUNCATION`"),
