@@ -304,8 +304,8 @@ fn of_pairs(text: &mut String, sums: &[[OfPairs; QUALITIES.len()]; 3]) {
 const REAL: &str = "\
 Two pairs of each training sequence of DAVIS 2016, with *best*. What is said to be an object is everything but the largest group, and right in
 the mask of the sequence's object; background is right outside it. Other things that move have no mask and count as wrong. In real scenes a
-motion may be right without being that of an object, so the confidence of objects also weighs how many of the searches agree, how much of the
-outline lies on the frame's border, and how well motions explain the frames (src/pair/report/doubt.rs). Its five weights were fitted to all pairs
+motion may be right without being that of an object, so the confidence of objects also weighs how much of the outline lies on the frame's border, and how well
+motions explain the frames (src/pair/report/doubt.rs). Its weights were fitted to all pairs
 of the first fold of sequences and to every second of the generated scenes above, with both qualities; the pixels of all objects of real pairs
 weigh as much as those of the scenes. The second fold is held out of the fit.";
 

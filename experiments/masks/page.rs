@@ -283,7 +283,7 @@ impl Page<'_> {
         }
         text.push_str(
             "\nDifferences below about 0.01, and below 0.02 on the real pairs, come from a single object in a few cases and are not \
-             significant: searches of the mirror images of the real pairs have a J between .63 and .64.\n\n",
+             significant.\n\n",
         );
     }
 

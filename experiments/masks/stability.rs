@@ -222,8 +222,8 @@ pub(crate) fn text(compared: &[Compared]) -> String {
         "Share of the pixels that keep their label if the frames of a pair are altered (best): median and 10th percentile of {} real \
          pairs with masks. Labels are matched one to one. The second columns ask only for foreground or background, which is the largest \
          group. With the frames exchanged, labels are compared where the first answer's motions carry a pixel to, except where it \
-         leaves the frame or meets another motion. Segmenting draws no random numbers. What changes under the others is above all how objects and background are \
-         divided into motions, less what is foreground.\n\n\
+         leaves the frame or meets another motion. Segmenting draws no random numbers. What changes is above all how objects and \
+         background are divided into motions, less what is foreground.\n\n\
          | alteration | labels, median | 10th percentile | foreground, median | 10th percentile |\n|---|---|---|---|---|\n",
         compared.len()
     );

@@ -50,8 +50,8 @@ pub struct Segmentation {
     pub unlabelled: usize,
     /// Confidence of every label, row by row, if requested: 255 times the probability of the pixel's motion, given how well all
     /// motions explain the pixel and its surroundings and which labels surround it. Of an object it is the probability that it is one and
-    /// not a part of the background at another depth: less where the object is cut by the frame's border, where searches disagree, and in
-    /// frames that no motions explain well. 255 is certain, 0 unlabelled. The probability is calibrated on real pairs and generated
+    /// not a part of the background at another depth: less where the object is cut by the frame's border, and in frames
+    /// that no motions explain well. 255 is certain, 0 unlabelled. The probability is calibrated on real pairs and generated
     /// scenes: of the pixels with probability P, about the share P is right. It is low where no motion fits.
     #[serde(skip)]
     pub confidence: Option<Vec<u8>>,

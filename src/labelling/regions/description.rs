@@ -1,5 +1,12 @@
-//! Minimum description length: an object stays if it explains its pixels so much better than any other motion that this pays for its
-//! six parameters and its border.
+//! The description length of both frames, in nats. Motions are added, dropped, merged and split, and the background is at rest, where that
+//! makes it shorter.
+//!
+//! ```text
+//! L = ½ Σ_p w ρ(p, l_p)  +  Σ_k 3 ln n_k  +  ½ b
+//! ```
+//! ρ is the estimation cost of the pixel's motion and w the weight of a pixel of this level; n_k are the pixels of the motions that are not at
+//! rest, b the pairs of neighbours with different labels. An object is dropped unless it pays for its whole border: what its pixels get
+//! instead may have borders, too, but which is not known before. Before there are labels, a motion has to pay for the pixels of the frame.
 
 use crate::frame::Plane;
 use crate::labelling::{BACKGROUND, across_borders};
