@@ -18,6 +18,7 @@ const STILL_SEED: u64 = 43_000;
 const LARGE_SEED: u64 = 44_000;
 const ROBOT_SEED: u64 = 45_000;
 const BARE_SEED: u64 = 46_000;
+const FIT_SEED: u64 = 50_000;
 /// Where a third of the pairs of a sequence is measured.
 const EVERY: usize = 3;
 /// CDnet's codes for shadow, outside the region of interest and unknown.
@@ -209,6 +210,18 @@ fn scene_case(set: Set, options: SceneOptions) -> Case {
     Case { name: format!("{}-{width}-{seed}", set.name()), set, sub_pixel, source: Source::Scene(options) }
 }
 
+/// Generated scenes of other seeds than those of [`all`], smaller ones: for programs that fit constants.
+#[allow(dead_code, reason = "not every program that shares this file fits")]
+pub(crate) fn for_fitting() -> Vec<Case> {
+    let mut cases = Vec::new();
+    series(&mut cases, Set::Generated, FIT_SEED, &[(200, 150), (320, 240)]);
+    series(&mut cases, Set::Colour, FIT_SEED + 1_000, &[(200, 150), (320, 240)]);
+    for seed in (FIT_SEED + 6_000..).take(6) {
+        cases.push(Case { name: format!("bare-{seed}"), set: Set::Bare, sub_pixel: false, source: Source::Bare(seed) });
+    }
+    cases
+}
+
 /// Of the pairs of every sequence every third, beginning with the second.
 pub(crate) fn a_third(pairs: impl Iterator<Item = Case>) -> Vec<Case> {
     let mut sequence = (String::new(), 0);
@@ -376,16 +389,4 @@ pub(crate) fn baseline(folder: &Path) -> Result<Option<Baseline>> {
     let motions = result["affine"].as_array().map(|list| list.iter().filter_map(rows).collect()).unwrap_or_default();
     let milliseconds = result["ms"]["total"].as_f64().unwrap_or(f64::NAN);
     Ok(Some(Baseline { labels, motions, milliseconds }))
-}
-
-/// Scenes of seeds nothing was tuned on.
-pub(crate) fn unseen() -> Vec<Case> {
-    let mut cases = Vec::new();
-    series(&mut cases, Set::Generated, 50_000, &[(200, 150), (320, 240), (640, 480)]);
-    series(&mut cases, Set::Colour, 51_000, &[(200, 150), (320, 240)]);
-    for k in 0..6 {
-        let seed = 56_000 + k;
-        cases.push(Case { name: format!("bare-{seed}"), set: Set::Bare, sub_pixel: false, source: Source::Bare(seed) });
-    }
-    cases
 }

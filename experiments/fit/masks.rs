@@ -1,4 +1,5 @@
-#![allow(dead_code)]
+//! What the mask benchmark measures, and how.
+
 use crate::boundary;
 #[path = "../masks/cases.rs"]
 pub(crate) mod cases;

@@ -1,0 +1,107 @@
+//! The scores of a model on the pairs of both folds and on generated scenes.
+
+use std::path::Path;
+
+use veronese::{Model, Quality, SegmentOptions, segment_pair_with};
+
+use crate::Failure;
+use crate::masks::cases::{self, Case, Data, Set};
+use crate::masks::outcome::{Method, grouped, outcome};
+use crate::parallel::in_parallel;
+
+/// What a case belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// Real pairs of the sequences with even place in the alphabet.
+    A,
+    /// Real pairs of the other sequences.
+    B,
+    /// Generated scenes that constants are fitted to, beside a fold.
+    Scenes,
+    /// Generated scenes of the mask benchmark, which nothing is fitted to.
+    Others,
+}
+
+impl Part {
+    pub(crate) const ALL: [Part; 4] = [Part::A, Part::B, Part::Scenes, Part::Others];
+
+    pub(crate) fn is_fold(self) -> bool {
+        matches!(self, Part::A | Part::B)
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Part::A => "A",
+            Part::B => "B",
+            Part::Scenes => "scenes",
+            Part::Others => "other scenes",
+        }
+    }
+}
+
+/// A case in memory.
+pub(crate) struct Loaded {
+    pub(crate) part: Part,
+    /// The sequence of a pair, the name of a scene.
+    pub(crate) sequence: String,
+    data: Data,
+}
+
+/// The scores of a case. Those of a scene: mean IoU, and 1 where the number of motions is right.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scored {
+    /// J of the groups without the background; mean IoU of a scene.
+    pub(crate) j: f64,
+    /// J by hand; 1 where the number of motions of a scene is right.
+    pub(crate) hand: f64,
+    /// F of the border.
+    pub(crate) f: f64,
+}
+
+/// The cases of these parts; of the pairs a third unless all are wanted.
+pub(crate) fn load(shared: &Path, parts: &[Part], whole: bool) -> Result<Vec<Loaded>, Failure> {
+    let all = cases::all(shared, false).map_err(|error| error.to_string())?;
+    let (pairs, scenes): (Vec<Case>, Vec<Case>) = all.into_iter().partition(|case| case.set == Set::Sequences);
+    let mut sequences: Vec<String> = pairs.iter().map(|case| case.sequence().to_owned()).collect();
+    sequences.sort();
+    sequences.dedup();
+    let fold = |case: &Case| match sequences.iter().position(|name| name == case.sequence()) {
+        Some(k) if k % 2 == 1 => Part::B,
+        _ => Part::A,
+    };
+    let pairs = if whole { pairs } else { cases::a_third(pairs.into_iter()) };
+    let others = scenes.into_iter().filter(|case| matches!(case.set, Set::Generated | Set::Colour | Set::Bare));
+    let mut chosen: Vec<(Part, Case)> = pairs.into_iter().map(|case| (fold(&case), case)).collect();
+    chosen.extend(cases::for_fitting().into_iter().map(|case| (Part::Scenes, case)));
+    chosen.extend(others.map(|case| (Part::Others, case)));
+    chosen.retain(|(part, _)| parts.contains(part));
+    in_parallel(&chosen, |(part, case)| {
+        let data = case.load().map_err(|error| error.to_string())?;
+        let sequence = if part.is_fold() { case.sequence().to_owned() } else { case.name.clone() };
+        Ok(Loaded { part: *part, sequence, data })
+    })
+}
+
+/// The scores of all cases with a model.
+pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method) -> Result<Vec<Scored>, Failure> {
+    // The levels of a pair refer to their model to the end of the program; a search makes some hundred.
+    let model: &'static Model = Box::leak(Box::new(*model));
+    let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
+    in_parallel(cases, |case| {
+        let Loaded { part, data, .. } = case;
+        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let found = segment_pair_with(model, &data.first, &data.second, None, &options)?;
+        let scores = outcome(method, data, &found.labels, &grouped(&found), &[], 0.0);
+        let (Some(single), Some(groups)) = (scores.single, scores.grouped) else {
+            return Err(format!("{} has no truth", case.sequence).into());
+        };
+        let f = groups.boundary.unwrap_or(0.0);
+        Ok(match part.is_fold() {
+            true => Scored { j: groups.j_background.unwrap_or(0.0), hand: single.j_oracle.unwrap_or(0.0), f },
+            false => {
+                let right = f64::from(u8::from(single.found_count == single.truth_count));
+                Scored { j: single.miou, hand: right, f }
+            }
+        })
+    })
+}
