@@ -361,28 +361,16 @@ model! {
 
     /// Shorter borders do not decide on groups, pixel pairs.
     shortest_border: usize = 12;
-    /// Flow that jumps by less is continuous, full-size pixels. Real.
-    group_tolerance: f64 = 0.3;
-    /// The same as a share of the largest jump of all joins. Real.
-    group_relative: f64 = 0.3;
-    /// Largest such jump, as a share of the frame's longer side. Real.
-    group_largest: f64 = 0.007;
-    /// Likelihood that two motions are one thing: weight of the jump. Fit to real pairs and generated scenes.
-    junction_jump: f64 = 4.7;
+    /// Log odds that two regions are one thing: constant. Fit to real pairs and generated scenes.
+    joint_constant: f64 = -3.9;
+    /// Weight of the logarithm of the relative jump. Fit.
+    joint_jump: f64 = 3.1;
     /// Weight of the frame's border on the outline that has more of it. Fit.
-    junction_more: f64 = 4.9;
+    joint_more: f64 = 3.3;
     /// Weight of the frame's border on the other outline. Fit.
-    junction_less: f64 = 29.8;
-    /// Weight of the share of the outline. Fit.
-    junction_outline: f64 = 0.9;
-    /// Constant of the log odds. Fit.
-    junction_constant: f64 = 3.1;
-    /// A larger share of the outline on the frame's border says no more. Real.
-    junction_enough: f64 = 0.02;
-    /// Likelihood from which on motions of continuous flow are one group. Real.
-    junction_likely: f64 = 0.35;
-    /// Likelihood from which on other motions are one group. Real.
-    junction_certain: f64 = 0.96;
+    joint_less: f64 = 29.5;
+    /// A larger share of that outline on the frame's border says no more. Real.
+    joint_enough: f64 = 0.02;
 
     /// Share of the largest cost, in the mean, above which two frames show different scenes.
     cut: f32 = 0.5;

@@ -19,7 +19,7 @@ use crate::answer::{Candidate, UNLABELLED};
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
-use crate::labelling::regions::groups::groups;
+use crate::labelling::regions::groups::Regions;
 use crate::labelling::resolution::upsampling::{enlarged, upsample};
 use crate::labelling::terms::views::costs_where_seen;
 use crate::motion::AffineMotion;
@@ -100,7 +100,7 @@ pub(super) fn report(
     let level = pair.finest();
     let (size, model) = ([level.width(), level.height()], level.model);
     let candidates = evidence(pair, &labelled, settings);
-    let grouping = groups(&labelled.motions, &labelled.labels, size[0], pair.reduction, model);
+    let regions = Regions::new(&labelled.motions, &labelled.labels, size[0], model);
     let costs = if options.mark_unknown || options.confidence {
         costs_where_seen(level, &labelled.motions)
     } else {
@@ -110,11 +110,10 @@ pub(super) fn report(
     let unknown = options.mark_unknown.then(|| unknown::unknown(pair, &labelled, &sure));
     let full = upsample(&labelled.labels, size, labelled.motions.len(), first.luminance(), model);
     let order = by_size(&full, labelled.motions.len());
-    let junctions = junctions::junctions(&labelled.motions, &labelled.labels, size[0], pair.reduction, &order, model);
-    let groups = junctions::groups(&junctions, &order.iter().map(|&k| grouping[k]).collect::<Vec<usize>>(), model);
+    let junctions = junctions::junctions(regions.clone(), pair.reduction, &order);
+    let group_of = regions.groups();
+    let groups: Vec<usize> = order.iter().map(|&k| group_of[k]).collect();
     let mut confidence = options.confidence.then(|| {
-        let mut group_of = vec![0; labelled.motions.len()];
-        order.iter().zip(&groups).for_each(|(&k, &group)| group_of[k] = group);
         doubt::doubt_objects(&mut sure, &costs, &labelled.labels, &group_of, model);
         confidence(&sure, &full, first.width())
     });

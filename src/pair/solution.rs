@@ -6,7 +6,7 @@ use super::{Pair, hypothesis, labels};
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
-use crate::labelling::regions::groups::groups;
+use crate::labelling::regions::groups::Regions;
 use crate::labelling::terms::views::{cheapest, costs_where_seen};
 use crate::labelling::{BACKGROUND, is_background};
 use crate::model::Model;
@@ -120,7 +120,7 @@ pub(crate) fn solve(
         }
     }
     let probabilities = probabilities(&costs, &labelled.labels, model);
-    let groups = groups(&labelled.motions, &labelled.labels, level.width(), pair.reduction, model);
+    let groups = Regions::new(&labelled.motions, &labelled.labels, level.width(), model).groups();
     let [enough, searched] = limits;
     let prior = settings.follows.then(|| Prior { motions: labelled.motions.clone(), enough, searched });
     Solution { motions: labelled.motions, labels: labelled.labels, probabilities, groups, prior, unexplained }

@@ -13,7 +13,8 @@
 //! measurement on others.
 
 use crate::frame::Plane;
-use crate::labelling::regions::description::{border_lengths, counts};
+use crate::labelling::regions::description::counts;
+use crate::labelling::regions::groups::shares_on_frame;
 use crate::model::Model;
 
 /// Smallest and largest P that are told apart. A safeguard.
@@ -31,7 +32,7 @@ pub(super) fn doubt_objects(
     let own = labels.iter().enumerate().map(|(p, &label)| f64::from(costs[usize::from(label)].values()[p]));
     let misfit = own.sum::<f64>() / labels.len() as f64;
     let largest = largest(groups, labels);
-    let on_border = shares_on_frame_border(labels, groups.len(), width);
+    let on_border = shares_on_frame(labels, groups.len(), width);
     for (k, plane) in probabilities.iter_mut().enumerate().filter(|(k, _)| groups[*k] != largest) {
         let constant =
             model.doubt_constant - model.doubt_frame_border * libm::sqrt(on_border[k]) - model.doubt_misfit * misfit;
@@ -50,20 +51,6 @@ fn largest(groups: &[usize], labels: &[u8]) -> usize {
     (0..sizes.len()).reduce(|best, k| if sizes[k] > sizes[best] { k } else { best }).unwrap_or(0)
 }
 
-/// Share of the outline of each label that lies on the frame's border; 0 of a label without pixels.
-pub(super) fn shares_on_frame_border(labels: &[u8], of: usize, width: usize) -> Vec<f64> {
-    let mut outer = vec![0; of];
-    let rows = labels.chunks(width).flat_map(|row| [row[0], row[width - 1]]);
-    let columns = labels[..width].iter().chain(&labels[labels.len() - width..]);
-    rows.chain(columns.copied()).for_each(|label| outer[usize::from(label)] += 1);
-    let inside = border_lengths(labels, of, width);
-    inside
-        .iter()
-        .zip(outer)
-        .map(|(&inside, outer)| f64::from(outer) / (inside as f64 + f64::from(outer)).max(1.0))
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -78,15 +65,6 @@ mod tests {
         let mut probabilities = [plane(0.9), plane(0.9)];
         doubt_objects(&mut probabilities, &[plane(cost), plane(cost)], labels, groups, &Model::DEFAULT);
         probabilities.map(|plane| plane.at(5, 3))
-    }
-
-    #[test]
-    fn the_outline_is_counted_in_sides_of_pixels() {
-        let of_object = |labels: &[u8]| shares_on_frame_border(labels, 3, 12)[1];
-        assert_eq!(of_object(&square(4)), 0.0);
-        assert_eq!(of_object(&square(0)), 0.25);
-        assert_eq!(of_object(&[1; 96]), 1.0);
-        assert_eq!(of_object(&[0; 96]), 0.0);
     }
 
     #[test]
