@@ -54,7 +54,12 @@ pub(crate) fn search(cases: &[Loaded], fold: Part, path: &Path, time: Duration) 
     let mut best = measure(cases, &model(&state.changed)?, Method::Best)?;
     let once = start.elapsed();
     let left = |done: usize| once.mul_f64(2.0 * (all - done) as f64).as_secs() / 60;
-    eprintln!("{} cases, {} s each time; about {} minutes for the rest.", cases.len(), once.as_secs(), left(state.done));
+    eprintln!(
+        "{} cases, {} s each time; about {} minutes for the rest.",
+        cases.len(),
+        once.as_secs(),
+        left(state.done)
+    );
     while state.done < all && start.elapsed() < time {
         let name = Model::NAMES[state.done % Model::NAMES.len()];
         let factor = FACTORS[state.done / Model::NAMES.len()];

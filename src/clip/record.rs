@@ -1,5 +1,6 @@
 //! What is known of one frame of a clip.
 
+use crate::clip::model;
 use std::rc::Rc;
 
 use super::evidence::Flow;
@@ -42,8 +43,5 @@ impl Record {
 
 /// Prices of borders along the edges of a frame, in units of the smoothness.
 pub(crate) fn unit_borders(appearance: &Appearance) -> Borders {
-    Borders::new(&appearance.pictures[0], EDGE_NOISE, 1.0, &Model::DEFAULT)
+    Borders::new(&appearance.pictures[0], model().edge_noise, 1.0, &Model::DEFAULT)
 }
-
-/// Noise that the edges of a frame stand out from, grey levels. Frames of clips are compressed more often than noisy. Not varied.
-const EDGE_NOISE: f32 = 1.0;
