@@ -399,281 +399,71 @@ model! {
     /// The constants of clips and of corrections. Only for measuring: nothing promises that they stay.
     ClipModel;
 
-    /// Odds beyond ±4 nats, probabilities of .018 and .982, are no more certain than that: a pair's mistakes are not. Not varied.
-    pair_most: f32 = 4.0;
-    /// Probability added to both sides of the odds.
-    pair_floor: f32 = 0.01;
-    /// Share of a frame's evidence that is left a frame later. Of ten real clips, .9 for the first round and .85 for the second change
-    /// J by less than .001; of fourteen, .7 for the second changes one by .022, the others by less than .01.
-    decay: f32 = 0.8;
-    /// Carried evidence beyond this many nats is no more certain. Chosen with the decay on ten real clips; 8 costs .003 J.
-    carried_most: f32 = 6.0;
-    /// Share of carried evidence of ground that counts. Chosen on thirty real clips: J .659 with 1, .667 with .7, .665 with .5, less
-    /// than a standard error apart. Less is better for people and animals, and worse where water or roads become objects.
-    ground: f32 = 0.7;
-    /// Odds beyond this many nats count no more in a cut; 8 costs .001 J.
-    cut_most: f32 = 5.0;
-    /// Weight of the odds in the cut; a nat is too much, as neighbours and frames share their mistakes.
-    odds_weight: f32 = 0.5;
-    /// Weight of the colours. Chosen on ten real clips: .5 costs .005 J, .9 costs .014, as colours then take ground of like colour.
-    colour_weight: f32 = 0.7;
-    /// Price of a border in a cut. Chosen on ten real clips: 4 costs .001 J.
-    cut_smoothness: f32 = 6.0;
-    /// Frames before and after from which colours are learned. Chosen on ten real clips: 8 costs .002 J.
-    colour_reach: usize = 16;
-    /// Odds, nats, from which a pixel counts for one side: probability .6. Chosen on ten real clips; 1.5 gives the same.
-    colour_sure: f32 = 0.4;
-    /// Pixels that each side needs before its colours are known.
-    colour_fewest: f32 = 200.0;
-    /// Pixels added to every colour of both sides. Insensitive: 4 gives the same.
-    colour_prior: f32 = 1.0;
-    /// Largest ratio, nats.
-    colour_most: f32 = 4.0;
-    /// Frames that a frame of a whole clip waits for, half of them in each round. Evidence from eight frames away has decayed to a sixth.
-    whole_clip: usize = 16;
-    /// Weight of the pairs' odds in the second round; on ten real clips .8 costs .003 J, …
-    second_round_odds: f32 = 0.5;
-    /// … and what the cut of the first round adds for or against an object, nats; 2.5 costs .003.
-    first_cut: f32 = 1.5;
-    /// Odds within ±1 nat, probabilities of .27 to .73, do not tell an object from the background. Not varied.
+    /// Odds beyond this are no more certain, nats, probabilities of .018 and .982: mistakes of pairs, of other frames and of colours are
+    /// not. In carried evidence 6, in a cut 5 and 8 give J within .003.
+    certain: f32 = 4.0;
+    /// Probability of either side that nothing excludes.
+    doubt: f32 = 0.01;
+    /// Odds of a first guess, nats: the cut of the first round, what was found where a person begins, the middle of a box or of a disc,
+    /// votes, and at most those of labels found automatically. 1.5 costs .004 J where a mask is given, .03 where a click is. Real.
+    guess: f32 = 2.0;
+    /// Odds within which evidence does not tell an object from ground, nats: probabilities of .27 to .73. Also what it costs a pixel to
+    /// leave the objects of its motion, half of what it costs to leave its own. Real; insensitive.
     undecided: f32 = 1.0;
-    /// Odds where something that was found is no object any more, nats.
-    freed: f32 = 4.0;
-    /// Noise that the edges of a frame stand out from, grey levels. Frames of clips are compressed more often than noisy. Not varied.
-    edge_noise: f32 = 1.0;
-    /// Pixels between a pixel and where its motion and that of the place it leads to bring it, from which it was not in sight there.
-    round_trip: f64 = 1.5;
-    /// An object leads to a region where its carried pixels are at least this share of the region or of the object …
-    claim: f64 = 0.2;
-    /// … and a region with less than this share of carried pixels is not claimed by what grazes it.
-    graze: f64 = 0.05;
-    /// Overlap of two colour histograms, 0…1, from which they may be of one object.
-    colours_alike: f64 = 0.4;
-    /// Largest growth of an object while it was hidden.
-    growth: f64 = 4.0;
-    /// They are also two when neither has moved with the other for this many frames in a row.
-    apart_frames: usize = 6;
-    /// Two pieces of an object are two objects when one has moved this far relative to the other, in roots of its size. What covers the
-    /// middle of an object leaves its pieces where they are.
-    apart: f64 = 0.5;
-    /// Share of an object that a piece must have to be one.
-    smallest_piece: f64 = 0.2;
-    /// Share of its pixels that must be in sight to tell how an object moves.
-    seen_moving: f64 = 0.3;
-    /// Share of its pixels from which an object is in full sight.
-    seen_whole: f64 = 0.95;
-    /// What is left of its full size in every frame in which less is in sight: objects also become smaller by moving away.
-    whole_shrinking: f64 = 0.98;
-    /// Frames for which an object may be hidden and keep its number. 16 gains nothing on five generated clips.
-    longest_hidden: usize = 10;
-    /// … and this share of that farther for each frame in which it was hidden.
-    search_growth: f64 = 0.1;
-    /// What was hidden of an object is looked for this far from where its motion leads, in roots of its size, …
-    search: f64 = 1.5;
-    /// A part of an object in sight moves like it, to within this many working pixels …
-    same_motion: f64 = 1.0;
-    /// … and this share of its displacement.
-    same_speed: f64 = 0.25;
-    /// Two pieces have different motions where these differ by this many working pixels, and by this share of how far the piece moves.
-    other_motion: f64 = 0.5;
-    /// Two pieces have different motions where these differ by this many working pixels, and by this share of how far the piece moves.
-    other_speed: f64 = 0.25;
-    /// Price of a label other than the one carried to a pixel, and of one that few carried pixels of the same motion have. On fifteen
-    /// generated clips [1, 2] costs .002 of *assigned*.
-    share_own: f32 = 2.0;
-    /// Price of a label other than the one carried to a pixel, and of one that few carried pixels of the same motion have. On fifteen
-    /// generated clips [1, 2] costs .002 of *assigned*.
-    share_motion: f32 = 1.0;
-    /// Price of a border between two objects. Set by hand, not varied.
-    share_smoothness: f32 = 3.0;
-    /// Displacement of the background, working pixels, below which a pair without objects shows twice the same. Not varied.
-    still: f64 = 0.1;
-    /// An object is followed back while at least this share of its pixels is found in the frame before. Not varied.
-    parting_found: f64 = 0.5;
-    /// Pixels of one object within another that are fewer than this share of its own are taken for the other's.
-    parting_smallest: f64 = 0.05;
-    /// Frames in which two objects must be seen moving together.
-    together: usize = 5;
-    /// Largest difference of their motions, as a share of their displacement relative to the background …
-    together_motion: f64 = 0.2;
-    /// … in frames where that is at least this many working pixels.
-    together_moving: f64 = 0.5;
-    /// Largest distance between their bounding boxes, in roots of the smaller one's pixels.
-    together_near: f64 = 1.0;
-    /// An object seen in fewer frames than this, neither in the first nor in the last frame of its scene, is none.
-    lasting: usize = 4;
-    /// Added to all odds for the object of a person, nats: without it masks shrink until they vanish. Fit.
-    bias: f32 = 1.0;
-    /// Weight of the odds of the labels carried from the frame before. Fit.
-    carried: f32 = 0.5;
-    /// Weight of the odds of the memory of what an object looks like. Fit.
-    memory: f32 = 1.6;
-    /// Pixels of a cell of the memory below which it falls back on wider ones. Fit.
-    back_off: f32 = 2.0;
-    /// Share of the recent part of the memory that is left after a frame. Fit.
-    memory_decay: f32 = 0.8;
-    /// Side of a cell of the memory, as a share of the working frame's longer side. Fit.
-    cell: f32 = 0.047;
-    /// Weight of the automatic labels. Fit.
-    found: f32 = 1.0;
-    /// Price of a border where a person corrects. Fit.
-    smoothness: f32 = 3.0;
-    /// Price of a shift of the whole object, for each coarse pixel away from the one expected. Fit.
-    shift: f32 = 0.003;
-    /// Weight of a pixel of a frame in which the object was found automatically. Fit.
-    survey: f32 = 0.3;
-    /// Frames that are surveyed at most for an object.
-    surveyed: usize = 8;
-    /// Share of the counts that is left after a frame.
-    label_decay: f32 = 0.9;
-    /// Share that a label can have at least.
-    label_floor: f32 = 0.05;
-    /// Largest ratio, nats.
-    label_most: f32 = 2.0;
-    /// Ground around the object that counts, pixels.
-    label_around: usize = 50;
-    /// Blur of the colours, pixels.
-    look_blur: f32 = 0.7;
-    /// Longer side at most, pixels.
-    look_side: usize = 480;
-    /// Coarse pixels are so many of the working size.
-    coarse: usize = 4;
-    /// Colour cells: steps of L, and of a and b, and how many of each. Of a and b only the middle half is told apart.
-    lightness_step: f32 = 14.0;
-    /// Colour cells: steps of L, and of a and b, and how many of each. Of a and b only the middle half is told apart.
-    chroma_step: f32 = 6.0;
-    /// Ground around the object whose place is told apart, cells on each side.
-    memory_margin: usize = 3;
-    /// Share of the back-off that wider cells need.
-    wider: f32 = 0.1;
-    /// Pixels found automatically that a pixel of which something else is said silences at most.
-    silences: f32 = 40.0;
-    /// Rounds of learning and cutting of a click's candidates, and of the last fit.
-    candidate_rounds: usize = 2;
-    /// Rounds of learning and cutting of a click's candidates, and of the last fit.
-    outline_rounds: usize = 3;
-    /// Ground around the object that is learned from, pixels of the working size.
-    outline_around: usize = 40;
-    /// Weight of labels and motions.
-    outline_found: f32 = 0.7;
-    /// The middle of a box is the object with these odds, nats, which fall with the squared distance: by so many at the middle of a side.
-    box_middle: f32 = 1.0;
-    /// The middle of a box is the object with these odds, nats, which fall with the squared distance: by so many at the middle of a side.
-    box_fall: f32 = 1.5;
-    /// The same odds of a disc, and the same shares of its radius.
-    disc_middle: f32 = 1.5;
-    /// The same odds of a disc, and the same shares of its radius.
-    disc_fall: f32 = 1.5;
-    /// Radius around a click that is the object, pixels of the working size.
-    click: f32 = 2.5;
-    /// Blur of a region, and pixels that it needs.
-    region_blur: f32 = 4.0;
-    /// Pixels that a region needs.
-    region_fewest: usize = 30;
-    /// Share of the votes from which a pixel begins as the object, and odds for all votes.
-    enough_votes: f32 = 0.3;
-    /// Odds for all votes, nats.
-    votes: f32 = 3.0;
-    /// Odds from which motions decide, nats.
-    motion_decisive: f32 = 0.3;
-    /// Window over which odds of motions are averaged before that, pixels.
-    motion_window: f32 = 5.0;
-    /// Pixels of an object below which it is not searched.
-    placed_fewest: f32 = 80.0;
-    /// An object is seen whole while it has this share of the pixels that it had …
-    placed_seen: f32 = 0.85;
-    /// … of which this share is expected a frame later.
-    placed_shrinking: f32 = 0.97;
-    /// Cost of a shift close to the one expected up to which no other place is looked for: that may be another object that looks like it.
-    placed_close: f32 = 0.3;
-    /// While more than this share is left, an object has changed, and is not hidden, …
-    changed: f32 = 0.5;
-    /// … if less than this share of what is left looks as before.
-    changed_same: f32 = 0.7;
-    /// Share of the last step in the velocity.
-    latest: f32 = 0.3;
-    /// Largest odds of anything else.
-    sweep_most: f32 = 5.0;
-    /// Probability added to both sides.
-    sweep_floor: f32 = 0.02;
-    /// Odds where the object begins with what was found of it, and where it is not.
-    beginning: f32 = 2.0;
-    /// Odds of what lies beyond an area, and where nothing is said of an object that was not found.
-    nowhere: f32 = -9.0;
-    /// Weight as ground of a pixel of which nothing is said where an object begins that was not found.
-    unsaid: f32 = 0.1;
-    /// Ground around the object that is looked at, pixels of the working size.
-    sweep_around: usize = 24;
-    /// Weight of what is seen of a hidden object, in carried labels.
-    hidden: f32 = 3.0;
-    /// Blur of carried labels, pixels.
-    sweep_blur: f32 = 1.5;
-    /// Share of a carried label below which the object is not expected at a pixel …
-    few: f32 = 0.1;
-    /// … and from which the pixel counts for the object's centre.
-    central: f32 = 0.3;
-    /// Pixels of the object that are compared.
-    compared: usize = 150;
-    /// How far around the expected shift, coarse pixels.
-    view_search: isize = 12;
-    /// How far around the best of these, pixels.
-    view_near: isize = 3;
-    /// How far around where a hidden object is expected, pixels: after one frame, and how much that grows with each.
-    view_reach: f32 = 2.0;
-    /// How far around where a hidden object is expected, pixels: after one frame, and how much that grows with each.
-    view_drift: f32 = 0.5;
-    /// Squared colour difference beyond which it does not matter.
-    truncation: f32 = 600.0;
-    /// What a pixel costs that cannot be seen, as a share of that.
-    unseen: f32 = 0.7;
-    /// A hidden object is seen where its pixels cost at most this, and so much less than elsewhere.
-    seen_again: f32 = 0.7;
-    /// A hidden object is seen where its pixels cost at most this, and so much less than elsewhere.
-    seen_better: f32 = 0.1;
-    /// Share of the truncation beyond which a pixel does not look alike.
-    view_alike: f32 = 0.5;
-    /// How much less well its place is known with each frame, pixels.
-    view_blur: f32 = 0.3;
-    /// What others lose where a hidden object may appear again, and once more where it is seen, nats.
-    awaited: f32 = 4.0;
     /// Weight of the odds of the pair with the frame before; the pair with the next one has the rest.
     backward: f32 = 0.5;
-    /// Rounds over a clip.
+    /// Share of evidence, and of what is remembered of an object's looks, that is left a frame later. Real.
+    decay: f32 = 0.8;
+    /// Share of carried evidence of ground that counts: an object that rests looks like ground, ground seldom like an object. Chosen on
+    /// thirty real clips: J .659 with 1, .665 with .5. Less is better for people and animals, and worse where water or roads become objects.
+    ground: f32 = 0.7;
+    /// Rounds over a clip, and of learning and cutting after a click or a box.
     rounds: usize = 2;
-    /// Odds of what a person said, in the layer of a frame, nats.
-    said: f32 = 8.0;
-    /// The middle of a box, as a share of its largest ellipse, begins as the object.
-    box_inner: f32 = 0.8;
-    /// Share of a disc's radius up to which it begins as the object.
-    disc_inner: f32 = 0.7;
-    /// Share of a disc's radius from which on is ground.
-    disc_outer: f32 = 1.3;
-    /// Radii of the discs that a click begins with, as shares of the frame's longer side.
-    radius_1: f32 = 0.03;
-    /// The same.
-    radius_2: f32 = 0.05;
-    /// The same.
-    radius_3: f32 = 0.08;
-    /// The same.
-    radius_4: f32 = 0.13;
-    /// The same.
-    radius_5: f32 = 0.2;
-    /// The same.
-    radius_6: f32 = 0.32;
-    /// How far an object may reach that begins with a disc, in radii.
-    disc_area: f32 = 2.0;
-    /// Odds in the middle of a region that has the click's label, nats.
-    region_odds: f32 = 1.0;
-    /// How far an object may reach beyond where it begins, as a share of width and height together.
-    around_share: f32 = 0.125;
-    /// The same at least, pixels.
-    around_least: usize = 12;
-    /// Largest odds of what neither was a hidden object's own nor looks as it did, nats.
-    hidden_most: f32 = -1.0;
-    /// Pixels from which an object has a centre.
-    centre_fewest: f64 = 3.0;
-    /// How well the place of an object is known where it was last seen, pixels.
-    view_blur_first: f32 = 1.0;
-    /// Factor of the odds of a place where a hidden object may be.
-    view_wide: f32 = 2.0;
+    /// Weight of automatic evidence: neighbours and frames share its mistakes. More for colours takes ground of like colour. Real.
+    automatic: f32 = 0.3;
+    /// Weight of evidence that has decided before: in the second round, and of labels carried from the frame before. Real.
+    trust: f32 = 0.5;
+    /// Price of a border pixel, costs. Real.
+    smoothness: f32 = 3.0;
+
+    /// Added to all odds for the object of a person, nats: without it masks shrink until they vanish. Fit to real clips.
+    bias: f32 = 1.0;
+    /// Weight of the odds of the memory of what an object of a person looks like. Fit to real clips.
+    memory: f32 = 1.6;
+    /// Pixels of a cell of the memory below which it falls back on wider ones. Fit to real clips.
+    back_off: f32 = 2.0;
+    /// Side of a cell of the memory, as a share of the frame's longer side. Fit to real clips.
+    cell: f32 = 0.05;
+    /// Step of a and b of L*a*b* between colours of the memory; that of L is twice as large.
+    colour_step: f32 = 6.0;
+    /// Pixels found automatically that a pixel of which something else is said silences at most.
+    silences: f32 = 40.0;
+    /// Squared difference of colours beyond which it does not matter, L*a*b*.
+    truncation: f32 = 600.0;
+    /// Price of a shift of a whole object, for each coarse pixel away from the one expected, truncated differences. Fit to real clips.
+    shift: f32 = 0.003;
+    /// Coarse pixels are so many of the working size. Speed.
+    coarse: usize = 4;
+
+    /// Ground around an object that is looked at, and how far it is searched, pixels of the working size.
+    margin: usize = 48;
+    /// Pixels that it takes to know colours or a place.
+    pixels: usize = 100;
+    /// Distance of places that are the same, pixels of the working size or cells of the memory: around a click, a shift, a border.
+    near: f32 = 3.0;
+    /// Difference of displacements that are the same, and how well a place is known after a frame, pixels of the working size.
+    motion: f32 = 1.0;
+    /// Distance within which parts of an object are looked for, and which parts it, in roots of its size.
+    search: f64 = 1.0;
+    /// A smaller share of a thing is nothing: what grazes it, what is not expected; more than the rest is all of it. Also the weight as ground
+    /// of a pixel of which nothing is said.
+    few: f32 = 0.1;
+    /// A larger share of a thing is a part of it, and a larger relative difference is one; more than the rest is most of it.
+    part: f32 = 0.2;
+    /// What is left of an object's full size in a frame in which less is in sight: objects also become smaller by moving away.
+    shrinking: f32 = 0.97;
+    /// Frames in a row in which two must move together to be one, or apart to be two. Generated.
+    together: usize = 5;
+    /// An object seen in fewer frames, neither in the first nor in the last of its scene, is none. Generated.
+    lasting: usize = 4;
 }

@@ -13,13 +13,9 @@ pub(crate) const PARTS: [Part; 5] = [
     // The motions of backward pairs are still used.
     Part { name: "both-directions", title: "without the evidence of backward pairs", values: &[("backward", 0.0)] },
     Part { name: "carrying", title: "without the evidence of other frames", values: &[("decay", 0.0)] },
-    Part { name: "colours", title: "without colours", values: &[("colour_weight", 0.0)] },
+    Part { name: "colours", title: "without colours", values: &[("pixels", f64::MAX)] },
     Part { name: "second-round", title: "without the second round", values: &[("rounds", 1.0)] },
-    Part {
-        name: "grouping",
-        title: "without grouping",
-        values: &[("parting_found", 2.0), ("together", f64::MAX), ("lasting", 0.0)],
-    },
+    Part { name: "grouping", title: "without grouping", values: &[("together", f64::MAX), ("lasting", 0.0)] },
 ];
 
 impl Part {

@@ -16,7 +16,7 @@ impl ColourCounts {
     /// The counts of one frame, from the odds of object against background at its pixels.
     pub(crate) fn of(palette: &Palette, odds: &Plane) -> ColourCounts {
         let mut counts = ColourCounts::none();
-        for (p, &odds) in odds.values().iter().enumerate().filter(|(_, odds)| odds.abs() > model().colour_sure) {
+        for (p, &odds) in odds.values().iter().enumerate().filter(|(_, odds)| odds.abs() > model().undecided) {
             counts.0[usize::from(odds < 0.0)][palette.index(p)] += 1.0;
         }
         counts
@@ -30,16 +30,12 @@ impl ColourCounts {
     /// Log-likelihood ratio of object against background for each colour, nats; zero while a side is unknown.
     pub(crate) fn ratios(&self) -> Vec<f32> {
         let totals = self.0.each_ref().map(|side| side.iter().sum::<f32>());
-        if totals.iter().any(|&total| total < model().colour_fewest) {
+        if totals.iter().any(|&total| total < model().pixels as f32) {
             return vec![0.0; COLOURS];
         }
-        let share = |side: usize, colour: usize| {
-            (self.0[side][colour] + model().colour_prior) / (totals[side] + model().colour_prior * COLOURS as f32)
-        };
+        let share = |side: usize, colour: usize| (self.0[side][colour] + 1.0) / (totals[side] + COLOURS as f32);
         (0..COLOURS)
-            .map(|colour| {
-                libm::logf(share(0, colour) / share(1, colour)).clamp(-model().colour_most, model().colour_most)
-            })
+            .map(|colour| libm::logf(share(0, colour) / share(1, colour)).clamp(-model().certain, model().certain))
             .collect()
     }
 }

@@ -22,9 +22,9 @@ mod world;
 
 use super::evidence::{Flow, KeptOdds};
 use super::layer::{Layer, SaidFrame, Spread};
-use super::model;
 use super::runs::Runs;
 use super::whole::{NOTHING_SAID, SegmentedClip};
+use super::{MAX_LOOK_AHEAD, model};
 use crate::error::Result;
 use crate::frame::{Frame, Plane};
 use crate::labelling::resolution::upsampling::upsample;
@@ -238,7 +238,7 @@ impl ClipCorrection {
                 continue;
             }
             let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds(t, number)).collect();
-            let count = there.len().min(model().surveyed);
+            let count = there.len().min(MAX_LOOK_AHEAD);
             self.survey.extend((0..count).map(|k| (there[k * there.len() / count], Some(number))));
         }
         let tracks = || self.worlds.iter().flat_map(|world| &world.tracks);
@@ -436,14 +436,14 @@ impl ClipCorrection {
         if let Some(said) = &clip.frames[t].said {
             let said = said.labels.values();
             for p in (0..said.len()).filter(|&p| said[p] != NOTHING_SAID && !held[p]) {
-                (best[p], labels[p]) = (model().said, said[p]);
+                (best[p], labels[p]) = (2.0 * model().certain, said[p]);
             }
         }
         let [w, h] = clip.working_size();
         let old = before.map(|layer| layer.odds.odds(w, h));
         let layer = clip.layer_of(&labels, &|p, at| match held[p] {
             true => old.as_ref().map_or(0.0, |old| old.values()[at]),
-            false => best[p].min(model().said),
+            false => best[p].min(2.0 * model().certain),
         });
         self.put(clip, t, layer);
     }
@@ -468,7 +468,7 @@ impl SegmentedClip {
                 let p = (y * step).min(height - 1) * width + (x * step).min(width - 1);
                 match labels[p] {
                     NOTHING_SAID => 0.0,
-                    0 => -model().said,
+                    0 => -2.0 * model().certain,
                     _ => odds(p, y * w + x),
                 }
             });

@@ -177,13 +177,13 @@ pub(crate) fn odds(solution: &Solution) -> Plane {
     let total = |group: usize| (0..groups.len()).filter(|&k| groups[k] == group).map(|k| sizes[k]).sum::<usize>();
     let largest = groups[descending((0..groups.len()).map(|k| total(groups[k]) as f64))[0]];
     let (width, height) = (probabilities[0].width(), probabilities[0].height());
-    let [mut odds, mut ground] = [0, 1].map(|_| Plane::filled(width, height, model().pair_floor));
+    let [mut odds, mut ground] = [0, 1].map(|_| Plane::filled(width, height, model().doubt));
     for (probability, group) in probabilities.iter().zip(groups) {
         let sum = if *group == largest { &mut ground } else { &mut odds };
         sum.values_mut().iter_mut().zip(probability.values()).for_each(|(s, p)| *s += p);
     }
     for (odds, ground) in odds.values_mut().iter_mut().zip(ground.values()) {
-        *odds = STEP * libm::roundf(libm::logf(*odds / ground).clamp(-model().pair_most, model().pair_most) / STEP);
+        *odds = STEP * libm::roundf(libm::logf(*odds / ground).clamp(-model().certain, model().certain) / STEP);
     }
     odds
 }

@@ -97,7 +97,7 @@ impl Census {
         let difference = length(at(one.motion, other.centre), other.displacement)
             + length(at(other.motion, one.centre), one.displacement);
         let moved = |sighting: &Sighting| length(at(BACKGROUND, sighting.centre), sighting.displacement);
-        if moved(one) >= model().together_moving && moved(other) >= model().together_moving {
+        if moved(one) >= f64::from(model().motion) && moved(other) >= f64::from(model().motion) {
             meeting.frames += 1;
             meeting.difference += difference;
             meeting.displacement += moved(one) + moved(other);
@@ -143,8 +143,8 @@ impl Census {
 impl Meeting {
     fn is_of_one_object(&self) -> bool {
         self.frames >= model().together
-            && self.difference <= model().together_motion * self.displacement
-            && self.distance <= model().together_near
+            && self.difference <= f64::from(model().part) * self.displacement
+            && self.distance <= model().search
     }
 }
 

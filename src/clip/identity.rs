@@ -158,9 +158,7 @@ impl Identities {
         let size = pixels.len() as f64;
         let claims = |object: &&Object| {
             let count = counts[usize::from(object.number)] as f64;
-            count >= model().claim * size
-                || (count >= model().claim * object.whole.size && count >= model().graze * size)
-                || (count > 0.0 && emerged.contains(&object.number))
+            count >= f64::from(model().few) * size || (count > 0.0 && emerged.contains(&object.number))
         };
         let mut numbers: Vec<u8> = self.objects.iter().filter(claims).map(|object| object.number).collect();
         sort_few(&mut numbers, u8::cmp);
@@ -175,11 +173,10 @@ impl Identities {
 
     /// The object near a place whose colours are most alike among those that may be there, if they are more alike than `least`.
     fn most_alike(&self, sight: &Sight, least: f64, may_be: impl Fn(&Object) -> bool) -> Option<u8> {
-        let mut best = (least.max(model().colours_alike), None);
+        let mut best = (least.max(f64::from(model().part)), None);
         for object in &self.objects {
             let alike = object.whole.alike(sight);
-            let grown = sight.size / object.whole.size;
-            if may_be(object) && grown < model().growth && object.is_near(sight.centre) && alike > best.0 {
+            if may_be(object) && object.is_near(sight.centre) && alike > best.0 {
                 best = (alike, Some(object.number));
             }
         }
@@ -204,7 +201,7 @@ impl Identities {
             let number = self.objects[k].number;
             let pieces: Vec<usize> = order.iter().copied().filter(|&c| found.list[c].label == number).collect();
             let whole: usize = pieces.iter().map(|&c| found.list[c].size).sum();
-            let large = |c: &&usize| found.list[**c].size as f64 >= model().smallest_piece * whole as f64;
+            let large = |c: &&usize| found.list[**c].size as f64 >= f64::from(model().part) * whole as f64;
             let second = pieces.iter().skip(1).find(large).copied();
             let Some(second) = second else {
                 self.objects[k].apart = Apart::default();
@@ -213,7 +210,7 @@ impl Identities {
             let [one, other] = [pieces[0], second].map(|c| pixels_of(&found, c));
             let apart = &mut self.objects[k].apart;
             apart.add(along, &one, &other);
-            if apart.distance() > model().apart * (other.len() as f64).sqrt() || apart.frames >= model().apart_frames {
+            if apart.distance() > model().search * (other.len() as f64).sqrt() || apart.frames >= model().together {
                 self.objects[k].apart = Apart::default();
                 if let Some(new) = self.new_number() {
                     other.iter().for_each(|&p| labels[p] = new);

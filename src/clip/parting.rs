@@ -18,10 +18,10 @@ pub(super) fn divide(labels: &mut [u8], later: &[u8], onward: &Flow, from: u8, n
     }
     let count = |labels: &[u8], number: u8| labels.iter().filter(|&&label| label == number).count();
     let (found, expected) = (count(&carried, 2), count(later, new));
-    if (found as f64) < model().parting_found * expected as f64 {
+    if (found as f64) < 0.5 * expected as f64 {
         return false;
     }
-    absorb_small(&mut carried, width, (model().parting_smallest * found as f64) as usize);
+    absorb_small(&mut carried, width, (f64::from(model().few) * found as f64) as usize);
     labels
         .iter_mut()
         .zip(&carried)

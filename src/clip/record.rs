@@ -1,6 +1,5 @@
 //! What is known of one frame of a clip.
 
-use crate::clip::model;
 use std::rc::Rc;
 
 use super::evidence::Flow;
@@ -43,5 +42,5 @@ impl Record {
 
 /// Prices of borders along the edges of a frame, in units of the smoothness.
 pub(crate) fn unit_borders(appearance: &Appearance) -> Borders {
-    Borders::new(&appearance.pictures[0], model().edge_noise, 1.0, &Model::DEFAULT)
+    Borders::new(&appearance.pictures[0], Model::DEFAULT.smallest_noise, 1.0, &Model::DEFAULT)
 }

@@ -4,12 +4,12 @@
 //! ```text
 //! past(t)   = odds(t) + d · carried past(t − 1)          future(t) likewise from t + 1
 //! z(t)      = past(t) + future(t) − odds(t)
-//! E(l)      = Σ_p l_p ≠ object · (w_z z + w_c colour)(p) + borders
+//! E(l)      = Σ_p l_p ≠ object · w (z + colour)(p) + borders
 //! ```
 //! Carried evidence saturates, and decays with every frame. That of ground counts less: an object that rests in one pair looks like ground
 //! there, while ground seldom looks like an object. A frame leaves the round when the frames it waits for have come.
 
-use crate::clip::model;
+use crate::clip::{MAX_LOOK_AHEAD, model};
 use std::collections::VecDeque;
 use std::rc::Rc;
 
@@ -81,18 +81,17 @@ impl Round {
         colours.add(&own_colours);
         self.colours.iter().for_each(|counts| colours.add(counts));
         self.colours.push_back(own_colours);
-        if self.colours.len() > model().colour_reach {
+        if self.colours.len() > 2 * MAX_LOOK_AHEAD {
             self.colours.pop_front();
         }
         let ratios = colours.ratios();
         let price = |(p, odds): (usize, &f32)| {
-            model().odds_weight * odds.clamp(-model().cut_most, model().cut_most)
-                + model().colour_weight * ratios[record.palette.index(p)]
+            model().automatic * (odds.clamp(-model().certain, model().certain) + ratios[record.palette.index(p)])
         };
         let [width, height] = record.size();
         let ground = Plane::from_buffer(width, height, odds.values().iter().enumerate().map(price).collect());
         let mask = record
-            .borders(model().cut_smoothness)
+            .borders(model().smoothness)
             .solve(&[ground, Plane::filled(width, height, 0.0)], self.solver)
             .to_vec();
         Some(Foreground { record, own, odds, mask })
@@ -102,7 +101,7 @@ impl Round {
     /// frames of its scene by theirs.
     fn with_future(&self) -> Option<(Plane, ColourCounts, ColourCounts)> {
         let of_scene = self.waiting.iter().skip(1).take_while(|waiting| waiting.record.back.is_some());
-        let last_of_colours = of_scene.count().min(model().colour_reach);
+        let last_of_colours = of_scene.count().min(2 * MAX_LOOK_AHEAD);
         let mut colours = ColourCounts::none();
         let mut future: Option<Plane> = None;
         for (k, Waiting { record, odds, past }) in self.waiting.iter().enumerate().rev() {
@@ -131,7 +130,7 @@ impl Round {
         let pixels = joined.values_mut().iter_mut().zip(carried.values());
         pixels.for_each(|(own, carried)| {
             let share = if *carried < 0.0 { model().ground } else { 1.0 };
-            *own += model().decay * share * carried.clamp(-model().carried_most, model().carried_most);
+            *own += model().decay * share * carried.clamp(-model().certain, model().certain);
         });
         joined
     }

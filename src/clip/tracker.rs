@@ -67,7 +67,7 @@ impl Tracker {
             return Err(Error::InvalidOption { name: "lookAhead", reason });
         }
         // A stream has its frames' future in the first round alone.
-        let delays = options.look_ahead.map_or([model().whole_clip / 2; 2], |frames| [frames, 0]);
+        let delays = options.look_ahead.map_or([MAX_LOOK_AHEAD; 2], |frames| [frames, 0]);
         let solver = Settings::solver(options.pair.quality);
         let rounds = [0, 1].map(|k| Round::new(delays[k], solver));
         let identities = Identities::new();
@@ -236,8 +236,8 @@ impl Tracker {
         }
         let Foreground { record, own: mut odds, mask, .. } = first;
         for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
-            let cut = if object > 0 { model().first_cut } else { -model().first_cut };
-            *odds = model().second_round_odds * *odds + cut;
+            let cut = if object > 0 { model().guess } else { -model().guess };
+            *odds = model().trust * *odds + cut;
         }
         let foreground = self.rounds[1].push(record, odds)?;
         Some(self.tracked(foreground))

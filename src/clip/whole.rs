@@ -339,7 +339,7 @@ impl SegmentedClip {
             let odds = &mut odds.values_mut()[p];
             match &layer {
                 Some((of_layer, above)) if above[q] != NOTHING_SAID => *odds = of_layer.values()[p],
-                _ if full[q] == 0 && found[q] > 0 => *odds = -model().freed,
+                _ if full[q] == 0 && found[q] > 0 => *odds = -model().certain,
                 _ => {}
             }
             labels[p] = full[q];

@@ -37,9 +37,9 @@ impl Evidence {
         if inside.is_empty() {
             return;
         }
-        let area = Area::of(&inside, width).grown(model().label_around, width, height);
+        let area = Area::of(&inside, width).grown(model().margin, width, height);
         let side = |p: usize| usize::from(mask.values()[p] < 0.5);
-        let shares = if begins { [0.0, 1.0] } else { [model().label_decay, 1.0 - model().label_decay] };
+        let shares = if begins { [0.0, 1.0] } else { [model().decay, 1.0 - model().decay] };
         self.count(shares, found, &area, width, &side);
     }
 
@@ -59,11 +59,11 @@ impl Evidence {
             }
         }
         let share = |count: f32, total: f32| {
-            (count + model().label_floor * total + 1.0) / ((1.0 + 2.0 * model().label_floor) * total + 2.0)
+            (count + model().doubt * total + 1.0) / ((1.0 + 2.0 * model().doubt) * total + 2.0)
         };
         for (ratio, [object, ground]) in self.ratios.iter_mut().zip(&self.counts) {
-            *ratio = libm::logf(share(*object, totals[0]) / share(*ground, totals[1]))
-                .clamp(-model().label_most, model().label_most);
+            *ratio =
+                libm::logf(share(*object, totals[0]) / share(*ground, totals[1])).clamp(-model().guess, model().guess);
         }
     }
 }

@@ -29,7 +29,7 @@ pub(super) struct Look {
 /// Full-size pixels for each pixel of the working size.
 fn step_of(size: [usize; 2]) -> usize {
     let mut step = 1;
-    while size[0].max(size[1]).div_ceil(step) > model().look_side {
+    while size[0].max(size[1]).div_ceil(step) > Model::DEFAULT.work_side {
         step *= 2;
     }
     step
@@ -41,11 +41,11 @@ impl Look {
         let mut luminance = frame.luminance().clone();
         (0..step.ilog2()).for_each(|_| luminance = halve(&luminance));
         let picture = Picture { colours: colours(frame, luminance.width()), luminance };
-        let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, model().look_blur));
+        let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, model().motion));
         let size = [picture.luminance.width(), picture.luminance.height()];
         let colours = (0..size[0] * size[1]).map(|p| colour(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
-        let borders = Borders::new(&picture, model().edge_noise, 1.0, &Model::DEFAULT);
+        let borders = Borders::new(&picture, Model::DEFAULT.smallest_noise, 1.0, &Model::DEFAULT);
         Look { size, step, colours, fine, coarse, borders }
     }
 }

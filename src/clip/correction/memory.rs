@@ -9,14 +9,15 @@ use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 
-const LIGHTNESS: usize = 20;
+/// Colour cells: how many of L, and of a and b, of which only the middle half is told apart.
+const LIGHTNESS: usize = 22;
 const CHROMA: usize = 24;
 pub(super) const COLOURS: usize = LIGHTNESS * CHROMA * CHROMA;
 
 /// The colour cell of a pixel.
 pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
-    let chroma = |value: f32| (((value - 64.0) / model().chroma_step + 1.5).max(0.0) as usize).min(CHROMA - 1);
-    let lightness = ((l / model().lightness_step + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
+    let chroma = |value: f32| (((value - 64.0) / model().colour_step + 1.5).max(0.0) as usize).min(CHROMA - 1);
+    let lightness = ((l / (2.0 * model().colour_step) + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
     ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
 }
 
@@ -64,7 +65,7 @@ impl Memory {
 
     /// Nothing yet, of an object within an area.
     pub(super) fn new(area: &Area, cell: f32) -> Memory {
-        let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().memory_margin;
+        let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().near as usize;
         let size = [cells(area.width()), cells(area.height())];
         Memory {
             size,
@@ -231,8 +232,8 @@ impl Memory {
                 };
                 let (near, wider) = (sample(&planes), sample(&wide));
                 let back_off = model().back_off;
-                let of_wider = (wider[0] + model().wider * back_off * shares[k])
-                    / (wider[0] + wider[1] + model().wider * back_off);
+                let of_wider =
+                    (wider[0] + model().few * back_off * shares[k]) / (wider[0] + wider[1] + model().few * back_off);
                 probabilities.push((near[0] + back_off * of_wider) / (near[0] + near[1] + back_off));
             }
         }

@@ -144,47 +144,26 @@ impl View<'_> {
         let middle = |side: &Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
         let centre = [middle(&area.columns), middle(&area.rows)];
         let radii = [area.width(), area.height()].map(|side| 0.5 * side as f32);
-        self.fitted(
-            self.ellipse(
-                area,
-                centre,
-                radii,
-                [model().box_middle, model().box_fall],
-                [model().box_inner, f32::INFINITY],
-            ),
-            &|_| false,
-            model().outline_rounds,
-        )
+        self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY]), &|_| false)
     }
 
     fn clicked(&self, click: usize) -> Vec<u8> {
         let (pixels, [width, height]) = (self.look.pixels(), self.look.size);
         let centre = self.place(click);
-        let near = |p: usize| self.square(p, centre, [model().click; 2]) < 1.0;
-        let disc = |share: f32| {
-            let radius = share * width.max(height) as f32;
-            let area = Area::of(&[click], width).grown((model().disc_area * radius) as usize, width, height);
-            self.ellipse(
-                area,
-                centre,
-                [radius; 2],
-                [model().disc_middle, model().disc_fall],
-                [model().disc_inner, model().disc_outer],
-            )
+        let near = |p: usize| self.square(p, centre, [model().near; 2]) < 1.0;
+        let whole = 1.0 - model().part;
+        let disc = |radius: f32| {
+            let area = self.around(&Area::of(&[click], width).grown(radius as usize, width, height));
+            self.ellipse(area, centre, [radius; 2], [whole, 1.0 / whole])
         };
-        let radii = [
-            model().radius_1,
-            model().radius_2,
-            model().radius_3,
-            model().radius_4,
-            model().radius_5,
-            model().radius_6,
-        ];
-        let discs = radii.into_iter().map(disc);
+        // From the side of a cell on, each twice as large, to a third of the frame.
+        let longest = width.max(height) as f32;
+        let radii =
+            std::iter::successors(Some(model().cell * longest), |radius| Some(std::f32::consts::SQRT_2 * radius));
+        let discs = radii.take_while(|radius| 3.0 * *radius < longest).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
         let beginnings = discs.chain(regions);
-        let masks: Vec<Vec<u8>> =
-            beginnings.map(|from| self.part_of(click, self.fitted(from, &near, model().candidate_rounds))).collect();
+        let masks: Vec<Vec<u8>> = beginnings.map(|from| self.part_of(click, self.fitted(from, &near))).collect();
         let mut votes = vec![0.0f32; pixels];
         let mut total = 0.0;
         for mask in &masks {
@@ -193,30 +172,24 @@ impl View<'_> {
             total += others * others;
         }
         votes.iter_mut().for_each(|votes| *votes /= total.max(f32::MIN_POSITIVE));
-        let agreed: Vec<usize> = (0..pixels).filter(|&p| votes[p] > model().enough_votes || near(p)).collect();
+        let agreed: Vec<usize> = (0..pixels).filter(|&p| votes[p] > model().part || near(p)).collect();
         let mut sides = vec![1; pixels];
         agreed.iter().for_each(|&p| sides[p] = 0);
-        let odds = votes.iter().map(|votes| model().votes * (votes - model().enough_votes)).collect();
+        let odds = votes.iter().map(|votes| 2.0 * model().guess * (votes - model().part)).collect();
         let area = self.around(&Area::of(&agreed, self.look.size[0]));
-        self.part_of(click, self.fitted(Beginning { area, odds, sides }, &near, model().outline_rounds))
+        self.part_of(click, self.fitted(Beginning { area, odds, sides }, &near))
     }
 
-    /// An ellipse within an area: odds in its middle and how far they fall to its border, and the shares of its radii up to which it is the
-    /// object, and from which on it is ground.
-    fn ellipse(
-        &self,
-        area: Area,
-        centre: [f32; 2],
-        radii: [f32; 2],
-        odds: [f32; 2],
-        [object, ground]: [f32; 2],
-    ) -> Beginning {
+    /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The odds fall from its
+    /// middle with the squared distance, to none at `even`.
+    fn ellipse(&self, area: Area, centre: [f32; 2], radii: [f32; 2], [even, ground]: [f32; 2]) -> Beginning {
+        let object = 1.0 - model().part;
         let squares: Vec<f32> = (0..self.look.pixels()).map(|p| self.square(p, centre, radii)).collect();
         let mut sides = vec![1; squares.len()];
         for p in area.pixels(self.look.size[0]).filter(|&p| squares[p] < ground * ground) {
             sides[p] = if squares[p] < object * object { 0 } else { 2 };
         }
-        Beginning { area, sides, odds: squares.iter().map(|square| odds[0] - odds[1] * square).collect() }
+        Beginning { area, sides, odds: squares.iter().map(|square| model().guess * (even - square)).collect() }
     }
 
     /// The connected pixels that have the click's label, unless most of the frame has it.
@@ -225,7 +198,7 @@ impl View<'_> {
         let parts = components(labels, width, Connectivity::Eight);
         let part = parts.list[parts.of[click] as usize];
         let alike = labels.iter().filter(|label| **label == labels[click]).count();
-        if part.size < model().region_fewest || 2 * alike > labels.len() {
+        if part.size < model().pixels || 2 * alike > labels.len() {
             return None;
         }
         let inside = |p: usize| parts.of[p] == parts.of[click];
@@ -233,20 +206,20 @@ impl View<'_> {
         Some(Beginning {
             area: self.around(&Area { columns: left..right + 1, rows: top..bottom + 1 }),
             sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
-            odds: gaussian(&self.look.plane(&inside), model().region_blur)
+            odds: gaussian(&self.look.plane(&inside), model().near)
                 .values()
                 .iter()
-                .map(|share| model().region_odds * (2.0 * share - 1.0))
+                .map(|share| model().guess * (2.0 * share - 1.0))
                 .collect(),
         })
     }
 
     /// Learns from a mask what the object looks like, cuts the next one, and so on.
-    fn fitted(&self, from: Beginning, is_sure: &dyn Fn(usize) -> bool, rounds: usize) -> Vec<u8> {
+    fn fitted(&self, from: Beginning, is_sure: &dyn Fn(usize) -> bool) -> Vec<u8> {
         let (look, [width, height]) = (self.look, self.look.size);
         let Beginning { area, odds: prior, mut sides } = from;
-        let seen = area.grown(model().outline_around, width, height);
-        for _ in 0..rounds {
+        let seen = area.grown(model().margin, width, height);
+        for _ in 0..model().rounds {
             let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
             // Ground counts less where there is more of it.
             let weight = (count(0) / count(1).max(1.0)).sqrt();
@@ -260,7 +233,7 @@ impl View<'_> {
                 self.found.iter().map(|found| Evidence::of(found, &sides, &seen, width)).collect();
             let odds = |(p, remembered): (usize, f32)| {
                 let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
-                if is_sure(p) { CERTAIN } else { prior[p] + logit(remembered) + model().outline_found * found }
+                if is_sure(p) { CERTAIN } else { prior[p] + logit(remembered) + found }
             };
             let odds: Vec<f32> = area.pixels(width).zip(remembered).map(odds).collect();
             let mask = cut(look, &area, &odds);
@@ -282,11 +255,7 @@ impl View<'_> {
 
     /// Where an object may reach that lies in an area.
     fn around(&self, area: &Area) -> Area {
-        area.grown(
-            ((model().around_share * (area.width() + area.height()) as f32) as usize).max(model().around_least),
-            self.look.size[0],
-            self.look.size[1],
-        )
+        area.grown(model().margin, self.look.size[0], self.look.size[1])
     }
 
     fn place(&self, p: usize) -> [f32; 2] {

@@ -58,19 +58,19 @@ impl Whole {
     /// The object a frame later. While part of it is hidden, it stays what it was, and moves on.
     pub(super) fn gone_on(self, mask: &Plane, look: &Look, centre: [f32; 2], placed: Option<&Placed>) -> Whole {
         let pixels: f32 = mask.values().iter().sum();
-        let expected = if self.now { model().placed_shrinking * self.pixels } else { self.pixels };
+        let expected = if self.now { model().shrinking * self.pixels } else { self.pixels };
         let (shift, found) = placed.map_or((self.shift, false), |placed| (placed.shift, placed.found));
         let velocity = self.velocity.unwrap_or_default();
         let onward = |share: f32, step: Shift| [0, 1].map(|k| velocity[k] + share * (step[k] - velocity[k]));
         let has_changed = || {
             let alike = self.view.alike(look, shift, &[]);
             let same = mask.values().iter().zip(alike.values()).filter(|(mask, alike)| **mask > 0.5 && **alike > 0.5);
-            pixels > model().changed * expected && (same.count() as f32) < model().changed_same * pixels
+            pixels > 0.5 * expected && (same.count() as f32) < (1.0 - model().part) * pixels
         };
-        let is_hidden = self.known && pixels < model().placed_seen * expected && !has_changed();
+        let is_hidden = self.known && pixels < (1.0 - model().few) * expected && !has_changed();
         let is_partly =
-            self.known && pixels < model().placed_shrinking * self.pixels && pixels >= model().placed_seen * expected;
-        if is_hidden || is_partly || self.known && self.frames > 0 && pixels < model().placed_shrinking * self.pixels {
+            self.known && pixels < model().shrinking * self.pixels && pixels >= (1.0 - model().few) * expected;
+        if is_hidden || is_partly || self.known && self.frames > 0 && pixels < model().shrinking * self.pixels {
             // What it is off by came in all the frames since.
             let share = match self.velocity {
                 None => 1.0,
@@ -82,7 +82,7 @@ impl Whole {
             return Whole { shift, velocity, frames, now: !is_hidden, share, pixels: expected, ..self };
         }
         let step = [0, 1].map(|k| (centre[k] - self.centre[k]) / (self.frames as f32 + 1.0));
-        let velocity = Some(self.velocity.map_or(step, |_| onward(model().latest, step)));
+        let velocity = Some(self.velocity.map_or(step, |_| onward(1.0 - model().decay, step)));
         Whole { velocity, pixels: pixels.max(expected), ..Whole::new(mask, look, centre, self.known) }
     }
 
@@ -102,7 +102,7 @@ impl Whole {
     pub(super) fn place(&self, look: &Look, flow: &Flow, covered: &[bool]) -> Option<Placed> {
         let [width, height] = look.size;
         let inside: Vec<usize> = (0..look.pixels()).filter(|&p| self.view.mask.values()[p] > 0.5).collect();
-        if (inside.len() as f32) < model().placed_fewest {
+        if (inside.len() as f32) < model().pixels as f32 {
             return None;
         }
         let velocity = self.velocity.unwrap_or_default();
@@ -125,7 +125,7 @@ impl Whole {
             self.shift[k] + median(&inside.iter().map(flow).collect::<Vec<f32>>()).unwrap_or(0.0)
         });
         let [(by_flow, one), (by_velocity, other)] = [along, onward].map(|expected| self.view.close(look, expected));
-        if self.frames > 0 || one.min(other) < model().placed_close {
+        if self.frames > 0 || one.min(other) < model().part {
             return placed(if other < one { by_velocity } else { by_flow });
         }
         placed(self.view.nearest(look, along))

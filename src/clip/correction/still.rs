@@ -3,7 +3,7 @@
 use super::look::Look;
 use super::memory::{Memory, Part};
 use super::sweep::{Said, centre_of, logit, solved};
-use crate::clip::model;
+use crate::clip::{MAX_LOOK_AHEAD, model};
 use crate::components::{Components, Connectivity, components};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
@@ -42,20 +42,19 @@ impl Still {
         let mut memory = Memory::of(&shown);
         memory.learn_said(look, centre, Some(said));
         // Where the motions clearly contradict what was found, what is said decides between them.
-        let smooth = gaussian(motion, model().motion_window);
+        let smooth = gaussian(motion, model().near);
         let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
         let trust = trust(said, found, &is_doubted);
         let presumed = |p: usize| if is_doubted[p] && trust < 0.0 { !found[p] } else { found[p] };
         // As much as frames of a clip in which an object was found.
-        let found_weight = model().survey * model().surveyed as f32;
+        let found_weight = model().automatic * MAX_LOOK_AHEAD as f32;
         for (doubted, weight) in [(false, found_weight), (true, found_weight * trust.abs())] {
             let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
             memory.learn(look, centre, Part::Found, weight, &side);
         }
         let remembered = memory.read(look, &look.area(), centre);
         let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, of_colour))| {
-            let presumed =
-                if presumed(p) { of_colour[0] * model().beginning } else { -of_colour[1] * model().beginning };
+            let presumed = if presumed(p) { of_colour[0] * model().guess } else { -of_colour[1] * model().guess };
             let weight = if is_doubted[p] { trust.abs() } else { 1.0 };
             weight * presumed + model().memory * logit(*remembered) + motion.values()[p]
         });
@@ -89,7 +88,7 @@ fn trust(said: &[Said], found: &[bool], is_doubted: &[bool]) -> f32 {
 
 /// Whether the motions at a pixel clearly contradict what was found there.
 fn contradicts(found: bool, motion: f32) -> bool {
-    if found { motion < -model().motion_decisive } else { motion > model().motion_decisive }
+    if found { motion < -model().part } else { motion > model().part }
 }
 
 #[cfg(test)]

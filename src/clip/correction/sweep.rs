@@ -26,7 +26,7 @@ pub(crate) enum Said {
     Object,
 }
 
-/// Odds of what is said, nats.
+/// Odds of what is said, nats: more than all borders of a pixel cost.
 pub(super) const CERTAIN: f32 = 99.0;
 
 /// What a frame tells besides its pixels.
@@ -95,7 +95,7 @@ impl Sweep {
         let (mut memory, mut evidence) = (self.memory.clone(), Evidence::default());
         if let (Some(memory), Some(front)) = (&mut memory, &self.front) {
             memory.forget_recent();
-            memory.learn(look, front.centre, Part::Recent, 1.0 - model().memory_decay, &|p| front.side(p));
+            memory.learn(look, front.centre, Part::Recent, 1.0 - model().decay, &|p| front.side(p));
             evidence.learn(found, &front.mask, true);
         }
         let front = self.front.as_ref().map(|front| Front { whole: front.whole.turned(), ..front.clone() });
@@ -107,7 +107,7 @@ impl Sweep {
         let mask = look.plane(inside);
         let Some(centre) = centre_of(&mask) else { return };
         let memory = self.memory.get_or_insert_with(|| Memory::of(&mask));
-        memory.learn(look, centre, Part::Found, model().survey, &|p| usize::from(mask.values()[p] < 0.5));
+        memory.learn(look, centre, Part::Found, model().automatic, &|p| usize::from(mask.values()[p] < 0.5));
     }
 
     /// Takes what a frame shows of the object for what it looks like.
@@ -136,9 +136,9 @@ impl Sweep {
     pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, number: u8) -> Claim {
         let is_found = given.found.contains(&number);
         let unsaid = |p: usize| match is_found {
-            true if given.found[p] == number => model().beginning,
-            true => -model().beginning,
-            false => model().nowhere,
+            true if given.found[p] == number => model().guess,
+            true => -model().guess,
+            false => -2.0 * model().certain,
         };
         let mut odds: Vec<f32> = (0..look.pixels()).map(unsaid).collect();
         let shown = shown(look, given.said, given.found, number);
@@ -154,7 +154,7 @@ impl Sweep {
             if !is_found {
                 // Most of what nothing is said of is ground.
                 let is_said = |p: usize| given.said.is_some_and(|said| said[p] != Said::Nothing);
-                memory.learn(look, centre, Part::Recent, model().unsaid, &|p| if is_said(p) { 2 } else { 1 });
+                memory.learn(look, centre, Part::Recent, model().few, &|p| if is_said(p) { 2 } else { 1 });
             }
             let remembered = memory.read(look, &area, centre);
             for ((odds, remembered), trust) in odds.iter_mut().zip(remembered).zip(memory.trusts(look)) {
@@ -195,8 +195,8 @@ impl Sweep {
         let [width, height] = look.size;
         let still = Flow::still(look.size);
         let [to, _] = given.flows.unwrap_or([&still, &still]);
-        let soft = gaussian(&front.mask, model().sweep_blur);
-        let all = gaussian(&front.whole.view.mask, model().sweep_blur);
+        let soft = gaussian(&front.mask, model().motion);
+        let all = gaussian(&front.whole.view.mask, model().motion);
         let near = |p: usize| {
             let (x, y) = ((p % width) as f32, (p / width) as f32);
             let [u, v] = to.at(p % width, p / width);
@@ -211,17 +211,17 @@ impl Sweep {
         let hidden = placed.as_ref().and_then(|placed| placed.hidden.as_ref());
         let mut awaited = None;
         if let Some([alike, around]) = hidden {
-            let alike = gaussian(alike, model().sweep_blur);
+            let alike = gaussian(alike, model().motion);
             both.iter_mut().zip(alike.values()).for_each(|(both, &alike)| *both = [both[0].max(alike); 2]);
             awaited = Some(look.plane_of(&|p| alike.values()[p] + around.values()[p]));
         }
-        let weight = model().carried * if hidden.is_some() { model().hidden } else { 1.0 };
+        let weight = if hidden.is_some() { 1.0 } else { model().trust };
         let reached =
             |p: &usize| both[*p][0] > model().few || both[*p][1] > model().few || soft.values()[*p] > model().few;
         let area = Area::of(&(0..width * height).filter(reached).collect::<Vec<usize>>(), width);
-        let area = if area.width() == 0 { look.area() } else { area.grown(model().sweep_around, width, height) };
+        let area = if area.width() == 0 { look.area() } else { area.grown(model().margin, width, height) };
         let carried = look.plane_of(&|p| 0.5 * (both[p][0] + both[p][1]));
-        let central = look.plane_of(&|p| if carried.values()[p] > model().central { carried.values()[p] } else { 0.0 });
+        let central = look.plane_of(&|p| if carried.values()[p] > model().part { carried.values()[p] } else { 0.0 });
         let centre =
             front.whole.expected_centre(placed.as_ref()).or_else(|| centre_of(&central)).unwrap_or(front.centre);
         let learns = given.speaks && given.spreads && !self.knows(given);
@@ -232,15 +232,14 @@ impl Sweep {
         let odds = area.pixels(width).enumerate().map(|(k, p)| {
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
             let found = self.evidence.ratio(given.found[p]);
-            let z =
-                model().bias + weight * logit(carried.values()[p]) + model().memory * memory + model().found * found;
+            let z = model().bias + weight * logit(carried.values()[p]) + model().memory * memory + found;
             // What neither was its own nor looks as it did is not of a hidden object, whatever its colours.
             let most = if hidden.is_some() && carried.values()[p] < model().few {
-                model().hidden_most
+                -model().undecided
             } else {
-                model().sweep_most
+                model().certain
             };
-            z.clamp(-model().sweep_most, most)
+            z.clamp(-model().certain, most)
         });
         let odds = odds.collect();
         Some(Expected { area, odds, centre, placed, awaited })
@@ -288,9 +287,9 @@ impl Sweep {
     fn arrive(&mut self, look: &Look, given: &Given<'_>, front: Front, [knows_little, begins]: [bool; 2]) {
         // Of an object that is partly hidden it would learn what hides it.
         if let Some(memory) = self.memory.as_mut().filter(|_| front.whole.now) {
-            memory.fade(model().memory_decay);
+            memory.fade(model().decay);
             if knows_little {
-                memory.learn(look, front.centre, Part::Recent, 1.0 - model().memory_decay, &|p| front.side(p));
+                memory.learn(look, front.centre, Part::Recent, 1.0 - model().decay, &|p| front.side(p));
             }
         }
         self.evidence.learn(given.found, &front.mask, begins);
@@ -332,10 +331,10 @@ impl Claim {
 /// Odds at a pixel of which an area may know.
 pub(super) fn odds_at(area: &Area, odds: &[f32], p: usize, width: usize) -> f32 {
     let inside = area.columns.contains(&(p % width)) && area.rows.contains(&(p / width));
-    if inside { odds[area.index_of(p, width)] } else { model().nowhere }
+    if inside { odds[area.index_of(p, width)] } else { -2.0 * model().certain }
 }
 
-/// Centre of the object's pixels, if there are enough.
+/// Centre of the object's pixels, if there are any.
 pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
     let mut moments = [0.0f64; 3];
     for y in 0..mask.height() {
@@ -344,11 +343,11 @@ pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
             moments = [moments[0] + share, moments[1] + share * x as f64, moments[2] + share * y as f64];
         }
     }
-    (moments[0] >= model().centre_fewest).then(|| [1, 2].map(|k| (moments[k] / moments[0]) as f32))
+    (moments[0] > 0.0).then(|| [1, 2].map(|k| (moments[k] / moments[0]) as f32))
 }
 
 pub(super) fn logit(p: f32) -> f32 {
-    libm::logf((p + model().sweep_floor) / (1.0 - p + model().sweep_floor))
+    libm::logf((p + model().doubt) / (1.0 - p + model().doubt))
 }
 
 /// The mask of least energy, with what is said of the frame.

@@ -60,7 +60,7 @@ impl View {
             fine: at(&look.fine, p),
             coarse: at(&look.coarse, p / width / model().coarse * coarse_width + p % width / model().coarse),
         };
-        let samples = corners.iter().step_by((corners.len() / model().compared).max(1)).map(sample).collect();
+        let samples = corners.iter().step_by((corners.len() / model().pixels).max(1)).map(sample).collect();
         View { mask: mask.clone(), area, colours, samples }
     }
 
@@ -75,36 +75,38 @@ impl View {
                     shift.map(|shift| shift / model().coarse as f32),
                     size,
                 );
-                to.map_or(model().unseen, |q| difference(sample.coarse, at(&look.coarse, q)))
+                to.map_or(1.0 - model().part, |q| difference(sample.coarse, at(&look.coarse, q)))
             };
             self.mean(of_sample)
         };
-        let coarse = best_of(model().view_search, model().coarse as f32, middle, middle, &mut cost).0;
-        best_of(model().view_near, 1.0, coarse, expected, &mut |shift| self.cost(look, shift, &[])).0
+        let reach = (model().margin / model().coarse) as isize;
+        let coarse = best_of(reach, model().coarse as f32, middle, middle, &mut cost).0;
+        best_of(model().near as isize, 1.0, coarse, expected, &mut |shift| self.cost(look, shift, &[])).0
     }
 
     /// The best shift close to the one expected, and what it costs.
     pub(super) fn close(&self, look: &Look, expected: Shift) -> (Shift, f32) {
-        best_of(model().view_near, 1.0, expected, expected, &mut |shift| self.cost(look, shift, &[]))
+        best_of(model().near as isize, 1.0, expected, expected, &mut |shift| self.cost(look, shift, &[]))
     }
 
     /// The shift at which part of it is seen near the one expected, so many frames after it was seen whole; others have the pixels that
     /// are `covered`.
     pub(super) fn seen_again(&self, look: &Look, expected: Shift, frames: usize, covered: &[bool]) -> Option<Shift> {
-        let reach = ((model().view_reach + model().view_drift * frames as f32) as isize).min(model().view_search);
+        let reach =
+            ((model().near + model().motion * frames as f32) as isize).min((model().margin / model().coarse) as isize);
         let mut costs = Vec::new();
         let (best, least) = best_of(reach, 1.0, expected, expected, &mut |shift| {
             costs.push(self.cost(look, shift, covered));
             costs[costs.len() - 1]
         });
         let usual = median(&costs).unwrap_or(0.0);
-        (least < model().seen_again && usual - least > model().seen_better).then_some(best)
+        (least < 1.0 - model().part && usual - least > model().few).then_some(best)
     }
 
     fn cost(&self, look: &Look, shift: Shift, covered: &[bool]) -> f32 {
         self.mean(|sample| match shifted(sample.at, shift, look.size) {
             Some(q) if covered.get(q) != Some(&true) => difference(sample.fine, at(&look.fine, q)),
-            _ => model().unseen,
+            _ => 1.0 - model().part,
         })
     }
 
@@ -125,7 +127,7 @@ impl View {
             for y in near(at_pixel[1], &self.area.rows) {
                 for x in near(at_pixel[0], &self.area.columns) {
                     let colours = self.colours[self.area.index_of(y * look.size[0] + x, look.size[0])];
-                    least = least.min(difference(colours, at(&look.fine, q)) / model().view_alike);
+                    least = least.min(difference(colours, at(&look.fine, q)) * 2.0);
                 }
             }
             alike.values_mut()[q] = 1.0 - least;
@@ -137,8 +139,8 @@ impl View {
     pub(super) fn around(&self, look: &Look, shift: Shift, frames: usize, covered: &[bool]) -> Plane {
         let mut there = vec![false; look.pixels()];
         self.cover(shift, &mut there);
-        let wide = gaussian(&look.plane(&|p| there[p]), model().view_blur_first + model().view_blur * frames as f32);
-        look.plane_of(&|p| if covered[p] { 0.0 } else { (model().view_wide * wide.values()[p]).min(1.0) })
+        let wide = gaussian(&look.plane(&|p| there[p]), model().motion * (frames as f32 + 1.0));
+        look.plane_of(&|p| if covered[p] { 0.0 } else { (2.0 * wide.values()[p]).min(1.0) })
     }
 
     /// Marks the pixels that the object is at.

@@ -100,7 +100,7 @@ fn compete(expected: &mut [Option<Expected>], width: usize) {
         for (_, awaited) in awaited.iter().enumerate().filter(|(j, _)| *j != k) {
             let Some(awaited) = awaited else { continue };
             let pixels = of.odds.iter_mut().zip(of.area.pixels(width));
-            pixels.for_each(|(odds, p)| *odds -= model().awaited * awaited.values()[p]);
+            pixels.for_each(|(odds, p)| *odds -= model().certain * awaited.values()[p]);
         }
     }
     let alone: Vec<_> = expected.iter().flatten().map(|of| (of.area.clone(), of.odds.clone())).collect();

@@ -2,8 +2,8 @@
 
 use super::sight::{Sight, is_still, mean_motion, moves};
 use crate::clip::evidence::Flow;
-use crate::clip::model;
 use crate::clip::record::Record;
+use crate::clip::{MAX_LOOK_AHEAD, model};
 use crate::labelling::BACKGROUND;
 
 /// An object.
@@ -44,7 +44,7 @@ impl Apart {
             let ([u, v], [r, s]) = (motion.flow(x, y), mean_motion(along, other));
             let [a, b] = along.motions[BACKGROUND].flow(x, y);
             let (difference, own) = (libm::hypot(u - r, v - s), libm::hypot(r - a, s - b));
-            difference > model().other_motion && difference > model().other_speed * own
+            difference > f64::from(model().motion) && difference > f64::from(model().part) * own
         };
         self.frames = if differs((one, other)) && differs((other, one)) { self.frames + 1 } else { 0 };
     }
@@ -76,24 +76,24 @@ impl Object {
         let sight = Sight::of(record, pixels);
         let whole = !self.is_covered();
         // The little that is in sight may pass for background in its pairs.
-        let shown = whole || (self.in_sight >= model().seen_moving * self.whole.size && moves(record, pixels));
+        let shown = whole || (self.in_sight >= f64::from(model().part) * self.whole.size && moves(record, pixels));
         let velocity = steady(record, pixels).filter(|_| shown).unwrap_or(self.whole.velocity);
         if whole {
             self.whole = Sight { velocity, ..sight };
         } else {
             self.whole.velocity = velocity;
-            self.whole.size *= model().whole_shrinking;
+            self.whole.size *= f64::from(model().shrinking);
         }
     }
 
     /// Whether less of it was in sight than there is.
     pub(crate) fn is_covered(&self) -> bool {
-        self.in_sight < model().seen_whole * self.whole.size
+        self.in_sight < (1.0 - f64::from(model().few)) * self.whole.size
     }
 
     /// Whether it may come back.
     pub(crate) fn is_remembered(&self) -> bool {
-        self.hidden <= model().longest_hidden
+        self.hidden <= 2 * MAX_LOOK_AHEAD
     }
 
     pub(crate) fn moves_like(&self, sight: &Sight) -> bool {
@@ -103,7 +103,7 @@ impl Object {
     /// Whether a place is near where it is expected.
     pub(crate) fn is_near(&self, [x, y]: [f64; 2]) -> bool {
         let [a, b] = self.whole.centre;
-        let reach = model().search * self.whole.size.sqrt() * (1.0 + model().search_growth * self.hidden as f64);
+        let reach = model().search * self.whole.size.sqrt() * (1.0 + f64::from(model().few) * self.hidden as f64);
         ((x - a) * (x - a) + (y - b) * (y - b)).sqrt() < reach
     }
 }
@@ -118,5 +118,6 @@ fn steady(record: &Record, pixels: &[usize]) -> Option<[f64; 2]> {
 
 /// Whether one displacement is like another.
 fn same([u, v]: [f64; 2], [r, s]: [f64; 2]) -> bool {
-    ((u - r) * (u - r) + (v - s) * (v - s)).sqrt() < model().same_motion + model().same_speed * (r * r + s * s).sqrt()
+    ((u - r) * (u - r) + (v - s) * (v - s)).sqrt()
+        < f64::from(model().motion) + f64::from(model().part) * (r * r + s * s).sqrt()
 }
