@@ -29,6 +29,7 @@ mod whole;
 
 use serde::Serialize;
 
+use crate::model::ClipModel;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::pair::settings::Settings;
@@ -36,17 +37,33 @@ use crate::pair::settings::Settings;
 pub use correction::{ClipCorrection, Prompt};
 #[doc(hidden)]
 pub use correction::{Correction, MAX_CORRECTED, Relabelling, relabel};
-#[cfg(feature = "ablation")]
-#[doc(hidden)]
-pub use correction::{propagation_constants, vary_propagation};
 pub use layer::Spread;
 pub use stream::StreamSegmenter;
-#[doc(hidden)]
-pub use tracker::ClipPart;
 pub use whole::{ClipSegmenter, FramePairs, SegmentedClip};
 
 /// Largest look-ahead of a stream, frames.
 pub const MAX_LOOK_AHEAD: usize = 8;
+
+#[cfg(feature = "ablation")]
+thread_local! {
+    static VARIED: std::cell::Cell<ClipModel> = const { std::cell::Cell::new(ClipModel::DEFAULT) };
+}
+
+/// The constants of clips; with the feature `ablation` those that this thread was told to use.
+#[inline(always)]
+pub(crate) fn model() -> ClipModel {
+    #[cfg(feature = "ablation")]
+    return VARIED.get();
+    #[cfg(not(feature = "ablation"))]
+    ClipModel::DEFAULT
+}
+
+/// Sets the constants for this thread, for the programs that vary and fit them.
+#[cfg(feature = "ablation")]
+#[doc(hidden)]
+pub fn vary(model: ClipModel) {
+    VARIED.set(model);
+}
 
 /// Options of a [`ClipSegmenter`] or a [`StreamSegmenter`].
 #[derive(Clone, Copy, Debug, Default)]

@@ -158,7 +158,7 @@ pub use literal::{KeptPixels, LiteralSegmentation, PAPER_THRESHOLD, literal_pair
 pub use measurements::{Measurements, Normalisation};
 #[cfg(feature = "ablation")]
 #[doc(hidden)]
-pub use model::Model;
+pub use model::{ClipModel, Model};
 pub use motion::AffineMotion;
 pub use options::{FitOptions, MAX_MOTIONS, Method, MotionCount, Quality, SegmentOptions};
 #[cfg(feature = "ablation")]

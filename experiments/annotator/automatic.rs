@@ -4,24 +4,16 @@
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
-use veronese::clip::{ClipOptions, ClipPart, ClipSegmenter};
-use veronese::{Result, SegmentOptions};
+use veronese::clip::vary;
 
 use crate::cases::Case;
 use crate::measure::{best_label, groups_of};
 use crate::overlap::of_label;
+use crate::parts::{PARTS, Part};
 use crate::scores::scores;
 use crate::session::Session;
 use crate::{Failure, Options, dump};
 
-/// The parts that can be left out, by name.
-const PARTS: [(&str, ClipPart); 5] = [
-    ("both-directions", ClipPart::BothDirections),
-    ("carrying", ClipPart::Carrying),
-    ("colours", ClipPart::Colours),
-    ("second-round", ClipPart::SecondRound),
-    ("grouping", ClipPart::Grouping),
-];
 /// `click` is that of the other tables, the others are defined in experiments/clips/scores.rs.
 const TITLES: [&str; 6] = ["auto", "click", "tracks", "F tracks", "assigned", "switches"];
 
@@ -34,24 +26,18 @@ pub(crate) struct Row {
 }
 
 /// The part of a name.
-pub(crate) fn part(name: &str) -> std::result::Result<ClipPart, String> {
-    let known = PARTS.iter().find(|(known, _)| *known == name);
-    known.map(|(_, part)| *part).ok_or(format!("There is no part '{name}'."))
+pub(crate) fn part(name: &str) -> Result<&'static Part, String> {
+    PARTS.iter().find(|part| part.name == name).ok_or(format!("There is no part '{name}'."))
 }
 
-pub(crate) fn measure(case: &Case, options: &Options) -> std::result::Result<Row, Failure> {
+pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let data = case.load()?;
     let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
     let truths: Vec<Vec<bool>> = data.truths.iter().map(|truth| of_label(truth, 1)).collect();
-    let pair = SegmentOptions { quality: options.quality, ..SegmentOptions::default() };
-    let clip = ClipOptions { pair, ..ClipOptions::default() };
-    let segmenter = |name: &str| -> Result<ClipSegmenter> {
-        let part = PARTS.iter().find(|(known, _)| *known == name);
-        part.map_or_else(|| ClipSegmenter::new(clip), |(_, part)| ClipSegmenter::without(*part, clip))
-    };
     let mut figures = Vec::new();
     for name in std::iter::once("nothing").chain(options.without.iter().map(String::as_str)) {
-        let labels = Session::open_with(segmenter(name)?, &data.frames, &options.pairs(case))?.labels;
+        vary(part(name).map_or(options.model, |part| part.left_out_of(options.model)));
+        let labels = Session::open(&data.frames, options.quality, &options.pairs(case))?.labels;
         dump::write(options, case, &format!("without-{name}"), &data, &labels)?;
         let scores = scores(&data.truths, &labels, width);
         let identities = scores.identities.map_or([f64::NAN; 2], |of| [of.assigned, of.switches]);

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use veronese::clip::{propagation_constants, vary_propagation};
+use veronese::ClipModel;
+use veronese::clip::vary;
 
 use crate::cases::{Case, Data};
 use crate::measure;
@@ -11,8 +12,10 @@ use crate::parallel::in_parallel;
 use crate::session::Session;
 use crate::{Failure, Options};
 
+/// The constants of the propagation that are fitted.
+const FITTED: [&str; 9] = ["bias", "trust", "memory", "back_off", "decay", "cell", "smoothness", "shift", "automatic"];
 /// Factors that a constant is tried with, one constant after another.
-const FACTORS: [f32; 2] = [1.25, 0.8];
+const FACTORS: [f64; 2] = [1.25, 0.8];
 /// Gain of a factor below which the constant stays: chance.
 const LEAST: f64 = 0.0005;
 
@@ -24,34 +27,35 @@ struct Opened<'a> {
 }
 
 /// Mean J of a mask given and of one round of strokes.
-fn score(clips: &[&Opened<'_>], options: &Options, constants: [f32; 10]) -> Result<f64, Failure> {
+fn score(clips: &[&Opened<'_>], options: &Options, model: ClipModel) -> Result<f64, Failure> {
     let of_clip = |clip: &&Opened<'_>| {
-        vary_propagation(constants);
+        vary(model);
         measure::score(clip.case, clip.data, &clip.session, options)
     };
     Ok(mean(&in_parallel(clips, of_clip)?))
 }
 
 /// The constants fitted to some clips, with their score there.
-fn fitted(clips: &[&Opened<'_>], options: &Options) -> Result<([f32; 10], f64), Failure> {
-    let mut constants = options.constants;
-    let mut best = score(clips, options, constants)?;
-    for (k, (name, _)) in propagation_constants().into_iter().enumerate() {
+fn fitted(clips: &[&Opened<'_>], options: &Options) -> Result<(ClipModel, f64), Failure> {
+    let mut model = options.model;
+    let mut best = score(clips, options, model)?;
+    for name in FITTED {
         for factor in FACTORS {
-            let mut others = constants;
+            let mut other = model;
             // On in the same direction while that helps.
             loop {
-                others[k] *= factor;
-                let now = score(clips, options, others)?;
-                println!("{name} {:.4}: {now:.4}", others[k]);
+                let value = factor * other.get(name).unwrap_or(0.0);
+                other.set(name, value);
+                let now = score(clips, options, other)?;
+                println!("{name} {value:.4}: {now:.4}");
                 if now < best + LEAST {
                     break;
                 }
-                (best, constants) = (now, others);
+                (best, model) = (now, other);
             }
         }
     }
-    Ok((constants, best))
+    Ok((model, best))
 }
 
 pub(crate) fn run(cases: &[Case], options: &Options) -> Result<(), Failure> {
@@ -62,16 +66,18 @@ pub(crate) fn run(cases: &[Case], options: &Options) -> Result<(), Failure> {
         in_parallel(&cases, |&(case, data)| Ok(Opened { case, data, session: measure::open(case, data, &options)? }))?;
     let mut text = String::from("| constant | used |");
     let mut rows: Vec<String> =
-        propagation_constants().iter().map(|(name, value)| format!("| {name} | {value} |")).collect();
+        FITTED.iter().map(|name| format!("| {name} | {} |", options.model.get(name).unwrap_or(f64::NAN))).collect();
     let mut scores = String::new();
     for (held_out, fold) in ["first", "second"].into_iter().enumerate() {
         let half = |k: usize| clips.iter().skip(k).step_by(2).collect::<Vec<_>>();
         let (own, other) = (half(1 - held_out), half(held_out));
-        let before = [score(&own, &options, options.constants)?, score(&other, &options, options.constants)?];
-        let (constants, fitted) = fitted(&own, &options)?;
-        let after = score(&other, &options, constants)?;
+        let before = [score(&own, &options, options.model)?, score(&other, &options, options.model)?];
+        let (model, fitted) = fitted(&own, &options)?;
+        let after = score(&other, &options, model)?;
         text += &format!(" fitted without the {fold} half |");
-        rows.iter_mut().zip(constants).for_each(|(row, value)| *row += &format!(" {value:.3} |"));
+        rows.iter_mut()
+            .zip(FITTED)
+            .for_each(|(row, name)| *row += &format!(" {:.3} |", model.get(name).unwrap_or(f64::NAN)));
         scores += &format!(
             "- without the {fold} half: {:.3} → {fitted:.3} on the {} clips fitted to, {:.3} → {after:.3} on the {} held out\n",
             before[0],

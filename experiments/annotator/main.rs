@@ -17,6 +17,9 @@ mod pairs;
 mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
+#[path = "../clips/parts.rs"]
+#[allow(dead_code, reason = "the clip benchmark uses the rest")]
+mod parts;
 #[path = "../program.rs"]
 mod program;
 mod robot;
@@ -35,8 +38,8 @@ use std::path::{Path, PathBuf};
 
 use cases::Case;
 use parallel::{in_parallel, on_threads};
-use veronese::Quality;
-use veronese::clip::{propagation_constants, vary_propagation};
+use veronese::clip::vary;
+use veronese::{ClipModel, Quality};
 
 const HELP: &str = "\
 Measures what an annotator gets for what he says of a clip, in steps:
@@ -56,7 +59,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --jobs N           clips at once; default one for each core
   --out DIR          output folder; default out/annotator. Its folder pairs keeps what pairs of frames told
   --dump DIR         also write the labels of every stage as indexed images, and strips of small ones
-  --set NAME=VALUE   another value of a constant of the propagation, as often as needed
+  --set NAME=VALUE   another value of a constant of `ClipModel` in src/model.rs, as often as needed
   --without A,B      parts that automatic leaves out by turns: both-directions, carrying, colours, second-round, grouping
   --generated        automatic measures the generated clips of npm run bench:clips
   --write-docs       also write docs/annotating.md
@@ -77,7 +80,7 @@ pub(crate) struct Options {
     pub(crate) without: Vec<String>,
     generated: bool,
     write_docs: bool,
-    pub(crate) constants: [f32; 10],
+    pub(crate) model: ClipModel,
 }
 
 fn main() {
@@ -98,7 +101,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         without: Vec::new(),
         generated: false,
         write_docs: false,
-        constants: propagation_constants().map(|(_, value)| value),
+        model: ClipModel::DEFAULT,
     };
     while let Some(name) = arguments.next() {
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
@@ -118,13 +121,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
             "--rounds" => options.rounds = number(value()?)?,
             "--jobs" => options.jobs = Some(number(value()?)?.max(1)),
             "--out" => options.out = value()?.into(),
-            "--set" => {
-                let text = value()?;
-                let (name, value) = text.split_once('=').ok_or(format!("--set needs NAME=VALUE, not '{text}'."))?;
-                let place = propagation_constants().iter().position(|(known, _)| *known == name);
-                options.constants[place.ok_or(format!("There is no constant '{name}'."))?] =
-                    value.parse().map_err(|_| format!("'{value}' is no number."))?;
-            }
+            "--set" => parts::set(&mut options.model, &value()?)?,
             "--without" => {
                 options.without = value()?.split(',').map(str::to_owned).collect();
                 options.without.iter().try_for_each(|name| automatic::part(name).map(|_| ()))?;
@@ -233,7 +230,7 @@ impl Options {
         work: impl Fn(&Case) -> Result<T, Failure> + Sync,
     ) -> Result<Vec<T>, Failure> {
         let shown = |case: &Case| {
-            vary_propagation(self.constants);
+            vary(self.model);
             let row = work(case).map_err(|error| format!("{}: {error}", case.name))?;
             println!("{}", serde_json::to_string(&row)?);
             Ok(row)

@@ -111,7 +111,7 @@ for a view to count as seen (0.887 to 0.895, and 0.851 to 0.880, no choice the b
 const CONSTANTS: &str = "\
 ## Constants
 
-The propagation has ten constants (src/clip/correction/constants.rs). `npm run bench:annotator -- fit` moves each by factors of 1.25 while
+Nine constants of the propagation (`ClipModel` in src/model.rs) are fitted: `npm run bench:annotator -- fit` moves each by factors of 1.25 while
 that helps the mean of *mask* and *round 1* on half of the real clips (every second one by name), and scores the other half, which it has
 not seen. Scores are those of the constants used and of the fitted ones.
 

@@ -43,15 +43,7 @@ impl<'a> Session<'a> {
         pairs: &Path,
     ) -> std::result::Result<Session<'a>, Failure> {
         let pair = SegmentOptions { quality, ..SegmentOptions::default() };
-        Session::open_with(ClipSegmenter::new(ClipOptions { pair, ..ClipOptions::default() })?, frames, pairs)
-    }
-
-    /// The same with a segmenter that has no frames yet.
-    pub(crate) fn open_with(
-        mut segmenter: ClipSegmenter,
-        frames: &'a [Frame],
-        pairs: &Path,
-    ) -> std::result::Result<Session<'a>, Failure> {
+        let mut segmenter = ClipSegmenter::new(ClipOptions { pair, ..ClipOptions::default() })?;
         fs::create_dir_all(pairs)?;
         for (index, frame) in frames.iter().enumerate() {
             let file = pairs.join(index.to_string());

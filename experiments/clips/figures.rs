@@ -70,7 +70,7 @@ pub(crate) fn all(measured: &[Measured]) -> Value {
     };
     let means = |generated: bool| -> Value {
         let mut methods = Map::new();
-        for method in Method::ALL.into_iter().chain(Method::ABLATIONS) {
+        for method in Method::ALL.into_iter().chain(Method::ablations()) {
             let own =
                 || measured.iter().filter(|one| one.case.is_generated() == generated).filter_map(|one| one.of(method));
             if own().next().is_some() {

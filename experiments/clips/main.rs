@@ -13,6 +13,8 @@ mod page;
 mod panels;
 #[path = "../parallel.rs"]
 mod parallel;
+#[allow(dead_code, reason = "the annotator benchmark uses the rest")]
+mod parts;
 #[path = "../program.rs"]
 mod program;
 mod scores;
@@ -118,7 +120,7 @@ fn run(options: &Options) -> Result<(), Failure> {
     }
     let mut methods = Method::ALL.to_vec();
     if options.ablation {
-        methods.extend(Method::ABLATIONS);
+        methods.extend(Method::ablations());
     }
     if !options.methods.is_empty() {
         if options.write_docs {

@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::time::Instant;
 
-use veronese::clip::{ClipOptions, ClipPart, ClipSegmenter, StreamSegmenter};
-use veronese::{Frame, Quality, Result, SegmentOptions};
+use veronese::clip::{ClipOptions, ClipSegmenter, StreamSegmenter, vary};
+use veronese::{ClipModel, Frame, Quality, Result, SegmentOptions};
 
 use super::cases::{Data, labels};
 use super::linking::pair_by_pair;
+use super::parts::PARTS;
 
 /// In the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,8 +26,8 @@ pub(crate) enum Method {
     /// OpenCV: background subtraction.
     Mog2,
     Knn,
-    /// The clip segmenter without one of its parts.
-    Without(ClipPart),
+    /// The clip segmenter without one of its parts, by index.
+    Without(usize),
 }
 
 impl Method {
@@ -42,13 +43,9 @@ impl Method {
         Method::Knn,
     ];
 
-    pub(crate) const ABLATIONS: [Method; 5] = [
-        Method::Without(ClipPart::BothDirections),
-        Method::Without(ClipPart::Carrying),
-        Method::Without(ClipPart::Colours),
-        Method::Without(ClipPart::SecondRound),
-        Method::Without(ClipPart::Grouping),
-    ];
+    pub(crate) fn ablations() -> impl Iterator<Item = Method> {
+        (0..PARTS.len()).map(Method::Without)
+    }
 
     pub(crate) fn is_ablation(self) -> bool {
         matches!(self, Method::Without(_))
@@ -65,11 +62,7 @@ impl Method {
             Method::Flow => "flow",
             Method::Mog2 => "mog2",
             Method::Knn => "knn",
-            Method::Without(ClipPart::BothDirections) => "no-both-directions",
-            Method::Without(ClipPart::Carrying) => "no-carrying",
-            Method::Without(ClipPart::Colours) => "no-colours",
-            Method::Without(ClipPart::SecondRound) => "no-second-round",
-            Method::Without(ClipPart::Grouping) => "no-grouping",
+            Method::Without(part) => PARTS[part].name,
         }
     }
 
@@ -84,11 +77,7 @@ impl Method {
             Method::Flow => "OpenCV, DIS flow",
             Method::Mog2 => "OpenCV, MOG2",
             Method::Knn => "OpenCV, KNN",
-            Method::Without(ClipPart::BothDirections) => "without the evidence of backward pairs",
-            Method::Without(ClipPart::Carrying) => "without the evidence of other frames",
-            Method::Without(ClipPart::Colours) => "without colours",
-            Method::Without(ClipPart::SecondRound) => "without the second round",
-            Method::Without(ClipPart::Grouping) => "without grouping",
+            Method::Without(part) => PARTS[part].title,
         }
     }
 }
@@ -133,7 +122,10 @@ pub(crate) fn found(
     let own = match method {
         Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames)?),
         Method::Without(part) => {
-            Some(clip_labels(ClipSegmenter::without(part, ClipOptions::default())?, &data.frames)?)
+            vary(PARTS[part].left_out_of(ClipModel::DEFAULT));
+            let labels = clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames);
+            vary(ClipModel::DEFAULT);
+            Some(labels?)
         }
         Method::Stream(quality, look_ahead) => Some(stream_labels(quality, look_ahead, &data.frames)?),
         Method::Pairs => Some(pairs(Quality::Best)?),

@@ -139,7 +139,7 @@ impl Page<'_> {
     /// The clip segmenter without each of its parts, if that was measured.
     fn ablation(&self, text: &mut String) {
         let there = |method: &Method| self.measured.iter().any(|one| one.of(*method).is_some());
-        let methods: Vec<Method> = Method::ABLATIONS.into_iter().filter(there).collect();
+        let methods: Vec<Method> = Method::ablations().filter(there).collect();
         if methods.is_empty() {
             return;
         }

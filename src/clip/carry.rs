@@ -1,6 +1,7 @@
 //! Evidence carried through time along the motions of the pixels.
 
 use super::evidence::Flow;
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::warp::Footprint;
 use crate::labelling::BACKGROUND;
@@ -35,9 +36,6 @@ pub(crate) fn continued_labels(flow: &Flow) -> Buffer<u8> {
     labels
 }
 
-/// Pixels between a pixel and where its motion and that of the place it leads to bring it, from which it was not in sight there.
-const ROUND_TRIP: f64 = 1.5;
-
 /// The labels of another frame where the motions of this one's pixels lead; `unknown` where that is outside, or something else was in
 /// front. `return_flow` is the other frame's flow to this one, if it was measured.
 pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&Flow>, unknown: u8) -> Vec<u8> {
@@ -48,7 +46,7 @@ pub(crate) fn carried_labels(labels: &[u8], along: &Flow, return_flow: Option<&F
             let comes_back = |&[qx, qy]: &[usize; 2]| {
                 return_flow.is_none_or(|flow| {
                     let ([u, v], [r, s]) = (along.at(x, y), flow.at(qx, qy));
-                    (u + r) * (u + r) + (v + s) * (v + s) < ROUND_TRIP * ROUND_TRIP
+                    (u + r) * (u + r) + (v + s) * (v + s) < (2.0 * f64::from(model().motion)).powi(2)
                 })
             };
             let place = along.destination(x, y).filter(comes_back);

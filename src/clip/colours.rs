@@ -1,16 +1,8 @@
 //! Colours of objects and of the background, learned from the frames around a moment.
 
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
-
-/// Odds, nats, from which a pixel counts for one side: probability .6. Chosen on ten real clips; 1.5 gives the same.
-const SURE: f32 = 0.4;
-/// Pixels that each side needs before its colours are known.
-const FEWEST: f32 = 200.0;
-/// Pixels added to every colour of both sides. Insensitive: 4 gives the same.
-const PRIOR: f32 = 1.0;
-/// Largest ratio, nats.
-const MOST: f32 = 4.0;
 
 /// How often each colour is seen on objects and on the background.
 #[derive(Clone, Debug)]
@@ -24,7 +16,7 @@ impl ColourCounts {
     /// The counts of one frame, from the odds of object against background at its pixels.
     pub(crate) fn of(palette: &Palette, odds: &Plane) -> ColourCounts {
         let mut counts = ColourCounts::none();
-        for (p, &odds) in odds.values().iter().enumerate().filter(|(_, odds)| odds.abs() > SURE) {
+        for (p, &odds) in odds.values().iter().enumerate().filter(|(_, odds)| odds.abs() > model().undecided) {
             counts.0[usize::from(odds < 0.0)][palette.index(p)] += 1.0;
         }
         counts
@@ -38,12 +30,13 @@ impl ColourCounts {
     /// Log-likelihood ratio of object against background for each colour, nats; zero while a side is unknown.
     pub(crate) fn ratios(&self) -> Vec<f32> {
         let totals = self.0.each_ref().map(|side| side.iter().sum::<f32>());
-        if totals.iter().any(|&total| total < FEWEST) {
+        if totals.iter().any(|&total| total < model().pixels as f32) {
             return vec![0.0; COLOURS];
         }
-        let share =
-            |side: usize, colour: usize| (self.0[side][colour] + PRIOR) / (totals[side] + PRIOR * COLOURS as f32);
-        (0..COLOURS).map(|colour| libm::logf(share(0, colour) / share(1, colour)).clamp(-MOST, MOST)).collect()
+        let share = |side: usize, colour: usize| (self.0[side][colour] + 1.0) / (totals[side] + COLOURS as f32);
+        (0..COLOURS)
+            .map(|colour| libm::logf(share(0, colour) / share(1, colour)).clamp(-model().certain, model().certain))
+            .collect()
     }
 }
 

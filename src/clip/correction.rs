@@ -8,7 +8,6 @@
 //! 3. Each is followed forward from the first frame that speaks of it, and backward from the last (`correction/track.rs`).
 //! 4. The claims of a frame become its layer over the labels found automatically (`clip/layer.rs`).
 
-mod constants;
 mod evidence;
 mod look;
 mod memory;
@@ -25,15 +24,13 @@ use super::evidence::{Flow, KeptOdds};
 use super::layer::{Layer, SaidFrame, Spread};
 use super::runs::Runs;
 use super::whole::{NOTHING_SAID, SegmentedClip};
+use super::{MAX_LOOK_AHEAD, model};
 use crate::error::Result;
 use crate::frame::{Frame, Plane};
 use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
 use crate::order::sort_few;
 use crate::workspace::{self, Buffer};
-use constants::Constants;
-#[cfg(feature = "ablation")]
-pub use constants::{propagation_constants, vary_propagation};
 use look::Look;
 pub use outline::Prompt;
 pub(super) use outline::outline;
@@ -41,11 +38,6 @@ pub use pair::{Correction, MAX_CORRECTED, Relabelling, relabel};
 use sweep::Claim;
 use track::{Start, Track, Way};
 use world::{Known, World};
-
-/// Odds of what is said, nats.
-const CERTAIN: f32 = 8.0;
-/// Frames that are surveyed at most for an object.
-const SURVEYED: usize = 8;
 
 /// A correction that spreads through a [`SegmentedClip`]. It asks for the frames that it needs:
 ///
@@ -146,14 +138,13 @@ impl ClipCorrection {
         let Some((index, pass)) = self.next else { return Ok(()) };
         clip.check(index, frame)?;
         let _call = workspace::begin(clip.size());
-        let constants = constants::constants();
         let look = Look::new(frame);
         let mut pass = Some(pass);
         if let Some((said, spread)) = self.said.take() {
             let is_new = clip.frames[index].said.as_ref().is_none_or(|before| before.labels != said);
             let now = self.begin(clip, frame, said, spread);
             if is_new {
-                self.at_once(clip, frame, &look, &now, &constants);
+                self.at_once(clip, frame, &look, &now);
             }
             self.next = self.after_survey();
             // The frame is here already.
@@ -168,9 +159,9 @@ impl ClipCorrection {
                     while let Some((_, number)) = self.survey.pop_if(|(t, _)| *t == index) {
                         for track in self.worlds.iter_mut().flat_map(|world| &mut world.tracks) {
                             match (number, &said) {
-                                (Some(number), _) if track.number == number => track.survey(&look, &found, &constants),
+                                (Some(number), _) if track.number == number => track.survey(&look, &found),
                                 (None, Some((said, _))) if track.is_for_all(index) => {
-                                    track.hear(&look, said, &found, &constants);
+                                    track.hear(&look, said, &found);
                                 }
                                 _ => {}
                             }
@@ -180,11 +171,11 @@ impl ClipCorrection {
                 }
                 Pass::Alone => {
                     // Nothing is followed yet.
-                    self.visit(clip, frame, &look, index, Way::Backward, &constants);
+                    self.visit(clip, frame, &look, index, Way::Backward);
                     self.next = self.after_survey();
                 }
                 Pass::Sweep(way) => {
-                    self.visit(clip, frame, &look, index, way, &constants);
+                    self.visit(clip, frame, &look, index, way);
                     self.next = self.after(index, way);
                 }
             }
@@ -247,7 +238,7 @@ impl ClipCorrection {
                 continue;
             }
             let there: Vec<usize> = (first..=last).rev().filter(|&t| clip.finds(t, number)).collect();
-            let count = there.len().min(SURVEYED);
+            let count = there.len().min(MAX_LOOK_AHEAD);
             self.survey.extend((0..count).map(|k| (there[k * there.len() / count], Some(number))));
         }
         let tracks = || self.worlds.iter().flat_map(|world| &world.tracks);
@@ -310,7 +301,7 @@ impl ClipCorrection {
     }
 
     /// The corrected frame at once, from what it shows now.
-    fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, now: &[u8], constants: &Constants) {
+    fn at_once(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, now: &[u8]) {
         let now = at_size(now, clip.size()[0], look.size, look.step);
         let said = clip.said_at(self.index, look.size, look.step);
         let known =
@@ -318,9 +309,9 @@ impl ClipCorrection {
         let mut claims = Vec::new();
         for &number in self.worlds.iter().flat_map(|world| &world.decides) {
             let mut alone = Track::new(number, vec![(self.index, Spread::Both)], self.index + 1);
-            alone.know(look, &now, constants);
+            alone.know(look, &now);
             let mut world = World { tracks: vec![alone], decides: vec![number] };
-            claims.append(&mut world.visit(self.index, Way::Forward, false, look, &known, constants));
+            claims.append(&mut world.visit(self.index, Way::Forward, false, look, &known));
         }
         self.compose(clip, frame, look, self.index, &claims);
     }
@@ -341,15 +332,7 @@ impl ClipCorrection {
         if way == Way::Forward { firsts.min() } else { firsts.max() }
     }
 
-    fn visit(
-        &mut self,
-        clip: &mut SegmentedClip,
-        frame: &Frame,
-        look: &Look,
-        t: usize,
-        way: Way,
-        constants: &Constants,
-    ) {
+    fn visit(&mut self, clip: &mut SegmentedClip, frame: &Frame, look: &Look, t: usize, way: Way) {
         let [first, last] = self.scene;
         let found = clip.found_at(t, look.size);
         let flow = |kept: Option<Flow>| kept.map(|flow| flow.enlarged(look.size));
@@ -366,7 +349,7 @@ impl ClipCorrection {
         let again = way == Way::Forward && self.first(Way::Backward).is_some_and(|furthest| t < furthest);
         let mut claims = Vec::new();
         for world in &mut self.worlds {
-            claims.append(&mut world.visit(t, way, again, look, &known, constants));
+            claims.append(&mut world.visit(t, way, again, look, &known));
         }
         if !again {
             self.compose(clip, frame, look, t, &claims);
@@ -453,14 +436,14 @@ impl ClipCorrection {
         if let Some(said) = &clip.frames[t].said {
             let said = said.labels.values();
             for p in (0..said.len()).filter(|&p| said[p] != NOTHING_SAID && !held[p]) {
-                (best[p], labels[p]) = (CERTAIN, said[p]);
+                (best[p], labels[p]) = (2.0 * model().certain, said[p]);
             }
         }
         let [w, h] = clip.working_size();
         let old = before.map(|layer| layer.odds.odds(w, h));
         let layer = clip.layer_of(&labels, &|p, at| match held[p] {
             true => old.as_ref().map_or(0.0, |old| old.values()[at]),
-            false => best[p].min(CERTAIN),
+            false => best[p].min(2.0 * model().certain),
         });
         self.put(clip, t, layer);
     }
@@ -485,7 +468,7 @@ impl SegmentedClip {
                 let p = (y * step).min(height - 1) * width + (x * step).min(width - 1);
                 match labels[p] {
                     NOTHING_SAID => 0.0,
-                    0 => -CERTAIN,
+                    0 => -2.0 * model().certain,
                     _ => odds(p, y * w + x),
                 }
             });

@@ -2,6 +2,7 @@
 
 use super::evidence::Flow;
 use super::{ClipFrame, ClipObject};
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::resolution::upsampling::upsample;
@@ -21,8 +22,6 @@ pub(crate) struct WorkingFrame<'a> {
     pub(crate) mark_unknown: bool,
 }
 
-/// Odds within ±1 nat, probabilities of .27 to .73, do not tell an object from the background. Not varied.
-const UNDECIDED: f32 = 1.0;
 /// The label of a pixel that is marked.
 const UNLABELLED: u8 = u8::MAX;
 
@@ -55,7 +54,7 @@ impl WorkingFrame<'_> {
         let (step, last) = (self.reduction(width), [self.odds.width() - 1, self.odds.height() - 1]);
         for (p, label) in labels.iter_mut().enumerate() {
             let (x, y) = ((p % width / step).min(last[0]), (p / width / step).min(last[1]));
-            if self.odds.at(x, y).abs() < UNDECIDED {
+            if self.odds.at(x, y).abs() < model().undecided {
                 *label = UNLABELLED;
             }
         }

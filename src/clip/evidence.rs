@@ -3,6 +3,7 @@
 
 use super::runs::Runs;
 use super::saved::saved;
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::regions::description::counts;
@@ -12,10 +13,6 @@ use crate::pair::solution::{Prior, Solution};
 use crate::view::cost::inverse;
 use crate::workspace::Buffer;
 
-/// Odds beyond ±4 nats, probabilities of .018 and .982, are no more certain than that: a pair's mistakes are not. Not varied.
-const MOST_ODDS: f32 = 4.0;
-/// Probability added to both sides of the odds.
-const PRIOR: f32 = 0.01;
 /// Odds are multiples of this many nats, so that they take little room when they are kept.
 const STEP: f32 = 0.25;
 
@@ -180,13 +177,13 @@ pub(crate) fn odds(solution: &Solution) -> Plane {
     let total = |group: usize| (0..groups.len()).filter(|&k| groups[k] == group).map(|k| sizes[k]).sum::<usize>();
     let largest = groups[descending((0..groups.len()).map(|k| total(groups[k]) as f64))[0]];
     let (width, height) = (probabilities[0].width(), probabilities[0].height());
-    let [mut odds, mut ground] = [0, 1].map(|_| Plane::filled(width, height, PRIOR));
+    let [mut odds, mut ground] = [0, 1].map(|_| Plane::filled(width, height, model().doubt));
     for (probability, group) in probabilities.iter().zip(groups) {
         let sum = if *group == largest { &mut ground } else { &mut odds };
         sum.values_mut().iter_mut().zip(probability.values()).for_each(|(s, p)| *s += p);
     }
     for (odds, ground) in odds.values_mut().iter_mut().zip(ground.values()) {
-        *odds = STEP * libm::roundf(libm::logf(*odds / ground).clamp(-MOST_ODDS, MOST_ODDS) / STEP);
+        *odds = STEP * libm::roundf(libm::logf(*odds / ground).clamp(-model().certain, model().certain) / STEP);
     }
     odds
 }

@@ -6,21 +6,9 @@
 
 use super::evidence::Flow;
 use super::identity::MAX_OBJECTS;
+use crate::clip::model;
 use crate::labelling::BACKGROUND;
 use crate::order::sort_few;
-
-// The constants below were set by hand on generated clips and confirmed on ten real ones.
-
-/// Frames in which two objects must be seen moving together.
-const TOGETHER: usize = 5;
-/// Largest difference of their motions, as a share of their displacement relative to the background …
-const SAME_MOTION: f64 = 0.2;
-/// … in frames where that is at least this many working pixels.
-const MOVING: f64 = 0.5;
-/// Largest distance between their bounding boxes, in roots of the smaller one's pixels.
-const NEAR: f64 = 1.0;
-/// An object seen in fewer frames than this, neither in the first nor in the last frame of its scene, is none.
-const LASTING: usize = 4;
 
 /// All objects of a clip, counted frame by frame.
 pub(crate) struct Census {
@@ -109,7 +97,7 @@ impl Census {
         let difference = length(at(one.motion, other.centre), other.displacement)
             + length(at(other.motion, one.centre), one.displacement);
         let moved = |sighting: &Sighting| length(at(BACKGROUND, sighting.centre), sighting.displacement);
-        if moved(one) >= MOVING && moved(other) >= MOVING {
+        if moved(one) >= f64::from(model().motion) && moved(other) >= f64::from(model().motion) {
             meeting.frames += 1;
             meeting.difference += difference;
             meeting.displacement += moved(one) + moved(other);
@@ -134,7 +122,7 @@ impl Census {
             let lives = || (0..group.len()).filter(|&k| group[k] == object).filter_map(|k| self.lives[k].as_ref());
             let lasts = lives().any(|life| {
                 let ends = self.scenes.get(life.scene + 1).unwrap_or(&self.count);
-                life.frames >= LASTING || life.order.0 == self.scenes[life.scene] || life.last + 1 == *ends
+                life.frames >= model().lasting || life.order.0 == self.scenes[life.scene] || life.last + 1 == *ends
             });
             if let Some(&(frame, lacking, first)) = lives().map(|life| &life.order).min()
                 && lasts
@@ -154,7 +142,9 @@ impl Census {
 
 impl Meeting {
     fn is_of_one_object(&self) -> bool {
-        self.frames >= TOGETHER && self.difference <= SAME_MOTION * self.displacement && self.distance <= NEAR
+        self.frames >= model().together
+            && self.difference <= f64::from(model().part) * self.displacement
+            && self.distance <= model().search
     }
 }
 

@@ -9,6 +9,7 @@ mod object;
 mod sharing;
 mod sight;
 
+use crate::clip::model;
 use std::rc::Rc;
 
 use super::carry::carried_labels;
@@ -21,27 +22,10 @@ use object::{Apart, Object};
 use sharing::share;
 use sight::{Sight, telling};
 
-// The constants below were set by hand on ten real clips and on tests/clip.rs, and were not varied.
-
 /// Largest number of an object: 255 is kept for unlabelled pixels.
 pub(crate) const MAX_OBJECTS: usize = 254;
-/// An object leads to a region where its carried pixels are at least this share of the region or of the object …
-const CLAIM: f64 = 0.2;
-/// … and a region with less than this share of carried pixels is not claimed by what grazes it.
-const GRAZE: f64 = 0.05;
 /// A carried label that is not known: it hid behind something.
 const UNKNOWN: u8 = u8::MAX;
-/// Overlap of two colour histograms, 0…1, from which they may be of one object.
-const ALIKE: f64 = 0.4;
-/// Largest growth of an object while it was hidden.
-const GROWTH: f64 = 4.0;
-/// Two pieces of an object are two objects when one has moved this far relative to the other, in roots of its size. What covers the
-/// middle of an object leaves its pieces where they are.
-const APART: f64 = 0.5;
-/// They are also two when neither has moved with the other for this many frames in a row.
-const APART_FRAMES: usize = 6;
-/// Share of an object that a piece must have to be one.
-const SMALLEST_PIECE: f64 = 0.2;
 
 /// An object that was a part of another one before a frame.
 #[derive(Clone, Copy, Debug)]
@@ -174,9 +158,7 @@ impl Identities {
         let size = pixels.len() as f64;
         let claims = |object: &&Object| {
             let count = counts[usize::from(object.number)] as f64;
-            count >= CLAIM * size
-                || (count >= CLAIM * object.whole.size && count >= GRAZE * size)
-                || (count > 0.0 && emerged.contains(&object.number))
+            count >= f64::from(model().few) * size || (count > 0.0 && emerged.contains(&object.number))
         };
         let mut numbers: Vec<u8> = self.objects.iter().filter(claims).map(|object| object.number).collect();
         sort_few(&mut numbers, u8::cmp);
@@ -191,11 +173,10 @@ impl Identities {
 
     /// The object near a place whose colours are most alike among those that may be there, if they are more alike than `least`.
     fn most_alike(&self, sight: &Sight, least: f64, may_be: impl Fn(&Object) -> bool) -> Option<u8> {
-        let mut best = (least.max(ALIKE), None);
+        let mut best = (least.max(f64::from(model().part)), None);
         for object in &self.objects {
             let alike = object.whole.alike(sight);
-            let grown = sight.size / object.whole.size;
-            if may_be(object) && grown < GROWTH && object.is_near(sight.centre) && alike > best.0 {
+            if may_be(object) && object.is_near(sight.centre) && alike > best.0 {
                 best = (alike, Some(object.number));
             }
         }
@@ -220,7 +201,7 @@ impl Identities {
             let number = self.objects[k].number;
             let pieces: Vec<usize> = order.iter().copied().filter(|&c| found.list[c].label == number).collect();
             let whole: usize = pieces.iter().map(|&c| found.list[c].size).sum();
-            let large = |c: &&usize| found.list[**c].size as f64 >= SMALLEST_PIECE * whole as f64;
+            let large = |c: &&usize| found.list[**c].size as f64 >= f64::from(model().part) * whole as f64;
             let second = pieces.iter().skip(1).find(large).copied();
             let Some(second) = second else {
                 self.objects[k].apart = Apart::default();
@@ -229,7 +210,7 @@ impl Identities {
             let [one, other] = [pieces[0], second].map(|c| pixels_of(&found, c));
             let apart = &mut self.objects[k].apart;
             apart.add(along, &one, &other);
-            if apart.distance() > APART * (other.len() as f64).sqrt() || apart.frames >= APART_FRAMES {
+            if apart.distance() > model().search * (other.len() as f64).sqrt() || apart.frames >= model().together {
                 self.objects[k].apart = Apart::default();
                 if let Some(new) = self.new_number() {
                     other.iter().for_each(|&p| labels[p] = new);

@@ -1,12 +1,8 @@
 //! Objects that part were two from the start: the pixels of each are followed back to the frames in which they were one.
 
 use super::evidence::Flow;
+use crate::clip::model;
 use crate::components::absorb_small;
-
-/// An object is followed back while at least this share of its pixels is found in the frame before. Not varied.
-const FOUND: f64 = 0.5;
-/// Pixels of one object within another that are fewer than this share of its own are taken for the other's.
-const SMALLEST: f64 = 0.05;
 
 /// Divides what has the number `from` in a frame, whose flow to the next one is `onward`, between it and `new`, as their pixels have
 /// these numbers in the next frame, `later`. Tells whether `new` was found.
@@ -22,10 +18,10 @@ pub(super) fn divide(labels: &mut [u8], later: &[u8], onward: &Flow, from: u8, n
     }
     let count = |labels: &[u8], number: u8| labels.iter().filter(|&&label| label == number).count();
     let (found, expected) = (count(&carried, 2), count(later, new));
-    if (found as f64) < FOUND * expected as f64 {
+    if (found as f64) < 0.5 * expected as f64 {
         return false;
     }
-    absorb_small(&mut carried, width, (SMALLEST * found as f64) as usize);
+    absorb_small(&mut carried, width, (f64::from(model().few) * found as f64) as usize);
     labels
         .iter_mut()
         .zip(&carried)

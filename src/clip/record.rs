@@ -42,8 +42,5 @@ impl Record {
 
 /// Prices of borders along the edges of a frame, in units of the smoothness.
 pub(crate) fn unit_borders(appearance: &Appearance) -> Borders {
-    Borders::new(&appearance.pictures[0], EDGE_NOISE, 1.0, &Model::DEFAULT)
+    Borders::new(&appearance.pictures[0], Model::DEFAULT.smallest_noise, 1.0, &Model::DEFAULT)
 }
-
-/// Noise that the edges of a frame stand out from, grey levels. Frames of clips are compressed more often than noisy. Not varied.
-const EDGE_NOISE: f32 = 1.0;

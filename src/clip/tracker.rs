@@ -7,7 +7,7 @@ use super::evidence::{Flow, Pairs, flow, odds};
 use super::identity::{Identities, Parting};
 use super::record::{Record, unit_borders};
 use super::round::{Foreground, Round};
-use super::{ClipOptions, MAX_LOOK_AHEAD};
+use super::{ClipOptions, MAX_LOOK_AHEAD, model};
 use crate::error::{Error, Result};
 use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
@@ -16,36 +16,10 @@ use crate::pair::settings::Settings;
 use crate::pair::solution::{Expected, Prior, Solution, solve};
 use crate::workspace;
 
-/// Frames that a frame of a whole clip waits for, half of them in each round. Evidence from eight frames away has decayed to a sixth.
-const WHOLE_CLIP: usize = 16;
-/// Weight of the pairs' odds in the second round; on ten real clips .8 costs .003 J, …
-const SECOND_ROUND_ODDS: f32 = 0.5;
-/// … and what the cut of the first round adds for or against an object, nats; 2.5 costs .003.
-const FIRST_CUT: f32 = 1.5;
-
-/// A part of the clip segmenter that can be left out, for ablation studies. Without the feature `ablation` all parts are enabled. Not
-/// covered by semantic versioning.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ClipPart {
-    /// Evidence of the pair with the frame before; its motions are still used.
-    BothDirections,
-    /// Evidence of other frames.
-    Carrying,
-    /// Colours learned from the clip.
-    Colours,
-    /// The second round.
-    SecondRound,
-    /// What only the whole clip tells: objects that part, parts that move together, objects of a few frames.
-    Grouping,
-}
-
 /// Follows objects through a clip.
 #[derive(Debug)]
 pub(crate) struct Tracker {
     options: ClipOptions,
-    /// What is left out.
-    #[cfg(feature = "ablation")]
-    without: Option<ClipPart>,
     /// Whether frames are kept until they leave, to be described then.
     keeps_frames: bool,
     /// Width and height of the frames, once there is one.
@@ -93,14 +67,12 @@ impl Tracker {
             return Err(Error::InvalidOption { name: "lookAhead", reason });
         }
         // A stream has its frames' future in the first round alone.
-        let delays = options.look_ahead.map_or([WHOLE_CLIP / 2; 2], |frames| [frames, 0]);
+        let delays = options.look_ahead.map_or([MAX_LOOK_AHEAD; 2], |frames| [frames, 0]);
         let solver = Settings::solver(options.pair.quality);
         let rounds = [0, 1].map(|k| Round::new(delays[k], solver));
         let identities = Identities::new();
         Ok(Tracker {
             options,
-            #[cfg(feature = "ablation")]
-            without: None,
             keeps_frames,
             size: None,
             count: 0,
@@ -110,18 +82,6 @@ impl Tracker {
             rounds,
             identities,
         })
-    }
-
-    /// The same without one part, for ablation studies.
-    #[cfg(feature = "ablation")]
-    pub(crate) fn without(mut self, part: ClipPart) -> Tracker {
-        self.without = Some(part);
-        self.rounds.iter_mut().for_each(|round| match part {
-            ClipPart::Carrying => round.decay = 0.0,
-            ClipPart::Colours => round.colours_weight = 0.0,
-            _ => {}
-        });
-        self
     }
 
     pub(crate) fn options(&self) -> &ClipOptions {
@@ -189,17 +149,6 @@ impl Tracker {
         Pairs { onward, back, prior }
     }
 
-    /// Whether a part takes part.
-    pub(crate) fn has(&self, part: ClipPart) -> bool {
-        #[cfg(feature = "ablation")]
-        return self.without != Some(part);
-        #[cfg(not(feature = "ablation"))]
-        {
-            let _ = part;
-            true
-        }
-    }
-
     /// Goes on with what the pairs of the last frame and the newest one have told.
     fn take(&mut self, last: Newest, newest: Newest, Pairs { onward, back, prior }: Pairs) -> Option<Tracked> {
         self.prior = prior;
@@ -254,14 +203,12 @@ impl Tracker {
         onward_odds: Option<Plane>,
         onward: Option<Flow>,
     ) -> Option<Tracked> {
-        let (mut back_odds, back) = back.unzip();
-        if onward_odds.is_some() && !self.has(ClipPart::BothDirections) {
-            back_odds = None;
-        }
+        let (back_odds, back) = back.unzip();
         // Of object against background from the frame's pairs; zero where there is no pair.
         let odds = match (onward_odds, back_odds) {
             (Some(mut odds), Some(other)) => {
-                odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o = 0.5 * (*o + b));
+                let share = model().backward;
+                odds.values_mut().iter_mut().zip(other.values()).for_each(|(o, b)| *o += share * (b - *o));
                 odds
             }
             (Some(only), None) | (None, Some(only)) => only,
@@ -284,13 +231,13 @@ impl Tracker {
     fn second_round(&mut self, first: Foreground) -> Option<Tracked> {
         // Without frames to wait for, a second look tells little that the first does not: .0015 J on ten real clips.
         let live = self.options.pair.quality == Quality::Fast && self.options.look_ahead == Some(0);
-        if live || !self.has(ClipPart::SecondRound) {
+        if live || model().rounds < 2 {
             return Some(self.tracked(first));
         }
         let Foreground { record, own: mut odds, mask, .. } = first;
         for (odds, &object) in odds.values_mut().iter_mut().zip(&mask) {
-            let cut = if object > 0 { FIRST_CUT } else { -FIRST_CUT };
-            *odds = SECOND_ROUND_ODDS * *odds + cut;
+            let cut = if object > 0 { model().guess } else { -model().guess };
+            *odds = model().trust * *odds + cut;
         }
         let foreground = self.rounds[1].push(record, odds)?;
         Some(self.tracked(foreground))

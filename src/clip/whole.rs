@@ -9,8 +9,8 @@ use super::layer::{Layer, SaidFrame, Spread};
 use super::parting::divide;
 use super::runs::Runs;
 use super::saved::{Format, saved};
-use super::tracker::{ClipPart, Tracked, Tracker};
-use super::{ClipFrame, ClipOptions};
+use super::tracker::{Tracked, Tracker};
+use super::{ClipFrame, ClipOptions, model};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
 use crate::hash::hash;
@@ -87,20 +87,7 @@ impl ClipSegmenter {
     /// # Errors
     /// [`Error::InvalidOption`] for a look-ahead above [`MAX_LOOK_AHEAD`](super::MAX_LOOK_AHEAD) or a number of motions out of range.
     pub fn new(options: ClipOptions) -> Result<ClipSegmenter> {
-        ClipSegmenter::with(Tracker::new(options, false)?)
-    }
-
-    /// [`new`](Self::new) without one part, for ablation studies.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new).
-    #[cfg(feature = "ablation")]
-    #[doc(hidden)]
-    pub fn without(part: ClipPart, options: ClipOptions) -> Result<ClipSegmenter> {
-        ClipSegmenter::with(Tracker::new(options, false)?.without(part))
-    }
-
-    fn with(tracker: Tracker) -> Result<ClipSegmenter> {
+        let tracker = Tracker::new(options, false)?;
         // What decides how pairs are solved.
         let ClipOptions { pair: SegmentOptions { motions, quality, .. }, look_ahead } = *tracker.options();
         let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
@@ -158,7 +145,7 @@ impl ClipSegmenter {
             last.onward = None;
         }
         // With a look-ahead only what a stream knows is used, so that what is said of its objects holds here.
-        if look_ahead.is_none() && self.tracker.has(ClipPart::Grouping) {
+        if look_ahead.is_none() {
             let width = self.tracker.options().settings(size).working_size(size)[0];
             self.part(width);
             self.group(width);
@@ -352,7 +339,7 @@ impl SegmentedClip {
             let odds = &mut odds.values_mut()[p];
             match &layer {
                 Some((of_layer, above)) if above[q] != NOTHING_SAID => *odds = of_layer.values()[p],
-                _ if full[q] == 0 && found[q] > 0 => *odds = -FREED,
+                _ if full[q] == 0 && found[q] > 0 => *odds = -model().certain,
                 _ => {}
             }
             labels[p] = full[q];
@@ -625,8 +612,6 @@ impl SegmentedClip {
     }
 }
 
-/// Odds where something that was found is no object any more, nats.
-const FREED: f32 = 4.0;
 /// A set of numbers of objects.
 pub(super) type Numbers = [bool; 256];
 /// The label of a pixel of which a correction says nothing.

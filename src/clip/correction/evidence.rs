@@ -1,16 +1,8 @@
 //! What the labels that were found automatically say of an object, as far as they agreed with it so far.
 
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
-
-/// Share of the counts that is left after a frame.
-const DECAY: f32 = 0.9;
-/// Share that a label can have at least.
-const FLOOR: f32 = 0.05;
-/// Largest ratio, nats.
-const MOST: f32 = 2.0;
-/// Ground around the object that counts, pixels.
-const AROUND: usize = 50;
 
 /// How many of the object's pixels, and of the ground near it, had each label.
 #[derive(Clone, Debug)]
@@ -45,9 +37,9 @@ impl Evidence {
         if inside.is_empty() {
             return;
         }
-        let area = Area::of(&inside, width).grown(AROUND, width, height);
+        let area = Area::of(&inside, width).grown(model().margin, width, height);
         let side = |p: usize| usize::from(mask.values()[p] < 0.5);
-        let shares = if begins { [0.0, 1.0] } else { [DECAY, 1.0 - DECAY] };
+        let shares = if begins { [0.0, 1.0] } else { [model().decay, 1.0 - model().decay] };
         self.count(shares, found, &area, width, &side);
     }
 
@@ -66,9 +58,12 @@ impl Evidence {
                 totals[side] += count[side];
             }
         }
-        let share = |count: f32, total: f32| (count + FLOOR * total + 1.0) / ((1.0 + 2.0 * FLOOR) * total + 2.0);
+        let share = |count: f32, total: f32| {
+            (count + model().doubt * total + 1.0) / ((1.0 + 2.0 * model().doubt) * total + 2.0)
+        };
         for (ratio, [object, ground]) in self.ratios.iter_mut().zip(&self.counts) {
-            *ratio = libm::logf(share(*object, totals[0]) / share(*ground, totals[1])).clamp(-MOST, MOST);
+            *ratio =
+                libm::logf(share(*object, totals[0]) / share(*ground, totals[1])).clamp(-model().guess, model().guess);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What the propagation sees of a frame.
 
 use super::memory::colour;
+use crate::clip::model;
 use crate::frame::area::Area;
 use crate::frame::filter::{gaussian, halve};
 use crate::frame::lab::lab;
@@ -8,15 +9,6 @@ use crate::frame::picture::{Picture, colours};
 use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
 use crate::model::Model;
-
-/// Noise that edges stand out from, grey levels.
-const EDGE_NOISE: f32 = 1.0;
-/// Blur of the colours, pixels.
-const BLUR: f32 = 0.7;
-/// Longer side at most, pixels.
-const LONGEST: usize = 480;
-/// Coarse pixels are so many of the working size.
-pub(super) const COARSE: usize = 4;
 
 /// A frame at the working size of the propagation.
 #[derive(Clone, Debug)]
@@ -37,7 +29,7 @@ pub(super) struct Look {
 /// Full-size pixels for each pixel of the working size.
 fn step_of(size: [usize; 2]) -> usize {
     let mut step = 1;
-    while size[0].max(size[1]).div_ceil(step) > LONGEST {
+    while size[0].max(size[1]).div_ceil(step) > Model::DEFAULT.work_side {
         step *= 2;
     }
     step
@@ -49,11 +41,11 @@ impl Look {
         let mut luminance = frame.luminance().clone();
         (0..step.ilog2()).for_each(|_| luminance = halve(&luminance));
         let picture = Picture { colours: colours(frame, luminance.width()), luminance };
-        let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, BLUR));
+        let fine = lab(&picture.colours).each_ref().map(|plane| gaussian(plane, model().motion));
         let size = [picture.luminance.width(), picture.luminance.height()];
         let colours = (0..size[0] * size[1]).map(|p| colour(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
-        let borders = Borders::new(&picture, EDGE_NOISE, 1.0, &Model::DEFAULT);
+        let borders = Borders::new(&picture, Model::DEFAULT.smallest_noise, 1.0, &Model::DEFAULT);
         Look { size, step, colours, fine, coarse, borders }
     }
 }

@@ -3,31 +3,23 @@
 //! Two counts for every cell of place and colour, of the object's pixels and of others: those of corrected frames, which stay, and those of
 //! the frames passed since, which fade. Cells with few pixels fall back on wider ones, and these on the colours of all places.
 
-use super::constants::Constants;
 use super::look::Look;
 use super::sweep::Said;
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 
-/// Colour cells: steps of L, and of a and b, and how many of each. Of a and b only the middle half is told apart.
-const STEP: [f32; 2] = [14.0, 6.0];
-const LIGHTNESS: usize = 20;
+/// Colour cells: how many of L, and of a and b, of which only the middle half is told apart.
+const LIGHTNESS: usize = 22;
 const CHROMA: usize = 24;
 pub(super) const COLOURS: usize = LIGHTNESS * CHROMA * CHROMA;
-/// Ground around the object whose place is told apart, cells on each side.
-const MARGIN: usize = 3;
-/// Share of the back-off that wider cells need.
-const WIDER: f32 = 0.1;
 
 /// The colour cell of a pixel.
 pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
-    let chroma = |value: f32| (((value - 64.0) / STEP[1] + 1.5).max(0.0) as usize).min(CHROMA - 1);
-    let lightness = ((l / STEP[0] + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
+    let chroma = |value: f32| (((value - 64.0) / model().colour_step + 1.5).max(0.0) as usize).min(CHROMA - 1);
+    let lightness = ((l / (2.0 * model().colour_step) + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
     ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
 }
-
-/// Pixels found automatically that a pixel of which something else is said silences at most.
-const SILENCES: f32 = 40.0;
 
 /// Counts of pixels: object, ground.
 type Counts = [f32; 2];
@@ -64,16 +56,16 @@ pub(super) struct Memory {
 
 impl Memory {
     /// Nothing yet, of an object as large as a mask.
-    pub(super) fn of(mask: &Plane, constants: &Constants) -> Memory {
+    pub(super) fn of(mask: &Plane) -> Memory {
         let (width, height) = (mask.width(), mask.height());
         let pixels: Vec<usize> = (0..width * height).filter(|&p| mask.values()[p] > 0.0).collect();
         let around = if pixels.is_empty() { Area::whole(width, height) } else { Area::of(&pixels, width) };
-        Memory::new(&around, constants.cell * width.max(height) as f32)
+        Memory::new(&around, model().cell * width.max(height) as f32)
     }
 
     /// Nothing yet, of an object within an area.
     pub(super) fn new(area: &Area, cell: f32) -> Memory {
-        let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * MARGIN;
+        let cells = |side: usize| (side as f32 / cell) as usize + 2 + 2 * model().near as usize;
         let size = [cells(area.width()), cells(area.height())];
         Memory {
             size,
@@ -183,7 +175,7 @@ impl Memory {
     }
 
     /// Probability of the object at every pixel of an area, for an object with the given centre.
-    pub(super) fn read(&self, look: &Look, area: &Area, centre: [f32; 2], constants: &Constants) -> Vec<f32> {
+    pub(super) fn read(&self, look: &Look, area: &Area, centre: [f32; 2]) -> Vec<f32> {
         let (cells, width) = (self.cells(), look.size[0]);
         let mut blurred: Vec<Counts> = self
             .given
@@ -239,8 +231,9 @@ impl Memory {
                     })
                 };
                 let (near, wider) = (sample(&planes), sample(&wide));
-                let back_off = constants.back_off;
-                let of_wider = (wider[0] + WIDER * back_off * shares[k]) / (wider[0] + wider[1] + WIDER * back_off);
+                let back_off = model().back_off;
+                let of_wider =
+                    (wider[0] + model().few * back_off * shares[k]) / (wider[0] + wider[1] + model().few * back_off);
                 probabilities.push((near[0] + back_off * of_wider) / (near[0] + near[1] + back_off));
             }
         }
@@ -253,7 +246,7 @@ impl Memory {
         self.gather(colour, &self.said, &mut said);
         self.gather(colour, &self.found_of, &mut found);
         let ([object, ground], [found]) = (said[0], found);
-        let heard = |found: f32| (SILENCES * (object + ground) / found.max(1e-6)).min(1.0);
+        let heard = |found: f32| (model().silences * (object + ground) / found.max(1e-6)).min(1.0);
         [(ground, found[0]), (object, found[1])]
             .map(|(disagrees, found)| 1.0 - heard(found) * disagrees / (object + ground + 1.0))
     }
@@ -304,7 +297,6 @@ impl Memory {
 
 #[cfg(test)]
 mod tests {
-    use super::super::constants::constants;
     use super::*;
 
     const SIZE: [usize; 2] = [96, 96];
@@ -329,13 +321,13 @@ mod tests {
 
     fn memory_of(look: &Look, part: Part) -> Memory {
         let side = |p: usize| usize::from(!is_object(p % SIZE[0], p / SIZE[0]));
-        let mut memory = Memory::of(&look.plane(&|p| side(p) == 0), &constants());
+        let mut memory = Memory::of(&look.plane(&|p| side(p) == 0));
         memory.learn(look, CENTRE, part, 1.0, &side);
         memory
     }
 
     fn at(memory: &Memory, look: &Look, [x, y]: [usize; 2], centre: [f32; 2]) -> f32 {
-        memory.read(look, &look.area(), centre, &constants())[y * SIZE[0] + x]
+        memory.read(look, &look.area(), centre)[y * SIZE[0] + x]
     }
 
     #[test]

@@ -11,9 +11,9 @@
 //! What is said of the clip makes no difference to the mask: the same click always points to the same object. What is then said of the frame
 //! is more than the mask: it is ground where nothing else is, which is worth .12 of J through a clip. Others keep what they have.
 
+use crate::clip::model;
 use std::ops::Range;
 
-use super::constants::{Constants, constants};
 use super::evidence::Evidence;
 use super::look::Look;
 use super::memory::{Memory, Part};
@@ -29,30 +29,6 @@ use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
 use crate::workspace;
 
-/// Rounds of learning and cutting of a click's candidates, and of the last fit.
-const ROUNDS: [usize; 2] = [2, 3];
-/// Ground around the object that is learned from, pixels of the working size.
-const AROUND: usize = 40;
-/// Weight of labels and motions.
-const FOUND: f32 = 0.7;
-/// The middle of a box is the object with these odds, nats, which fall with the squared distance: by so many at the middle of a side.
-const BOX: [f32; 2] = [1.0, 1.5];
-/// Shares of the largest ellipse in a box up to which it begins as the object, and from which on as ground.
-const ELLIPSE: [f32; 2] = [0.8, f32::INFINITY];
-/// Radii of the discs that a click begins with, as shares of the frame's longer side.
-const RADII: [f32; 6] = [0.03, 0.05, 0.08, 0.13, 0.2, 0.32];
-/// The same odds of a disc, and the same shares of its radius.
-const DISC: [f32; 2] = [1.5, 1.5];
-const BEGINNING: [f32; 2] = [0.7, 1.3];
-/// Radius around a click that is the object, pixels of the working size.
-const CLICK: f32 = 2.5;
-/// Blur of a region, and pixels that it needs.
-const BLUR: f32 = 4.0;
-const FEWEST: usize = 30;
-/// Share of the votes from which a pixel begins as the object, and odds for all votes.
-const ENOUGH: f32 = 0.3;
-const VOTES: f32 = 3.0;
-
 /// Where an object is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Prompt {
@@ -67,7 +43,6 @@ struct View<'a> {
     look: &'a Look,
     /// Labels found automatically, and those of the motions to the next frame and the one before.
     found: Vec<Vec<u8>>,
-    constants: Constants,
 }
 
 /// What a fit begins with.
@@ -99,7 +74,7 @@ pub(in crate::clip) fn outline(
     let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(look.size).labels.to_vec());
     let labels = clip.found_at(index, look.size);
     let found = [Some(labels), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
-    let view = View { look: &look, found, constants: constants() };
+    let view = View { look: &look, found };
     let full = |mask: &[u8]| upsample(mask, look.size, 2, frame.luminance(), &Model::DEFAULT);
     let mask = match prompt {
         Prompt::Click([x, y]) => {
@@ -169,23 +144,26 @@ impl View<'_> {
         let middle = |side: &Range<usize>| 0.5 * (side.start + side.end - 1) as f32;
         let centre = [middle(&area.columns), middle(&area.rows)];
         let radii = [area.width(), area.height()].map(|side| 0.5 * side as f32);
-        self.fitted(self.ellipse(area, centre, radii, BOX, ELLIPSE), &|_| false, ROUNDS[1])
+        self.fitted(self.ellipse(area, centre, radii, [0.5, f32::INFINITY]), &|_| false)
     }
 
     fn clicked(&self, click: usize) -> Vec<u8> {
         let (pixels, [width, height]) = (self.look.pixels(), self.look.size);
         let centre = self.place(click);
-        let near = |p: usize| self.square(p, centre, [CLICK; 2]) < 1.0;
-        let disc = |share: f32| {
-            let radius = share * width.max(height) as f32;
-            let area = Area::of(&[click], width).grown((2.0 * radius) as usize, width, height);
-            self.ellipse(area, centre, [radius; 2], DISC, BEGINNING)
+        let near = |p: usize| self.square(p, centre, [model().near; 2]) < 1.0;
+        let whole = 1.0 - model().part;
+        let disc = |radius: f32| {
+            let area = self.around(&Area::of(&[click], width).grown(radius as usize, width, height));
+            self.ellipse(area, centre, [radius; 2], [whole, 1.0 / whole])
         };
-        let discs = RADII.iter().map(|&share| disc(share));
+        // From the side of a cell on, each twice as large, to a third of the frame.
+        let longest = width.max(height) as f32;
+        let radii =
+            std::iter::successors(Some(model().cell * longest), |radius| Some(std::f32::consts::SQRT_2 * radius));
+        let discs = radii.take_while(|radius| 3.0 * *radius < longest).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
         let beginnings = discs.chain(regions);
-        let masks: Vec<Vec<u8>> =
-            beginnings.map(|from| self.part_of(click, self.fitted(from, &near, ROUNDS[0]))).collect();
+        let masks: Vec<Vec<u8>> = beginnings.map(|from| self.part_of(click, self.fitted(from, &near))).collect();
         let mut votes = vec![0.0f32; pixels];
         let mut total = 0.0;
         for mask in &masks {
@@ -194,30 +172,24 @@ impl View<'_> {
             total += others * others;
         }
         votes.iter_mut().for_each(|votes| *votes /= total.max(f32::MIN_POSITIVE));
-        let agreed: Vec<usize> = (0..pixels).filter(|&p| votes[p] > ENOUGH || near(p)).collect();
+        let agreed: Vec<usize> = (0..pixels).filter(|&p| votes[p] > model().part || near(p)).collect();
         let mut sides = vec![1; pixels];
         agreed.iter().for_each(|&p| sides[p] = 0);
-        let odds = votes.iter().map(|votes| VOTES * (votes - ENOUGH)).collect();
+        let odds = votes.iter().map(|votes| 2.0 * model().guess * (votes - model().part)).collect();
         let area = self.around(&Area::of(&agreed, self.look.size[0]));
-        self.part_of(click, self.fitted(Beginning { area, odds, sides }, &near, ROUNDS[1]))
+        self.part_of(click, self.fitted(Beginning { area, odds, sides }, &near))
     }
 
-    /// An ellipse within an area: odds in its middle and how far they fall to its border, and the shares of its radii up to which it is the
-    /// object, and from which on it is ground.
-    fn ellipse(
-        &self,
-        area: Area,
-        centre: [f32; 2],
-        radii: [f32; 2],
-        odds: [f32; 2],
-        [object, ground]: [f32; 2],
-    ) -> Beginning {
+    /// An ellipse within an area, the object up to a share of its radii, and ground from another share `ground` on. The odds fall from its
+    /// middle with the squared distance, to none at `even`.
+    fn ellipse(&self, area: Area, centre: [f32; 2], radii: [f32; 2], [even, ground]: [f32; 2]) -> Beginning {
+        let object = 1.0 - model().part;
         let squares: Vec<f32> = (0..self.look.pixels()).map(|p| self.square(p, centre, radii)).collect();
         let mut sides = vec![1; squares.len()];
         for p in area.pixels(self.look.size[0]).filter(|&p| squares[p] < ground * ground) {
             sides[p] = if squares[p] < object * object { 0 } else { 2 };
         }
-        Beginning { area, sides, odds: squares.iter().map(|square| odds[0] - odds[1] * square).collect() }
+        Beginning { area, sides, odds: squares.iter().map(|square| model().guess * (even - square)).collect() }
     }
 
     /// The connected pixels that have the click's label, unless most of the frame has it.
@@ -226,7 +198,7 @@ impl View<'_> {
         let parts = components(labels, width, Connectivity::Eight);
         let part = parts.list[parts.of[click] as usize];
         let alike = labels.iter().filter(|label| **label == labels[click]).count();
-        if part.size < FEWEST || 2 * alike > labels.len() {
+        if part.size < model().pixels || 2 * alike > labels.len() {
             return None;
         }
         let inside = |p: usize| parts.of[p] == parts.of[click];
@@ -234,16 +206,20 @@ impl View<'_> {
         Some(Beginning {
             area: self.around(&Area { columns: left..right + 1, rows: top..bottom + 1 }),
             sides: (0..labels.len()).map(|p| u8::from(!inside(p))).collect(),
-            odds: gaussian(&self.look.plane(&inside), BLUR).values().iter().map(|share| 2.0 * share - 1.0).collect(),
+            odds: gaussian(&self.look.plane(&inside), model().near)
+                .values()
+                .iter()
+                .map(|share| model().guess * (2.0 * share - 1.0))
+                .collect(),
         })
     }
 
     /// Learns from a mask what the object looks like, cuts the next one, and so on.
-    fn fitted(&self, from: Beginning, is_sure: &dyn Fn(usize) -> bool, rounds: usize) -> Vec<u8> {
+    fn fitted(&self, from: Beginning, is_sure: &dyn Fn(usize) -> bool) -> Vec<u8> {
         let (look, [width, height]) = (self.look, self.look.size);
         let Beginning { area, odds: prior, mut sides } = from;
-        let seen = area.grown(AROUND, width, height);
-        for _ in 0..rounds {
+        let seen = area.grown(model().margin, width, height);
+        for _ in 0..model().rounds {
             let count = |side: u8| seen.pixels(width).filter(|&p| sides[p] == side).count() as f32;
             // Ground counts less where there is more of it.
             let weight = (count(0) / count(1).max(1.0)).sqrt();
@@ -252,15 +228,15 @@ impl View<'_> {
                 let of = |p: usize| if sides[p] == side { usize::from(side) } else { 2 };
                 memory.learn_within(look, &seen, [0.0; 2], Part::Recent, weight, &of);
             }
-            let remembered = memory.read(look, &area, [0.0; 2], &self.constants);
+            let remembered = memory.read(look, &area, [0.0; 2]);
             let evidence: Vec<Evidence> =
                 self.found.iter().map(|found| Evidence::of(found, &sides, &seen, width)).collect();
             let odds = |(p, remembered): (usize, f32)| {
                 let found: f32 = self.found.iter().zip(&evidence).map(|(found, of)| of.ratio(found[p])).sum();
-                if is_sure(p) { CERTAIN } else { prior[p] + logit(remembered) + FOUND * found }
+                if is_sure(p) { CERTAIN } else { prior[p] + logit(remembered) + found }
             };
             let odds: Vec<f32> = area.pixels(width).zip(remembered).map(odds).collect();
-            let mask = cut(look, &area, &odds, &self.constants);
+            let mask = cut(look, &area, &odds);
             if !mask.contains(&1) {
                 break;
             }
@@ -279,7 +255,7 @@ impl View<'_> {
 
     /// Where an object may reach that lies in an area.
     fn around(&self, area: &Area) -> Area {
-        area.grown(((area.width() + area.height()) / 8).max(12), self.look.size[0], self.look.size[1])
+        area.grown(model().margin, self.look.size[0], self.look.size[1])
     }
 
     fn place(&self, p: usize) -> [f32; 2] {

@@ -1,29 +1,14 @@
 //! An object as a whole: where it was last seen whole, and by which shift its pixels are found again, whatever the pairs know of its motion.
 
-use super::constants::Constants;
 use super::look::Look;
 use super::view::View;
 use crate::clip::evidence::Flow;
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::order::median;
 
 /// A shift of an object, pixels of the working size.
 pub(super) type Shift = [f32; 2];
-
-/// Pixels of an object below which it is not searched.
-const FEWEST: f32 = 80.0;
-/// An object is seen whole while it has this share of the pixels that it had …
-const SEEN: f32 = 0.85;
-/// … of which this share is expected a frame later.
-const SHRINKING: f32 = 0.97;
-/// Cost of a shift close to the one expected up to which no other place is looked for: that may be another object that looks like it.
-const CLOSE: f32 = 0.3;
-/// While more than this share is left, an object has changed, and is not hidden, …
-const CHANGED: f32 = 0.5;
-/// … if less than this share of what is left looks as before.
-const SAME: f32 = 0.7;
-/// Share of the last step in the velocity.
-const LATEST: f32 = 0.3;
 
 /// The object where it was last seen whole.
 #[derive(Clone, Debug)]
@@ -73,18 +58,19 @@ impl Whole {
     /// The object a frame later. While part of it is hidden, it stays what it was, and moves on.
     pub(super) fn gone_on(self, mask: &Plane, look: &Look, centre: [f32; 2], placed: Option<&Placed>) -> Whole {
         let pixels: f32 = mask.values().iter().sum();
-        let expected = if self.now { SHRINKING * self.pixels } else { self.pixels };
+        let expected = if self.now { model().shrinking * self.pixels } else { self.pixels };
         let (shift, found) = placed.map_or((self.shift, false), |placed| (placed.shift, placed.found));
         let velocity = self.velocity.unwrap_or_default();
         let onward = |share: f32, step: Shift| [0, 1].map(|k| velocity[k] + share * (step[k] - velocity[k]));
         let has_changed = || {
             let alike = self.view.alike(look, shift, &[]);
             let same = mask.values().iter().zip(alike.values()).filter(|(mask, alike)| **mask > 0.5 && **alike > 0.5);
-            pixels > CHANGED * expected && (same.count() as f32) < SAME * pixels
+            pixels > 0.5 * expected && (same.count() as f32) < (1.0 - model().part) * pixels
         };
-        let is_hidden = self.known && pixels < SEEN * expected && !has_changed();
-        let is_partly = self.known && pixels < SHRINKING * self.pixels && pixels >= SEEN * expected;
-        if is_hidden || is_partly || self.known && self.frames > 0 && pixels < SHRINKING * self.pixels {
+        let is_hidden = self.known && pixels < (1.0 - model().few) * expected && !has_changed();
+        let is_partly =
+            self.known && pixels < model().shrinking * self.pixels && pixels >= (1.0 - model().few) * expected;
+        if is_hidden || is_partly || self.known && self.frames > 0 && pixels < model().shrinking * self.pixels {
             // What it is off by came in all the frames since.
             let share = match self.velocity {
                 None => 1.0,
@@ -96,7 +82,7 @@ impl Whole {
             return Whole { shift, velocity, frames, now: !is_hidden, share, pixels: expected, ..self };
         }
         let step = [0, 1].map(|k| (centre[k] - self.centre[k]) / (self.frames as f32 + 1.0));
-        let velocity = Some(self.velocity.map_or(step, |_| onward(LATEST, step)));
+        let velocity = Some(self.velocity.map_or(step, |_| onward(1.0 - model().decay, step)));
         Whole { velocity, pixels: pixels.max(expected), ..Whole::new(mask, look, centre, self.known) }
     }
 
@@ -113,15 +99,15 @@ impl Whole {
 
     /// Where the object is in a frame; none for one that is too small. `flow` leads to that frame from the one before it. Objects in front
     /// of it have the pixels that are `covered`.
-    pub(super) fn place(&self, look: &Look, flow: &Flow, covered: &[bool], constants: &Constants) -> Option<Placed> {
+    pub(super) fn place(&self, look: &Look, flow: &Flow, covered: &[bool]) -> Option<Placed> {
         let [width, height] = look.size;
         let inside: Vec<usize> = (0..look.pixels()).filter(|&p| self.view.mask.values()[p] > 0.5).collect();
-        if (inside.len() as f32) < FEWEST {
+        if (inside.len() as f32) < model().pixels as f32 {
             return None;
         }
         let velocity = self.velocity.unwrap_or_default();
         let onward = [0, 1].map(|k| self.shift[k] + velocity[k]);
-        let again = || self.view.seen_again(look, onward, self.frames, covered, constants);
+        let again = || self.view.seen_again(look, onward, self.frames, covered);
         if !self.now {
             let seen = again();
             let shift = seen.unwrap_or(onward);
@@ -138,18 +124,16 @@ impl Whole {
             let flow = |&p: &usize| flow.at(at(p % width, 0, width), at(p / width, 1, height))[k] as f32;
             self.shift[k] + median(&inside.iter().map(flow).collect::<Vec<f32>>()).unwrap_or(0.0)
         });
-        let [(by_flow, one), (by_velocity, other)] =
-            [along, onward].map(|expected| self.view.close(look, expected, constants));
-        if self.frames > 0 || one.min(other) < CLOSE {
+        let [(by_flow, one), (by_velocity, other)] = [along, onward].map(|expected| self.view.close(look, expected));
+        if self.frames > 0 || one.min(other) < model().part {
             return placed(if other < one { by_velocity } else { by_flow });
         }
-        placed(self.view.nearest(look, along, constants))
+        placed(self.view.nearest(look, along))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::constants::constants;
     use super::*;
     use crate::Random;
 
@@ -183,7 +167,7 @@ mod tests {
     }
 
     fn place(whole: &Whole, look: &Look) -> Option<Placed> {
-        whole.place(look, &Flow::still(SIZE), &vec![false; look.pixels()], &constants())
+        whole.place(look, &Flow::still(SIZE), &vec![false; look.pixels()])
     }
 
     #[test]

@@ -1,20 +1,13 @@
 //! One object in a single frame: what is said of some pixels goes on along the looks of the object that was found, and along its motion.
 
-use super::SURVEYED;
-use super::constants::constants;
 use super::look::Look;
 use super::memory::{Memory, Part};
-use super::sweep::{BEGINNING, Said, centre_of, logit, solved};
+use super::sweep::{Said, centre_of, logit, solved};
+use crate::clip::{MAX_LOOK_AHEAD, model};
 use crate::components::{Components, Connectivity, components};
 use crate::frame::filter::gaussian;
 use crate::frame::{Frame, Plane};
 use crate::labelling::solver::Solver;
-
-/// Odds from which motions decide, nats.
-const DECISIVE: f32 = 0.3;
-
-/// Window over which odds of motions are averaged before that, pixels.
-const WINDOW: f32 = 5.0;
 
 /// A frame at the size at which objects are corrected.
 pub(crate) struct Still(Look);
@@ -36,36 +29,36 @@ impl Still {
 
     /// The labels of least energy, given the price of each at every pixel.
     pub(crate) fn labels(&self, costs: &[Plane]) -> Vec<u8> {
-        let (look, smoothness) = (&self.0, constants().smoothness);
+        let (look, smoothness) = (&self.0, model().smoothness);
         look.borders.times(smoothness).solve(costs, Solver::FAST).to_vec()
     }
 
     /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats. Only what is
     /// connected with something said changes.
     pub(crate) fn mask(&self, said: &[Said], found: &[bool], motion: &Plane) -> Vec<u8> {
-        let (look, constants) = (&self.0, constants());
+        let look = &self.0;
         let shown = look.plane(&|p| if said[p] == Said::Nothing { found[p] } else { said[p] == Said::Object });
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
-        let mut memory = Memory::of(&shown, &constants);
+        let mut memory = Memory::of(&shown);
         memory.learn_said(look, centre, Some(said));
         // Where the motions clearly contradict what was found, what is said decides between them.
-        let smooth = gaussian(motion, WINDOW);
+        let smooth = gaussian(motion, model().near);
         let is_doubted: Vec<bool> = found.iter().zip(smooth.values()).map(|(f, m)| contradicts(*f, *m)).collect();
         let trust = trust(said, found, &is_doubted);
         let presumed = |p: usize| if is_doubted[p] && trust < 0.0 { !found[p] } else { found[p] };
         // As much as frames of a clip in which an object was found.
-        let found_weight = constants.survey * SURVEYED as f32;
+        let found_weight = model().automatic * MAX_LOOK_AHEAD as f32;
         for (doubted, weight) in [(false, found_weight), (true, found_weight * trust.abs())] {
             let side = |p: usize| if is_doubted[p] == doubted { usize::from(!presumed(p)) } else { 2 };
             memory.learn(look, centre, Part::Found, weight, &side);
         }
-        let remembered = memory.read(look, &look.area(), centre, &constants);
+        let remembered = memory.read(look, &look.area(), centre);
         let odds = remembered.iter().zip(memory.trusts(look)).enumerate().map(|(p, (remembered, of_colour))| {
-            let presumed = if presumed(p) { of_colour[0] * BEGINNING } else { -of_colour[1] * BEGINNING };
+            let presumed = if presumed(p) { of_colour[0] * model().guess } else { -of_colour[1] * model().guess };
             let weight = if is_doubted[p] { trust.abs() } else { 1.0 };
-            weight * presumed + constants.memory * logit(*remembered) + motion.values()[p]
+            weight * presumed + model().memory * logit(*remembered) + motion.values()[p]
         });
-        let mut mask = solved(look, look.area(), odds.collect(), Some(said), &constants).mask;
+        let mut mask = solved(look, look.area(), odds.collect(), Some(said)).mask;
         keep_near(&mut mask, said, found, look.size[0]);
         mask
     }
@@ -95,7 +88,7 @@ fn trust(said: &[Said], found: &[bool], is_doubted: &[bool]) -> f32 {
 
 /// Whether the motions at a pixel clearly contradict what was found there.
 fn contradicts(found: bool, motion: f32) -> bool {
-    if found { motion < -DECISIVE } else { motion > DECISIVE }
+    if found { motion < -model().part } else { motion > model().part }
 }
 
 #[cfg(test)]

@@ -6,12 +6,12 @@
 //! `p_T` are the labels of the frame before, moved along the motions of the pixels and by one shift of the whole object; `p_M` is what the
 //! memory says of the pixel's colour at its place; the evidence is that of the labels found automatically. One cut gives the mask.
 
-use super::constants::Constants;
 use super::evidence::Evidence;
 use super::look::Look;
 use super::memory::{Memory, Part};
 use super::placing::{Placed, Whole};
 use crate::clip::evidence::Flow;
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
@@ -26,28 +26,8 @@ pub(crate) enum Said {
     Object,
 }
 
-/// Odds of what is said, nats.
+/// Odds of what is said, nats: more than all borders of a pixel cost.
 pub(super) const CERTAIN: f32 = 99.0;
-/// Largest odds of anything else.
-const MOST: f32 = 5.0;
-/// Probability added to both sides.
-const FLOOR: f32 = 0.02;
-/// Odds where the object begins with what was found of it, and where it is not.
-pub(super) const BEGINNING: f32 = 2.0;
-/// Odds of what lies beyond an area, and where nothing is said of an object that was not found.
-const NOWHERE: f32 = -9.0;
-/// Weight as ground of a pixel of which nothing is said where an object begins that was not found.
-const UNSAID: f32 = 0.1;
-/// Ground around the object that is looked at, pixels of the working size.
-const AROUND: usize = 24;
-/// Weight of what is seen of a hidden object, in carried labels.
-const HIDDEN: f32 = 3.0;
-/// Blur of carried labels, pixels.
-const BLUR: f32 = 1.5;
-/// Share of a carried label below which the object is not expected at a pixel …
-const FEW: f32 = 0.1;
-/// … and from which the pixel counts for the object's centre.
-const CENTRAL: f32 = 0.3;
 
 /// What a frame tells besides its pixels.
 #[derive(Clone, Copy)]
@@ -111,11 +91,11 @@ impl Sweep {
     }
 
     /// The same sweep in the other direction: it keeps all that was given, and forgets what it passed.
-    pub(super) fn turned(&self, look: &Look, found: &[u8], constants: &Constants) -> Sweep {
+    pub(super) fn turned(&self, look: &Look, found: &[u8]) -> Sweep {
         let (mut memory, mut evidence) = (self.memory.clone(), Evidence::default());
         if let (Some(memory), Some(front)) = (&mut memory, &self.front) {
             memory.forget_recent();
-            memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, &|p| front.side(p));
+            memory.learn(look, front.centre, Part::Recent, 1.0 - model().decay, &|p| front.side(p));
             evidence.learn(found, &front.mask, true);
         }
         let front = self.front.as_ref().map(|front| Front { whole: front.whole.turned(), ..front.clone() });
@@ -123,26 +103,26 @@ impl Sweep {
     }
 
     /// Learns what the object looks like in a frame where it was found, before it begins.
-    pub(super) fn survey(&mut self, look: &Look, inside: &dyn Fn(usize) -> bool, constants: &Constants) {
+    pub(super) fn survey(&mut self, look: &Look, inside: &dyn Fn(usize) -> bool) {
         let mask = look.plane(inside);
         let Some(centre) = centre_of(&mask) else { return };
-        let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
-        memory.learn(look, centre, Part::Found, constants.survey, &|p| usize::from(mask.values()[p] < 0.5));
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&mask));
+        memory.learn(look, centre, Part::Found, model().automatic, &|p| usize::from(mask.values()[p] < 0.5));
     }
 
     /// Takes what a frame shows of the object for what it looks like.
-    pub(super) fn know(&mut self, look: &Look, inside: &dyn Fn(usize) -> bool, constants: &Constants) {
+    pub(super) fn know(&mut self, look: &Look, inside: &dyn Fn(usize) -> bool) {
         let mask = look.plane(inside);
         let Some(centre) = centre_of(&mask) else { return };
-        let memory = self.memory.get_or_insert_with(|| Memory::of(&mask, constants));
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&mask));
         memory.learn(look, centre, Part::Recent, 1.0, &|p| usize::from(mask.values()[p] < 0.5));
     }
 
     /// Learns what is said in some frame for all frames.
-    pub(super) fn hear(&mut self, look: &Look, said: &[Said], found: &[u8], number: u8, constants: &Constants) {
+    pub(super) fn hear(&mut self, look: &Look, said: &[Said], found: &[u8], number: u8) {
         let shown = shown(look, Some(said), found, number);
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
-        let memory = self.memory.get_or_insert_with(|| Memory::of(&shown, constants));
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&shown));
         memory.learn_said(look, centre, Some(said));
         self.has_heard = true;
     }
@@ -153,19 +133,19 @@ impl Sweep {
     }
 
     /// The first frame. `number` is what the object is called where it was found.
-    pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, number: u8, constants: &Constants) -> Claim {
+    pub(super) fn begin(&mut self, look: &Look, given: &Given<'_>, number: u8) -> Claim {
         let is_found = given.found.contains(&number);
         let unsaid = |p: usize| match is_found {
-            true if given.found[p] == number => BEGINNING,
-            true => -BEGINNING,
-            false => NOWHERE,
+            true if given.found[p] == number => model().guess,
+            true => -model().guess,
+            false => -2.0 * model().certain,
         };
         let mut odds: Vec<f32> = (0..look.pixels()).map(unsaid).collect();
         let shown = shown(look, given.said, given.found, number);
         let partly = given.said.is_none_or(|said| said.contains(&Said::Nothing));
         let centre = centre_of(&shown).unwrap_or_else(|| look.middle());
         let knows = self.knows(given);
-        let memory = self.memory.get_or_insert_with(|| Memory::of(&shown, constants));
+        let memory = self.memory.get_or_insert_with(|| Memory::of(&shown));
         if !knows {
             memory.learn_said(look, centre, given.said);
         }
@@ -174,18 +154,18 @@ impl Sweep {
             if !is_found {
                 // Most of what nothing is said of is ground.
                 let is_said = |p: usize| given.said.is_some_and(|said| said[p] != Said::Nothing);
-                memory.learn(look, centre, Part::Recent, UNSAID, &|p| if is_said(p) { 2 } else { 1 });
+                memory.learn(look, centre, Part::Recent, model().few, &|p| if is_said(p) { 2 } else { 1 });
             }
-            let remembered = memory.read(look, &area, centre, constants);
+            let remembered = memory.read(look, &area, centre);
             for ((odds, remembered), trust) in odds.iter_mut().zip(remembered).zip(memory.trusts(look)) {
-                *odds = trust[usize::from(*odds < 0.0)] * *odds + constants.bias + constants.memory * logit(remembered);
+                *odds = trust[usize::from(*odds < 0.0)] * *odds + model().bias + model().memory * logit(remembered);
             }
         }
-        let claim = solved(look, area, odds, given.said, constants);
+        let claim = solved(look, area, odds, given.said);
         let mask = claim.plane(look);
         let centre = centre_of(&mask).unwrap_or(centre);
         let whole = Whole::new(&mask, look, centre, !partly);
-        self.arrive(look, given, Front { mask, centre, whole }, [partly, true], constants);
+        self.arrive(look, given, Front { mask, centre, whole }, [partly, true]);
         claim
     }
 
@@ -195,17 +175,11 @@ impl Sweep {
     }
 
     /// Where the object is in the next frame.
-    pub(super) fn place(
-        &self,
-        look: &Look,
-        given: &Given<'_>,
-        covered: &[bool],
-        constants: &Constants,
-    ) -> Option<Placed> {
+    pub(super) fn place(&self, look: &Look, given: &Given<'_>, covered: &[bool]) -> Option<Placed> {
         let front = self.front.as_ref()?;
         let still = Flow::still(look.size);
         let [_, from] = given.flows.unwrap_or([&still, &still]);
-        front.whole.place(look, from, covered, constants)
+        front.whole.place(look, from, covered)
     }
 
     /// Marks where the object is expected.
@@ -216,19 +190,13 @@ impl Sweep {
     }
 
     /// What is expected in the next frame.
-    pub(super) fn expect(
-        &mut self,
-        look: &Look,
-        given: &Given<'_>,
-        placed: Option<Placed>,
-        constants: &Constants,
-    ) -> Option<Expected> {
+    pub(super) fn expect(&mut self, look: &Look, given: &Given<'_>, placed: Option<Placed>) -> Option<Expected> {
         let front = self.front.as_ref()?;
         let [width, height] = look.size;
         let still = Flow::still(look.size);
         let [to, _] = given.flows.unwrap_or([&still, &still]);
-        let soft = gaussian(&front.mask, BLUR);
-        let all = gaussian(&front.whole.view.mask, BLUR);
+        let soft = gaussian(&front.mask, model().motion);
+        let all = gaussian(&front.whole.view.mask, model().motion);
         let near = |p: usize| {
             let (x, y) = ((p % width) as f32, (p / width) as f32);
             let [u, v] = to.at(p % width, p / width);
@@ -243,42 +211,44 @@ impl Sweep {
         let hidden = placed.as_ref().and_then(|placed| placed.hidden.as_ref());
         let mut awaited = None;
         if let Some([alike, around]) = hidden {
-            let alike = gaussian(alike, BLUR);
+            let alike = gaussian(alike, model().motion);
             both.iter_mut().zip(alike.values()).for_each(|(both, &alike)| *both = [both[0].max(alike); 2]);
             awaited = Some(look.plane_of(&|p| alike.values()[p] + around.values()[p]));
         }
-        let weight = constants.carried * if hidden.is_some() { HIDDEN } else { 1.0 };
-        let reached = |p: &usize| both[*p][0] > FEW || both[*p][1] > FEW || soft.values()[*p] > FEW;
+        let weight = if hidden.is_some() { 1.0 } else { model().trust };
+        let reached =
+            |p: &usize| both[*p][0] > model().few || both[*p][1] > model().few || soft.values()[*p] > model().few;
         let area = Area::of(&(0..width * height).filter(reached).collect::<Vec<usize>>(), width);
-        let area = if area.width() == 0 { look.area() } else { area.grown(AROUND, width, height) };
+        let area = if area.width() == 0 { look.area() } else { area.grown(model().margin, width, height) };
         let carried = look.plane_of(&|p| 0.5 * (both[p][0] + both[p][1]));
-        let central = look.plane_of(&|p| if carried.values()[p] > CENTRAL { carried.values()[p] } else { 0.0 });
+        let central = look.plane_of(&|p| if carried.values()[p] > model().part { carried.values()[p] } else { 0.0 });
         let centre =
             front.whole.expected_centre(placed.as_ref()).or_else(|| centre_of(&central)).unwrap_or(front.centre);
         let learns = given.speaks && given.spreads && !self.knows(given);
         if let Some(memory) = self.memory.as_mut().filter(|_| learns) {
             memory.learn_said(look, centre, given.said);
         }
-        let remembered = self.memory.as_ref().map(|memory| memory.read(look, &area, centre, constants));
+        let remembered = self.memory.as_ref().map(|memory| memory.read(look, &area, centre));
         let odds = area.pixels(width).enumerate().map(|(k, p)| {
             let memory = remembered.as_ref().map_or(0.0, |of| logit(of[k]));
             let found = self.evidence.ratio(given.found[p]);
-            let z = constants.bias
-                + weight * logit(carried.values()[p])
-                + constants.memory * memory
-                + constants.found * found;
+            let z = model().bias + weight * logit(carried.values()[p]) + model().memory * memory + found;
             // What neither was its own nor looks as it did is not of a hidden object, whatever its colours.
-            let most = if hidden.is_some() && carried.values()[p] < FEW { -1.0 } else { MOST };
-            z.clamp(-MOST, most)
+            let most = if hidden.is_some() && carried.values()[p] < model().few {
+                -model().undecided
+            } else {
+                model().certain
+            };
+            z.clamp(-model().certain, most)
         });
         let odds = odds.collect();
         Some(Expected { area, odds, centre, placed, awaited })
     }
 
     /// Comes to the next frame, with what was expected of it and what is said there.
-    pub(super) fn step(&mut self, look: &Look, given: &Given<'_>, expected: Expected, constants: &Constants) -> Claim {
+    pub(super) fn step(&mut self, look: &Look, given: &Given<'_>, expected: Expected) -> Claim {
         let Expected { area, odds, centre, placed, .. } = expected;
-        let solve = |said| solved(look, area.clone(), odds.clone(), said, constants);
+        let solve = |said| solved(look, area.clone(), odds.clone(), said);
         let contradicts = |claim: &Claim, said: &[Said]| {
             let mut pixels = claim.area.pixels(look.size[0]).zip(&claim.mask);
             pixels.any(|(p, &inside)| inside > 0 && said[p] == Said::Other)
@@ -308,25 +278,18 @@ impl Sweep {
             let seen = centre_of(&mask).unwrap_or(centre);
             let whole = front.whole.gone_on(&mask, look, seen, placed.as_ref());
             let centre = if whole.now { seen } else { centre };
-            self.arrive(look, given, Front { mask, centre, whole }, [true, false], constants);
+            self.arrive(look, given, Front { mask, centre, whole }, [true, false]);
         }
         claim
     }
 
     /// Goes on from a frame. It learns its labels there if it `knows_little` of them.
-    fn arrive(
-        &mut self,
-        look: &Look,
-        given: &Given<'_>,
-        front: Front,
-        [knows_little, begins]: [bool; 2],
-        constants: &Constants,
-    ) {
+    fn arrive(&mut self, look: &Look, given: &Given<'_>, front: Front, [knows_little, begins]: [bool; 2]) {
         // Of an object that is partly hidden it would learn what hides it.
         if let Some(memory) = self.memory.as_mut().filter(|_| front.whole.now) {
-            memory.fade(constants.decay);
+            memory.fade(model().decay);
             if knows_little {
-                memory.learn(look, front.centre, Part::Recent, 1.0 - constants.decay, &|p| front.side(p));
+                memory.learn(look, front.centre, Part::Recent, 1.0 - model().decay, &|p| front.side(p));
             }
         }
         self.evidence.learn(given.found, &front.mask, begins);
@@ -368,10 +331,10 @@ impl Claim {
 /// Odds at a pixel of which an area may know.
 pub(super) fn odds_at(area: &Area, odds: &[f32], p: usize, width: usize) -> f32 {
     let inside = area.columns.contains(&(p % width)) && area.rows.contains(&(p / width));
-    if inside { odds[area.index_of(p, width)] } else { NOWHERE }
+    if inside { odds[area.index_of(p, width)] } else { -2.0 * model().certain }
 }
 
-/// Centre of the object's pixels, if there are enough.
+/// Centre of the object's pixels, if there are any.
 pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
     let mut moments = [0.0f64; 3];
     for y in 0..mask.height() {
@@ -380,17 +343,17 @@ pub(super) fn centre_of(mask: &Plane) -> Option<[f32; 2]> {
             moments = [moments[0] + share, moments[1] + share * x as f64, moments[2] + share * y as f64];
         }
     }
-    (moments[0] >= 3.0).then(|| [1, 2].map(|k| (moments[k] / moments[0]) as f32))
+    (moments[0] > 0.0).then(|| [1, 2].map(|k| (moments[k] / moments[0]) as f32))
 }
 
 pub(super) fn logit(p: f32) -> f32 {
-    libm::logf((p + FLOOR) / (1.0 - p + FLOOR))
+    libm::logf((p + model().doubt) / (1.0 - p + model().doubt))
 }
 
 /// The mask of least energy, with what is said of the frame.
-pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Said]>, constants: &Constants) -> Claim {
+pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Said]>) -> Claim {
     let Some(said) = said else {
-        let mask = cut(look, &area, &odds, constants);
+        let mask = cut(look, &area, &odds);
         return Claim { area, odds, mask };
     };
     let odds: Vec<f32> = (0..look.pixels())
@@ -402,7 +365,7 @@ pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Sai
         .collect();
     let area = look.area();
     let mask = if said.contains(&Said::Nothing) {
-        cut(look, &area, &odds, constants)
+        cut(look, &area, &odds)
     } else {
         odds.iter().map(|&z| u8::from(z > 0.0)).collect()
     };
@@ -410,9 +373,9 @@ pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Sai
 }
 
 /// The mask of least energy.
-pub(super) fn cut(look: &Look, area: &Area, odds: &[f32], constants: &Constants) -> Vec<u8> {
+pub(super) fn cut(look: &Look, area: &Area, odds: &[f32]) -> Vec<u8> {
     let (width, height) = (area.width(), area.height());
-    let borders = look.borders.cropped(area, constants.smoothness);
+    let borders = look.borders.cropped(area, model().smoothness);
     let object = Plane::from_buffer(width, height, odds.iter().map(|&z| -z).collect());
     borders.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST).to_vec()
 }

@@ -1,7 +1,6 @@
 //! One object, from everything that is said of it: a sweep forward from the first frame that speaks of it, one backward from the last, and
 //! between them both, by nearness.
 
-use super::constants::Constants;
 use super::look::Look;
 use super::sweep::{Claim, Expected, Given, Sweep, cut};
 use super::world::of_object;
@@ -54,22 +53,22 @@ impl Track {
     }
 
     /// Takes what a frame shows of the object for what it looks like.
-    pub(super) fn know(&mut self, look: &Look, now: &[u8], constants: &Constants) {
-        self.forward.know(look, &|p| now[p] == self.number, constants);
+    pub(super) fn know(&mut self, look: &Look, now: &[u8]) {
+        self.forward.know(look, &|p| now[p] == self.number);
     }
 
     /// Learns from a frame in which the object was found automatically.
-    pub(super) fn survey(&mut self, look: &Look, found: &[u8], constants: &Constants) {
+    pub(super) fn survey(&mut self, look: &Look, found: &[u8]) {
         for sweep in [&mut self.forward, &mut self.backward] {
-            sweep.survey(look, &|p| found[p] == self.number, constants);
+            sweep.survey(look, &|p| found[p] == self.number);
         }
     }
 
     /// Learns what is said for all frames, before any sweep begins.
-    pub(super) fn hear(&mut self, look: &Look, said: &[u8], found: &[u8], constants: &Constants) {
+    pub(super) fn hear(&mut self, look: &Look, said: &[u8], found: &[u8]) {
         let said = of_object(said, self.number);
         for sweep in [&mut self.forward, &mut self.backward] {
-            sweep.hear(look, &said, found, self.number, constants);
+            sweep.hear(look, &said, found, self.number);
         }
     }
 
@@ -95,27 +94,26 @@ impl Track {
         look: &Look,
         given: &Given<'_>,
         expected: Option<Expected>,
-        constants: &Constants,
     ) -> Option<Claim> {
         let number = self.number;
         let begins = self.first(way) == Some(t) && !self.sweep(way).has_begun();
         let own = match expected {
-            Some(expected) => Some(self.sweep(way).step(look, given, expected, constants)),
-            None if begins => Some(self.sweep(way).begin(look, given, number, constants)),
+            Some(expected) => Some(self.sweep(way).step(look, given, expected)),
+            None if begins => Some(self.sweep(way).begin(look, given, number)),
             None => None,
         };
         // A frame whose correction does not spread speaks for itself.
         let speaks = self.speaks(t);
-        let alone = || speaks.then(|| Sweep::default().begin(look, given, number, constants));
+        let alone = || speaks.then(|| Sweep::default().begin(look, given, number));
         match way {
             Way::Forward => {
                 if self.first(Way::Backward) == Some(t) && self.forward.has_begun() {
-                    self.backward = self.forward.turned(look, given.found, constants);
+                    self.backward = self.forward.turned(look, given.found);
                 }
                 own.or_else(alone)
             }
             Way::Backward => match (self.kept.get_mut(t).and_then(Option::take), own) {
-                (Some(forward), Some(backward)) => Some(self.joined(t, look, &forward, &backward, constants)),
+                (Some(forward), Some(backward)) => Some(self.joined(t, look, &forward, &backward)),
                 (forward, backward) => backward.or(forward).or_else(alone),
             },
         }
@@ -127,14 +125,14 @@ impl Track {
     }
 
     /// Both sweeps, by nearness of the frames that speak of the object.
-    fn joined(&self, t: usize, look: &Look, forward: &Claim, backward: &Claim, constants: &Constants) -> Claim {
+    fn joined(&self, t: usize, look: &Look, forward: &Claim, backward: &Claim) -> Claim {
         let distance = |start: Option<&Start>| start.map_or(0.0, |(start, _)| start.abs_diff(t) as f32);
         let since = distance(self.starts.iter().rev().find(|(start, spread)| *start <= t && spread.ways()[0]));
         let until = distance(self.starts.iter().find(|(start, spread)| *start >= t && spread.ways()[1]));
         let (area, width): (Area, usize) = (forward.area.with(&backward.area), look.size[0]);
         let both = |p| forward.at(p, width) * (until + 0.5) + backward.at(p, width) * (since + 0.5);
         let odds: Vec<f32> = area.pixels(width).map(|p| both(p) / (since + until + 1.0)).collect();
-        let mask = cut(look, &area, &odds, constants);
+        let mask = cut(look, &area, &odds);
         Claim { area, odds, mask }
     }
 }

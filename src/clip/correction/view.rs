@@ -1,31 +1,12 @@
 //! A view of an object, as it was once seen, and where that is seen again.
 
-use super::constants::Constants;
-use super::look::{COARSE, Look};
+use super::look::Look;
 use super::placing::Shift;
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::order::median;
-
-/// Pixels of the object that are compared.
-const COMPARED: usize = 150;
-/// How far around the expected shift, coarse pixels.
-const SEARCH: isize = 12;
-/// How far around the best of these, pixels.
-const NEAR: isize = 3;
-/// How far around where a hidden object is expected, pixels: after one frame, and how much that grows with each.
-const REACH: [f32; 2] = [2.0, 0.5];
-/// Squared colour difference beyond which it does not matter.
-const TRUNCATION: f32 = 600.0;
-/// What a pixel costs that cannot be seen, as a share of that.
-const UNSEEN: f32 = 0.7;
-/// A hidden object is seen where its pixels cost at most this, and so much less than elsewhere.
-const FOUND: [f32; 2] = [0.7, 0.1];
-/// Share of the truncation beyond which a pixel does not look alike.
-const ALIKE: f32 = 0.5;
-/// How much less well its place is known with each frame, pixels.
-const BLUR: f32 = 0.3;
 
 /// The object's pixels and their colours.
 #[derive(Clone, Debug)]
@@ -54,7 +35,7 @@ fn at(planes: &[Plane; 3], p: usize) -> [f32; 3] {
 /// Squared difference of colours, as a share of the truncation.
 fn difference(one: [f32; 3], other: [f32; 3]) -> f32 {
     let steps: [f32; 3] = std::array::from_fn(|k| one[k] - other[k]);
-    (steps.map(|step| step * step).iter().sum::<f32>() / TRUNCATION).min(1.0)
+    (steps.map(|step| step * step).iter().sum::<f32>() / model().truncation).min(1.0)
 }
 
 /// The pixel that (x, y) is shifted to, if it is inside.
@@ -70,62 +51,62 @@ impl View {
         let inside: Vec<usize> = (0..look.pixels()).filter(|&p| mask.values()[p] > 0.5).collect();
         let area = if inside.is_empty() { Area::whole(0, 0) } else { Area::of(&inside, width) };
         let colours = area.pixels(width).map(|p| at(&look.fine, p)).collect();
-        let of_coarse = |p: &usize| (p % width).is_multiple_of(COARSE) && (p / width).is_multiple_of(COARSE);
+        let of_coarse =
+            |p: &usize| (p % width).is_multiple_of(model().coarse) && (p / width).is_multiple_of(model().coarse);
         let corners: Vec<usize> = inside.into_iter().filter(of_coarse).collect();
         let coarse_width = look.coarse[0].width();
         let sample = |&p: &usize| Sample {
             at: [p % width, p / width],
             fine: at(&look.fine, p),
-            coarse: at(&look.coarse, p / width / COARSE * coarse_width + p % width / COARSE),
+            coarse: at(&look.coarse, p / width / model().coarse * coarse_width + p % width / model().coarse),
         };
-        let samples = corners.iter().step_by((corners.len() / COMPARED).max(1)).map(sample).collect();
+        let samples = corners.iter().step_by((corners.len() / model().pixels).max(1)).map(sample).collect();
         View { mask: mask.clone(), area, colours, samples }
     }
 
     /// The best shift near the one expected.
-    pub(super) fn nearest(&self, look: &Look, expected: Shift, constants: &Constants) -> Shift {
-        let middle = expected.map(|shift| libm::roundf(shift / COARSE as f32) * COARSE as f32);
+    pub(super) fn nearest(&self, look: &Look, expected: Shift) -> Shift {
+        let middle = expected.map(|shift| libm::roundf(shift / model().coarse as f32) * model().coarse as f32);
         let size = [look.coarse[0].width(), look.coarse[0].height()];
         let mut cost = |shift: Shift| {
             let of_sample = |sample: &Sample| {
-                let to = shifted(sample.at.map(|at| at / COARSE), shift.map(|shift| shift / COARSE as f32), size);
-                to.map_or(UNSEEN, |q| difference(sample.coarse, at(&look.coarse, q)))
+                let to = shifted(
+                    sample.at.map(|at| at / model().coarse),
+                    shift.map(|shift| shift / model().coarse as f32),
+                    size,
+                );
+                to.map_or(1.0 - model().part, |q| difference(sample.coarse, at(&look.coarse, q)))
             };
             self.mean(of_sample)
         };
-        let coarse = best_of(SEARCH, COARSE as f32, middle, middle, constants, &mut cost).0;
-        best_of(NEAR, 1.0, coarse, expected, constants, &mut |shift| self.cost(look, shift, &[])).0
+        let reach = (model().margin / model().coarse) as isize;
+        let coarse = best_of(reach, model().coarse as f32, middle, middle, &mut cost).0;
+        best_of(model().near as isize, 1.0, coarse, expected, &mut |shift| self.cost(look, shift, &[])).0
     }
 
     /// The best shift close to the one expected, and what it costs.
-    pub(super) fn close(&self, look: &Look, expected: Shift, constants: &Constants) -> (Shift, f32) {
-        best_of(NEAR, 1.0, expected, expected, constants, &mut |shift| self.cost(look, shift, &[]))
+    pub(super) fn close(&self, look: &Look, expected: Shift) -> (Shift, f32) {
+        best_of(model().near as isize, 1.0, expected, expected, &mut |shift| self.cost(look, shift, &[]))
     }
 
     /// The shift at which part of it is seen near the one expected, so many frames after it was seen whole; others have the pixels that
     /// are `covered`.
-    pub(super) fn seen_again(
-        &self,
-        look: &Look,
-        expected: Shift,
-        frames: usize,
-        covered: &[bool],
-        constants: &Constants,
-    ) -> Option<Shift> {
-        let reach = ((REACH[0] + REACH[1] * frames as f32) as isize).min(SEARCH);
+    pub(super) fn seen_again(&self, look: &Look, expected: Shift, frames: usize, covered: &[bool]) -> Option<Shift> {
+        let reach =
+            ((model().near + model().motion * frames as f32) as isize).min((model().margin / model().coarse) as isize);
         let mut costs = Vec::new();
-        let (best, least) = best_of(reach, 1.0, expected, expected, constants, &mut |shift| {
+        let (best, least) = best_of(reach, 1.0, expected, expected, &mut |shift| {
             costs.push(self.cost(look, shift, covered));
             costs[costs.len() - 1]
         });
         let usual = median(&costs).unwrap_or(0.0);
-        (least < FOUND[0] && usual - least > FOUND[1]).then_some(best)
+        (least < 1.0 - model().part && usual - least > model().few).then_some(best)
     }
 
     fn cost(&self, look: &Look, shift: Shift, covered: &[bool]) -> f32 {
         self.mean(|sample| match shifted(sample.at, shift, look.size) {
             Some(q) if covered.get(q) != Some(&true) => difference(sample.fine, at(&look.fine, q)),
-            _ => UNSEEN,
+            _ => 1.0 - model().part,
         })
     }
 
@@ -146,7 +127,7 @@ impl View {
             for y in near(at_pixel[1], &self.area.rows) {
                 for x in near(at_pixel[0], &self.area.columns) {
                     let colours = self.colours[self.area.index_of(y * look.size[0] + x, look.size[0])];
-                    least = least.min(difference(colours, at(&look.fine, q)) / ALIKE);
+                    least = least.min(difference(colours, at(&look.fine, q)) * 2.0);
                 }
             }
             alike.values_mut()[q] = 1.0 - least;
@@ -158,7 +139,7 @@ impl View {
     pub(super) fn around(&self, look: &Look, shift: Shift, frames: usize, covered: &[bool]) -> Plane {
         let mut there = vec![false; look.pixels()];
         self.cover(shift, &mut there);
-        let wide = gaussian(&look.plane(&|p| there[p]), 1.0 + BLUR * frames as f32);
+        let wide = gaussian(&look.plane(&|p| there[p]), model().motion * (frames as f32 + 1.0));
         look.plane_of(&|p| if covered[p] { 0.0 } else { (2.0 * wide.values()[p]).min(1.0) })
     }
 
@@ -184,16 +165,15 @@ fn best_of(
     step: f32,
     middle: Shift,
     expected: Shift,
-    constants: &Constants,
     cost: &mut dyn FnMut(Shift) -> f32,
 ) -> (Shift, f32) {
     let mut best = (f32::INFINITY, middle, f32::INFINITY);
     for dy in -reach..=reach {
         for dx in -reach..=reach {
             let shift = [middle[0] + step * dx as f32, middle[1] + step * dy as f32];
-            let away = [0, 1].map(|k| (shift[k] - expected[k]) / COARSE as f32);
+            let away = [0, 1].map(|k| (shift[k] - expected[k]) / model().coarse as f32);
             let cost = cost(shift);
-            let total = cost + constants.shift * libm::sqrtf(away[0] * away[0] + away[1] * away[1]);
+            let total = cost + model().shift * libm::sqrtf(away[0] * away[0] + away[1] * away[1]);
             if total < best.0 {
                 best = (total, shift, cost);
             }
@@ -204,7 +184,6 @@ fn best_of(
 
 #[cfg(test)]
 mod tests {
-    use super::super::constants::constants;
     use super::*;
     use crate::Random;
 
@@ -241,7 +220,7 @@ mod tests {
         view().cover([34.0, 20.0], &mut covered);
         assert_eq!(covered.iter().filter(|covered| **covered).count(), 24 * 24);
         let expected = [42.0, 22.0];
-        let shift = view().seen_again(&here, expected, 8, &covered, &constants());
+        let shift = view().seen_again(&here, expected, 8, &covered);
         assert_eq!(shift, Some([44.0, 20.0]));
         let alike = view().alike(&here, [44.0, 20.0], &covered);
         let (mut out, mut elsewhere) = (0, 0);
@@ -252,7 +231,7 @@ mod tests {
         }
         assert!(out > 200 && elsewhere == 0, "{out} of 240, {elsewhere}");
         // Nothing of it is seen.
-        assert_eq!(view().seen_again(&look(&[]), expected, 8, &covered, &constants()), None);
+        assert_eq!(view().seen_again(&look(&[]), expected, 8, &covered), None);
     }
 
     #[test]

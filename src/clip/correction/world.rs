@@ -1,16 +1,13 @@
 //! Objects that the same frames speak of: they are followed together, and each has what none of the others has better reason to have.
 
-use super::constants::Constants;
 use super::look::Look;
 use super::placing::Placed;
 use super::sweep::{Claim, Expected, Given, Said, odds_at};
 use super::track::{Track, Way};
 use crate::clip::evidence::Flow;
+use crate::clip::model;
 use crate::frame::Plane;
 use crate::order::sort_few;
-
-/// What others lose where a hidden object may appear again, and once more where it is seen, nats.
-const AWAITED: f32 = 4.0;
 
 /// What is known of a frame besides its pixels.
 pub(super) struct Known<'a> {
@@ -43,7 +40,6 @@ impl World {
         again: bool,
         look: &Look,
         known: &Known<'_>,
-        constants: &Constants,
     ) -> Vec<(u8, Option<Claim>)> {
         let said: Vec<Option<Vec<Said>>> =
             self.tracks.iter().map(|track| known.said.map(|(said, _)| of_object(said, track.number))).collect();
@@ -69,7 +65,7 @@ impl World {
         sort_few(&mut order, |&one, &other| shares[other].total_cmp(&shares[one]));
         for k in order {
             let Some(sweep) = self.tracks[k].coming(t, way) else { continue };
-            placed[k] = sweep.place(look, &given[k], &covered, constants);
+            placed[k] = sweep.place(look, &given[k], &covered);
             if let Some(placed) = &placed[k] {
                 sweep.cover(placed, &mut covered);
             }
@@ -79,12 +75,12 @@ impl World {
             .iter_mut()
             .zip(&given)
             .zip(placed)
-            .map(|((track, given), placed)| track.coming(t, way)?.expect(look, given, placed, constants))
+            .map(|((track, given), placed)| track.coming(t, way)?.expect(look, given, placed))
             .collect();
         compete(&mut expected, look.size[0]);
         let mut claims = Vec::new();
         for ((track, given), expected) in self.tracks.iter_mut().zip(&given).zip(expected) {
-            let claim = track.visit(t, way, look, given, expected, constants);
+            let claim = track.visit(t, way, look, given, expected);
             if again {
                 track.keep(t, claim.clone());
             }
@@ -104,7 +100,7 @@ fn compete(expected: &mut [Option<Expected>], width: usize) {
         for (_, awaited) in awaited.iter().enumerate().filter(|(j, _)| *j != k) {
             let Some(awaited) = awaited else { continue };
             let pixels = of.odds.iter_mut().zip(of.area.pixels(width));
-            pixels.for_each(|(odds, p)| *odds -= AWAITED * awaited.values()[p]);
+            pixels.for_each(|(odds, p)| *odds -= model().certain * awaited.values()[p]);
         }
     }
     let alone: Vec<_> = expected.iter().flatten().map(|of| (of.area.clone(), of.odds.clone())).collect();
@@ -136,7 +132,6 @@ pub(super) fn of_object(said: &[u8], number: u8) -> Vec<Said> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::constants::constants;
     use super::*;
     use crate::Random;
     use crate::clip::layer::Spread;
@@ -163,8 +158,7 @@ mod tests {
         let found = vec![0; look.pixels()];
         for t in 0..3 {
             let said = (t == 0).then_some((&said[..], [true; 2]));
-            let claims =
-                world.visit(t, Way::Forward, false, &look, &Known { said, found: &found, flows: None }, &constants());
+            let claims = world.visit(t, Way::Forward, false, &look, &Known { said, found: &found, flows: None });
             let mut owners = vec![0; look.pixels()];
             for (number, claim) in claims {
                 let claim = claim.unwrap();
@@ -197,11 +191,11 @@ mod tests {
         let shares = [false, true].map(|hears| {
             let mut track = Track::new(1, vec![(0, Spread::Both), (3, Spread::Both)], 4);
             for said in [&here, &later].into_iter().filter(|_| hears) {
-                track.hear(&look, said, &found, &constants());
+                track.hear(&look, said, &found);
             }
             let mut world = World { tracks: vec![track], decides: vec![1] };
             let known = Known { said: Some((&here, [true; 2])), found: &found, flows: None };
-            let claims = world.visit(0, Way::Forward, true, &look, &known, &constants());
+            let claims = world.visit(0, Way::Forward, true, &look, &known);
             let claim = claims[0].1.as_ref().unwrap();
             let of = |part: usize| {
                 let pixels = claim.area.pixels(SIZE[0]).zip(&claim.mask);
@@ -251,7 +245,7 @@ mod tests {
             let flows = [flow(t, -4.0), flow(t.saturating_sub(1), 4.0)];
             let flows = (t > 0).then_some([&flows[0], &flows[1]]);
             let known = Known { said, found: &found, flows };
-            for (number, claim) in world.visit(t, Way::Forward, false, &look, &known, &constants()) {
+            for (number, claim) in world.visit(t, Way::Forward, false, &look, &known) {
                 let claim = claim.unwrap();
                 let mut own = vec![false; truth.len()];
                 claim.area.pixels(SIZE[0]).zip(&claim.mask).for_each(|(p, &inside)| own[p] = inside > 0);

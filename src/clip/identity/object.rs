@@ -3,28 +3,8 @@
 use super::sight::{Sight, is_still, mean_motion, moves};
 use crate::clip::evidence::Flow;
 use crate::clip::record::Record;
+use crate::clip::{MAX_LOOK_AHEAD, model};
 use crate::labelling::BACKGROUND;
-
-// The constants below were set by hand on ten real clips and on tests/clip.rs, and were not varied, except as said.
-
-/// Share of its pixels that must be in sight to tell how an object moves.
-const MOVING: f64 = 0.3;
-/// Share of its pixels from which an object is in full sight.
-const WHOLE: f64 = 0.95;
-/// What is left of its full size in every frame in which less is in sight: objects also become smaller by moving away.
-const SHRINKING: f64 = 0.98;
-/// Frames for which an object may be hidden and keep its number. 16 gains nothing on five generated clips.
-const LONGEST_HIDDEN: usize = 10;
-/// What was hidden of an object is looked for this far from where its motion leads, in roots of its size, …
-const SEARCH: f64 = 1.5;
-/// … and this share of that farther for each frame in which it was hidden.
-const SEARCH_GROWTH: f64 = 0.1;
-/// A part of an object in sight moves like it, to within this many working pixels …
-const SAME_MOTION: f64 = 1.0;
-/// … and this share of its displacement.
-const SAME_SPEED: f64 = 0.25;
-/// Two pieces have different motions where these differ by this many working pixels, and by this share of how far the piece moves.
-const OTHER_MOTION: [f64; 2] = [0.5, 0.25];
 
 /// An object.
 #[derive(Clone, Debug)]
@@ -64,7 +44,7 @@ impl Apart {
             let ([u, v], [r, s]) = (motion.flow(x, y), mean_motion(along, other));
             let [a, b] = along.motions[BACKGROUND].flow(x, y);
             let (difference, own) = (libm::hypot(u - r, v - s), libm::hypot(r - a, s - b));
-            difference > OTHER_MOTION[0] && difference > OTHER_MOTION[1] * own
+            difference > f64::from(model().motion) && difference > f64::from(model().part) * own
         };
         self.frames = if differs((one, other)) && differs((other, one)) { self.frames + 1 } else { 0 };
     }
@@ -96,24 +76,24 @@ impl Object {
         let sight = Sight::of(record, pixels);
         let whole = !self.is_covered();
         // The little that is in sight may pass for background in its pairs.
-        let shown = whole || (self.in_sight >= MOVING * self.whole.size && moves(record, pixels));
+        let shown = whole || (self.in_sight >= f64::from(model().part) * self.whole.size && moves(record, pixels));
         let velocity = steady(record, pixels).filter(|_| shown).unwrap_or(self.whole.velocity);
         if whole {
             self.whole = Sight { velocity, ..sight };
         } else {
             self.whole.velocity = velocity;
-            self.whole.size *= SHRINKING;
+            self.whole.size *= f64::from(model().shrinking);
         }
     }
 
     /// Whether less of it was in sight than there is.
     pub(crate) fn is_covered(&self) -> bool {
-        self.in_sight < WHOLE * self.whole.size
+        self.in_sight < (1.0 - f64::from(model().few)) * self.whole.size
     }
 
     /// Whether it may come back.
     pub(crate) fn is_remembered(&self) -> bool {
-        self.hidden <= LONGEST_HIDDEN
+        self.hidden <= 2 * MAX_LOOK_AHEAD
     }
 
     pub(crate) fn moves_like(&self, sight: &Sight) -> bool {
@@ -123,7 +103,7 @@ impl Object {
     /// Whether a place is near where it is expected.
     pub(crate) fn is_near(&self, [x, y]: [f64; 2]) -> bool {
         let [a, b] = self.whole.centre;
-        let reach = SEARCH * self.whole.size.sqrt() * (1.0 + SEARCH_GROWTH * self.hidden as f64);
+        let reach = model().search * self.whole.size.sqrt() * (1.0 + f64::from(model().few) * self.hidden as f64);
         ((x - a) * (x - a) + (y - b) * (y - b)).sqrt() < reach
     }
 }
@@ -138,5 +118,6 @@ fn steady(record: &Record, pixels: &[usize]) -> Option<[f64; 2]> {
 
 /// Whether one displacement is like another.
 fn same([u, v]: [f64; 2], [r, s]: [f64; 2]) -> bool {
-    ((u - r) * (u - r) + (v - s) * (v - s)).sqrt() < SAME_MOTION + SAME_SPEED * (r * r + s * s).sqrt()
+    ((u - r) * (u - r) + (v - s) * (v - s)).sqrt()
+        < f64::from(model().motion) + f64::from(model().part) * (r * r + s * s).sqrt()
 }

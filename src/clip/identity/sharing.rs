@@ -1,15 +1,10 @@
 //! A region of the foreground shared among the objects that lead to it.
 
 use super::sight::telling;
+use crate::clip::model;
 use crate::clip::record::Record;
 use crate::frame::Plane;
 use crate::labelling::solver::Solver;
-
-/// Price of a label other than the one carried to a pixel, and of one that few carried pixels of the same motion have. On
-/// fifteen generated clips [1, 2] costs .002 of *assigned*.
-const PRICES: [f32; 2] = [2.0, 1.0];
-/// Price of a border between two objects. Set by hand, not varied.
-const SMOOTHNESS: f32 = 3.0;
 
 /// Shares a region among `numbers`: each pixel stays with its own, and pixels of one motion stay together. What comes into sight from
 /// behind an object is often carried from that object; a pixel that moves as most of another one does is not held to its own.
@@ -32,10 +27,10 @@ pub(crate) fn share(record: &Record, pixels: &[usize], carried: &[u8], numbers: 
         let all = votes.iter().sum::<usize>().max(1) as f32;
         let own = own(p).filter(|&k| main[k] == motion(p) || !main.contains(&motion(p)));
         for (k, cost) in costs.iter_mut().enumerate() {
-            let other = if own.is_some_and(|own| own != k) { PRICES[0] } else { 0.0 };
-            cost.values_mut()[p] = other + PRICES[1] * (1.0 - votes[k] as f32 / all);
+            let other = if own.is_some_and(|own| own != k) { 2.0 * model().undecided } else { 0.0 };
+            cost.values_mut()[p] = other + model().undecided * (1.0 - votes[k] as f32 / all);
         }
     }
-    let solved = record.borders(SMOOTHNESS).solve(&costs, Solver::FAST);
+    let solved = record.borders(model().smoothness).solve(&costs, Solver::FAST);
     pixels.iter().for_each(|&p| labels[p] = numbers[usize::from(solved[p])]);
 }

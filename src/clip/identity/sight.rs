@@ -4,9 +4,7 @@ use crate::clip::evidence::Flow;
 use crate::clip::record::Record;
 use crate::frame::palette::COLOURS;
 use crate::labelling::is_background;
-
-/// Displacement of the background, working pixels, below which a pair without objects shows twice the same. Not varied.
-const STILL: f64 = 0.1;
+use crate::model::Model;
 
 /// Some pixels of a frame in figures.
 #[derive(Clone, Debug)]
@@ -50,7 +48,7 @@ pub(crate) fn is_still(flow: &Flow) -> bool {
     let [right, bottom] = [flow.width - 1, flow.labels.len() / flow.width - 1];
     let still = |(x, y): (usize, usize)| {
         let [u, v] = flow.at(x, y);
-        u * u + v * v < STILL * STILL
+        u * u + v * v < f64::from(Model::DEFAULT.position_sigma).powi(2)
     };
     flow.labels.iter().all(|&label| is_background(label))
         && [(0, 0), (right, 0), (0, bottom), (right, bottom)].into_iter().all(still)
