@@ -9,7 +9,10 @@ use crate::masks::outcome::Method;
 use crate::measure::{Loaded, Part, Scored, measure};
 use crate::search::{model, state};
 
-const FIGURES: [(&str, fn(&Scored) -> f64); 3] = [("J", |s| s.j), ("by hand", |s| s.hand), ("F", |s| s.f)];
+/// A figure of a case and its name.
+type Figure = (&'static str, fn(&Scored) -> f64);
+
+const FIGURES: [Figure; 3] = [("J", |s| s.j), ("by hand", |s| s.hand), ("F", |s| s.f)];
 
 /// What is printed above rows of scores.
 fn head() -> String {
