@@ -13,7 +13,7 @@ fn pair(criterion: &mut Criterion) {
     for (name, quality) in [("fast", Quality::Fast), ("best", Quality::Best)] {
         let options = SegmentOptions { quality, ..SegmentOptions::default() };
         group.bench_function(name, |b| {
-            b.iter(|| segment_pair(black_box(scene.first()), scene.second(), None, &options, &mut |_| {}));
+            b.iter(|| segment_pair(black_box(scene.first()), scene.second(), &options, &mut |_| {}));
         });
     }
 }

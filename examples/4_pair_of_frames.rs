@@ -9,7 +9,7 @@ fn main() -> Result<()> {
 
     // Frames of your own: `Frame::from_rgba(width, height, &bytes)`, or with the feature `codecs`
     // `decode_image(&file)?.frame()?`.
-    let found = segment_pair(scene.first(), scene.second(), None, &SegmentOptions::default(), &mut |_| {})?;
+    let found = segment_pair(scene.first(), scene.second(), &SegmentOptions::default(), &mut |_| {})?;
 
     println!("{} motions", found.count);
     for motion in &found.motions {

@@ -18,7 +18,7 @@
 //!
 //! # fn main() -> veronese::Result<()> {
 //! let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
-//! let found = segment_pair(scene.first(), scene.second(), None, &SegmentOptions::default(), &mut |_stage| {})?;
+//! let found = segment_pair(scene.first(), scene.second(), &SegmentOptions::default(), &mut |_stage| {})?;
 //! assert_eq!(found.count, 2); // the background and one object
 //! assert_eq!(found.labels.len(), 160 * 120);
 //! for (motion, truth) in found.motions.iter().zip(&scene.motions) {
@@ -28,9 +28,6 @@
 //! # Ok(())
 //! # }
 //! ```
-//!
-//! With the frame before the first as the third argument (here `Some(scene.before())`), labels of pixels that are hidden in the second
-//! frame are more often right.
 //!
 //! The stages are: luminance, pyramids and gradients; the dominant motion and the change of brightness; measurements on the pixels that
 //! the dominant motion does not explain; candidate motions from the multibody constraint; greedy selection; refinement of each motion
@@ -85,7 +82,7 @@
 //! # fn main() -> veronese::Result<()> {
 //! # let scene = scene::generate(&SceneOptions { width: 96, height: 72, objects: 1, ..SceneOptions::default() })?;
 //! # let (first, second, options) = (scene.first(), scene.second(), SegmentOptions::default());
-//! let found = segment_pair(first, second, None, &options, &mut |_| {})?;
+//! let found = segment_pair(first, second, &options, &mut |_| {})?;
 //! let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
 //! let groups: Vec<u8> = found.motions.iter().map(|motion| motion.group).collect();
 //!
@@ -93,7 +90,7 @@
 //! let pixel = found.labels.iter().position(|&label| label == 1).unwrap();
 //! allowed[pixel] = 0b1; // motion 0 only
 //! let correction = Correction { motions: &motions, groups: &groups, labels: &found.labels, allowed: &allowed };
-//! let corrected = relabel(first, second, None, &correction, &options, &mut |_| {})?;
+//! let corrected = relabel(first, second, &correction, &options, &mut |_| {})?;
 //! assert_eq!(corrected.labels[pixel], 0);
 //! assert!(corrected.motions[1].pixels < found.motions[1].pixels);
 //! # Ok(())

@@ -288,10 +288,6 @@ model! {
     visibility_rounds: usize = 2;
     /// The same with quality `fast`. Speed.
     visibility_rounds_fast: usize = 1;
-    /// Window over which two views are compared, pixels.
-    views_window: f32 = 1.5;
-    /// Twice the difference of smallest costs from which on only the better view counts.
-    views_transition: f32 = 0.3;
 
     /// Nats for the six parameters of a motion, per ln N of its N pixels: 6/2 (Schwarz, Annals of Statistics 6(2), 1978).
     motion_price: f64 = 3.0;

@@ -80,7 +80,7 @@ pub enum Method {
 /// let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
 /// for quality in [Quality::Fast, Quality::Best] {
 ///     let options = SegmentOptions { quality, ..SegmentOptions::default() };
-///     let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {})?;
+///     let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {})?;
 ///     assert_eq!(found.labels.len(), 160 * 120); // labels always have the size of the frames
 /// }
 /// # Ok(())
@@ -133,7 +133,7 @@ impl Default for FitOptions {
 ///     confidence: true,
 ///     ..SegmentOptions::default()
 /// };
-/// let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {})?;
+/// let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {})?;
 /// assert_eq!(found.count, 2);
 /// assert_eq!(found.labels.iter().filter(|&&label| label == UNLABELLED).count(), found.unlabelled);
 /// assert_eq!(found.confidence.map(|confidence| confidence.len()), Some(96 * 72));

@@ -22,7 +22,7 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::progress::{Progress, Stages};
 use crate::view::brightness::Photometric;
-use crate::view::cost::{View, noise};
+use crate::view::cost::noise;
 use crate::view::level::{Level, levels};
 use crate::workspace;
 use background::Solved;
@@ -34,18 +34,15 @@ const STAGES: &[&str] =
 
 /// Segments two frames: how many things move, how each one moves and which pixels belong to it.
 ///
-/// `before` is the frame before the first. It helps to label pixels that are occluded in the second.
-///
 /// # Errors
 /// [`Error::InvalidOption`], [`Error::FrameSizeMismatch`].
 pub fn segment_pair(
     first: &Frame,
     second: &Frame,
-    before: Option<&Frame>,
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
-    segment_with(first, second, before, options, Settings::new(options, size(first), &Model::DEFAULT), progress)
+    segment_with(first, second, options, Settings::new(options, size(first), &Model::DEFAULT), progress)
 }
 
 /// [`segment_pair`] with other constants, for studies and fits.
@@ -58,31 +55,29 @@ pub fn segment_pair_with(
     model: &'static Model,
     first: &Frame,
     second: &Frame,
-    before: Option<&Frame>,
     options: &SegmentOptions,
 ) -> Result<Segmentation> {
-    segment_with(first, second, before, options, Settings::new(options, size(first), model), &mut |_| {})
+    segment_with(first, second, options, Settings::new(options, size(first), model), &mut |_| {})
 }
 
 fn segment_with(
     first: &Frame,
     second: &Frame,
-    before: Option<&Frame>,
     options: &SegmentOptions,
     settings: Settings,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
     options.motions.validate()?;
-    check_sizes(first, second, before)?;
+    check_sizes(first, second)?;
     let _call = workspace::begin([first.width(), first.height()]);
     let detail = settings.of_detail(options, size(first));
     let mut stages = Stages::in_rounds(STAGES, 1 + usize::from(detail.is_some()), progress);
     stages.begin_round(0);
-    let pair = Pair::of_frames([first, second], before, &settings);
+    let pair = Pair::of_frames([first, second], &settings);
     let mut solved = background::solve(pair, &[], &settings, &mut stages);
     if let Some(settings) = detail {
         stages.begin_round(1);
-        let pair = Pair::of_frames([first, second], before, &settings);
+        let pair = Pair::of_frames([first, second], &settings);
         solved = solved.continued(pair, &settings, &mut stages);
     }
     let Solved { pair, mut labelled } = solved;
@@ -95,18 +90,12 @@ fn size(frame: &Frame) -> [usize; 2] {
     [frame.width(), frame.height()]
 }
 
-pub(crate) fn check_sizes(first: &Frame, second: &Frame, before: Option<&Frame>) -> Result<()> {
-    let size = (first.width(), first.height());
-    for other in [Some(second), before].into_iter().flatten() {
-        if (other.width(), other.height()) != size {
-            return Err(Error::FrameSizeMismatch { first: size, second: (other.width(), other.height()) });
-        }
-    }
-    Ok(())
+pub(crate) fn check_sizes(first: &Frame, second: &Frame) -> Result<()> {
+    let [first, second] = [first, second].map(|frame| (frame.width(), frame.height()));
+    if first == second { Ok(()) } else { Err(Error::FrameSizeMismatch { first, second }) }
 }
 
-/// The levels of a pair, from the working size down. The frame before, if there is one, is a third view of the same scene; a pair
-/// of the same frames the other way round is one with the frames swapped.
+/// The levels of a pair, from the working size down. A pair of the same frames the other way round is one with the frames swapped.
 #[derive(Clone)]
 pub(crate) struct Pair {
     /// Level 0 is the working size.
@@ -125,22 +114,15 @@ pub(crate) struct Pair {
 
 impl Pair {
     /// The pair of two frames.
-    fn of_frames([first, second]: [&Frame; 2], before: Option<&Frame>, settings: &Settings) -> Pair {
+    fn of_frames([first, second]: [&Frame; 2], settings: &Settings) -> Pair {
         let [pyramid, second] = [first, second].map(|frame| settings.pyramid(frame));
-        let before = before.map(|frame| settings.pyramid(frame));
         // The pyramids end here: the pair has the planes to itself and need not copy what it changes.
-        Pair::new(first, &pyramid, &second, before.as_ref(), settings)
+        Pair::new(first, &pyramid, &second, settings)
     }
 
     /// `pyramid` is that of `first`.
-    pub(crate) fn new(
-        first: &Frame,
-        pyramid: &FramePyramid,
-        second: &FramePyramid,
-        before: Option<&FramePyramid>,
-        settings: &Settings,
-    ) -> Pair {
-        let levels = levels(&pyramid.levels, &second.levels, before.map(|before| &before.levels[..]), settings.model);
+    pub(crate) fn new(first: &Frame, pyramid: &FramePyramid, second: &FramePyramid, settings: &Settings) -> Pair {
+        let levels = levels(&pyramid.levels, &second.levels, settings.model);
         let within =
             |side: usize| levels.iter().position(|l| l.width().max(l.height()) <= side).unwrap_or(levels.len() - 1);
         let [base, selection, draft] = [settings.base_side, settings.selection_side, settings.draft_side].map(within);
@@ -148,7 +130,7 @@ impl Pair {
         Pair { levels, base, selection, draft, appearance, reduction: pyramid.reduction as f64 }
     }
 
-    /// Finds the dominant motion, measures the noise and removes the change of brightness from every view, if it is estimated.
+    /// Finds the dominant motion, measures the noise and removes the change of brightness, if it is estimated.
     fn find_dominant(&mut self, how: DominantSearch) -> AffineMotion {
         let found = dominant_motion(&self.levels, self.base, how);
         self.settle_dominant(found, how)
@@ -165,7 +147,7 @@ impl Pair {
         (mut motion, photometric): (AffineMotion, Photometric),
         search: DominantSearch,
     ) -> AffineMotion {
-        self.remove(photometric, View::Second);
+        self.remove(photometric);
         if motion != AffineMotion::STATIC {
             let base = &mut self.levels[self.base];
             let model = base.model;
@@ -176,16 +158,16 @@ impl Pair {
             };
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
         }
-        self.measure_along(&motion, search.brightness);
+        self.measure_along(&motion);
         motion
     }
 
     /// As [`find_dominant`](Self::find_dominant) where the dominant motion is known.
     pub(crate) fn take_dominant(&mut self, motion: &AffineMotion, brightness: bool) {
-        if brightness && let Some(photometric) = Photometric::along(&self.levels[self.base], View::Second, motion) {
-            self.remove(photometric, View::Second);
+        if brightness {
+            self.remove(Photometric::along(&self.levels[self.base], motion));
         }
-        self.measure_along(motion, brightness);
+        self.measure_along(motion);
     }
 
     /// As [`find_dominant`](Self::find_dominant) where the background is at rest and objects, labelled at the working size, have these motions.
@@ -198,25 +180,20 @@ impl Pair {
             let level = &self.levels[self.base];
             let label = |x: usize, y: usize| usize::from(labels[(y << level.index) * width + (x << level.index)]);
             let photometric = Photometric::along_labels(level, &motions, &label);
-            self.remove(photometric, View::Second);
+            self.remove(photometric);
             let level = &mut self.levels[self.base];
             level.noise = noise(level, &AffineMotion::STATIC);
         }
-        self.measure_along(&AffineMotion::STATIC, brightness);
+        self.measure_along(&AffineMotion::STATIC);
     }
 
-    /// Measures the noise along the dominant motion and removes the change of brightness from the frame before.
-    fn measure_along(&mut self, motion: &AffineMotion, brightness: bool) {
-        for level in &mut self.levels {
-            level.noise = noise(level, motion);
-        }
-        if brightness && let Some(photometric) = Photometric::along(&self.levels[self.base], View::Before, motion) {
-            self.remove(photometric, View::Before);
-        }
+    /// Measures the noise along the dominant motion.
+    fn measure_along(&mut self, motion: &AffineMotion) {
+        self.levels.iter_mut().for_each(|level| level.noise = noise(level, motion));
     }
 
-    fn remove(&mut self, photometric: Photometric, view: View) {
-        self.levels.iter_mut().for_each(|level| photometric.remove_from(level, view));
+    fn remove(&mut self, photometric: Photometric) {
+        self.levels.iter_mut().for_each(|level| photometric.remove_from(level));
     }
 
     pub(crate) fn finest(&self) -> &Level {

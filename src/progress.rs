@@ -20,7 +20,7 @@ pub struct Stage {
 /// # fn main() -> veronese::Result<()> {
 /// let scene = scene::generate(&SceneOptions { width: 64, height: 48, objects: 1, ..SceneOptions::default() })?;
 /// let mut names = Vec::new();
-/// segment_pair(scene.first(), scene.second(), None, &SegmentOptions::default(), &mut |stage| {
+/// segment_pair(scene.first(), scene.second(), &SegmentOptions::default(), &mut |stage| {
 ///     println!("{} of {}: {}", stage.index + 1, stage.of, stage.name);
 ///     names.push(stage.name);
 /// })?;

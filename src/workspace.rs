@@ -77,7 +77,7 @@ impl Drop for Call {
 ///
 /// # fn main() -> veronese::Result<()> {
 /// let scene = scene::generate(&SceneOptions { width: 64, height: 48, objects: 1, ..SceneOptions::default() })?;
-/// let segment = || segment_pair(scene.first(), scene.second(), None, &SegmentOptions::default(), &mut |_| {});
+/// let segment = || segment_pair(scene.first(), scene.second(), &SegmentOptions::default(), &mut |_| {});
 /// let found = segment()?;
 /// release_workspace();
 /// assert_eq!(segment()?.labels, found.labels);

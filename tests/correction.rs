@@ -20,7 +20,7 @@ impl Case {
     fn new(width: usize, height: usize, seed: u64) -> Case {
         let scene = scene::generate(&SceneOptions { width, height, seed, ..SceneOptions::default() }).unwrap();
         let options = SegmentOptions::default();
-        let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {}).unwrap();
+        let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {}).unwrap();
         let motions = found.motions.iter().map(|m| m.matrix).collect();
         let groups = found.motions.iter().map(|m| m.group).collect();
         Case { scene, found, motions, groups }
@@ -33,7 +33,7 @@ impl Case {
     fn ask(&self, labels: &[u8], allowed: &[u16]) -> Result<Relabelling, Error> {
         let correction = Correction { motions: &self.motions, groups: &self.groups, labels, allowed };
         let (first, second) = (self.scene.first(), self.scene.second());
-        relabel(first, second, None, &correction, &SegmentOptions::default(), &mut |_| {})
+        relabel(first, second, &correction, &SegmentOptions::default(), &mut |_| {})
     }
 
     /// A stroke: a disc of `radius` around a pixel.
@@ -170,5 +170,5 @@ fn inconsistent_input_is_rejected() {
     let motions = vec![nan; case.motions.len()];
     let correction = Correction { motions: &motions, groups: &case.groups, labels, allowed: &vec![0; pixels] };
     let (first, second) = (case.scene.first(), case.scene.second());
-    assert_eq!(reason(relabel(first, second, None, &correction, &SegmentOptions::default(), &mut |_| {})), "motions");
+    assert_eq!(reason(relabel(first, second, &correction, &SegmentOptions::default(), &mut |_| {})), "motions");
 }

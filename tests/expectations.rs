@@ -154,7 +154,7 @@ fn check_pair(name: &str) {
         let case = format!("{name}, {altered:?}, {quality:?}");
         let [first, second] = [0, 1].map(|k| altered.frame(&pictures[k]));
         let options = SegmentOptions { quality, ..SegmentOptions::default() };
-        let found = segment_pair(&first, &second, None, &options, &mut |_| {}).unwrap();
+        let found = segment_pair(&first, &second, &options, &mut |_| {}).unwrap();
         let size = [first.width(), first.height()];
         let moved = displacement(&found, size);
         assert_eq!(
@@ -212,7 +212,7 @@ fn ground_is_at_rest_below_the_cars_of_a_camera_at_rest() {
         let seeds = 53_000..53_030;
         let moving = seeds.filter(|&seed| {
             let scene = scene::bare_ground(seed).unwrap();
-            let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {}).unwrap();
+            let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {}).unwrap();
             displacement(&found, [scene.first().width(), scene.first().height()]) >= REST
         });
         moving.collect::<Vec<u64>>()

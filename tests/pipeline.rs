@@ -8,12 +8,12 @@ use std::ops::Range;
 
 use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
 use veronese::{
-    AffineMotion, Error, Frame, MAX_MOTIONS, MotionCount, Plane, Quality, SegmentOptions, Segmentation,
-    SegmentedMotion, UNLABELLED, segment_pair,
+    AffineMotion, Frame, MAX_MOTIONS, MotionCount, Plane, Quality, SegmentOptions, Segmentation, SegmentedMotion,
+    UNLABELLED, segment_pair,
 };
 
 fn segment(first: &Frame, second: &Frame, options: SegmentOptions) -> Segmentation {
-    let result = segment_pair(first, second, None, &options, &mut |_| {}).unwrap();
+    let result = segment_pair(first, second, &options, &mut |_| {}).unwrap();
     check(&result, &options);
     for motion in &result.motions {
         let expected = residual(motion, &result.labels, first.luminance(), second.luminance());
@@ -419,126 +419,16 @@ fn confidence_changes_nothing_else_and_other_numbers_of_motions_score_worse() {
 }
 
 #[test]
-fn a_frame_before_is_accepted_and_its_size_is_checked() {
-    let scene =
-        scene::generate(&SceneOptions { width: 200, height: 150, seed: 21, ..SceneOptions::default() }).unwrap();
-    let options = SegmentOptions::default();
-    let [before, first, second] = &scene.frames;
-    let result = segment_pair(first, second, Some(before), &options, &mut |_| {}).unwrap();
-    check(&result, &options);
-    assert!(mean(&overlaps(&scene, &result.labels)) > 0.7);
-    let small = constant(32, 32, 0);
-    assert_eq!(
-        segment_pair(first, second, Some(&small), &options, &mut |_| {}).unwrap_err(),
-        Error::FrameSizeMismatch { first: (200, 150), second: (32, 32) }
-    );
-}
-
-/// The share of right labels among the pixels that are hidden or outside in the second frame. The right label is the most frequent one of
-/// the layer.
-fn right_where_hidden(scene: &Scene, before: Option<&Frame>) -> f64 {
-    let result = segment_pair(scene.first(), scene.second(), before, &SegmentOptions::default(), &mut |_| {}).unwrap();
-    let found = result.count;
-    let mut votes = vec![vec![0usize; found]; scene.motions.len()];
-    for (&t, &l) in scene.labels.iter().zip(&result.labels) {
-        votes[usize::from(t)][usize::from(l)] += 1;
-    }
-    let of: Vec<usize> = votes.iter().map(|v| (0..found).max_by_key(|&k| v[k]).unwrap()).collect();
-    let hidden = (0..scene.labels.len()).filter(|&p| scene.occluded[p]);
-    let right = hidden.clone().filter(|&p| of[usize::from(scene.labels[p])] == usize::from(result.labels[p]));
-    right.count() as f64 / hidden.count().max(1) as f64
-}
-
-/// Two objects with large motions, which occlude much.
-fn large_motions(seed: u64) -> SceneOptions {
-    SceneOptions {
-        width: 200,
-        height: 150,
-        objects: 2,
-        speed: Speed::Large,
-        background: Background::Moving,
-        seed,
-        ..SceneOptions::default()
-    }
-}
-
-fn assert_improved(seeds: Range<u64>) {
-    let mut with = Vec::new();
-    let mut without = Vec::new();
-    for seed in seeds {
-        let options = large_motions(seed);
-        let scene = scene::generate(&options).unwrap();
-        with.push(right_where_hidden(&scene, Some(scene.before())));
-        without.push(right_where_hidden(&scene, None));
-    }
-    assert!(mean(&with) > 0.96 && mean(&with) > mean(&without) + 0.01, "with {with:.3?}, without {without:.3?}");
-}
-
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
-#[test]
-fn a_frame_before_improves_the_labels_of_occluded_pixels() {
-    assert_improved(400..403);
-}
-
-#[test]
-#[ignore = "npm run soak"]
-fn a_frame_before_improves_the_labels_of_occluded_pixels_of_many_scenes() {
-    assert_improved(400..412);
-}
-
-/// Clouds and automatic exposure change the frame before as much as the second frame.
-fn assert_as_helpful(seeds: Range<u64>) {
-    let mut with = Vec::new();
-    let mut constant = Vec::new();
-    for seed in seeds {
-        let options = large_motions(seed);
-        let overlap = |options: &SceneOptions| {
-            let scene = scene::generate(options).unwrap();
-            let before = Some(scene.before());
-            let result = segment_pair(scene.first(), scene.second(), before, &SegmentOptions::default(), &mut |_| {});
-            mean(&overlaps(&scene, &result.unwrap().labels))
-        };
-        with.push(overlap(&SceneOptions { gain: 1.15, bias: 6.0, ..options }));
-        constant.push(overlap(&options));
-    }
-    assert!(mean(&with) > mean(&constant) - 0.02, "with a change {with:.3?}, without {constant:.3?}");
-}
-
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
-#[test]
-fn a_frame_before_helps_as_much_when_the_brightness_changes() {
-    assert_as_helpful(400..402);
-}
-
-#[test]
-#[ignore = "npm run soak"]
-fn a_frame_before_helps_as_much_when_the_brightness_of_many_scenes_changes() {
-    assert_as_helpful(400..412);
-}
-
-/// The frame before must not affect the motion of the background, because bare ground looks alike in all frames.
-#[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
-#[test]
-fn a_frame_before_leaves_a_bare_ground_at_rest() {
-    for seed in [1, 2] {
-        let scene = scene::bare_ground(seed).unwrap();
-        let options = SegmentOptions::default();
-        let result = segment_pair(scene.first(), scene.second(), Some(scene.before()), &options, &mut |_| {}).unwrap();
-        assert!(mean(&overlaps(&scene, &result.labels)) > 0.9, "seed {seed}: {:?}", overlaps(&scene, &result.labels));
-    }
-}
-
-#[test]
 fn sizes_and_numbers_out_of_range_are_errors() {
     let options = SegmentOptions::default();
     let (a, b) = (constant(32, 32, 0), constant(32, 33, 0));
-    assert_eq!(segment_pair(&a, &b, None, &options, &mut |_| {}).unwrap_err().code(), "frame-size-mismatch");
+    assert_eq!(segment_pair(&a, &b, &options, &mut |_| {}).unwrap_err().code(), "frame-size-mismatch");
     assert_eq!(Frame::from_rgba(1, 1, &[0; 4]).unwrap_err().code(), "frame-size-unsupported");
     assert_eq!(Frame::from_rgba(4097, 16, &[]).unwrap_err().code(), "frame-size-unsupported");
     assert_eq!(Frame::from_rgba(16, 16, &[0; 1023]).unwrap_err().code(), "pixel-count-mismatch");
     for n in [0, 11] {
         let options = SegmentOptions { motions: MotionCount::Given(n), ..options };
-        assert_eq!(segment_pair(&a, &a, None, &options, &mut |_| {}).unwrap_err().code(), "invalid-option");
+        assert_eq!(segment_pair(&a, &a, &options, &mut |_| {}).unwrap_err().code(), "invalid-option");
     }
 }
 
@@ -546,7 +436,7 @@ fn sizes_and_numbers_out_of_range_are_errors() {
 fn stages_are_reported_in_order() {
     let mut seen = Vec::new();
     let (first, second) = (textured(64, 48, 0.0), textured(64, 48, 1.0));
-    segment_pair(&first, &second, None, &SegmentOptions::default(), &mut |stage| seen.push(stage)).unwrap();
+    segment_pair(&first, &second, &SegmentOptions::default(), &mut |stage| seen.push(stage)).unwrap();
     assert_eq!(seen.first().unwrap().name, "frames");
     assert_eq!(seen.last().unwrap().name, "masks");
     assert!(seen.iter().all(|s| s.index < s.of));

@@ -23,7 +23,7 @@ fn a_call_like_the_one_before_it_allocates_little_more_than_its_result() {
             let options = SegmentOptions { quality, confidence: true, ..SegmentOptions::default() };
             let call = || {
                 let region = Region::new(ALLOCATOR);
-                let found = segment_pair(scene.first(), scene.second(), None, &options, &mut |_| {}).unwrap();
+                let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {}).unwrap();
                 let asked = region.change();
                 (found, asked.bytes_allocated)
             };

@@ -78,7 +78,7 @@ globalThis.bench = {
     const response = await fetch('/pkg/wasm/veronese_bg.wasm');
     const { memory } = await glue.instantiate(await WebAssembly.compileStreaming(response));
     const { first, second } = frames.get(size);
-    glue.segmentPair(first, second, undefined, { quality }, undefined);
+    glue.segmentPair(first, second, { quality }, undefined);
     return memory.buffer.byteLength;
   },
 

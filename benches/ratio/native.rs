@@ -92,7 +92,7 @@ fn print_stages(folder: &Path, sizes: &[&str]) -> Result<(), Box<dyn Error>> {
             let options = SegmentOptions { quality, ..SegmentOptions::default() };
             let (mut begun, start) = (Vec::<(&str, Instant)>::new(), Instant::now());
             let mut listen = |stage: Stage| begun.push((stage.name, Instant::now()));
-            std::hint::black_box(segment_pair(&first, &second, None, &options, &mut listen)?);
+            std::hint::black_box(segment_pair(&first, &second, &options, &mut listen)?);
             let end = Instant::now();
             let mut laps = vec![("total", 1e3 * (end - start).as_secs_f64())];
             for (k, &(stage, since)) in begun.iter().enumerate() {
@@ -127,8 +127,7 @@ fn print_times(folder: &Path) -> Result<(), Box<dyn Error>> {
     let (first, second) = (frame("first")?, frame("second")?);
     for (name, quality) in QUALITIES {
         let options = SegmentOptions { quality, ..SegmentOptions::default() };
-        let time =
-            milliseconds(|| segment_pair(&first, &second, None, &options, &mut |_| {}).map(|found| found.count))?;
+        let time = milliseconds(|| segment_pair(&first, &second, &options, &mut |_| {}).map(|found| found.count))?;
         cases.push(format!("\"pair {name}\": [{time}]"));
     }
     println!("{{{}}}", cases.join(", "));

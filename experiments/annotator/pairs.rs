@@ -33,7 +33,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     for t in FIRST.into_iter().filter(|t| t + 1 < data.frames.len()) {
         let frames = [&data.frames[t], &data.frames[t + 1]];
         let truth: Vec<bool> = data.truths[t].iter().map(|&label| label > 0).collect();
-        let found = segment_pair(frames[0], frames[1], None, &asked, &mut |_| {})?;
+        let found = segment_pair(frames[0], frames[1], &asked, &mut |_| {})?;
         let Some(object) = motions_of(&truth, &found) else { continue };
         let corrector = Corrector { frames, found: &found, options: &asked, object };
         let mut now = corrector.mask(&found.labels);
@@ -92,7 +92,7 @@ impl Corrector<'_> {
         let groups: Vec<u8> = self.found.motions.iter().map(|motion| motion.group).collect();
         let correction = Correction { motions: &motions, groups: &groups, labels: &self.found.labels, allowed };
         let [first, second] = self.frames;
-        Ok(self.mask(&relabel(first, second, None, &correction, self.options, &mut |_| {})?.labels))
+        Ok(self.mask(&relabel(first, second, &correction, self.options, &mut |_| {})?.labels))
     }
 }
 

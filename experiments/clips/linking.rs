@@ -15,7 +15,7 @@ pub(crate) fn pair_by_pair(frames: &[Frame], options: &SegmentOptions) -> Result
     for (t, frame) in frames.iter().enumerate() {
         // The last frame has a neighbour on the other side only.
         let Some(other) = frames.get(t + 1).or_else(|| frames.get(t.checked_sub(1)?)) else { break };
-        let found = segment_pair(frame, other, None, options, &mut |_| {})?;
+        let found = segment_pair(frame, other, options, &mut |_| {})?;
         let groups: Vec<u8> = found
             .labels
             .iter()

@@ -90,7 +90,7 @@ pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method) -> Result
     in_parallel(cases, |case| {
         let Loaded { part, data, .. } = case;
         let options = SegmentOptions { quality, ..SegmentOptions::default() };
-        let found = segment_pair_with(model, &data.first, &data.second, None, &options)?;
+        let found = segment_pair_with(model, &data.first, &data.second, &options)?;
         let scores = outcome(method, data, &found.labels, &grouped(&found), &[], 0.0);
         let (Some(single), Some(groups)) = (scores.single, scores.grouped) else {
             return Err(format!("{} has no truth", case.sequence).into());

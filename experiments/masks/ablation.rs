@@ -5,8 +5,6 @@ use crate::measure::Measured;
 use crate::outcome::Variant;
 use crate::summary::Summary;
 
-const THREE_FRAMES: &str = "*with the frame before*";
-
 /// What is left out, and the constants that leave it out, in the order of the table.
 const LEFT_OUT: [(&str, &[(&str, f64)]); 16] = [
     ("**nothing**", &[]),
@@ -44,7 +42,7 @@ pub(crate) struct Scored {
 
 /// The variants of the pipeline.
 pub(crate) fn variants() -> Vec<Variant> {
-    LEFT_OUT.iter().map(|(_, values)| Variant::with(values)).chain([Variant::ThreeFrames]).collect()
+    LEFT_OUT.iter().map(|(_, values)| Variant::with(values)).collect()
 }
 
 /// Whether the ablation includes a case: generated scenes of one to four objects, those with a bare ground, and the real pairs
@@ -56,15 +54,13 @@ pub(crate) fn takes_part(case: &Case) -> bool {
 /// The rows of the table; empty if no case is included.
 pub(crate) fn worths(measured: &[Measured]) -> Vec<Worth> {
     let mut rows = Vec::new();
-    let titles = LEFT_OUT.iter().map(|(title, _)| *title).chain([THREE_FRAMES]);
-    for (k, title) in titles.enumerate() {
+    for (k, (title, _)) in LEFT_OUT.into_iter().enumerate() {
         let scored = |quality: usize| {
             let of = |sets: &[Set]| {
                 let own = measured.iter().filter(|one| sets.contains(&one.case.set));
                 Summary::of(own.filter_map(|one| one.variants.get(k).map(|both| (&one.case, &both[quality]))))
             };
-            // The real pairs have no frame before.
-            let pairs = Some(of(&[Set::Sequences])).filter(|pairs| pairs.cases > 0 && title != THREE_FRAMES);
+            let pairs = Some(of(&[Set::Sequences])).filter(|pairs| pairs.cases > 0);
             Scored { scenes: of(&[Set::Generated, Set::Colour]), bare: of(&[Set::Bare]), pairs }
         };
         let with = [0, 1].map(scored);

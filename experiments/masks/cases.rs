@@ -129,7 +129,6 @@ pub(crate) struct Data {
     pub(crate) rgba: [Vec<u8>; 2],
     pub(crate) first: Frame,
     pub(crate) second: Frame,
-    pub(crate) before: Option<Frame>,
     pub(crate) truth: Option<Vec<u8>>,
     /// Pixels that are hidden or outside in the second frame; known of generated scenes.
     pub(crate) occluded: Option<Vec<bool>>,
@@ -309,10 +308,10 @@ impl Case {
 }
 
 fn of_scene(scene: Scene) -> Data {
-    let [before, first, second] = scene.frames;
+    let [_, first, second] = scene.frames;
     let [_, first_rgba, second_rgba] = scene.rgba;
     let (truth, occluded) = (Some(scene.labels), Some(scene.occluded));
-    Data { rgba: [first_rgba, second_rgba], first, second, before: Some(before), truth, occluded, flow: None }
+    Data { rgba: [first_rgba, second_rgba], first, second, truth, occluded, flow: None }
 }
 
 fn of_folder(folder: &Path, set: Set) -> Result<Data> {
@@ -327,7 +326,7 @@ fn of_folder(folder: &Path, set: Set) -> Result<Data> {
     let (one, two) = (frame("first")?, frame("second")?);
     let (first, second) = (one.frame()?, two.frame()?);
     let rgba = [one.rgba, two.rgba];
-    let mut data = Data { rgba, first, second, before: None, truth: None, occluded: None, flow: None };
+    let mut data = Data { rgba, first, second, truth: None, occluded: None, flow: None };
     if set == Set::Flow {
         data.flow = Some(flow(&read("flow.flo")?, data.first.width(), data.first.height())?);
         return Ok(data);
@@ -345,9 +344,6 @@ fn of_folder(folder: &Path, set: Set) -> Result<Data> {
         }
     }
     data.truth = Some(truth);
-    if has("before.png") {
-        data.before = Some(picture("before.png")?.frame()?);
-    }
     Ok(data)
 }
 

@@ -93,7 +93,7 @@ impl OfScenes {
     /// The counts of one scene; none where it is not known what is hidden.
     fn of(data: &Data) -> Result<Option<OfScenes>> {
         let (Some(truth), Some(occluded)) = (&data.truth, &data.occluded) else { return Ok(None) };
-        let run = |options: &SegmentOptions| segment_pair(&data.first, &data.second, None, options, &mut |_| {});
+        let run = |options: &SegmentOptions| segment_pair(&data.first, &data.second, options, &mut |_| {});
         let sure = run(&SegmentOptions { confidence: true, ..SegmentOptions::default() })?;
         let marked = run(&SegmentOptions { mark_unknown: true, ..SegmentOptions::default() })?;
         let meaning = meanings(&sure.labels, truth);
@@ -133,7 +133,7 @@ struct OfPairs {
 impl OfPairs {
     fn of(data: &Data, quality: Quality) -> Result<OfPairs> {
         let options = SegmentOptions { quality, confidence: true, ..SegmentOptions::default() };
-        let found = segment_pair(&data.first, &data.second, None, &options, &mut |_| {})?;
+        let found = segment_pair(&data.first, &data.second, &options, &mut |_| {})?;
         let truth = data.truth.as_deref().unwrap_or_default();
         let meaning = meanings(&found.labels, truth);
         let is_object = objects(&found);

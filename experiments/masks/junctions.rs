@@ -45,7 +45,7 @@ pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Known>, Failure> {
         let mut known = Vec::new();
         for quality in QUALITIES {
             let options = SegmentOptions { quality, ..SegmentOptions::default() };
-            let found = segment_pair(&data.first, &data.second, None, &options, &mut |_| {})?;
+            let found = segment_pair(&data.first, &data.second, &options, &mut |_| {})?;
             known.extend(of_result(&found, &data, place % 2 == 1));
         }
         Ok(known)

@@ -72,8 +72,6 @@ pub(crate) fn outcome(
 pub(crate) enum Variant {
     /// As it is.
     Whole,
-    /// With the frame before the first, where there is one.
-    ThreeFrames,
     /// With other constants.
     With(&'static Model),
 }
@@ -97,9 +95,8 @@ pub(crate) fn of_variant(variant: Variant, method: Method, data: &Data) -> Resul
     let options = SegmentOptions { quality, ..SegmentOptions::default() };
     let start = Instant::now();
     let found = match variant {
-        Variant::Whole => segment_pair(first, second, None, &options, &mut |_| {})?,
-        Variant::ThreeFrames => segment_pair(first, second, data.before.as_ref(), &options, &mut |_| {})?,
-        Variant::With(model) => segment_pair_with(model, first, second, None, &options)?,
+        Variant::Whole => segment_pair(first, second, &options, &mut |_| {})?,
+        Variant::With(model) => segment_pair_with(model, first, second, &options)?,
     };
     let milliseconds = 1e3 * start.elapsed().as_secs_f64();
     Ok(outcome(method, data, &found.labels, &grouped(&found), &[], milliseconds))

@@ -173,7 +173,7 @@ pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Compared>, Failure> {
     let pairs: Vec<Case> = cases.iter().filter(|case| case.set == Set::Pairs).cloned().collect();
     in_parallel(&pairs, |case| {
         let data = case.load().map_err(|error| error.to_string())?;
-        let found = segment_pair(&data.first, &data.second, None, &SegmentOptions::default(), &mut |_| {})?;
+        let found = segment_pair(&data.first, &data.second, &SegmentOptions::default(), &mut |_| {})?;
         let compared = |&(alteration, _): &(Alteration, &str)| -> Result<Agreement, Failure> {
             Ok(agreement(alteration, &found, &segmented(alteration, &data)?))
         };
@@ -191,7 +191,7 @@ fn segmented(alteration: Alteration, data: &Data) -> Result<Segmentation, Failur
     if alteration == Alteration::Seed {
         options.seed = OTHER_SEED;
     }
-    Ok(segment_pair(&frame(one)?, &frame(two)?, None, &options, &mut |_| {})?)
+    Ok(segment_pair(&frame(one)?, &frame(two)?, &options, &mut |_| {})?)
 }
 
 /// The value below which a share of the values lies, interpolated.

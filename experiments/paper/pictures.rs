@@ -58,7 +58,7 @@ fn bundled(name: &str) -> Result<Frame, Box<dyn Error>> {
     Ok(decode_image(&bytes)?.frame()?)
 }
 
-/// The panels of a pair. `truth` has label 0 for the background.
+/// The panels of a pair. Only the paper's pipeline takes the frame `before`. `truth` has label 0 for the background.
 fn panels(
     name: &str,
     first: &Frame,
@@ -68,9 +68,9 @@ fn panels(
 ) -> Result<Vec<Panel>, Box<dyn Error>> {
     let paper = literal_pair(first, second, before, KEPT, MOVING)?;
     let rule = literal_pair(first, second, before, KEPT, MotionCount::Auto)?;
-    let automatic = segment_pair(first, second, before, &SegmentOptions::default(), &mut |_| {})?;
+    let automatic = segment_pair(first, second, &SegmentOptions::default(), &mut |_| {})?;
     let options = SegmentOptions { motions: WITH_BACKGROUND, ..SegmentOptions::default() };
-    let ours = segment_pair(first, second, before, &options, &mut |_| {})?;
+    let ours = segment_pair(first, second, &options, &mut |_| {})?;
     let threshold = literal_pair(first, second, before, KeptPixels::default(), MOVING);
     eprintln!(
         "{name}: the paper's pipeline keeps {} pixels ({}), its rule finds {} motions in them; ours by itself {}, \

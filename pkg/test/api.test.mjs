@@ -14,18 +14,19 @@ describe('segmentPair', () => {
     assert.equal(Object.getPrototypeOf(result.labels), Uint8Array.prototype);
     assert.equal(result.labels.byteOffset, 0);
     assert.equal(result.labels.buffer.byteLength, 64 * 48, 'a copy of its own, not a view of the module');
-    const { motions, quality, markUnknown, before, seed } = result.settings;
-    const defaults = { motions: 'auto', quality: 'best', markUnknown: false, before: false, seed: 1 };
-    assert.deepEqual({ motions, quality, markUnknown, before, seed }, defaults);
+    const { motions, quality, markUnknown, seed } = result.settings;
+    const defaults = { motions: 'auto', quality: 'best', markUnknown: false, seed: 1 };
+    assert.deepEqual({ motions, quality, markUnknown, seed }, defaults);
+    assert.ok(!('before' in result.settings));
     assert.equal(result.unlabelled, 0, 'nothing is unlabelled unless asked for');
   });
 
   test('takes every option and says so in settings', async () => {
-    const options = { motions: 1, quality: 'fast', markUnknown: true, seed: 2 ** 53 - 1, before: frame(-1) };
+    const options = { motions: 1, quality: 'fast', markUnknown: true, seed: 2 ** 53 - 1 };
     const result = await segmentPair(...pair(), options);
     checkPair(result, 64, 48);
     const { software, ...settings } = result.settings;
-    assert.deepEqual(settings, { ...options, before: true });
+    assert.deepEqual(settings, options);
     assert.equal(result.count, 1);
   });
 
@@ -61,7 +62,7 @@ describe('segmentPair', () => {
   });
 
   test('an option that is undefined is an option not given', async () => {
-    const options = { motions: undefined, quality: undefined, markUnknown: undefined, seed: undefined, before: undefined };
+    const options = { motions: undefined, quality: undefined, markUnknown: undefined, seed: undefined };
     const result = await segmentPair(...pair(), { ...options, signal: undefined, onProgress: undefined });
     assert.deepEqual(result.settings, (await segmentPair(...pair())).settings);
   });
@@ -128,7 +129,6 @@ describe('segmentPair refuses', () => {
   const bytes = (n) => new Uint8Array(n);
   const cases = [
     ['frames that differ in size', 'frame-size-mismatch', [first, frame(1, { width: 65 })]],
-    ['a frame before that differs in size', 'frame-size-mismatch', [first, second, { before: frame(0, { height: 50 }) }]],
     ['a 1×1 frame', 'frame-size-unsupported', [{ data: bytes(4), width: 1, height: 1 }, second]],
     ['a 0×0 frame', 'frame-size-unsupported', [{ data: bytes(0), width: 0, height: 0 }, second]],
     ['a side of 4097', 'frame-size-unsupported', [{ data: bytes(4097 * 16 * 4), width: 4097, height: 16 }, second]],
@@ -142,6 +142,7 @@ describe('segmentPair refuses', () => {
     ['a width of NaN', 'invalid-input', [{ ...first, width: NaN }, second]],
     ['a negative width', 'invalid-input', [{ ...first, width: -64 }, second]],
     ['a width in words', 'invalid-input', [{ ...first, width: '64' }, second]],
+    ['a frame before, which is no option any more', 'invalid-option', [first, second, { before: first }]],
     ['a misspelt option', 'invalid-option', [first, second, { motion: 2 }]],
     ['an option of fitMotions', 'invalid-option', [first, second, { method: 'paper' }]],
     ['options that are no object', 'invalid-option', [first, second, 3]],

@@ -73,17 +73,13 @@ describe('veronese batch', () => {
     assert.deepEqual(Object.keys(files).sort(), Object.keys(mine).sort());
   });
 
-  test('--every, --with-before, patterns, lists and single files', async (t) => {
+  test('--every, patterns, lists and single files', async (t) => {
     const { frames, one, path, file } = clip(t, 7);
     const pairs = async (...args) => (await batch([...args, '--quality', 'fast'])).lines.map(({ first, second }) => [first, second]);
     assert.deepEqual(await pairs(frames, '--every', '3'), [[one(0), one(3)], [one(3), one(6)]]);
     assert.deepEqual(await pairs(path('f*', 'f[0-2].png')), [[one(0), one(1)], [one(1), one(2)]]);
     assert.deepEqual(await pairs('--list', file('list', `${one(5)}\n\n${one(2)}\r\n`)), [[one(5), one(2)]]);
     assert.deepEqual(await pairs(one(4), one(1)), [[one(4), one(1)]]);
-    const { lines } = await batch([frames, '--with-before', '--every', '2']);
-    assert.deepEqual(lines.map(({ settings }) => settings.before), [false, true, true]);
-    const direct = await segmentPair(clipFrame(2), clipFrame(4), { before: clipFrame(0) });
-    assert.deepEqual(lines[1].motions, JSON.parse(JSON.stringify(direct.motions)));
   });
 
   test('shards are disjoint and together everything', async (t) => {

@@ -44,13 +44,12 @@ describe('veronese pair', () => {
   });
 
   test('hands every option on', async (t) => {
-    const { folder, first, second } = frames(t);
-    const before = folder.file('before.png', png(frame(-1)));
-    const options = ['--before', before, '--motions', '2', '--quality', 'fast', '--mark-unknown', '--seed', '42'];
+    const { first, second } = frames(t);
+    const options = ['--motions', '2', '--quality', 'fast', '--mark-unknown', '--seed', '42'];
     const found = json(await veronese(['pair', ...options, first, second]));
     const { software, ...settings } = found.settings;
-    assert.deepEqual(settings, { motions: 2, quality: 'fast', markUnknown: true, before: true, seed: 42 });
-    const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true, seed: 42, before: frame(-1) });
+    assert.deepEqual(settings, { motions: 2, quality: 'fast', markUnknown: true, seed: 42 });
+    const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true, seed: 42 });
     assert.deepEqual(timeless(found), timeless(withoutLabels(direct)));
     assert.equal(json(await veronese(['pair', first, second, '--motions=auto'])).settings.motions, 'auto');
   });
@@ -271,7 +270,6 @@ describe('veronese pair refuses', () => {
   test('a missing file, a folder, a file below a file', async (t) => {
     const { folder, first } = frames(t);
     checkError(await veronese(['pair', folder.path('none.png'), first]), 1, 'file-not-found');
-    checkError(await veronese(['pair', first, first, '--before', folder.path('none.png')]), 1, 'file-not-found');
     checkError(await veronese(['pair', first, folder.path('.')]), 1, 'unreadable-file');
     if (spawnSync('mkfifo', [folder.path('pipe')]).status === 0) {
       checkError(await veronese(['pair', first, folder.path('pipe')]), 1, 'unreadable-file');
@@ -329,6 +327,13 @@ describe('usage', () => {
     'a look-ahead in words': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', 'whole']],
     'a seed too large': ['invalid-option', ['pair', 'a', 'b', '--seed', '9007199254740992']],
   };
+  for (const args of [['pair', 'a', 'b', '--before', 'c'], ['batch', 'a', '--with-before'], ['video', 'a', '--with-before']]) {
+    test(`'${args.join(' ')}' names what replaces it`, async () => {
+      const run = await veronese(args);
+      checkError(run, 2, 'wrong-usage');
+      assert.match(run.stderr, /veronese clip/);
+    });
+  }
   for (const [title, [code, args]] of Object.entries(wrong)) {
     test(`${title} is wrong`, async () => checkError(await veronese(args), 2, code));
   }
@@ -338,7 +343,7 @@ describe('usage', () => {
       const { code, stdout, stderr } = await veronese(args);
       assert.equal(code, 0);
       assert.equal(stderr, '');
-      for (const word of ['pair', 'points', 'clip', '--look-ahead', '--before', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--confidence', '--overlay', '--method']) {
+      for (const word of ['pair', 'points', 'clip', '--look-ahead', '--motions', '--quality', '--grouped', '--mark-unknown', '--seed', '--out', '--confidence', '--overlay', '--method']) {
         assert.ok(stdout.includes(word), word);
       }
     }

@@ -96,7 +96,6 @@ const FINITE = named(Number.isFinite);
 
 const size = { width: 16, height: 16 };
 const [first, second] = pair(size);
-const before = pair(size)[1];
 const found = await index.segmentPair(first, second, { confidence: true });
 const [motion] = found.motions;
 const evidence = new Uint16Array(256);
@@ -114,8 +113,6 @@ const CALLS = {
   'segmentPair: width': ['segmentPair', (v) => [{ ...first, width: v }, second], []],
   'segmentPair: height': ['segmentPair', (v) => [first, { ...second, height: v }], []],
   'segmentPair: options': ['segmentPair', (v) => [first, second, v], OPTIONS],
-  'segmentPair: before': ['segmentPair', (v) => [first, second, { before: v }], ['undefined']],
-  'segmentPair: data of before': ['segmentPair', (v) => [first, second, { before: { ...before, data: v } }], []],
   'segmentPair: motions': ['segmentPair', (v) => [first, second, { motions: v }], ['undefined', 'one']],
   'segmentPair: quality': ['segmentPair', (v) => [first, second, { quality: v }], ['undefined']],
   'segmentPair: markUnknown': ['segmentPair', (v) => [first, second, { markUnknown: v }], ['undefined', 'true', 'false']],
@@ -131,8 +128,7 @@ const CALLS = {
   'relabel: segmentation': ['relabel', (v) => [first, second, v, evidence], []],
   'relabel: evidence': ['relabel', (v) => [first, second, found, v], []],
   'relabel: options': ['relabel', (v) => [first, second, found, evidence, v], OPTIONS],
-  'relabel: before': ['relabel', (v) => [first, second, found, evidence, { before: v }], ['undefined']],
-  'relabel: an option that does not exist': ['relabel', (v) => [first, second, found, evidence, { before, nonsense: v }], ['undefined']],
+  'relabel: an option that does not exist': ['relabel', (v) => [first, second, found, evidence, { nonsense: v }], ['undefined']],
   'relabel: an option of segmentPair': ['relabel', (v) => [first, second, found, evidence, { motions: v }], ['undefined']],
   'relabel: motions': ['relabel', (v) => [first, second, { ...found, motions: v }, evidence], []],
   'relabel: a motion': ['relabel', (v) => [first, second, { ...found, motions: [v] }, evidence], []],
@@ -228,7 +224,7 @@ describe('direct calls and workers', () => {
     await glue.instantiate(new WebAssembly.Module(read('../wasm/veronese_bg.wasm')));
     for (const frames of cases) {
       const { code, message } = await failure(index.segmentPair(...frames));
-      assert.throws(() => glue.segmentPair(...frames, undefined, {}, () => {}), { code, message });
+      assert.throws(() => glue.segmentPair(...frames, {}, () => {}), { code, message });
     }
   });
 });
@@ -323,7 +319,6 @@ describe('segmentPairs and pools', () => {
   });
   test('options', () => everywhere((value) => all(index.segmentPairs([], value)), named((value) => typeof value === 'object' && value !== null && !Array.isArray(value)).concat('undefined')));
   test('signal', () => everywhere((value) => all(index.segmentPairs([], { signal: value })), ['undefined']));
-  test('before for all', () => everywhere((value) => all(index.segmentPairs([], { before: value })), ['undefined']));
 
   test('a pair, and an option of all pairs', async (t) => {
     const pool = new index.SegmenterPool({ jobs: 1 });

@@ -18,8 +18,8 @@ async function freshMemory(of = glue, from = module) {
   return () => memory.buffer.byteLength / MIB;
 }
 
-function segment([first, second], options, before) {
-  return glue.segmentPair(first, second, before, options, () => {});
+function segment([first, second], options) {
+  return glue.segmentPair(first, second, options, () => {});
 }
 
 /** Labels solved again where every pixel may have every label. */
@@ -27,7 +27,7 @@ function relabel([first, second], { motions, labels }, quality) {
   const matrices = Float64Array.from(motions.flatMap(({ matrix }) => matrix));
   const groups = Uint8Array.from(motions, ({ group }) => group);
   const evidence = new Uint16Array(labels.length).fill(2 ** motions.length - 1);
-  return glue.relabel(first, second, undefined, matrices, groups, labels, evidence, { quality }, () => {});
+  return glue.relabel(first, second, matrices, groups, labels, evidence, { quality }, () => {});
 }
 
 describe('after some calls, further ones take no more memory', () => {
@@ -43,7 +43,7 @@ describe('after some calls, further ones take no more memory', () => {
       segment(small, { quality: 'best' });
     },
     'with everything that can be asked for': () => {
-      segment(small, { quality: 'best', confidence: true, markUnknown: true }, frame(-1));
+      segment(small, { quality: 'best', confidence: true, markUnknown: true });
     },
     'labels again': () => relabel(small, segment(small, { quality: 'fast' }), 'fast'),
     'calls that are refused': () => {
@@ -83,8 +83,8 @@ describe('the most that is in use', () => {
 
   test('the largest frames there may be, with all that takes memory: at most 1 GiB', async () => {
     const size = await freshMemory();
-    const [first, second, before] = [0, 1, -1].map((t) => tiled(frame(t, { width: 512, height: 512 }), 8));
-    const result = segment([first, second], { quality: 'best', confidence: true, markUnknown: true }, before);
+    const [first, second] = [0, 1].map((t) => tiled(frame(t, { width: 512, height: 512 }), 8));
+    const result = segment([first, second], { quality: 'best', confidence: true, markUnknown: true });
     assert.equal(result.labels.length, 4096 * 4096);
     relabel([first, second], result, 'best');
     assert.ok(size() <= 1024, `${size()} MiB`);

@@ -48,14 +48,13 @@ const scribble = (...arrays) => arrays.forEach((array) => array.fill(77));
 /** Copies that may be written to. */
 const own = ({ data, ...rest }) => ({ ...rest, data: new Uint8Array(data) });
 const [first, second] = pair();
-const before = frame(-1);
-const expected = timeless(await segmentPair(first, second, { before }));
+const expected = timeless(await segmentPair(first, second));
 
 describe('arrays that are written to after the call change nothing', () => {
   for (const [title, make] of Object.entries(HOSTS)) {
     test(`segmentPair, ${title}`, async (t) => {
-      const frames = [own(first), own(second), own(before)];
-      const result = make(t).segmentPair(frames[0], frames[1], { before: frames[2] });
+      const frames = [own(first), own(second)];
+      const result = make(t).segmentPair(...frames);
       frames.forEach((each) => {
         scribble(each.data);
         each.width = 3;
@@ -64,12 +63,12 @@ describe('arrays that are written to after the call change nothing', () => {
     });
 
     test(`relabel, ${title}`, async (t) => {
-      const found = await segmentPair(first, second, { before });
+      const found = await segmentPair(first, second);
       const evidence = new Uint16Array(found.labels.length).fill(0b01, 1000, 1200);
-      const wanted = timeless(await relabel(first, second, found, evidence, { before }));
-      const frames = [own(first), own(second), own(before)];
+      const wanted = timeless(await relabel(first, second, found, evidence));
+      const frames = [own(first), own(second)];
       const given = structuredClone(found);
-      const result = make(t).relabel(frames[0], frames[1], given, evidence, { before: frames[2] });
+      const result = make(t).relabel(...frames, given, evidence);
       scribble(...frames.map(({ data }) => data), given.labels, evidence);
       for (const motion of given.motions) {
         scribble(motion.matrix);
@@ -225,15 +224,15 @@ describe('what goes to a worker', () => {
     const running = lane.segmentPair(...pair({ width: 1024, height: 1024 }));
     const weak = [];
     const waiting = (() => {
-      const frames = [own(first), own(second), own(before)];
+      const frames = [own(first), own(second)];
       const measurements = points(80, 1, 2);
       const owned = [...frames.map(({ data }) => data.buffer), ...Object.values(measurements).map(({ buffer }) => buffer)];
       weak.push(...owned.map((buffer) => new WeakRef(buffer)));
-      return [lane.segmentPair(frames[0], frames[1], { before: frames[2] }), lane.fitMotions(measurements)];
+      return [lane.segmentPair(...frames), lane.fitMotions(measurements)];
     })();
     await new Promise((resolve) => setImmediate(resolve));
     collect();
-    assert.deepEqual(weak.map((reference) => reference.deref()), [undefined, undefined, undefined, undefined, undefined]);
+    assert.deepEqual(weak.map((reference) => reference.deref()), [undefined, undefined, undefined, undefined]);
     lane.close();
     for (const call of [running, ...waiting]) assert.equal((await failure(call)).code, 'cancelled');
   });
@@ -243,9 +242,9 @@ describe('transfer: true gives the buffers away', () => {
   for (const [title, make] of Object.entries(HOSTS)) {
     test(title, async (t) => {
       const calls = make(t);
-      const frames = [own(first), own(second), own(before)];
-      const result = calls.segmentPair(frames[0], frames[1], { before: frames[2], transfer: true });
-      assert.deepEqual(frames.map(({ data }) => data.length), [0, 0, 0], 'at once');
+      const frames = [own(first), own(second)];
+      const result = calls.segmentPair(...frames, { transfer: true });
+      assert.deepEqual(frames.map(({ data }) => data.length), [0, 0], 'at once');
       assert.deepEqual(timeless(await result), expected);
 
       const measurements = points(80, 1, 2);
@@ -313,7 +312,7 @@ describe('transfer: true gives the buffers away', () => {
   test('nothing is given away by a call that is refused', async (t) => {
     for (const calls of [{ segmentPair }, pool(t)]) {
       const frames = [own(first), own(second)];
-      for (const options of [{ transfer: true, nonsense: 1 }, { transfer: true, before: {} }, { transfer: 1 }, { transfer: true, signal: AbortSignal.abort() }]) {
+      for (const options of [{ transfer: true, nonsense: 1 }, { transfer: true, motions: {} }, { transfer: 1 }, { transfer: true, signal: AbortSignal.abort() }]) {
         assert.match((await failure(calls.segmentPair(...frames, options))).code, /^(invalid-|cancelled)/);
         assert.deepEqual(frames.map(({ data }) => data.length), [first.data.length, second.data.length]);
       }

@@ -94,11 +94,6 @@ describe('segmentPairs', () => {
     }
   });
 
-  test('takes the frame before from each pair', async () => {
-    const [outcome] = await all(segmentPairs([{ ...input(1), before: frame(-1, SIZE) }], { jobs: 1 }));
-    assert.equal(outcome.segmentation.settings.before, true);
-  });
-
   test('takes pairs only when there is room: at most two for each worker, however slow the reader', async () => {
     let taken = 0;
     let returned = false;

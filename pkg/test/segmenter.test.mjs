@@ -17,7 +17,7 @@ function segmenter(t, source) {
 describe('Segmenter', () => {
   test('gives the same bits as the direct calls', async (t) => {
     const worker = segmenter(t);
-    const options = { motions: 'auto', seed: 3, before: frame(-1), markUnknown: true, confidence: true };
+    const options = { motions: 'auto', seed: 3, markUnknown: true, confidence: true };
     assert.deepEqual(timeless(await worker.segmentPair(...pair(), options)), timeless(await segmentPair(...pair(), options)));
     const measurements = points(80, 1, 2);
     assert.deepEqual(timeless(await worker.fitMotions(measurements)), timeless(await fitMotions(measurements)));
@@ -62,7 +62,6 @@ describe('Segmenter', () => {
       ['invalid-option', () => worker.segmentPair(...pair(), { motions: 0 })],
       ['invalid-option', () => worker.segmentPair(...pair(), { nonsense: 1 })],
       ['invalid-input', () => worker.segmentPair(frame(0), undefined)],
-      ['invalid-input', () => worker.segmentPair(...pair(), { before: {} })],
       ['invalid-input', () => worker.fitMotions({})],
     ];
     for (const [code, call] of cases) {

@@ -54,14 +54,9 @@ export interface SegmentOptions extends CallOptions {
   confidence?: boolean | undefined;
   /** A whole number from 0; default 1. Segmenting draws no random numbers, so that every seed gives the same result. */
   seed?: number | undefined;
-  /** The frame before the first: a third view that helps at occlusions. */
-  before?: Pixels | undefined;
 }
 
-export interface RelabelOptions extends CallOptions {
-  /** The frame before the first, if the segmentation was made with one. */
-  before?: Pixels | undefined;
-}
+export type RelabelOptions = CallOptions;
 
 export interface FitOptions extends CallOptions {
   /** Number of motions, 1 to 10; `'auto'` (the default) estimates it. */
@@ -144,8 +139,6 @@ export interface Segmentation {
     motions: 'auto' | number;
     quality: 'fast' | 'best';
     markUnknown: boolean;
-    /** Whether there was a frame before the first. */
-    before: boolean;
     seed: number;
     software: string;
   };
@@ -301,7 +294,7 @@ export interface ClipEdits {
 }
 
 /** Options of {@link segmentClip}; `motions` is the number of motions in each pair of consecutive frames. */
-export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'before' | 'onProgress'> {
+export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProgress'> {
   /** Gives the label 255 to pixels whose evidence does not tell an object from the background. Default: false. */
   markUnknown?: boolean | undefined;
   /**
@@ -462,6 +455,7 @@ export type ErrorCode =
   | 'unreadable-video'
   // the command line only
   | 'usage'
+  | 'wrong-usage' // of an option that is gone; the message names what replaces it
   | 'file-not-found'
   | 'unreadable-file'
   | 'invalid-json'
@@ -550,17 +544,15 @@ export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions
 export function davisPalette(): [number, number, number][];
 
 /**
- * Two frames and optionally the frame before the first. Other properties of the object come back with its outcome. The frames are copied
- * (or transferred, with `transfer`) before the next input is requested, so a source may reuse one set of buffers for all pairs.
+ * Two frames. Other properties of the object come back with its outcome. The frames are copied (or transferred, with `transfer`) before the next input is requested, so a source may reuse one set of buffers for all pairs.
  */
 export interface PairInput {
   first: Pixels;
   second: Pixels;
-  before?: Pixels | undefined;
 }
 
 /** Options of {@link segmentPairs} for all pairs. */
-export interface PairsOptions extends Omit<SegmentOptions, 'before' | 'onProgress'> {
+export interface PairsOptions extends Omit<SegmentOptions, 'onProgress'> {
   /** Called when a stage of a pair begins; `pair` counts from 0. If it throws, that pair fails with the exception as `cause`. */
   onProgress?: ((progress: Progress & { pair: number }) => void) | undefined;
 }

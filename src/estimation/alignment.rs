@@ -419,7 +419,7 @@ mod tests {
             let [u, v] = back.flow(x as f64, y as f64);
             1.03 * texture(x as f64 + u, y as f64 + v) - 2.0
         });
-        let levels = build(first, second, None, 64);
+        let levels = build(first, second, 64);
         let level = &levels[0];
         let mut photometric = Photometric::default();
         let how = Alignment { robustness: 9.0, photometric: true, ..Alignment::of_region(30, 0.0, &Model::DEFAULT) };
@@ -441,7 +441,7 @@ mod tests {
             let [u, v] = back.flow(x as f64, y as f64);
             texture(x as f64 + u, y as f64 + v)
         });
-        let level = &build(first, second, None, 64)[0];
+        let level = &build(first, second, 64)[0];
         let error = |convergence| {
             let how = Alignment { convergence, ..Alignment::of_region(30, 1.0, &Model::DEFAULT) };
             let found =
@@ -453,7 +453,7 @@ mod tests {
 
     #[test]
     fn flat_frames_leave_the_motion_as_it_was() {
-        let level = &build(Plane::filled(40, 40, 9.0), Plane::filled(40, 40, 9.0), None, 32)[0];
+        let level = &build(Plane::filled(40, 40, 9.0), Plane::filled(40, 40, 9.0), 32)[0];
         let start = AffineMotion::translation(0.5, 0.0);
         let found = align(
             level,

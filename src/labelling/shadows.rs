@@ -129,7 +129,7 @@ mod tests {
             }
         };
         let frame = |t: f32| Plane::from_fn(width, height, |x, y| luminance(x, y, t));
-        let level = build(frame(0.0), frame(1.0), None, 1000).remove(0);
+        let level = build(frame(0.0), frame(1.0), 1000).remove(0);
         let colours: Vec<u8> = (0..width * height)
             .flat_map(|p| {
                 let (x, y) = ((p % width) as f32, (p / width) as f32);

@@ -22,7 +22,7 @@ use crate::labelling::terms::visibility::{hidden_under, with_visibility};
 use crate::labelling::{BACKGROUND, is_background, objects};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::cost::{CostModel, cost};
+use crate::view::cost::{CostModel, costs};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
@@ -114,7 +114,7 @@ pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders
 
 /// Estimation costs of every motion on a level, in units of working pixels.
 pub(super) fn estimation_costs(level: &Level, motions: &[AffineMotion]) -> Vec<Plane> {
-    let mut raw: Vec<Plane> = motions.iter().map(|m| cost(level, m, CostModel::estimation(level.model))).collect();
+    let mut raw = costs(level, motions, CostModel::estimation(level.model));
     if level.index > 0 {
         raw.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|v| *v *= weight_of_pixel(level));
     }
@@ -208,7 +208,6 @@ impl<'a> LabelState<'a> {
             labels: &self.labels,
             step,
             variance_inflation: &self.uncorrected.variance_inflation,
-            shares: self.uncorrected.shares.as_ref(),
             hidden: &hidden,
             colours: colours.as_ref(),
         };

@@ -21,10 +21,10 @@ use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::description::counts;
 use crate::labelling::regions::groups::Regions;
 use crate::labelling::resolution::upsampling::{enlarged, upsample};
-use crate::labelling::terms::views::costs_where_seen;
 use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::order::descending;
+use crate::view::cost::{CostModel, costs};
 use crate::workspace::Buffer;
 
 /// What [`segment_pair`](crate::segment_pair) found.
@@ -102,7 +102,7 @@ pub(super) fn report(
     let candidates = evidence(pair, &labelled, settings);
     let regions = Regions::new(&labelled.motions, &labelled.labels, size[0], model);
     let costs = if options.mark_unknown || options.confidence {
-        costs_where_seen(level, &labelled.motions)
+        costs(level, &labelled.motions, CostModel::labels(model))
     } else {
         Vec::new()
     };

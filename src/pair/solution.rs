@@ -7,12 +7,11 @@ use crate::frame::pyramid::FramePyramid;
 use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::groups::Regions;
-use crate::labelling::terms::views::{cheapest, costs_where_seen};
 use crate::labelling::{BACKGROUND, is_background};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
-use crate::view::cost::inverse;
+use crate::view::cost::{CostModel, cheapest, costs, inverse};
 use crate::workspace::Buffer;
 
 /// What a pair tells about its first frame. The background has label [`BACKGROUND`](crate::labelling::BACKGROUND).
@@ -89,7 +88,7 @@ pub(crate) fn solve(
     let model = settings.model;
     let mut ignored = |_| {};
     let mut stages = Stages::new(super::STAGES, &mut ignored);
-    let mut pair = Pair::new(first, pyramid, second, None, settings);
+    let mut pair = Pair::new(first, pyramid, second, settings);
     let (likely, followed) = match expected {
         Expected::Nothing => (&[][..], None),
         Expected::Motions(motions) => (motions, None),
@@ -101,7 +100,7 @@ pub(crate) fn solve(
     };
     let (mut labelled, limits) = followed.unwrap_or_else(|| {
         let Solved { pair: solved, labelled } =
-            background::solve(Pair::new(first, pyramid, second, None, settings), likely, settings, &mut stages);
+            background::solve(Pair::new(first, pyramid, second, settings), likely, settings, &mut stages);
         pair = solved;
         let cost = if settings.follows { hypothesis::cost(&pair, &labelled.motions) } else { 0.0 };
         (labelled, [(1.0 + model.follow_tolerance) * cost, cost])
@@ -109,7 +108,7 @@ pub(crate) fn solve(
     let with_shadows = labelled.labels.clone();
     labels::return_shadows(&pair, &mut labelled, settings);
     let level = pair.finest();
-    let mut costs = costs_where_seen(level, &labelled.motions);
+    let mut costs = costs(level, &labelled.motions, CostModel::labels(model));
     let most = model.label_truncation;
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);

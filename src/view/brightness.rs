@@ -1,8 +1,8 @@
-//! Photometric change (gain and bias) between the first frame and another view of the scene.
+//! Photometric change (gain and bias) between the first frame and the second.
 
 use std::rc::Rc;
 
-use super::cost::{View, inverse, total};
+use super::cost::total;
 use crate::frame::Plane;
 use crate::frame::warp::Footprint;
 use crate::model::Model;
@@ -20,11 +20,11 @@ pub(crate) struct Photometric {
 
 impl Photometric {
     /// A first guess from the mean and standard deviation of both frames.
-    pub(crate) fn from_moments(first: &Plane, view: &Plane, model: &Model) -> Photometric {
+    pub(crate) fn from_moments(first: &Plane, second: &Plane, model: &Model) -> Photometric {
         let (first_mean, first_deviation) = mean_and_deviation(first);
-        let (view_mean, view_deviation) = mean_and_deviation(view);
-        let gain = (view_deviation / first_deviation.max(1e-3)).clamp(model.smallest_gain, model.largest_gain);
-        Photometric { bias: view_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
+        let (second_mean, second_deviation) = mean_and_deviation(second);
+        let gain = (second_deviation / first_deviation.max(1e-3)).clamp(model.smallest_gain, model.largest_gain);
+        Photometric { bias: second_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
     }
 
     /// Refined between the first frame and the second under the zero motion.
@@ -35,42 +35,29 @@ impl Photometric {
         self
     }
 
-    /// The change between the first frame and a view, given the motion (of the working frame) from the first frame to the second. None
-    /// if the motion is singular or there is no such view.
-    pub(crate) fn along(level: &Level, view: View, motion: &AffineMotion) -> Option<Photometric> {
-        let (view, motion) = match view {
-            View::Second => (&*level.second, *motion),
-            View::Before => (level.before.as_deref()?, inverse(motion)?),
-        };
-        Some(Photometric::measured(level, view, &[motion], &|_, _| 0))
+    /// The change along a motion of the working frame.
+    pub(crate) fn along(level: &Level, motion: &AffineMotion) -> Photometric {
+        Photometric::along_labels(level, &[*motion], &|_, _| 0)
     }
 
-    /// The change between the first frame and the second where each pixel has one of several motions, the one of its `label`.
+    /// The change where each pixel has one of several motions, the one of its `label`.
     pub(crate) fn along_labels(
         level: &Level,
         motions: &[AffineMotion],
         label: &dyn Fn(usize, usize) -> usize,
     ) -> Photometric {
-        Photometric::measured(level, &level.second, motions, label)
-    }
-
-    fn measured(
-        level: &Level,
-        view: &Plane,
-        motions: &[AffineMotion],
-        label: &dyn Fn(usize, usize) -> usize,
-    ) -> Photometric {
+        let second = &level.second;
         let scaled: Vec<AffineMotion> = motions.iter().map(|motion| level.scaled(motion)).collect();
         let sample = |x: usize, y: usize| {
             let (px, py) = level.path(&scaled[label(x, y)], x, y).at(0);
-            let footprint = Footprint::new(px, py, view.width(), view.height());
-            footprint.inside.then(|| footprint.sample(view.values()))
+            let footprint = Footprint::new(px, py, second.width(), second.height());
+            footprint.inside.then(|| footprint.sample(second.values()))
         };
-        let start = Photometric::from_moments(&level.first, view, level.model);
+        let start = Photometric::from_moments(&level.first, second, level.model);
         (0..level.model.brightness_steps).fold(start, |photometric, _| photometric.step(level, sample))
     }
 
-    /// One reweighted least squares step between the pixels of the first frame and the samples of the view that belong to them.
+    /// One reweighted least squares step between the pixels of the first frame and the samples of the second that belong to them.
     fn step(self, level: &Level, sample: impl Fn(usize, usize) -> Option<f32>) -> Photometric {
         let variance = f64::from(level.noise * level.noise);
         let robustness = f64::from(level.model.robustness);
@@ -99,20 +86,15 @@ impl Photometric {
         }
     }
 
-    /// Removes the change from a view of a level, `(I − bias) / (1 + gain/128)`, and the gain from its gradients.
-    pub(crate) fn remove_from(self, level: &mut Level, view: View) {
+    /// Removes the change from the second frame of a level, `(I − bias) / (1 + gain/128)`, and the gain from its gradients.
+    pub(crate) fn remove_from(self, level: &mut Level) {
         let (scale, bias) = ((1.0 / (1.0 + self.gain / 128.0)) as f32, self.bias as f32);
         let remove = |plane: &mut Rc<Plane>, bias: f32| {
             Rc::make_mut(plane).values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
         };
-        match view {
-            View::Second => {
-                remove(&mut level.second, bias);
-                remove(&mut level.second_dx, 0.0);
-                remove(&mut level.second_dy, 0.0);
-            }
-            View::Before => level.before.iter_mut().for_each(|before| remove(before, bias)),
-        }
+        remove(&mut level.second, bias);
+        remove(&mut level.second_dx, 0.0);
+        remove(&mut level.second_dy, 0.0);
     }
 }
 
@@ -131,14 +113,14 @@ mod tests {
     use crate::view::level::build;
 
     #[test]
-    fn brightness_of_the_frame_before_is_measured_along_the_motion_despite_other_movers() {
+    fn the_change_is_measured_along_the_motion_despite_other_movers() {
         let mut random = Random::from_seed(3);
         let texture = gaussian(&Plane::from_fn(100, 60, |_, _| random.uniform(-200.0, 450.0) as f32), 1.0);
         let first = Plane::from_fn(80, 60, |x, y| texture.at(x + 10, y));
-        // The scene moves by 4 pixels to the right, so it was 4 pixels further left; a fifth of it does something else.
-        let before = Plane::from_fn(80, 60, |x, y| if x < 16 { 90.0 } else { texture.at(x + 14, y) * 0.8 + 12.0 });
-        let level = &build(first.clone(), first, Some(before), 64)[0];
-        let found = Photometric::along(level, View::Before, &AffineMotion::translation(4.0, 0.0)).unwrap();
+        // The scene moves by 4 pixels to the left; a fifth of it does something else.
+        let second = Plane::from_fn(80, 60, |x, y| if x < 16 { 90.0 } else { texture.at(x + 14, y) * 0.8 + 12.0 });
+        let level = &build(first, second, 64)[0];
+        let found = Photometric::along(level, &AffineMotion::translation(-4.0, 0.0));
         assert!((found.bias - 12.0).abs() < 0.5, "{found:?}");
         assert!((1.0 + found.gain / 128.0 - 0.8).abs() < 0.01, "{found:?}");
     }

@@ -13,7 +13,7 @@ use super::brightness::Photometric;
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::warp::{CHUNK, Footprints};
-use crate::lanes::{LANES, each};
+use crate::lanes::{LANES, each, lower};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median;
@@ -49,7 +49,7 @@ impl CostModel {
         square / (variance + square * (1.0 / self.truncation))
     }
 
-    /// Neutral cost of a pixel whose displaced position lies outside the view.
+    /// Neutral cost of a pixel whose displaced position lies outside the second frame.
     pub(crate) fn outside(self) -> f32 {
         0.5 * self.truncation
     }
@@ -62,50 +62,34 @@ fn interpolation_variance(fx: f32, fy: f32, correlation: f32) -> f32 {
     0.5 * (1.0 + (1.0 - c * fx * (1.0 - fx)) * (1.0 - c * fy * (1.0 - fy)))
 }
 
-/// The frame that the first one is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum View {
-    Second,
-    Before,
-}
-
 /// Cost of a motion (of the working frame) at every pixel of a level, between the first frame and the second. A pixel that leaves the
-/// second frame has the neutral cost, even if there is a frame before. Flat areas look alike in any two frames, so with the frame
-/// before a wrong motion would pay nothing for most pixels it moves out of view, and a motion fitted across several objects could
-/// pass for the background.
+/// second frame has the neutral cost.
 pub(crate) fn cost(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
     cost_within(level, &level.area(), motion, model)
+}
+
+/// [`cost`] of every motion.
+pub(crate) fn costs(level: &Level, motions: &[AffineMotion], model: CostModel) -> Vec<Plane> {
+    motions.iter().map(|motion| cost(level, motion, model)).collect()
 }
 
 /// [`cost`] at the pixels of an area, as a plane of its size.
 #[inline(never)]
 pub(crate) fn cost_within(level: &Level, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
-    let mut plane = cost_in(level, View::Second, area, motion, model);
+    let mut plane = Comparison::new(level, motion, model).plane(area);
     each(plane.values_mut(), |c| if c.is_finite() { c } else { model.outside() });
     plane
 }
 
-/// Cost of a motion in one view at the pixels of an area; infinite where the displaced position lies outside, or where there is no
-/// such view.
+/// [`cost`] that is infinite where the displaced position lies outside the second frame.
 #[inline(never)]
-pub(crate) fn cost_in(level: &Level, view: View, area: &Area, motion: &AffineMotion, model: CostModel) -> Plane {
-    match Comparison::new(level, view, motion, model) {
-        Some(comparison) => comparison.plane(area),
-        None => Plane::filled(area.width(), area.height(), f32::INFINITY),
-    }
+pub(crate) fn cost_where_seen(level: &Level, motion: &AffineMotion, model: CostModel) -> Plane {
+    Comparison::new(level, motion, model).plane(&level.area())
 }
 
 /// Cost under a change of brightness that has not yet been removed from the second frame.
 pub(crate) fn cost_with(level: &Level, motion: &AffineMotion, photometric: Photometric, model: CostModel) -> Plane {
-    Comparison {
-        level,
-        view: &level.second,
-        scaled: level.scaled(motion),
-        photometric,
-        model,
-        outside: model.outside(),
-    }
-    .plane(&level.area())
+    Comparison { photometric, outside: model.outside(), ..Comparison::new(level, motion, model) }.plane(&level.area())
 }
 
 /// The displacement that undoes a motion: `(I + A)⁻¹ − I`; none if the motion is singular.
@@ -121,26 +105,21 @@ pub(crate) fn inverse(motion: &AffineMotion) -> Option<AffineMotion> {
     Some(AffineMotion::new([ip - 1.0, iq, -(ip * a[2] + iq * a[5]), ir, is - 1.0, -(ir * a[2] + is * a[5])]))
 }
 
-/// A level's first frame compared with another along a motion.
+/// A level's frames compared along a motion.
 pub(crate) struct Comparison<'a> {
     level: &'a Level,
-    view: &'a Plane,
     scaled: AffineMotion,
     photometric: Photometric,
     model: CostModel,
-    /// Cost of a pixel that leaves the view.
+    /// Cost of a pixel that leaves the second frame.
     outside: f32,
 }
 
 impl<'a> Comparison<'a> {
-    /// A comparison with one view; pixels that leave it have infinite cost. None if there is no such view.
-    pub(crate) fn new(level: &'a Level, view: View, motion: &AffineMotion, model: CostModel) -> Option<Comparison<'a>> {
-        let (view, moved) = match view {
-            View::Second => (&*level.second, *motion),
-            View::Before => (level.before.as_deref()?, inverse(motion)?),
-        };
-        let scaled = level.scaled(&moved);
-        Some(Comparison { level, view, scaled, photometric: Photometric::default(), model, outside: f32::INFINITY })
+    /// A comparison in which pixels that leave the second frame have infinite cost.
+    pub(crate) fn new(level: &'a Level, motion: &AffineMotion, model: CostModel) -> Comparison<'a> {
+        let photometric = Photometric::default();
+        Comparison { level, scaled: level.scaled(motion), photometric, model, outside: f32::INFINITY }
     }
 
     fn plane(&self, area: &Area) -> Plane {
@@ -168,8 +147,8 @@ impl<'a> Comparison<'a> {
         let columns = left..left + costs.len();
         let rows = level.first.row(y)[columns.clone()].chunks(CHUNK).zip(level.energy.row(y)[columns].chunks(CHUNK));
         for (k, (costs, (first, energy))) in costs.chunks_mut(CHUNK).zip(rows).enumerate() {
-            at.follow(&path, k * CHUNK, costs.len(), self.view.width(), self.view.height());
-            at.sample(self.view.values(), &mut samples);
+            at.follow(&path, k * CHUNK, costs.len(), level.second.width(), level.second.height());
+            at.sample(level.second.values(), &mut samples);
             let (blocks, rest) = costs.as_chunks_mut::<LANES>();
             let ((first, first_rest), (energy, energy_rest)) =
                 (first.as_chunks::<LANES>(), energy.as_chunks::<LANES>());
@@ -191,6 +170,16 @@ impl<'a> Comparison<'a> {
             }
         }
     }
+}
+
+/// The smallest of the costs at every pixel, at most `most`.
+pub(crate) fn cheapest(costs: &[Plane], most: f32) -> Plane {
+    let Some(first) = costs.first() else { return Plane::filled(0, 0, 0.0) };
+    let mut cheapest = Plane::filled(first.width(), first.height(), most);
+    for cost in costs {
+        lower(cheapest.values_mut(), cost.values());
+    }
+    cheapest
 }
 
 /// Sum of a cost plane.
@@ -244,33 +233,32 @@ mod tests {
     use crate::random::Random;
     use crate::view::level::build;
 
-    fn level(before: bool) -> Level {
+    fn level() -> Level {
         let mut random = Random::from_seed(5);
         let mut noise = || Plane::from_fn(70, 50, |_, _| random.uniform(0.0, 255.0) as f32);
-        let (first, second, third) = (noise(), noise(), noise());
-        build(first, second, before.then_some(third), 64).remove(0)
+        let (first, second) = (noise(), noise());
+        build(first, second, 64).remove(0)
     }
 
     const MOTION: AffineMotion = AffineMotion { matrix: [0.02, -0.01, 9.3, 0.03, 0.01, -4.6] };
 
     #[test]
     fn the_cost_of_an_area_is_that_part_of_the_whole() {
-        for level in [level(false), level(true)] {
-            let whole = cost(&level, &MOTION, CostModel::labels(level.model));
-            let area = Area { columns: 3..68, rows: 7..31 };
-            let part = cost_within(&level, &area, &MOTION, CostModel::labels(level.model));
-            assert_eq!((part.width(), part.height()), (65, 24));
-            for (k, y) in area.rows.clone().enumerate() {
-                for (a, b) in part.row(k).iter().zip(&whole.row(y)[area.columns.clone()]) {
-                    assert!((a - b).abs() < 1e-3, "row {y}: {a}, {b}");
-                }
+        let level = level();
+        let whole = cost(&level, &MOTION, CostModel::labels(level.model));
+        let area = Area { columns: 3..68, rows: 7..31 };
+        let part = cost_within(&level, &area, &MOTION, CostModel::labels(level.model));
+        assert_eq!((part.width(), part.height()), (65, 24));
+        for (k, y) in area.rows.clone().enumerate() {
+            for (a, b) in part.row(k).iter().zip(&whole.row(y)[area.columns.clone()]) {
+                assert!((a - b).abs() < 1e-3, "row {y}: {a}, {b}");
             }
         }
     }
 
     #[test]
     fn a_sample_of_the_pixels_costs_what_these_pixels_cost() {
-        let level = level(true);
+        let level = level();
         let whole = cost(&level, &MOTION, CostModel::estimation(level.model));
         let sample = cost(&level.thinned(3), &MOTION, CostModel::estimation(level.model));
         assert_eq!((sample.width(), sample.height()), (24, 17));
@@ -283,10 +271,9 @@ mod tests {
     fn costs_of_a_part_of_a_row_are_those_of_the_plane() {
         let frame =
             |shift: f32| Plane::from_fn(150, 20, |x, y| 100.0 + 50.0 * libm::sinf(0.3 * x as f32 + shift + y as f32));
-        let levels = build(frame(0.0), frame(0.2), None, 16);
+        let levels = build(frame(0.0), frame(0.2), 16);
         let motion = AffineMotion::new([0.01, 0.0, -6.0, 0.0, -0.02, 1.5]);
-        let comparison =
-            Comparison::new(&levels[0], View::Second, &motion, CostModel::labels(levels[0].model)).unwrap();
+        let comparison = Comparison::new(&levels[0], &motion, CostModel::labels(levels[0].model));
         let plane = comparison.plane(&levels[0].area());
         for (left, count) in [(0, 150), (0, 1), (3, 20), (9, 64), (40, 71), (141, 9)] {
             let mut part = vec![f32::NAN; count];

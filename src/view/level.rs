@@ -1,4 +1,4 @@
-//! One size of two frames, and of the frame before if there is one, with gradients: what alignment and labelling compare.
+//! One size of two frames, with gradients: what alignment and labelling compare.
 
 use std::rc::Rc;
 
@@ -21,7 +21,6 @@ pub(crate) struct Level {
     pub(crate) index: u32,
     pub(crate) first: Rc<Plane>,
     pub(crate) second: Rc<Plane>,
-    pub(crate) before: Option<Rc<Plane>>,
     /// Gradients of the first frame, per pixel of the second.
     pub(crate) first_dx: Rc<Plane>,
     pub(crate) first_dy: Rc<Plane>,
@@ -38,18 +37,11 @@ pub(crate) struct Level {
 }
 
 impl Level {
-    fn new(
-        index: u32,
-        first: &FrameLevel,
-        second: &FrameLevel,
-        before: Option<&FrameLevel>,
-        model: &'static Model,
-    ) -> Level {
+    fn new(index: u32, first: &FrameLevel, second: &FrameLevel, model: &'static Model) -> Level {
         Level {
             index,
             first: first.luminance.clone(),
             second: second.luminance.clone(),
-            before: before.map(|before| before.luminance.clone()),
             first_dx: first.dx.clone(),
             first_dy: first.dy.clone(),
             second_dx: second.dx.clone(),
@@ -93,7 +85,6 @@ impl Level {
             index: self.index,
             first: sample(&self.first),
             second: self.second.clone(),
-            before: self.before.clone(),
             first_dx: sample(&self.first_dx),
             first_dy: sample(&self.first_dy),
             second_dx: self.second_dx.clone(),
@@ -133,19 +124,13 @@ impl Level {
 }
 
 /// The levels of a pair, from the working size down. All pyramids are those of frames of one size.
-pub(crate) fn levels(
-    first: &[FrameLevel],
-    second: &[FrameLevel],
-    before: Option<&[FrameLevel]>,
-    model: &'static Model,
-) -> Vec<Level> {
-    let pair = first.iter().zip(second).enumerate();
-    pair.map(|(k, (first, second))| Level::new(k as u32, first, second, before.map(|b| &b[k]), model)).collect()
+pub(crate) fn levels(first: &[FrameLevel], second: &[FrameLevel], model: &'static Model) -> Vec<Level> {
+    first.iter().zip(second).zip(0..).map(|((first, second), k)| Level::new(k, first, second, model)).collect()
 }
 
 /// [`levels`] of planes of luminance that need no blur.
 #[cfg(test)]
-pub(crate) fn build(first: Plane, second: Plane, before: Option<Plane>, smallest: usize) -> Vec<Level> {
+pub(crate) fn build(first: Plane, second: Plane, smallest: usize) -> Vec<Level> {
     let [first, second] = [first, second].map(|plane| levels_of(plane, smallest));
-    levels(&first, &second, before.map(|plane| levels_of(plane, smallest)).as_deref(), &Model::DEFAULT)
+    levels(&first, &second, &Model::DEFAULT)
 }

@@ -14,7 +14,7 @@ use crate::{
     Segmentation, SegmentedMotion,
 };
 
-/// Segments two frames, optionally with the frame before the first as a third view. A frame is `{ data, width, height }` with RGBA bytes,
+/// Segments two frames. A frame is `{ data, width, height }` with RGBA bytes,
 /// like `ImageData`. `on_stage(name, index, of)` is called at the beginning of every stage.
 ///
 /// Returns the report of a pair as a plain object without `milliseconds`, which the caller measures, with `labels: Uint8Array` and, on
@@ -26,14 +26,13 @@ use crate::{
 pub fn segment_pair(
     first: &JsValue,
     second: &JsValue,
-    before: &JsValue,
     options: &JsValue,
     on_stage: Option<Function>,
 ) -> Result<JsValue, JsValue> {
     let options = segment_options(options)?;
-    let (first, second, before) = frames(first, second, before)?;
-    let segmentation = crate::segment_pair(&first, &second, before.as_ref(), &options, &mut listener(on_stage))
-        .map_err(Failure::from)?;
+    let (first, second) = frames(first, second)?;
+    let segmentation =
+        crate::segment_pair(&first, &second, &options, &mut listener(on_stage)).map_err(Failure::from)?;
     let quality = match options.quality {
         Quality::Fast => "fast",
         Quality::Best => "best",
@@ -42,7 +41,6 @@ pub fn segment_pair(
         .set("motions", &motions_asked(options.motions))
         .text("quality", quality)
         .set("markUnknown", &options.mark_unknown.into())
-        .set("before", &before.is_some().into())
         .number("seed", options.seed as f64)
         .text("software", SOFTWARE);
     let report = add_segmentation(Record::new().number("version", REPORT_VERSION), &segmentation)
@@ -61,7 +59,7 @@ pub fn segment_pair(
 /// As [`segment_pair`].
 #[wasm_bindgen(js_name = segmentImageData)]
 pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsValue) -> Result<JsValue, JsValue> {
-    segment_pair(first, second, &JsValue::UNDEFINED, options, None)
+    segment_pair(first, second, options, None)
 }
 
 /// Solves the labels of a segmentation again under a correction (see [`crate::Correction`]). `matrices` holds six entries per motion,
@@ -77,7 +75,6 @@ pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsVal
 pub fn relabel(
     first: &JsValue,
     second: &JsValue,
-    before: &JsValue,
     matrices: &[f64],
     groups: &[u8],
     labels: &[u8],
@@ -86,7 +83,7 @@ pub fn relabel(
     on_stage: Option<Function>,
 ) -> Result<JsValue, JsValue> {
     let options = segment_options(options)?;
-    let (first, second, before) = frames(first, second, before)?;
+    let (first, second) = frames(first, second)?;
     let (entries, rest) = matrices.as_chunks::<6>();
     if !rest.is_empty() {
         return Err(Failure::input(format!("the matrices must hold 6 numbers each, found {}", matrices.len())).into());
@@ -94,8 +91,7 @@ pub fn relabel(
     let motions: Vec<AffineMotion> = entries.iter().map(|&entries| AffineMotion::new(entries)).collect();
     let correction = Correction { motions: &motions, groups, labels, allowed: evidence };
     let progress = &mut listener(on_stage);
-    let relabelled = crate::relabel(&first, &second, before.as_ref(), &correction, &options, progress);
-    let relabelled = relabelled.map_err(Failure::from)?;
+    let relabelled = crate::relabel(&first, &second, &correction, &options, progress).map_err(Failure::from)?;
     let report = Record::new()
         .set("motions", &segmented_motions(&relabelled.motions))
         .count("unlabelled", relabelled.unlabelled)
@@ -164,12 +160,8 @@ fn image_from_labels(
     ImageData::new_with_js_u8_clamped_array_and_sh(&Uint8ClampedArray::from(&rgba[..]), width, height)
 }
 
-/// Both frames, and the frame before, if given.
-fn frames(first: &JsValue, second: &JsValue, before: &JsValue) -> Result<(Frame, Frame, Option<Frame>), Failure> {
-    let first = frame_from_pixels("the first frame", first)?;
-    let second = frame_from_pixels("the second frame", second)?;
-    let before = if before.is_undefined() { None } else { Some(frame_from_pixels("the frame before", before)?) };
-    Ok((first, second, before))
+fn frames(first: &JsValue, second: &JsValue) -> Result<(Frame, Frame), Failure> {
+    Ok((frame_from_pixels("the first frame", first)?, frame_from_pixels("the second frame", second)?))
 }
 
 /// A frame from `{ data, width, height }`. The size is checked before bytes are copied.

@@ -60,15 +60,15 @@ export class Api {
       );
     }
     if (!('frames' in task)) return step(this.#frames, call, task);
-    const [first, second, before] = task.frames;
+    const [first, second] = task.frames;
     if (task.call === 'segmentPair') {
       return run<Segmentation, FramesGlue>(this.#frames, call, (glue, onStage) =>
-        glue.segmentPair(first, second, before, task.settings, onStage),
+        glue.segmentPair(first, second, task.settings, onStage),
       );
     }
     const { matrices, groups, labels, sets, settings } = task.correction;
     return run<Corrected, FramesGlue>(this.#frames, call, (glue, onStage) =>
-      glue.relabel(first, second, before, matrices, groups, labels, sets, settings, onStage),
+      glue.relabel(first, second, matrices, groups, labels, sets, settings, onStage),
     );
   };
 

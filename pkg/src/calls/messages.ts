@@ -7,7 +7,7 @@ import { buffersOf } from './taking.js';
 /** Options as the core takes them, all plain values; it says which of them it cannot use. */
 export type Settings = Record<string, unknown>;
 
-export type Frames = readonly [first: Pixels, second: Pixels, before?: Pixels];
+export type Frames = readonly [first: Pixels, second: Pixels];
 
 /** What `relabel` needs of a segmentation, and what is said about its pixels. */
 export interface Correction {
@@ -89,5 +89,5 @@ export function buffersOfTask(task: Task): ArrayBuffer[] {
   }
   if (!('frames' in task)) return [];
   const said = task.call === 'relabel' ? [task.correction.labels, task.correction.sets] : [];
-  return buffersOf([...task.frames.map((frame) => frame?.data), ...said]);
+  return buffersOf([...task.frames.map(({ data }) => data), ...said]);
 }

@@ -58,8 +58,8 @@ export function start<T>(prepare: () => Call<T>, perform: Perform): Promise<T> {
 }
 
 export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOptions): Call<Segmentation> {
-  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence', 'seed', 'before']);
-  const frames = checkedFrames(first, second, asked.before);
+  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence', 'seed']);
+  const frames = checkedFrames(first, second);
   const own = takenFor(asked, dataOf(frames));
   const task: CallTask = { call: 'segmentPair', frames: framesWith(own, frames), settings: asked.settings };
   return { task, options: asked.call, finish: (result) => result as Segmentation };
@@ -72,8 +72,8 @@ export function relabelCall(
   evidence: Uint16Array,
   options?: RelabelOptions,
 ): Call<Segmentation> {
-  const asked = parted(options, ['before']);
-  const frames = checkedFrames(first, second, asked.before);
+  const asked = parted(options, []);
+  const frames = checkedFrames(first, second);
   const { kept, labels, ...correction } = checkedSegmentation(segmentation);
   const sets = checkedArray('the evidence', evidence, 'Uint16Array', 'of one set of labels for each pixel');
   const own = takenFor(asked, [...dataOf(frames), sets]);
@@ -97,13 +97,12 @@ export function fitCall(measurements: PointMeasurements, options?: FitOptions): 
 interface Asked {
   call: CallOptions;
   transfer: boolean;
-  before: unknown;
   settings: Settings;
 }
 
 /** Parts what concerns the call from what goes to the core, which says which values it takes. */
 export function parted(options: unknown, known: readonly string[]): Asked {
-  const { signal, onProgress, transfer = false, before, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer']);
+  const { signal, onProgress, transfer = false, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer']);
   if (signal !== undefined && !isSignal(signal)) throw new VeroneseError('invalid-option', "option 'signal': must be an AbortSignal");
   if (onProgress !== undefined && typeof onProgress !== 'function') throw invalidOption('onProgress', 'a function', onProgress);
   if (typeof transfer !== 'boolean') throw invalidOption('transfer', 'true or false', transfer);
@@ -111,7 +110,7 @@ export function parted(options: unknown, known: readonly string[]): Asked {
     // Not all of these reach a worker, and no option is one of them.
     if (/object|function|symbol/.test(typeof value) && value !== null) throw invalidOption(name, 'a plain value', value);
   }
-  return { call: { signal, onProgress: onProgress as CallOptions['onProgress'] }, transfer, before, settings };
+  return { call: { signal, onProgress: onProgress as CallOptions['onProgress'] }, transfer, settings };
 }
 
 /** Whatever works like one: other realms and older environments have classes of their own. */
@@ -127,10 +126,8 @@ function takenFor({ call: { signal }, transfer }: Asked, arrays: readonly TypedA
   return taken(arrays, transfer);
 }
 
-function checkedFrames(first: unknown, second: unknown, before: unknown): Pixels[] {
-  const frames = [checkedPixels('the first frame', first), checkedPixels('the second frame', second)];
-  if (before !== undefined) frames.push(checkedPixels('the frame before', before));
-  return frames;
+function checkedFrames(first: unknown, second: unknown): Pixels[] {
+  return [checkedPixels('the first frame', first), checkedPixels('the second frame', second)];
 }
 
 /** A frame of the right shape and size, in the core's words; whether it has the size of the others is the core's question. */

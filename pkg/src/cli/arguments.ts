@@ -24,7 +24,6 @@ const formatsFor = (ofPair: boolean, ofTracks: boolean): string =>
 export const HELP = `veronese segments two video frames by motion: how many motions there are, what each one is, and which pixels follow it.
 
   veronese pair FIRST SECOND [options]   segment two frames: PNG, JPEG, WebP, BMP or PNM
-      --before FILE          the frame before FIRST, a third view that helps at occlusions
       --motions auto|1..10   number of motions (default: auto)
       --quality fast|best    speed or accuracy (default: best)
       --grouped              write groups instead of motions to labels.png and mask-K.png; one rigid background is one group
@@ -37,7 +36,6 @@ export const HELP = `veronese segments two video frames by motion: how many moti
   veronese batch FRAMES... [options]     segment every pair of consecutive frames; FRAMES are folders, files or 'quoted patterns*.png'
       --list FILE            read frames from FILE, one path per line (- reads standard input)
       --every K              use only every K-th frame (default: 1)
-      --with-before          give each pair the frame before its first, like --before of pair
       --out DIR              write a folder for each pair to DIR, with the files of pair; skip finished pairs
       --jobs N               number of pairs processed at once (default: the number of processors)
       --shard I/N            process only part I of N, to share the pairs between N machines
@@ -106,7 +104,6 @@ const BACK = 'corrections';
 /** Settings of the two commands for sequences of frames. */
 export interface SequenceSettings extends PairSettings {
   every: number;
-  withBefore: boolean;
   jobs: number;
   /** The part of all pairs to process; `index` counts from 0. */
   shard: { index: number; of: number };
@@ -128,7 +125,6 @@ export type Command =
       name: 'pair';
       first: string;
       second: string;
-      before?: string;
       out?: string;
     } & PairSettings)
   | ({ name: 'batch'; frames: string[]; list?: string } & SequenceSettings)
@@ -186,7 +182,7 @@ export type WorkCommand = PairCommand | PointsCommand;
 /** The files that a command reads, in the order in which their contents are passed on. */
 export function filesOf(command: WorkCommand): string[] {
   if (command.name === 'points') return [command.file];
-  return [command.first, command.second, ...(command.before === undefined ? [] : [command.before])];
+  return [command.first, command.second];
 }
 
 const OPTIONS = {
@@ -224,10 +220,10 @@ const OPTIONS = {
 } as const;
 
 const OF_PAIRS = ['motions', 'quality', 'grouped', 'mark-unknown', 'confidence', 'seed', 'out', 'overlay'];
-const OF_SEQUENCES = [...OF_PAIRS, 'every', 'with-before', 'jobs', 'shard'];
+const OF_SEQUENCES = [...OF_PAIRS, 'every', 'jobs', 'shard'];
 
 const ALLOWED: Readonly<Record<string, readonly string[]>> = {
-  pair: ['before', ...OF_PAIRS],
+  pair: OF_PAIRS,
   batch: ['list', ...OF_SEQUENCES],
   video: ['allow-damaged', ...OF_SEQUENCES],
   clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
@@ -235,7 +231,10 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   points: ['motions', 'method', 'seed'],
 };
 
-/** Throws a {@link VeroneseError} with code `usage`, or `invalid-option` if an option's value is invalid. */
+/** Options of 0.1.0 that are gone. */
+const GONE: Readonly<Record<string, string>> = { pair: 'before', batch: 'with-before', video: 'with-before' };
+
+/** Throws a {@link VeroneseError} with code `usage`, `wrong-usage` for an option that is gone, or `invalid-option` if an option's value is invalid. */
 export function parseCommand(args: string[]): Command {
   const { values, positionals, tokens } = parsed(args);
   if (values.help) return { name: 'help' };
@@ -246,6 +245,9 @@ export function parseCommand(args: string[]): Command {
   if (!allowed) throw usage(`there is no command '${name}'`);
   for (const token of tokens) {
     if (token.kind !== 'option') continue;
+    if (token.name === GONE[name]) {
+      throw new VeroneseError('wrong-usage', `there is no '--${token.name}' any more; segment the frames as a clip, by 'veronese clip'`);
+    }
     if (!allowed.includes(token.name)) throw usage(`'${name}' has no option '--${token.name}'`);
     if (token.value === '') throw usage(`option '--${token.name}' is empty`);
   }
@@ -315,13 +317,11 @@ export function parseCommand(args: string[]): Command {
   };
   if (name === 'pair') {
     const [first, second] = exactly(2, files, "'pair' takes two files");
-    const before = values.before !== undefined && { before: values.before };
-    return { name, first: first as string, second: second as string, ...before, ...settings };
+    return { name, first: first as string, second: second as string, ...settings };
   }
   const sequence: SequenceSettings = {
     ...settings,
     every: every(values.every),
-    withBefore: values['with-before'],
     jobs: values.jobs === undefined ? availableParallelism() : whole('jobs', values.jobs, 1, MOST_JOBS),
     shard: shard(values.shard),
   };

@@ -9,7 +9,7 @@ import { type InputFile, type PairSettings, segmentFiles } from './pair.js';
 import { finished, jobOf, recordFiles } from './store.js';
 
 export interface BatchTask {
-  /** First, second and, if wanted and there, the frame before; a frame without bytes is a file to read. */
+  /** First and second; a frame without bytes is a file to read. */
   frames: { name: string; bytes?: Uint8Array }[];
   settings: PairSettings;
   /** Where the pair's results belong, if they are kept. */

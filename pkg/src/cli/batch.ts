@@ -92,18 +92,18 @@ async function perform(pool: WorkerPool<BatchTask, BatchResult>, pair: Pair, com
 async function* pairsOf(
   frames: Iterable<Frame> | AsyncIterable<Frame>,
   every: number,
-  { shard, withBefore }: SequenceCommand,
+  { shard }: SequenceCommand,
 ): AsyncGenerator<Pair, void, undefined> {
-  let [before, first]: (Frame | undefined)[] = [];
+  let first: Frame | undefined;
   let [position, used] = [0, 0];
   for await (const second of frames) {
     if (position++ % every !== 0) continue;
     used += 1;
     if (first && ofShard(used - 2, shard)) {
       const index = used - 2;
-      yield { index, name: nameOf(index, first), frames: [first, second, ...(withBefore && before ? [before] : [])] };
+      yield { index, name: nameOf(index, first), frames: [first, second] };
     }
-    [before, first] = [first, second];
+    first = second;
   }
   checkCount(used);
 }

@@ -22,7 +22,7 @@ export interface InputFile {
 
 export type Report = Omit<Segmentation, 'labels' | 'confidence'>;
 
-/** Segments first and second (and the frame before); `withImages` also makes the image files. */
+/** Segments first and second; `withImages` also makes the image files. */
 export async function segmentFiles(
   inputs: readonly InputFile[],
   settings: PairSettings,
@@ -30,8 +30,8 @@ export async function segmentFiles(
 ): Promise<{ report: Report; images: OutputFile[] }> {
   const pictures: Picture[] = [];
   for (const input of inputs) pictures.push(await decoded(input));
-  const [first, second, before] = pictures as [Picture, Picture, Picture | undefined];
-  const segmentation = await api.segmentPair(first, second, { ...settings.options, before });
+  const [first, second] = pictures as [Picture, Picture];
+  const segmentation = await api.segmentPair(first, second, settings.options);
   const { labels: _, confidence: __, ...report } = segmentation;
   return { report, images: withImages ? await images(settings, segmentation, first) : [] };
 }

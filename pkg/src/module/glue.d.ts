@@ -7,12 +7,11 @@ export type OnStage = (stage: string, index: number, of: number) => void;
 type PaintArguments = [labels: Uint8Array, width: number, height: number, palette: Uint8Array, opacity: number];
 
 export interface FramesGlue extends Glue {
-  segmentPair(first: unknown, second: unknown, before: unknown, options: unknown, onStage: OnStage): unknown;
+  segmentPair(first: unknown, second: unknown, options: unknown, onStage: OnStage): unknown;
 
   relabel(
     first: unknown,
     second: unknown,
-    before: unknown,
     matrices: Float64Array,
     groups: Uint8Array,
     labels: Uint8Array,

@@ -115,10 +115,10 @@ export function segmenters(host: Host) {
       signal?.addEventListener('abort', end);
       const work = async (input: Input, index: number): Promise<PairOutcome<Input>> => {
         try {
-          const { first, second, before } = reading(() => framesOf(input));
+          const { first, second } = reading(() => framesOf(input));
           const listener = onProgress && ((progress: Progress) => onProgress({ ...progress, pair: index }));
           const call = { signal: ending.signal, onProgress: listener };
-          const segmentation = await this.segmentPair(first, second, { ...rest, before, ...call });
+          const segmentation = await this.segmentPair(first, second, { ...rest, ...call });
           return { index, input, segmentation };
         } catch (thrown) {
           // What is not of the package was thrown by the listener.
@@ -171,14 +171,13 @@ function checkedPairsOptions(pairs: unknown, options: unknown): PairsOptions {
   if (typeof iterable[Symbol.asyncIterator] !== 'function' && typeof iterable[Symbol.iterator] !== 'function') {
     throw invalidInput('the pairs must be an iterable or async iterable of { first, second }');
   }
-  const { before, ...rest } = optionsObject(options);
-  if (before !== undefined) throw new VeroneseError('invalid-option', "there is no option 'before' for all pairs; each pair may have one");
+  const rest = optionsObject(options);
   // The rest is that of each pair.
   parted({ signal: rest.signal, onProgress: rest.onProgress }, []);
   return rest;
 }
 
 function framesOf(input: unknown): PairInput {
-  const { first, second, before } = Object(input) as PairInput;
-  return { first, second, before };
+  const { first, second } = Object(input) as PairInput;
+  return { first, second };
 }

@@ -64,12 +64,11 @@ pub struct Relabelling {
 pub fn relabel(
     first: &Frame,
     second: &Frame,
-    before: Option<&Frame>,
     correction: &Correction<'_>,
     options: &SegmentOptions,
     progress: Progress<'_>,
 ) -> Result<Relabelling> {
-    check_sizes(first, second, before)?;
+    check_sizes(first, second)?;
     correction.check(first.width() * first.height())?;
     let _call = workspace::begin([first.width(), first.height()]);
     // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
@@ -80,7 +79,7 @@ pub fn relabel(
     let mut labels = correction.labels.to_vec();
     if !divisions.is_empty() {
         stages.begin("frames");
-        let working = Working::new(first, second, before, correction, &settings);
+        let working = Working::new(first, second, correction, &settings);
         stages.begin("labels");
         divisions.into_iter().for_each(|division| working.divide(division, &mut labels));
         stages.begin("masks");
@@ -170,16 +169,9 @@ struct Working<'a> {
 }
 
 impl<'a> Working<'a> {
-    fn new(
-        first: &'a Frame,
-        second: &Frame,
-        before: Option<&Frame>,
-        correction: &'a Correction<'a>,
-        settings: &Settings,
-    ) -> Working<'a> {
+    fn new(first: &'a Frame, second: &Frame, correction: &'a Correction<'a>, settings: &Settings) -> Working<'a> {
         let (pyramid, other) = (settings.pyramid(first), settings.pyramid(second));
-        let before = before.map(|frame| settings.pyramid(frame));
-        let mut pair = Pair::new(first, &pyramid, &other, before.as_ref(), settings);
+        let mut pair = Pair::new(first, &pyramid, &other, settings);
         let reduction = pair.reduction;
         let motions: Vec<AffineMotion> = correction.motions.iter().map(|m| m.scaled(1.0 / reduction)).collect();
         pair.take_dominant(&motions[0], settings.brightness());

@@ -80,7 +80,7 @@ mod tests {
         };
         let second = frame(object[0] as usize, object[1] as usize);
         let labels = (0..SIZE[0] * SIZE[1]).map(|p| u8::from(square(p % SIZE[0], p / SIZE[0]))).collect();
-        (build(frame(0, 0), second, None, 24).remove(0), labels)
+        (build(frame(0, 0), second, 24).remove(0), labels)
     }
 
     fn merger(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Option<Merger> {

@@ -14,11 +14,10 @@ use crate::labelling::terms::colour::ColourPrices;
 use crate::labelling::terms::data::{frame_border_price, to_label_costs};
 use crate::labelling::terms::smoothness::{Borders, Price};
 use crate::labelling::terms::variance_inflation::inflate_variance;
-use crate::labelling::terms::views::blend_views;
 use crate::labelling::terms::visibility::most_where_hidden;
 use crate::lanes::lower;
 use crate::motion::AffineMotion;
-use crate::view::cost::{Comparison, CostModel, View};
+use crate::view::cost::{Comparison, CostModel};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
@@ -37,8 +36,6 @@ pub(crate) struct CoarseLabelling<'a> {
     pub(crate) step: usize,
     /// Factor of the noise variance.
     pub(crate) variance_inflation: &'a Plane,
-    /// Weight of the second frame, if there is a frame before.
-    pub(crate) shares: Option<&'a Plane>,
     /// For every label, the pixels at which it may be occluded.
     pub(crate) hidden: &'a [Buffer<bool>],
     pub(crate) colours: Option<&'a ColourPrices>,
@@ -174,18 +171,12 @@ impl CoarseLabelling<'_> {
 }
 
 /// Comparisons of the frames along every motion.
-struct Comparisons<'a> {
-    second: Vec<Option<Comparison<'a>>>,
-    before: Vec<Option<Comparison<'a>>>,
-}
+struct Comparisons<'a>(Vec<Comparison<'a>>);
 
 impl<'a> Comparisons<'a> {
     fn new(fine: &WorkingLevel<'a>) -> Comparisons<'a> {
-        let all = |view| {
-            let one = |motion| Comparison::new(fine.level, view, motion, CostModel::labels(fine.level.model));
-            fine.motions.iter().map(one).collect()
-        };
-        Comparisons { second: all(View::Second), before: all(View::Before) }
+        let one = |motion| Comparison::new(fine.level, motion, CostModel::labels(fine.level.model));
+        Comparisons(fine.motions.iter().map(one).collect())
     }
 
     /// Writes the costs of the labels that compete in a tile to planes that begin at `corner`; label l has the plane `number[l]`.
@@ -202,7 +193,7 @@ impl<'a> Comparisons<'a> {
         let Area { columns, rows: tile_rows } = &tile.area;
         let (count, left) = (columns.len(), columns.start);
         let mut rows = vec![[0.0; TILE[0]]; tile.labels.len()];
-        let (mut earlier, mut inflation, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]], [0.0; TILE[0]]);
+        let (mut inflation, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]]);
         let mut places = [0; TILE[0]];
         let border = frame_border_price(fine.coherence, fine.level.model);
         for y in tile_rows.clone() {
@@ -214,18 +205,8 @@ impl<'a> Comparisons<'a> {
                 .for_each(|(inflation, &p)| *inflation = coarse.variance_inflation.values()[p]);
             seen.fill(f32::INFINITY);
             for (row, &label) in rows.iter_mut().zip(&tile.labels) {
-                let label = usize::from(label);
                 let row = &mut row[..count];
-                match &self.second[label] {
-                    Some(second) => second.row(y, left, row),
-                    None => row.fill(f32::INFINITY),
-                }
-                if let (Some(before), Some(shares)) = (&self.before[label], coarse.shares) {
-                    before.row(y, left, &mut earlier[..count]);
-                    for ((c, b), &p) in row.iter_mut().zip(&earlier).zip(places) {
-                        *c = blend_views(*c, *b, shares.values()[p]);
-                    }
-                }
+                self.0[usize::from(label)].row(y, left, row);
                 inflate_variance(row, &inflation, fine.level.model);
                 lower(&mut seen, row);
             }
@@ -297,7 +278,7 @@ mod tests {
     #[test]
     fn labels_of_half_the_size_get_the_borders_of_the_full_size() {
         let [first, second] = frames();
-        let levels = build(first.clone(), second, None, 24);
+        let levels = build(first.clone(), second, 24);
         let motions = [(0.0, 0.0), (2.0, 0.0), (0.0, -2.0)].map(|(u, v)| AffineMotion::translation(u, v));
         let labels: Vec<u8> =
             (0..SIZE[0] * SIZE[1] / 4).map(|p| owner(p % (SIZE[0] / 2) * 2, p / (SIZE[0] / 2) * 2)).collect();
@@ -308,7 +289,6 @@ mod tests {
             labels: &labels,
             step: 2,
             variance_inflation: &uncorrected.variance_inflation,
-            shares: None,
             hidden: &hidden,
             colours: None,
         };

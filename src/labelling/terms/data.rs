@@ -4,11 +4,10 @@ use crate::frame::Plane;
 use crate::labelling::BACKGROUND;
 use crate::labelling::coherence::Coherence;
 use crate::labelling::terms::variance_inflation::{VarianceInflation, inflate_variance};
-use crate::labelling::terms::views::{cheapest, costs_in_views};
 use crate::lanes::{each_with, lower};
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::cost::CostModel;
+use crate::view::cost::{CostModel, cheapest, cost_where_seen};
 use crate::view::level::Level;
 use crate::workspace::Buffer;
 
@@ -25,15 +24,14 @@ pub(crate) fn label_costs(level: &Level, motions: &[AffineMotion], coherence: Co
 pub(crate) struct LabelCosts {
     /// See [`label_costs`].
     pub(crate) costs: Vec<Plane>,
-    /// Weight of the second frame in the costs, if there is a frame before.
-    pub(crate) shares: Option<Plane>,
     pub(crate) variance_inflation: Plane,
 }
 
 impl LabelCosts {
     /// Computes them row by row, so that the only intermediate plane is that of the smallest costs.
     pub(crate) fn new(level: &Level, motions: &[AffineMotion], coherence: Coherence) -> LabelCosts {
-        let (mut costs, shares) = costs_in_views(level, motions);
+        let cost = |motion| cost_where_seen(level, motion, CostModel::labels(level.model));
+        let mut costs: Vec<Plane> = motions.iter().map(cost).collect();
         let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY), level.model);
         let mut inflation = Plane::unwritten(level.width(), level.height());
         let mut seen = Buffer::unwritten(level.width());
@@ -49,7 +47,7 @@ impl LabelCosts {
             }
         }
         costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, coherence, level.model));
-        LabelCosts { costs, shares, variance_inflation: inflation }
+        LabelCosts { costs, variance_inflation: inflation }
     }
 }
 
@@ -101,8 +99,8 @@ mod tests {
     #[test]
     fn leaving_the_frame_wins_an_object_nothing_and_costs_the_dominant_motion_nothing() {
         let (still, leaving) = (AffineMotion::STATIC, AffineMotion::translation(20.0, 0.0));
-        let same = &build(noise(1), noise(1), None, 24)[0];
-        let other = &build(noise(1), noise(2), None, 24)[0];
+        let same = &build(noise(1), noise(1), 24)[0];
+        let other = &build(noise(1), noise(2), 24)[0];
         for level in [same, other] {
             let object = label_costs(level, &[still, leaving], COHERENCE);
             let dominant = label_costs(level, &[leaving, still], COHERENCE);

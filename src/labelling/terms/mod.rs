@@ -4,5 +4,4 @@ pub(crate) mod colour;
 pub(crate) mod data;
 pub(crate) mod smoothness;
 pub(crate) mod variance_inflation;
-pub(crate) mod views;
 pub(crate) mod visibility;

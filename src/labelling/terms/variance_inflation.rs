@@ -21,7 +21,7 @@ pub(crate) struct VarianceInflation {
 }
 
 impl VarianceInflation {
-    /// `smallest` is infinite where all motions move a pixel out of every view.
+    /// `smallest` is infinite where all motions move a pixel out of the second frame.
     pub(crate) fn new(mut smallest: Plane, model: &'static Model) -> VarianceInflation {
         each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::labels(model).outside() });
         let window = RowFilter::gaussian(smallest.width(), model.inflation_window);
@@ -53,7 +53,7 @@ pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32], model: &Mod
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::labelling::terms::views::cheapest;
+    use crate::view::cost::cheapest;
 
     fn allow(costs: &mut [Plane]) {
         let mut inflation = VarianceInflation::new(cheapest(costs, f32::INFINITY), &Model::DEFAULT);
