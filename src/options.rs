@@ -140,7 +140,7 @@ impl Default for FitOptions {
 /// # Ok(())
 /// # }
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SegmentOptions {
     /// Number of motions; default [`MotionCount::Auto`].
     pub motions: MotionCount,
@@ -152,18 +152,4 @@ pub struct SegmentOptions {
     /// Compute [`Segmentation::confidence`](crate::Segmentation::confidence), the probability that the label of a pixel is right;
     /// default `false`.
     pub confidence: bool,
-    /// Default 1. Segmenting draws no random numbers, so that every seed gives the same result; reports repeat it.
-    pub seed: u64,
-}
-
-impl Default for SegmentOptions {
-    fn default() -> Self {
-        SegmentOptions {
-            motions: MotionCount::Auto,
-            quality: Quality::Best,
-            mark_unknown: false,
-            confidence: false,
-            seed: 1,
-        }
-    }
 }

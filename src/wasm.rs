@@ -40,8 +40,6 @@ pub use points::fit_motions;
 /// Version of the report format.
 const REPORT_VERSION: f64 = 1.0;
 const SOFTWARE: &str = concat!("veronese ", env!("CARGO_PKG_VERSION"));
-/// `Number.MAX_SAFE_INTEGER`, 2⁵³ − 1.
-const MAX_SAFE_INTEGER: f64 = 9_007_199_254_740_991.0;
 
 /// Runs when the module is instantiated. It makes panics, which would otherwise be a `RuntimeError: unreachable`, throw an error with code
 /// `internal` that has the message and location of the panic.
@@ -123,13 +121,6 @@ fn motions(value: &JsValue) -> Result<MotionCount, Failure> {
         (Some("auto"), _) => Ok(MotionCount::Auto),
         (_, Some(n)) if n >= 1.0 && n <= MAX_MOTIONS as f64 && n == n.floor() => Ok(MotionCount::Given(n as usize)),
         _ => Err(invalid("motions", &range, value)),
-    }
-}
-
-fn seed(value: &JsValue) -> Result<u64, Failure> {
-    match value.as_f64() {
-        Some(seed) if (0.0..=MAX_SAFE_INTEGER).contains(&seed) && seed == seed.floor() => Ok(seed as u64),
-        _ => Err(invalid("seed", "a whole number from 0 to 9007199254740991", value)),
     }
 }
 

@@ -1,6 +1,6 @@
 // Makes a job of each folder of frames whose result is not there yet.
 //
-// node produce-clips.mjs FOLDER… --out DIR [--quality fast|best] [--seed N]
+// node produce-clips.mjs FOLDER… --out DIR [--quality fast|best]
 
 import { mkdir, rename, writeFile } from 'node:fs/promises';
 import { join, resolve } from 'node:path';
@@ -13,14 +13,14 @@ import { QUEUE } from './job.mjs';
 const text = { type: 'string' };
 const { values, positionals } = parseArgs({
   allowPositionals: true,
-  options: { out: text, quality: { ...text, default: 'best' }, seed: { ...text, default: '1' } },
+  options: { out: text, quality: { ...text, default: 'best' } },
 });
 if (positionals.length === 0 || !values.out) {
-  console.error('node produce-clips.mjs FOLDER… --out DIR [--quality fast|best] [--seed N]');
+  console.error('node produce-clips.mjs FOLDER… --out DIR [--quality fast|best]');
   process.exit(2);
 }
 const out = resolve(values.out);
-const options = { quality: values.quality, seed: Number(values.seed) };
+const options = { quality: values.quality };
 
 await mkdir(out, { recursive: true });
 const connection = connect();

@@ -1,6 +1,6 @@
 // Makes the jobs: every pair of consecutive frames of a folder whose result is not there yet.
 //
-// node produce.mjs FOLDER --out DIR [--quality fast|best] [--seed N] [--ahead 10000]
+// node produce.mjs FOLDER --out DIR [--quality fast|best] [--ahead 10000]
 
 import { createReadStream, createWriteStream } from 'node:fs';
 import { mkdir, readdir, rename } from 'node:fs/promises';
@@ -19,15 +19,15 @@ const CHUNK = 500;
 const text = { type: 'string' };
 const { values, positionals } = parseArgs({
   allowPositionals: true,
-  options: { out: text, quality: { ...text, default: 'best' }, seed: { ...text, default: '1' }, ahead: { ...text, default: '10000' } },
+  options: { out: text, quality: { ...text, default: 'best' }, ahead: { ...text, default: '10000' } },
 });
 if (positionals.length !== 1 || !values.out) {
-  console.error('node produce.mjs FOLDER --out DIR [--quality fast|best] [--seed N] [--ahead 10000]');
+  console.error('node produce.mjs FOLDER --out DIR [--quality fast|best] [--ahead 10000]');
   process.exit(2);
 }
 const folder = resolve(positionals[0]);
 const out = resolve(values.out);
-const options = { quality: values.quality, seed: Number(values.seed) };
+const options = { quality: values.quality };
 
 const frames = (await readdir(folder)).filter((name) => /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i.test(name)).sort();
 await mkdir(out, { recursive: true });

@@ -22,7 +22,6 @@ const DARKER: f64 = 0.9;
 const JPEG_QUALITY: u8 = 90;
 /// Pixels that are cut off along every side.
 const CROP: usize = 1;
-const OTHER_SEED: u64 = 2;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Alteration {
@@ -34,11 +33,10 @@ enum Alteration {
     Darker,
     Compressed,
     Cropped,
-    Seed,
 }
 
 /// The alterations with their names in the table.
-const ALTERATIONS: [(Alteration, &str); 9] = [
+const ALTERATIONS: [(Alteration, &str); 8] = [
     (Alteration::Mirrored, "mirrored, left to right"),
     (Alteration::Flipped, "flipped, top to bottom"),
     (Alteration::Transposed, "transposed"),
@@ -47,7 +45,6 @@ const ALTERATIONS: [(Alteration, &str); 9] = [
     (Alteration::Darker, "multiplied by 0.9"),
     (Alteration::Compressed, "JPEG of quality 90"),
     (Alteration::Cropped, "a pixel cut off every side"),
-    (Alteration::Seed, "another seed"),
 ];
 
 /// RGBA bytes and their width.
@@ -81,7 +78,7 @@ impl Alteration {
                 encoder.encode(&rgb, width as u32, height as u32, ExtendedColorType::Rgb8)?;
                 (decode_image(&file)?.rgba, width)
             }
-            Alteration::Swapped | Alteration::Seed => (rgba.to_vec(), width),
+            Alteration::Swapped => (rgba.to_vec(), width),
         };
         Ok(Frame::from_rgba(width, bytes.len() / 4 / width, &bytes)?)
     }
@@ -187,11 +184,7 @@ fn segmented(alteration: Alteration, data: &Data) -> Result<Segmentation, Failur
     let [one, two] = &data.rgba;
     let (one, two) = if alteration == Alteration::Swapped { (two, one) } else { (one, two) };
     let frame = |rgba: &[u8]| alteration.frame(rgba, data.first.width());
-    let mut options = SegmentOptions::default();
-    if alteration == Alteration::Seed {
-        options.seed = OTHER_SEED;
-    }
-    Ok(segment_pair(&frame(one)?, &frame(two)?, &options, &mut |_| {})?)
+    Ok(segment_pair(&frame(one)?, &frame(two)?, &SegmentOptions::default(), &mut |_| {})?)
 }
 
 /// The value below which a share of the values lies, interpolated.

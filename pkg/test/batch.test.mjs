@@ -46,7 +46,7 @@ function tree(folder) {
 describe('veronese batch', () => {
   test('does every pair of consecutive frames, like pair, in order, with several jobs', async (t) => {
     const { frames, one, out } = clip(t, 12);
-    const run = await batch([frames, '--out', out, '--jobs', '3', '--overlay', '--seed', '5']);
+    const run = await batch([frames, '--out', out, '--jobs', '3', '--overlay', '--motions', '2']);
     assert.deepEqual(run.lines.map(({ index, status, first, second }) => [index, status, first, second]),
       Array.from({ length: 11 }, (_, k) => [k, 'done', one(k), one(k + 1)]));
     const names = run.lines.map(({ name }) => name);
@@ -54,12 +54,12 @@ describe('veronese batch', () => {
     assert.equal(names[10], '000010-f10');
     const { index, name, status, first, second, ...found } = run.lines[3];
     checkPair(found, 64, 48);
-    const { labels, ...direct } = await segmentPair(clipFrame(3), clipFrame(4), { seed: 5 });
+    const { labels, ...direct } = await segmentPair(clipFrame(3), clipFrame(4), { motions: 2 });
     assert.deepEqual(timeless(found), timeless(direct));
 
     // The images are those of pair; the record has no times, because two runs would differ in them.
     const alone = join(out, '..', 'alone');
-    assert.equal((await veronese(['pair', one(3), one(4), '--out', alone, '--overlay', '--seed', '5'])).code, 0);
+    assert.equal((await veronese(['pair', one(3), one(4), '--out', alone, '--overlay', '--motions', '2'])).code, 0);
     const [mine, theirs] = [tree(join(out, name)), tree(alone)];
     const { job, inputs, files, ...record } = JSON.parse(mine['result.json']);
     const { milliseconds, ...expected } = JSON.parse(theirs['result.json']);
@@ -111,9 +111,9 @@ describe('veronese batch', () => {
     rmSync(join(out, '000002-f2', 'result.json'));
     assert.equal(await status(), 'done done done done');
     assert.deepEqual(tree(out), before);
-    assert.equal(await status('--seed', '2'), 'done done done done');
-    assert.equal(await status('--seed', '2', '--overlay'), 'done done done done');
-    assert.equal(await status('--seed', '2', '--overlay'), 'skipped skipped skipped skipped');
+    assert.equal(await status('--motions', '2'), 'done done done done');
+    assert.equal(await status('--motions', '2', '--overlay'), 'done done done done');
+    assert.equal(await status('--motions', '2', '--overlay'), 'skipped skipped skipped skipped');
     assert.ok(existsSync(join(out, '000000-f0', 'overlay.png')));
     writeFileSync(join(out, '000000-f0', 'mine.txt'), 'mine');
     assert.equal(await status(), 'done done done done');

@@ -45,13 +45,28 @@ describe('veronese pair', () => {
 
   test('hands every option on', async (t) => {
     const { first, second } = frames(t);
-    const options = ['--motions', '2', '--quality', 'fast', '--mark-unknown', '--seed', '42'];
+    const options = ['--motions', '2', '--quality', 'fast', '--mark-unknown'];
     const found = json(await veronese(['pair', ...options, first, second]));
     const { software, ...settings } = found.settings;
-    assert.deepEqual(settings, { motions: 2, quality: 'fast', markUnknown: true, seed: 42 });
-    const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true, seed: 42 });
+    assert.deepEqual(settings, { motions: 2, quality: 'fast', markUnknown: true });
+    const direct = await segmentPair(...pair(), { motions: 2, quality: 'fast', markUnknown: true });
     assert.deepEqual(timeless(found), timeless(withoutLabels(direct)));
     assert.equal(json(await veronese(['pair', first, second, '--motions=auto'])).settings.motions, 'auto');
+  });
+
+  test('--seed does nothing, and a line on stderr says so', async (t) => {
+    const { folder, first, second } = frames(t);
+    const without = await veronese(['pair', first, second]);
+    assert.equal(without.stderr, '');
+    const run = await veronese(['pair', first, second, '--seed', '42']);
+    assert.equal(run.code, 0);
+    assert.match(run.stderr, /^veronese: warning: '--seed' of 'pair' does nothing[^\n]*\n$/);
+    assert.deepEqual(timeless(JSON.parse(run.stdout)), timeless(json(without)));
+    for (const args of [['batch', first, second], ['clip', first, second, '--out', folder.path('out')]]) {
+      const { code, stderr } = await veronese([...args, '--seed', '42']);
+      assert.equal(code, 0, stderr);
+      assert.match(stderr, /^veronese: warning: '--seed' of '(batch|clip)' does nothing[^\n]*\n$/);
+    }
   });
 
   for (const grouped of [false, true]) {
@@ -318,14 +333,14 @@ describe('usage', () => {
     'motions in words': ['invalid-option', ['pair', 'a', 'b', '--motions', 'two']],
     'another quality': ['invalid-option', ['pair', 'a', 'b', '--quality', 'good']],
     'another method': ['invalid-option', ['points', 'a', '--method', 'ours']],
-    'a negative seed': ['invalid-option', ['pair', 'a', 'b', '--seed=-1']],
+    'a negative seed': ['invalid-option', ['points', 'a', '--seed=-1']],
     'a clip without frames': ['usage', ['clip', '--out', 'a']],
     'a clip without --out': ['usage', ['clip', 'a']],
     'an option of pairs for a clip': ['usage', ['clip', 'a', '--out', 'b', '--grouped']],
     'a look-ahead below 0': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead=-1']],
     'a look-ahead above 8': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', '9']],
     'a look-ahead in words': ['invalid-option', ['clip', 'a', '--out', 'b', '--look-ahead', 'whole']],
-    'a seed too large': ['invalid-option', ['pair', 'a', 'b', '--seed', '9007199254740992']],
+    'a seed too large': ['invalid-option', ['points', 'a', '--seed', '9007199254740992']],
   };
   for (const args of [['pair', 'a', 'b', '--before', 'c'], ['batch', 'a', '--with-before'], ['video', 'a', '--with-before']]) {
     test(`'${args.join(' ')}' names what replaces it`, async () => {

@@ -54,8 +54,8 @@ const tracksOf = (out) => JSON.parse(readFileSync(join(out, 'tracks.json'), 'utf
 describe('veronese clip', () => {
   test('writes labels of every frame and the tracks, and prints a line for each frame', async (t) => {
     const { frames, out } = clip(t);
-    const { lines } = await run([frames, '--out', out, '--overlay', '--seed', '3']);
-    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', seed: 3 });
+    const { lines } = await run([frames, '--out', out, '--overlay', '--motions', '3']);
+    const direct = segmentClip({ length: COUNT, read: clipFrame }, { quality: 'fast', motions: 3 });
     const expected = [];
     for await (const one of direct) expected.push(one);
     assert.ok(expected[0].objects.length > 0, 'something moves');
@@ -79,7 +79,7 @@ describe('veronese clip', () => {
 
     const { images, job, settings, ...tracks } = tracksOf(out);
     assert.deepEqual(tracks, JSON.parse(JSON.stringify({ version: 1, ...SIZE, frames: NAMES, files, ...direct.tracks() })));
-    assert.deepEqual(settings, { motions: 'auto', quality: 'fast', lookAhead: 'all', markUnknown: false, seed: 3, every: 1, overlay: true, software: `veronese ${version}` });
+    assert.deepEqual(settings, { motions: 3, quality: 'fast', lookAhead: 'all', markUnknown: false, every: 1, overlay: true, software: `veronese ${version}` });
     assert.deepEqual(Object.keys(images).sort(), [...files.map((name) => `labels/${name}`), ...files.map((name) => `overlay/${name}`)]);
   });
 
@@ -131,7 +131,7 @@ describe('veronese clip', () => {
     };
     await anew(function loss() { rmSync(join(out, 'tracks.json')); });
     assert.deepEqual(tree(out), before);
-    await anew(function option() {}, ['--seed', '2', '--overlay']);
+    await anew(function option() {}, ['--motions', '2', '--overlay']);
     assert.ok(existsSync(join(out, 'overlay', 'f0.png')));
     await anew(function content() { writeFileSync(one(5), png(frame(7, SIZE))); });
     assert.equal(existsSync(join(out, 'overlay')), false, 'overlays of other options do not stay');

@@ -134,7 +134,7 @@ describe('veronese clip --corrections', () => {
     const base = tree(out);
     const hashes = tree(frames);
     const files = Array.from({ length: COUNT }, (_, k) => ({ sha256: hashes[`f${k}.png`] }));
-    const { options } = parseCommand(['clip', '--quality', 'fast', ...args]);
+    const { command: { options } } = parseCommand(['clip', '--quality', 'fast', ...args]);
     const kept = new KeptClip(await Ledger.open(out), out, { ...options, markUnknown: undefined, software: `veronese ${version}` }, files);
     const old = (bytes, mark) => new TextEncoder().encode(mark).reduce((all, byte, at) => all.with(at, byte), bytes);
     await kept.keepState(old(kept.state(), 'VERCLIP2'));
@@ -361,7 +361,7 @@ describe('an interrupted clip', () => {
       assert.deepEqual(tree(path(name)), tree(path(`${name}-straight`)), name);
     };
     for (const name of ['options', 'damage', 'content']) cpSync(out, path(name), { recursive: true });
-    await same('options', [frames, '--seed', '2']);
+    await same('options', [frames, '--motions', '2']);
     copyFileSync(join(out, '.clip', '00001.pairs'), path('damage', '.clip', '00002.pairs'));
     writeFileSync(path('damage', '.clip', '00001.pairs'), 'damaged');
     await same('damage', [frames]);

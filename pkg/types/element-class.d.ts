@@ -54,8 +54,8 @@ export type ElementPrompt = { label: number; box: readonly [x: number, y: number
  * Segments two frames or a clip, and shows the masks over the frames.
  *
  * Attributes: `first` and `second` (image URLs), or `src` (URL of a video, which takes precedence); `motions` (`auto` or 1 to 10),
- * `quality` (`fast` or `best`), `seed`, `grouped` (masks of two frames are groups of motions); `name`, `disabled` and `required`. The
- * element segments when it is connected and whenever an attribute changes, and stops when it is disconnected.
+ * `quality` (`fast` or `best`), `grouped` (masks of two frames are groups of motions); `name`, `disabled` and `required`. The element
+ * segments when it is connected and whenever an attribute changes, and stops when it is disconnected.
  *
  * Events: `progress`, `result`, `frame`, `tracks`, `show`, `select`, `error` and, before a correction, `veronese-correction`, each with a
  * `detail`. They do not bubble.

@@ -52,7 +52,7 @@ export interface SegmentOptions extends CallOptions {
   markUnknown?: boolean | undefined;
   /** Adds `confidence` to the result: how sure the label of every pixel is; default `false`. */
   confidence?: boolean | undefined;
-  /** A whole number from 0; default 1. Segmenting draws no random numbers, so that every seed gives the same result. */
+  /** @deprecated Does nothing: segmenting draws no random numbers. The next version refuses it. */
   seed?: number | undefined;
 }
 
@@ -139,7 +139,6 @@ export interface Segmentation {
     motions: 'auto' | number;
     quality: 'fast' | 'best';
     markUnknown: boolean;
-    seed: number;
     software: string;
   };
   /** One label per pixel, row by row; 255 is unlabelled. */
@@ -324,7 +323,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   locked?: readonly number[] | undefined;
   /**
    * What {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
-   * `motions`, `quality`, `seed` and `lookAhead` are those of the state. A correction replaces an earlier one of its frame (one that says
+   * `motions`, `quality` and `lookAhead` are those of the state. A correction replaces an earlier one of its frame (one that says
    * nothing takes it back); corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
    * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
    */

@@ -6,8 +6,7 @@ use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingConte
 
 use super::plain::{Record, candidate, list};
 use super::{
-    Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, seed, unknown,
-    written,
+    Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown, written,
 };
 use crate::{
     AffineMotion, Correction, Error, Frame, Junction, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions,
@@ -41,7 +40,6 @@ pub fn segment_pair(
         .set("motions", &motions_asked(options.motions))
         .text("quality", quality)
         .set("markUnknown", &options.mark_unknown.into())
-        .number("seed", options.seed as f64)
         .text("software", SOFTWARE);
     let report = add_segmentation(Record::new().number("version", REPORT_VERSION), &segmentation)
         .set("settings", &settings.into_value())
@@ -197,7 +195,7 @@ fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
     for (name, value) in entries(value)? {
         match name.as_str() {
             "confidence" => options.confidence = flag("confidence", &value)?,
-            _ => pair_option(&mut options, &name, &value, "motions, quality, markUnknown, confidence, seed")?,
+            _ => pair_option(&mut options, &name, &value, "motions, quality, markUnknown, confidence")?,
         }
     }
     Ok(options)
@@ -215,7 +213,6 @@ pub(super) fn pair_option(
         "motions" => options.motions = motions(value)?,
         "quality" => options.quality = quality(value)?,
         "markUnknown" => options.mark_unknown = flag("markUnknown", value)?,
-        "seed" => options.seed = seed(value)?,
         _ => return Err(unknown(name, known)),
     }
     Ok(())

@@ -4,10 +4,13 @@ use js_sys::Function;
 use wasm_bindgen::prelude::*;
 
 use super::plain::{Record, candidate, numbers};
-use super::{Failure, REPORT_VERSION, SOFTWARE, choice, entries, listener, motions, motions_asked, seed, unknown};
+use super::{Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown};
 use crate::embedding::rank::RankCandidate;
 use crate::refinement::{Report, Termination};
 use crate::{AffineMotion, FitEvidence, FitOptions, FittedMotion, Measurements, Method, MotionFit, PaperStages};
+
+/// `Number.MAX_SAFE_INTEGER`, 2⁵³ − 1.
+const MAX_SAFE_INTEGER: f64 = 9_007_199_254_740_991.0;
 
 /// Solves Problem 1 of the paper for measurements: `positions` holds x, y for each, `derivatives` I_x, I_y, I_t.
 ///
@@ -65,6 +68,13 @@ fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
         }
     }
     Ok(options)
+}
+
+fn seed(value: &JsValue) -> Result<u64, Failure> {
+    match value.as_f64() {
+        Some(seed) if (0.0..=MAX_SAFE_INTEGER).contains(&seed) && seed == seed.floor() => Ok(seed as u64),
+        _ => Err(invalid("seed", "a whole number from 0 to 9007199254740991", value)),
+    }
 }
 
 /// Adds the entries of a fit except its labels.

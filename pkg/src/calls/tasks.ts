@@ -58,7 +58,7 @@ export function start<T>(prepare: () => Call<T>, perform: Perform): Promise<T> {
 }
 
 export function segmentCall(first: Pixels, second: Pixels, options?: SegmentOptions): Call<Segmentation> {
-  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence', 'seed']);
+  const asked = parted(options, ['motions', 'quality', 'markUnknown', 'confidence'], ['seed']);
   const frames = checkedFrames(first, second);
   const own = takenFor(asked, dataOf(frames));
   const task: CallTask = { call: 'segmentPair', frames: framesWith(own, frames), settings: asked.settings };
@@ -100,9 +100,9 @@ interface Asked {
   settings: Settings;
 }
 
-/** Parts what concerns the call from what goes to the core, which says which values it takes. */
-export function parted(options: unknown, known: readonly string[]): Asked {
-  const { signal, onProgress, transfer = false, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer']);
+/** Parts what concerns the call from what goes to the core, which says which values it takes. What is `gone` may be given and does nothing. */
+export function parted(options: unknown, known: readonly string[], gone: readonly string[] = []): Asked {
+  const { signal, onProgress, transfer = false, ...settings } = entriesOf(options, [...known, 'signal', 'onProgress', 'transfer'], gone);
   if (signal !== undefined && !isSignal(signal)) throw new VeroneseError('invalid-option', "option 'signal': must be an AbortSignal");
   if (onProgress !== undefined && typeof onProgress !== 'function') throw invalidOption('onProgress', 'a function', onProgress);
   if (typeof transfer !== 'boolean') throw invalidOption('transfer', 'true or false', transfer);

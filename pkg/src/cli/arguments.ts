@@ -28,7 +28,6 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --quality fast|best    speed or accuracy (default: best)
       --grouped              write groups instead of motions to labels.png and mask-K.png; one rigid background is one group
       --mark-unknown         use label 255 for pixels that are hidden or outside in SECOND, and where the data are ambiguous
-      --seed N               every seed gives the same masks; reports repeat it (default: 1)
       --out DIR              write labels.png, result.json and mask-K.png to DIR
       --confidence           also write confidence.png: 255 times the probability that each pixel's label is right
       --overlay              also write overlay.png: the first frame with each motion in its colour
@@ -39,7 +38,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
       --out DIR              write a folder for each pair to DIR, with the files of pair; skip finished pairs
       --jobs N               number of pairs processed at once (default: the number of processors)
       --shard I/N            process only part I of N, to share the pairs between N machines
-      --motions, --quality, --grouped, --mark-unknown, --confidence, --seed, --overlay as for pair
+      --motions, --quality, --grouped, --mark-unknown, --confidence, --overlay as for pair
 
   veronese video FILE [options]          segment the frames of a video; needs the program ffmpeg
       options as for batch, without --list
@@ -58,7 +57,6 @@ export const HELP = `veronese segments two video frames by motion: how many moti
                              and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"},
                              "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"
       --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
-      --seed N               every seed gives the same masks; reports repeat it (default: 1)
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
       --allow-damaged        as for video
@@ -115,7 +113,6 @@ export interface ClipSettings {
   quality: 'fast' | 'best';
   lookAhead: number | 'all';
   markUnknown: boolean;
-  seed: number;
 }
 
 export type Command =
@@ -231,12 +228,21 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   points: ['motions', 'method', 'seed'],
 };
 
-/** Options of 0.1.0 that are gone. */
+/** Options that are gone. */
 const GONE: Readonly<Record<string, string>> = { pair: 'before', batch: 'with-before', video: 'with-before' };
+/** Commands whose seed does nothing. */
+const UNSEEDED: readonly string[] = ['pair', 'batch', 'video', 'clip'];
 
-/** Throws a {@link VeroneseError} with code `usage`, `wrong-usage` for an option that is gone, or `invalid-option` if an option's value is invalid. */
-export function parseCommand(args: string[]): Command {
-  const { values, positionals, tokens } = parsed(args);
+/** What is asked, and sentences of what in it does nothing. Throws a {@link VeroneseError} with code `usage`, `wrong-usage` for an option that is gone, or `invalid-option` if an option's value is invalid. */
+export function parseCommand(args: string[]): { command: Command; warnings: string[] } {
+  const words = parsed(args);
+  const command = commandOf(words);
+  const isSeeded = words.tokens.some((token) => token.kind === 'option' && token.name === 'seed');
+  const warnings = isSeeded && UNSEEDED.includes(command.name) ? [`'--seed' of '${command.name}' does nothing, and the next version refuses it`] : [];
+  return { command, warnings };
+}
+
+function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): Command {
   if (values.help) return { name: 'help' };
   if (values.version) return { name: 'version' };
   const [name, ...files] = positionals;
@@ -251,10 +257,10 @@ export function parseCommand(args: string[]): Command {
     if (!allowed.includes(token.name)) throw usage(`'${name}' has no option '--${token.name}'`);
     if (token.value === '') throw usage(`option '--${token.name}' is empty`);
   }
-  const shared = { motions: motions(values.motions), seed: seed(values.seed) };
+  const shared = { motions: motions(values.motions) };
   if (name === 'points') {
     const [file] = exactly(1, files, "'points' takes one file");
-    return { name, file: file as string, options: { ...shared, method: choice('method', values.method, 'paper', 'best') } };
+    return { name, file: file as string, options: { ...shared, seed: seed(values.seed), method: choice('method', values.method, 'paper', 'best') } };
   }
   if (name === 'convert') {
     const [folder] = exactly(1, files, "'convert' takes one folder");

@@ -9,7 +9,7 @@ import { checkFolder, readInput } from './files.js';
 import { idsOf, Ledger } from './ledger.js';
 import { Output } from './output.js';
 import { isImageOfPair, possibleFiles } from './pair-folder.js';
-import { complain, print } from './terminal.js';
+import { complain, print, warn } from './terminal.js';
 import type { Outcome, Work } from './work.js';
 
 const EXIT = { failed: 1, usage: 2, interrupted: 130, terminated: 143 } as const;
@@ -18,7 +18,9 @@ const EXIT = { failed: 1, usage: 2, interrupted: 130, terminated: 143 } as const
 export async function main(args: string[]): Promise<void> {
   let command: Command;
   try {
-    command = parseCommand(args);
+    const { command: asked, warnings } = parseCommand(args);
+    warnings.forEach(warn);
+    command = asked;
   } catch (thrown) {
     complain(thrown);
     process.exitCode = EXIT.usage;

@@ -9,7 +9,7 @@ import { api, decodeImage, encodeColourPng, encodeGreyPng, encodeIndexedPng } fr
 import type { OutputFile } from './files.js';
 
 export interface PairSettings {
-  options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; confidence: boolean; seed: number };
+  options: { motions: 'auto' | number; quality: 'fast' | 'best'; markUnknown: boolean; confidence: boolean };
   /** Whether the images show groups instead of motions. */
   grouped: boolean;
   overlay: boolean;

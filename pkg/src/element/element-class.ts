@@ -17,7 +17,7 @@ const Base = globalThis.HTMLElement ?? class {};
 
 export class VeroneseSegmenterElement extends Base {
   static readonly formAssociated = true;
-  static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'seed', 'grouped', 'name', 'required'];
+  static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'grouped', 'name', 'required'];
 
   readonly #internals: ElementInternals;
   readonly #view: View;

@@ -4,7 +4,7 @@ import type { SegmentOptions } from '../../types/index.js';
 
 export function optionsOf(attribute: (name: string) => string | null): SegmentOptions {
   const options: Record<string, unknown> = {};
-  for (const name of ['motions', 'quality', 'seed']) {
+  for (const name of ['motions', 'quality']) {
     const value = attribute(name);
     if (value !== null && value !== '') options[name] = name === 'quality' || value === 'auto' ? value : Number(value);
   }

@@ -73,7 +73,7 @@ export async function clip(frames: LabelFrame[], later: AsyncIterable<LabelFrame
 }
 
 export async function follow(frames: AsyncIterable<ImageData>, read: (index: number) => Promise<Pixels>): Promise<ClipTracks> {
-  const stream = segmentClip(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', seed: 1, onProgress: ({ frame, of }) => console.log(frame, of) });
+  const stream = segmentClip(frames, { lookAhead: 2, quality: 'fast', motions: 'auto', onProgress: ({ frame, of }) => console.log(frame, of) });
   for await (const { index, labels, objects, background } of stream) console.log(index, labels.length, objects[0]?.matrix?.[2], background);
   const segmenter = new Segmenter();
   const whole = segmenter.segmentClip({ length: 32, read }, { lookAhead: 'all', markUnknown: true, signal: AbortSignal.timeout(1000) });

@@ -49,7 +49,7 @@ export function segmentationFrom(
     evidence: { candidates: [] },
     unlabelled,
     milliseconds: { total: 0 },
-    settings: { motions: 'auto', quality: 'best', markUnknown: false, seed: 1, software: '' },
+    settings: { motions: 'auto', quality: 'best', markUnknown: false, software: '' },
     labels,
   };
 }

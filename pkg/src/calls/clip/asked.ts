@@ -12,7 +12,7 @@ import { checkedCorrections, type Corrections } from './said.js';
 /** Default look-ahead of a stream, frames: the longest there is. */
 const LOOK_AHEAD_OF_STREAMS = 8;
 
-const OF_ALL = ['motions', 'quality', 'markUnknown', 'seed', 'lookAhead'];
+const OF_ALL = ['motions', 'quality', 'markUnknown', 'lookAhead'];
 /** Options that need frames which can be read again. */
 const OF_WHOLE = ['masks', 'corrections', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs'] as const;
 
@@ -44,7 +44,7 @@ export interface Asked extends Corrections, Pick<ClipOptions, 'signal' | 'onChan
 }
 
 export function asked(frames: unknown, options: unknown): Asked {
-  const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer']);
+  const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer'], ['seed']);
   const { masks, corrections = [], edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, ...rest } = given;
   const { call, transfer, settings } = parted(rest, OF_ALL);
   const name = OF_WHOLE.find((name) => given[name] !== undefined && (name !== 'changesOnly' || changesOnly !== false));
