@@ -324,12 +324,13 @@ impl<'a> LabelState<'a> {
 
     /// Splits regions that contain several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
-        if self.motions.len() < 2 || self.settings.least > 1 || !self.settings.has(Part::Splitting) {
+        if self.motions.len() < 2 || !self.settings.has(Part::Splitting) {
             return false;
         }
         let level = self.level;
         self.clean(level.width());
-        let most = self.settings.most + PARTS;
+        // Parts are more than motions only where the number is not given.
+        let most = self.settings.most + if self.settings.least > 1 { 0 } else { PARTS };
         if !split_bodies(level, &mut self.motions, &mut self.labels, most) {
             return false;
         }
