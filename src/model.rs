@@ -4,23 +4,46 @@
 //! *speed*, larger is better and slower, or the other way round; *guard*, a value that correct results stay away from.
 
 /// Declares the constants with their defaults, and access to them by name for the programs that vary and fit them.
+///
+/// Without the feature `ablation` a model has no size: its constants are compiled into the code that reads them.
 macro_rules! model {
-    ($(#[$of:meta])* $model:ident; $($(#[$doc:meta])* $name:ident: $kind:ty = $value:expr;)*) => {
+    ($(#[$of:meta])* $model:ident of $values:ident; $($(#[$doc:meta])* $name:ident: $kind:ty = $value:expr;)*) => {
         $(#[$of])*
+        #[cfg(feature = "ablation")]
         #[derive(Clone, Copy, Debug, PartialEq)]
-        #[cfg_attr(not(feature = "ablation"), allow(unreachable_pub, reason = "for the programs that vary constants"))]
         pub struct $model { $($(#[$doc])* pub $name: $kind,)* }
 
-        #[cfg_attr(not(feature = "ablation"), allow(unreachable_pub, reason = "for the programs that vary constants"))]
+        $(#[$of])*
+        #[cfg(not(feature = "ablation"))]
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub(crate) struct $model;
+
+        #[cfg(not(feature = "ablation"))]
+        pub(crate) struct $values { $($(#[$doc])* pub(crate) $name: $kind,)* }
+
+        #[cfg(not(feature = "ablation"))]
+        impl $model {
+            /// The constants that calls use.
+            pub(crate) const DEFAULT: $model = $model;
+        }
+
+        #[cfg(not(feature = "ablation"))]
+        impl std::ops::Deref for $model {
+            type Target = $values;
+            #[inline(always)]
+            fn deref(&self) -> &$values {
+                &$values { $($name: $value,)* }
+            }
+        }
+
+        #[cfg(feature = "ablation")]
         impl $model {
             /// The constants that calls use.
             pub const DEFAULT: $model = $model { $($name: $value,)* };
             /// The names of all constants, in order.
-            #[cfg(feature = "ablation")]
             pub const NAMES: &[&str] = &[$(stringify!($name)),*];
 
             /// A constant by its name.
-            #[cfg(feature = "ablation")]
             pub fn get(&self, name: &str) -> Option<f64> {
                 match name {
                     $(stringify!($name) => Some(self.$name as f64),)*
@@ -29,7 +52,6 @@ macro_rules! model {
             }
 
             /// Sets a constant. Returns whether there is one of that name.
-            #[cfg(feature = "ablation")]
             pub fn set(&mut self, name: &str, value: f64) -> bool {
                 match name {
                     $(stringify!($name) => self.$name = value as $kind,)*
@@ -43,7 +65,7 @@ macro_rules! model {
 
 model! {
     /// The constants of the pipeline of frames. Only for measuring: nothing promises that they stay.
-    Model;
+    Model of Constants;
 
     /// Longer side of the working size at most with quality `best`, pixels. Generated.
     work_side: usize = 480;
@@ -381,7 +403,7 @@ model! {
 
 model! {
     /// The constants of clips and of corrections. Only for measuring: nothing promises that they stay.
-    ClipModel;
+    ClipModel of ClipConstants;
 
     /// Odds beyond this are no more certain, nats, probabilities of .018 and .982: mistakes of pairs, of other frames and of colours are
     /// not. In carried evidence 6, in a cut 5 and 8 give J within .003.

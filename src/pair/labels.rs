@@ -313,12 +313,13 @@ impl<'a> LabelState<'a> {
 
     /// Splits regions that contain several bodies. Returns whether there were any.
     fn split(&mut self) -> bool {
-        if self.motions.len() < 2 || self.settings.least > 1 {
+        if self.motions.len() < 2 {
             return false;
         }
         let level = self.level;
         self.clean(level.width());
-        let most = self.settings.most + level.model.parts;
+        // Parts are more than motions only where the number is not given.
+        let most = self.settings.most + if self.settings.least > 1 { 0 } else { level.model.parts };
         if !split_bodies(level, &mut self.motions, &mut self.labels, most) {
             return false;
         }
