@@ -1,7 +1,6 @@
 //! Connected components of a labelling: position, size, and absorption of small ones.
 
 use crate::order::ascending;
-use crate::workspace::{Buffer, kept};
 
 /// Which pixels are neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,8 +26,8 @@ pub(crate) struct Component {
 #[derive(Clone, Debug)]
 pub(crate) struct Components {
     /// Index in `list` of the component of every pixel.
-    pub(crate) of: Buffer<u32>,
-    pub(crate) list: Buffer<Component>,
+    pub(crate) of: Vec<u32>,
+    pub(crate) list: Vec<Component>,
 }
 
 /// A maximal run of pixels with one label in a row.
@@ -42,11 +41,9 @@ struct Run {
     earlier: usize,
 }
 
-kept!(Component, Run);
-
 /// The components of `labels`, row-major with rows of `width` pixels.
 pub(crate) fn components(labels: &[u8], width: usize, connectivity: Connectivity) -> Components {
-    let mut runs: Buffer<Run> = Buffer::list();
+    let mut runs: Vec<Run> = Vec::new();
     let mut above = 0..0;
     for (row, line) in labels.chunks_exact(width.max(1)).enumerate() {
         let begin = runs.len();
@@ -60,9 +57,9 @@ pub(crate) fn components(labels: &[u8], width: usize, connectivity: Connectivity
         join(&mut runs, above, begin, connectivity);
         above = begin..runs.len();
     }
-    let mut of = Buffer::filled(labels.len(), 0);
-    let mut list: Buffer<Component> = Buffer::list();
-    let mut numbers = Buffer::filled(runs.len(), 0);
+    let mut of = vec![0; labels.len()];
+    let mut list: Vec<Component> = Vec::new();
+    let mut numbers = vec![0; runs.len()];
     for k in 0..runs.len() {
         let first = first_of(&mut runs, k);
         let Run { columns: [start, end], row, label, .. } = runs[k];
@@ -224,7 +221,7 @@ mod tests {
             }
             list.push(component);
         }
-        Components { of: of.into(), list: list.into() }
+        Components { of, list }
     }
 
     #[test]

@@ -145,7 +145,6 @@ pub mod scene;
 mod view;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
-mod workspace;
 
 pub use answer::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED};
 pub use clip::{Correction, MAX_CORRECTED, Relabelling, relabel};
@@ -165,4 +164,3 @@ pub use pair::{Junction, PairEvidence, Segmentation, SegmentedMotion, segment_pa
 pub use points::fit_motions;
 pub use progress::{Progress, Stage};
 pub use random::Random;
-pub use workspace::release_workspace;

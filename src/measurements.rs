@@ -2,12 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::motion::AffineMotion;
-use crate::workspace::{Buffer, kept};
 
 /// Largest absolute value of an entry of a measurement: products of degree 20 (n = 10) must stay finite after normalisation.
 const LARGEST: f64 = 1e12;
-
-kept!([f64; 2], [f64; 3]);
 
 /// N image measurements `(x_j, y_j)`: positions `(x, y)` and derivatives `(I_x, I_y, I_t)`.
 ///
@@ -34,8 +31,8 @@ kept!([f64; 2], [f64; 3]);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurements {
-    positions: Buffer<[f64; 2]>,
-    derivatives: Buffer<[f64; 3]>,
+    positions: Vec<[f64; 2]>,
+    derivatives: Vec<[f64; 3]>,
 }
 
 /// The change of coordinates made by [`Measurements::normalised`], which converts motions.
@@ -56,11 +53,6 @@ impl Measurements {
     /// [`Error::MeasurementCountMismatch`] for lists of different length; [`Error::NotFinite`] for an entry that is not finite or whose
     /// absolute value exceeds 10¹².
     pub fn new(positions: Vec<[f64; 2]>, derivatives: Vec<[f64; 3]>) -> Result<Self> {
-        Self::checked(positions.into(), derivatives.into())
-    }
-
-    /// [`Measurements::new`] from buffers.
-    pub(crate) fn checked(positions: Buffer<[f64; 2]>, derivatives: Buffer<[f64; 3]>) -> Result<Self> {
         if positions.len() != derivatives.len() {
             return Err(Error::MeasurementCountMismatch { positions: positions.len(), derivatives: derivatives.len() });
         }

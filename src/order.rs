@@ -5,17 +5,15 @@
 
 use std::cmp::Ordering;
 
-use crate::workspace::Buffer;
-
 /// Indices by increasing key, ties by index. NaN comes last, −NaN first.
-pub(crate) fn ascending(keys: impl IntoIterator<Item = f64>) -> Buffer<usize> {
+pub(crate) fn ascending(keys: impl IntoIterator<Item = f64>) -> Vec<usize> {
     merged(keys.into_iter().map(order_of).collect())
 }
 
 /// Indices by increasing key, ties by index, by merge sort.
 #[inline(never)]
-fn merged(keys: Buffer<u64>) -> Buffer<usize> {
-    let mut order: Buffer<usize> = (0..keys.len()).collect();
+fn merged(keys: Vec<u64>) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..keys.len()).collect();
     let mut merged = order.clone();
     // Sorted runs of length 1, 2, 4, … are merged in pairs; on ties the left one comes first.
     let mut length = 1;
@@ -40,7 +38,7 @@ fn merged(keys: Buffer<u64>) -> Buffer<usize> {
 }
 
 /// Indices by decreasing key, ties by index.
-pub(crate) fn descending(keys: impl IntoIterator<Item = f64>) -> Buffer<usize> {
+pub(crate) fn descending(keys: impl IntoIterator<Item = f64>) -> Vec<usize> {
     ascending(keys.into_iter().map(|key| -key))
 }
 
@@ -86,7 +84,7 @@ fn value_of(order: u64) -> f64 {
 /// The upper median of values given by their keys, by radix selection: from the most significant byte on, only keys with the byte of
 /// the median are kept.
 #[inline(never)]
-fn middle(mut left: Buffer<u64>) -> Option<f64> {
+fn middle(mut left: Vec<u64>) -> Option<f64> {
     let mut rank = left.len() / 2;
     for digit in (0..8).rev() {
         if left.len() <= 1 {

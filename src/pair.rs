@@ -24,7 +24,6 @@ use crate::progress::{Progress, Stages};
 use crate::view::brightness::Photometric;
 use crate::view::cost::noise;
 use crate::view::level::{Level, levels};
-use crate::workspace;
 use background::Solved;
 use settings::Settings;
 
@@ -69,7 +68,6 @@ fn segment_with(
 ) -> Result<Segmentation> {
     options.motions.validate()?;
     check_sizes(first, second)?;
-    let _call = workspace::begin([first.width(), first.height()]);
     let detail = settings.of_detail(options, size(first));
     let mut stages = Stages::in_rounds(STAGES, 1 + usize::from(detail.is_some()), progress);
     stages.begin_round(0);

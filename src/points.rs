@@ -10,7 +10,6 @@ use crate::options::{FitOptions, Method};
 use crate::order::descending;
 use crate::paper::paper_fit;
 use crate::progress::Progress;
-use crate::workspace::Buffer;
 
 /// Singular values below this share of the largest count as zero (normalised measurements).
 const DETERMINED: f64 = 1e-6;
@@ -104,7 +103,7 @@ pub(crate) fn ordered_motions(
 }
 
 /// Indices of motions by decreasing number of measurements, ties by the lower index.
-fn order_by_count(motions: usize, nearest: &[usize]) -> Buffer<usize> {
+fn order_by_count(motions: usize, nearest: &[usize]) -> Vec<usize> {
     let mut counts = vec![0usize; motions];
     for &i in nearest {
         if let Some(count) = counts.get_mut(i) {

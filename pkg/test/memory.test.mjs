@@ -6,6 +6,7 @@ import { describe, test } from 'node:test';
 import { glue } from '../build/module/glue.js';
 import { glue as pointsGlue } from '../build/module/glue-points.js';
 import { frame, pair, points } from './support/frames.mjs';
+import { soaking } from './support/soak.mjs';
 
 const MIB = 2 ** 20;
 const moduleOf = (file) => new WebAssembly.Module(readFileSync(new URL(`../wasm/${file}_bg.wasm`, import.meta.url)));
@@ -33,7 +34,6 @@ function relabel([first, second], { motions, labels }, quality) {
 describe('after some calls, further ones take no more memory', () => {
   const small = pair();
   const larger = pair({ width: 160, height: 120 });
-  // As many as a size of the workspace has room for.
   const { positions, derivatives } = points(320, 1, 0.5);
   const cases = {
     fast: () => segment(larger, { quality: 'fast' }),
@@ -62,6 +62,20 @@ describe('after some calls, further ones take no more memory', () => {
     });
   }
 
+  test('many pairs of different sizes and motions', async () => {
+    const size = await freshMemory();
+    const sizes = [[64, 48], [160, 120], [96, 128], [200, 150]];
+    const pairs = Array.from({ length: 20 }, (_, k) => {
+      const [width, height] = sizes[k % sizes.length];
+      return pair({ width, height, background: [k % 3, (k % 5) / 4], square: [2 - (k % 7), 1 + (k % 4)] });
+    });
+    const round = () => pairs.forEach((of, k) => segment(of, { quality: k % 3 === 0 ? 'best' : 'fast', confidence: k % 2 === 0 }));
+    for (let k = 0; k < 3; k++) round();
+    const settled = size();
+    for (let k = 3; k < (soaking ? 100 : 6); k++) round();
+    assert.equal(size(), settled);
+  });
+
   test('measurements', async () => {
     const size = await freshMemory(pointsGlue, pointsModule);
     const call = () => pointsGlue.fitMotions(positions, derivatives, {}, () => {});
@@ -74,10 +88,10 @@ describe('after some calls, further ones take no more memory', () => {
 
 describe('the most that is in use', () => {
   for (const quality of ['fast', 'best']) {
-    test(`${quality}, 640 × 480: at most 48 MiB`, async () => {
+    test(`${quality}, 640 × 480: at most 24 MiB`, async () => {
       const size = await freshMemory();
       segment(pair({ width: 640, height: 480 }), { quality });
-      assert.ok(size() <= 48, `${size()} MiB`);
+      assert.ok(size() <= 24, `${size()} MiB`);
     });
   }
 

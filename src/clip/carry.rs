@@ -5,7 +5,6 @@ use crate::clip::model;
 use crate::frame::Plane;
 use crate::frame::warp::Footprint;
 use crate::labelling::BACKGROUND;
-use crate::workspace::Buffer;
 
 /// What a plane of another frame says about each pixel of this one: its value where the pixel's motion leads, or at the nearest place
 /// inside the frame.
@@ -18,9 +17,9 @@ pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
 }
 
 /// The labels of a frame whose pixels go on with the motions that led from the frame before it to the one before that, whose flow that is.
-pub(crate) fn continued_labels(flow: &Flow) -> Buffer<u8> {
+pub(crate) fn continued_labels(flow: &Flow) -> Vec<u8> {
     let (width, height) = (flow.width, flow.labels.len() / flow.width);
-    let mut labels = Buffer::filled(flow.labels.len(), BACKGROUND as u8);
+    let mut labels = vec![BACKGROUND as u8; flow.labels.len()];
     for (number, motion) in (0u8..).zip(&flow.motions).skip(BACKGROUND + 1) {
         for (y, row) in labels.chunks_exact_mut(width).enumerate() {
             for (x, label) in row.iter_mut().enumerate() {
@@ -64,7 +63,7 @@ mod tests {
     #[test]
     fn what_came_three_pixels_goes_on_three_pixels() {
         let (width, height) = (20, 10);
-        let square = |left: usize| -> Buffer<u8> {
+        let square = |left: usize| -> Vec<u8> {
             let inside = |p: usize| (left..left + 4).contains(&(p % width)) && (2..6).contains(&(p / width));
             (0..width * height).map(|p| u8::from(inside(p))).collect()
         };

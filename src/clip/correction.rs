@@ -30,7 +30,6 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
 use crate::order::sort_few;
-use crate::workspace::{self, Buffer};
 use look::Look;
 pub use outline::Prompt;
 pub(super) use outline::outline;
@@ -137,7 +136,6 @@ impl ClipCorrection {
     pub fn take(&mut self, clip: &mut SegmentedClip, frame: &Frame) -> Result<()> {
         let Some((index, pass)) = self.next else { return Ok(()) };
         clip.check(index, frame)?;
-        let _call = workspace::begin(clip.size());
         let look = Look::new(frame);
         let mut pass = Some(pass);
         if let Some((said, spread)) = self.said.take() {
@@ -404,11 +402,11 @@ impl ClipCorrection {
         let before = clip.frames[t].layer.clone();
         let mut labels = match &before {
             Some(layer) => layer.labels.values(),
-            None => Buffer::filled(width * height, NOTHING_SAID),
+            None => vec![NOTHING_SAID; width * height],
         };
         let decided = |label: u8| claims.iter().any(|(number, _)| *number == label);
         let persons = clip.persons_in(t);
-        let shown = Buffer::of(&labels);
+        let shown = labels.clone();
         // The objects of a person that the correction is not about keep what they have.
         let mut held: Vec<bool> = labels.iter().map(|&label| persons[usize::from(label)] && !decided(label)).collect();
         labels.iter_mut().zip(&held).filter(|(_, held)| !**held).for_each(|(label, _)| *label = NOTHING_SAID);

@@ -11,7 +11,6 @@ use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::pair::solution::{Prior, Solution};
 use crate::view::cost::inverse;
-use crate::workspace::Buffer;
 
 /// Odds are multiples of this many nats, so that they take little room when they are kept.
 const STEP: f32 = 0.25;
@@ -22,7 +21,7 @@ pub(crate) struct Flow {
     /// Width of the frame, working pixels.
     pub(crate) width: usize,
     /// The motion of every working pixel, an index to `motions`.
-    pub(crate) labels: Buffer<u8>,
+    pub(crate) labels: Vec<u8>,
     /// Motions, pixels of the working size.
     pub(crate) motions: Vec<AffineMotion>,
     /// Whether the frames were compared; else everything is taken to keep its motion.
@@ -32,7 +31,7 @@ pub(crate) struct Flow {
 impl Flow {
     /// The flow of a frame where nothing moves.
     pub(crate) fn still([width, height]: [usize; 2]) -> Flow {
-        let labels = Buffer::filled(width * height, BACKGROUND as u8);
+        let labels = vec![BACKGROUND as u8; width * height];
         Flow { width, labels, motions: vec![AffineMotion::STATIC], measured: false }
     }
 
@@ -114,12 +113,12 @@ saved!(KeptOdds { 0 });
 impl KeptOdds {
     pub(crate) fn of(odds: &Plane) -> KeptOdds {
         let code = |odds: &f32| (libm::roundf(odds / STEP).clamp(-127.0, 127.0) + 128.0) as u8;
-        KeptOdds(Runs::of(&odds.values().iter().map(code).collect::<Buffer<u8>>()))
+        KeptOdds(Runs::of(&odds.values().iter().map(code).collect::<Vec<u8>>()))
     }
 
     pub(crate) fn odds(&self, width: usize, height: usize) -> Plane {
         let decoded = self.0.values().iter().map(|&code| STEP * (f32::from(code) - 128.0)).collect();
-        Plane::from_buffer(width, height, decoded)
+        Plane::from_vec(width, height, decoded)
     }
 
     pub(crate) fn is_valid(&self, pixels: usize) -> bool {

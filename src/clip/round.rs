@@ -89,11 +89,8 @@ impl Round {
             model().automatic * (odds.clamp(-model().certain, model().certain) + ratios[record.palette.index(p)])
         };
         let [width, height] = record.size();
-        let ground = Plane::from_buffer(width, height, odds.values().iter().enumerate().map(price).collect());
-        let mask = record
-            .borders(model().smoothness)
-            .solve(&[ground, Plane::filled(width, height, 0.0)], self.solver)
-            .to_vec();
+        let ground = Plane::from_vec(width, height, odds.values().iter().enumerate().map(price).collect());
+        let mask = record.borders(model().smoothness).solve(&[ground, Plane::filled(width, height, 0.0)], self.solver);
         Some(Foreground { record, own, odds, mask })
     }
 

@@ -1,7 +1,6 @@
 //! Run-length code of small numbers: labels and coarse odds of a frame take a few kilobytes.
 
 use super::saved::saved;
-use crate::workspace::Buffer;
 
 /// Values of the pixels of a frame as runs: a value, then its number of repetitions less one in base 128, low digits first, the highest
 /// bit set on all but the last.
@@ -27,8 +26,8 @@ impl Runs {
     }
 
     /// The values. Runs from outside the program must be [`valid`](Self::is_valid).
-    pub(crate) fn values(&self) -> Buffer<u8> {
-        let mut values: Buffer<u8> = Buffer::list();
+    pub(crate) fn values(&self) -> Vec<u8> {
+        let mut values: Vec<u8> = Vec::new();
         for (value, length) in self.each() {
             values.extend((0..length).map(|_| value));
         }
@@ -37,7 +36,7 @@ impl Runs {
 
     /// The runs with other values.
     pub(crate) fn map(&self, value: impl Fn(u8) -> u8) -> Runs {
-        Runs::of(&self.values().iter().map(|&v| value(v)).collect::<Buffer<u8>>())
+        Runs::of(&self.values().iter().map(|&v| value(v)).collect::<Vec<u8>>())
     }
 
     /// Whether these are runs of `pixels` values.

@@ -14,7 +14,6 @@ use crate::frame::{Frame, Plane};
 use crate::options::Quality;
 use crate::pair::settings::Settings;
 use crate::pair::solution::{Expected, Prior, Solution, solve};
-use crate::workspace;
 
 /// Follows objects through a clip.
 #[derive(Debug)]
@@ -103,7 +102,6 @@ impl Tracker {
             return Err(Error::FrameSizeMismatch { first: (width, height), second: (size[0], size[1]) });
         }
         self.size = Some(size);
-        let _call = workspace::begin(size);
         let settings = self.options.settings(size);
         let pyramid = Rc::new(settings.pyramid(&frame));
         let mut newest = Newest { frame: Rc::new(frame), pyramid, repeats: false, back: None };
@@ -171,7 +169,6 @@ impl Tracker {
     /// The frames that still wait, in order. The tracker is then ready for another clip, whose objects get new numbers.
     pub(crate) fn finish(&mut self) -> Vec<Tracked> {
         let Some(last) = self.last.take() else { return Vec::new() };
-        let _call = workspace::begin([last.frame.width(), last.frame.height()]);
         let mut frames = Vec::new();
         if self.waits {
             frames.extend(self.advance(last, None, None));

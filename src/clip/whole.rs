@@ -16,7 +16,6 @@ use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
 use crate::hash::hash;
 use crate::options::{MotionCount, Quality, SegmentOptions};
 use crate::pair::settings::Settings;
-use crate::workspace::{self, Buffer};
 
 /// Segments a whole clip. Frames go in one after another; [`conclude`](Self::conclude) gives the segmented clip.
 ///
@@ -258,7 +257,7 @@ impl Labelling {
         Labelling { labels: Runs::of(labels), odds: KeptOdds::of(odds) }
     }
 
-    fn labels(&self) -> Buffer<u8> {
+    fn labels(&self) -> Vec<u8> {
         self.labels.values()
     }
 
@@ -309,7 +308,6 @@ impl SegmentedClip {
     /// [`Error::InvalidOption`] for an index that is not below [`len`](Self::len), [`Error::FrameSizeMismatch`], [`Error::OtherFrame`].
     pub fn frame(&self, index: usize, frame: &Frame) -> Result<ClipFrame> {
         self.check(index, frame)?;
-        let _call = workspace::begin(self.size);
         let state = &self.frames[index];
         let persons = self.persons_in(index);
         // What a layer must tell apart keeps its number until then.
@@ -389,7 +387,7 @@ impl SegmentedClip {
     }
 
     /// The labels of the layer of a frame, if it has one. What was found shows again where objects of a person were deleted.
-    fn above(&self, index: usize) -> Option<Buffer<u8>> {
+    fn above(&self, index: usize) -> Option<Vec<u8>> {
         let is_gone = |label: u8| label > 0 && label != NOTHING_SAID && self.numbers[usize::from(label)] == 0;
         let mut labels = self.frames[index].layer.as_ref()?.labels.values();
         labels.iter_mut().filter(|label| is_gone(**label)).for_each(|label| *label = NOTHING_SAID);
@@ -596,7 +594,7 @@ impl SegmentedClip {
     }
 
     /// Labels and odds of a frame as the clip was segmented.
-    pub(super) fn found(&self, index: usize) -> (Buffer<u8>, Plane) {
+    pub(super) fn found(&self, index: usize) -> (Vec<u8>, Plane) {
         let found = &self.frames[index].found;
         (found.labels(), found.odds(self.working_size()))
     }

@@ -6,7 +6,6 @@ use super::monomials::{kept_pairs, unknowns};
 use super::veronese::embed_columns;
 use crate::linear::{RowQr, Triangle};
 use crate::measurements::Measurements;
-use crate::workspace::Buffer;
 
 /// P̃_n of (9), N × (M_n² − Z_n): row j is `(ν_n(y_j) ⊗ ν_n(x_j))ᵀ` without the structural zeros of 𝒜.
 ///
@@ -25,7 +24,7 @@ pub fn embedded_matrix(measurements: &Measurements, degree: usize) -> DMatrix<f6
 }
 
 /// Positions (x, y) as (x, y, 1).
-pub(super) fn homogeneous(positions: &[[f64; 2]]) -> Buffer<[f64; 3]> {
+pub(super) fn homogeneous(positions: &[[f64; 2]]) -> Vec<[f64; 3]> {
     positions.iter().map(|p| [p[0], p[1], 1.0]).collect()
 }
 

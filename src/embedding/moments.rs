@@ -14,7 +14,6 @@ use super::veronese::embed_columns;
 use crate::linear::Triangle;
 use crate::linear::kernels::{add_multiple, dot};
 use crate::measurements::Measurements;
-use crate::workspace::{Buffer, kept};
 
 /// Share of its diagonal that is added to a Gram matrix; smaller squares are lost in rounding. Among several null vectors, this chooses
 /// the one with the largest last entry, like [`NullVector`](crate::linear::NullVector).
@@ -23,7 +22,7 @@ const RIDGE: f64 = 1e-13;
 /// `Σ_j w_j y_j^a x_j^i` for all monomials of given degrees.
 struct Moments {
     columns: usize,
-    values: Buffer<f64>,
+    values: Vec<f64>,
 }
 
 impl Moments {
@@ -31,8 +30,8 @@ impl Moments {
     /// skipped.
     fn new([of_y, of_x]: [&Monomials; 2], weights: &[f64]) -> Self {
         let columns = count(of_x.degree);
-        let mut values = Buffer::filled(count(of_y.degree) * columns, 0.0);
-        let mut weighted = Buffer::filled(weights.len(), 0.0);
+        let mut values = vec![0.0; count(of_y.degree) * columns];
+        let mut weighted = vec![0.0; weights.len()];
         let x_exponents = exponents(of_x.degree);
         for ((y, e), values) in of_y.columns().zip(exponents(of_y.degree)).zip(values.chunks_exact_mut(columns)) {
             weighted.iter_mut().zip(y).zip(weights).for_each(|((product, y), w)| *product = y * w);
@@ -55,12 +54,12 @@ fn sum(a: Exponents, b: Exponents) -> Exponents {
 }
 
 /// A symmetric matrix over the kept pairs of monomials, column-major; `entry` gives the entry of two pairs `(y, x)`.
-fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f64) -> Buffer<f64> {
+fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f64) -> Vec<f64> {
     let all = exponents(degree);
     let pairs: Vec<[Exponents; 2]> =
         kept_pairs(degree).into_iter().map(|(row, column)| [all[row], all[column]]).collect();
     let size = pairs.len();
-    let mut matrix = Buffer::unwritten(size * size);
+    let mut matrix = vec![0.0; size * size];
     for (k, &p) in pairs.iter().enumerate() {
         for (i, &q) in pairs[..=k].iter().enumerate() {
             let value = entry(q, p);
@@ -74,7 +73,7 @@ fn symmetric(degree: usize, entry: &dyn Fn([Exponents; 2], [Exponents; 2]) -> f6
 struct Monomials {
     degree: usize,
     rows: usize,
-    values: Buffer<f64>,
+    values: Vec<f64>,
 }
 
 impl Monomials {
@@ -92,10 +91,10 @@ impl Monomials {
 }
 
 /// Σ_k D_kᵀD_k of the derivatives D_k = ∂P̃_n/∂y_k, k = 1, 2, 3, column-major.
-pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Buffer<f64> {
+pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Vec<f64> {
     let of_y = Monomials::new(2 * (degree - 1), measurements.derivatives());
     let of_x = Monomials::new(2 * degree, &homogeneous(measurements.positions()));
-    let moments = Moments::new([&of_y, &of_x], &Buffer::filled(measurements.len(), 1.0));
+    let moments = Moments::new([&of_y, &of_x], &vec![1.0; measurements.len()]);
     symmetric(degree, &|[a, i], [b, k]| {
         let both = sum(a, b);
         let by = |v: usize| {
@@ -110,7 +109,7 @@ pub(super) fn gradient_gram(measurements: &Measurements, degree: usize) -> Buffe
 /// Measurements prepared for repeated fits of polynomials of one degree with different weights.
 pub(crate) struct Refitting {
     degree: usize,
-    derivatives: [Buffer<f64>; 3],
+    derivatives: [Vec<f64>; 3],
     /// Monomials of the derivatives, of degrees n − 1 and 2n.
     of_y: [Monomials; 2],
     /// Monomials of the positions, of degree 2n. They include lower degrees, because the third coordinate is 1.
@@ -119,8 +118,6 @@ pub(crate) struct Refitting {
 
 /// A polynomial at one measurement: its value, and its gradient ∂p/∂y.
 pub(crate) type Reading = [f64; 4];
-
-kept!(Reading);
 
 impl Refitting {
     /// `measurements` should be normalised.
@@ -142,10 +139,10 @@ impl Refitting {
     }
 
     /// The polynomial and its gradient ∂p/∂y at every measurement.
-    pub(crate) fn read(&self, polynomial: &MultibodyMotion) -> Buffer<Reading> {
+    pub(crate) fn read(&self, polynomial: &MultibodyMotion) -> Vec<Reading> {
         let rows = self.of_x.rows;
-        let mut gradient = [0, 1, 2].map(|_| Buffer::filled(rows, 0.0));
-        let mut flow = Buffer::filled(rows, 0.0);
+        let mut gradient = [0, 1, 2].map(|_| vec![0.0; rows]);
+        let mut flow = vec![0.0; rows];
         let all = exponents(self.degree);
         for (r, &y) in all.iter().enumerate() {
             // Entry r of the multibody flow 𝒜 ν_n(x).

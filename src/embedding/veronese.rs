@@ -4,7 +4,6 @@ use nalgebra::{DMatrix, DVector};
 
 use super::monomials::{count, exponents};
 use crate::options::MAX_MOTIONS;
-use crate::workspace::Buffer;
 
 /// Powers 0…`degree` of a number. Entries beyond `degree` are 1 and have no meaning.
 fn powers(value: f64, degree: usize) -> [f64; MAX_MOTIONS + 1] {
@@ -60,11 +59,11 @@ pub fn jacobian(degree: usize, v: [f64; 3]) -> DMatrix<f64> {
 
 /// ν_n of many vectors, column-major: `result[monomial * vectors.len() + j]` belongs to vector j. Works for any degree, and gives the
 /// same bits as [`embed`].
-pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Buffer<f64> {
+pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
     let rows = vectors.len();
     // Powers 0…n of each variable, as columns.
     let powers = [0, 1, 2].map(|k| {
-        let mut columns = Buffer::with_capacity(rows * (degree + 1));
+        let mut columns = Vec::with_capacity(rows * (degree + 1));
         columns.resize(rows, 1.0);
         for power in 0..degree {
             columns.extend_from_within(power * rows..);
@@ -72,7 +71,7 @@ pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Buffer<f64> 
         }
         columns
     });
-    let mut result = Buffer::with_capacity(rows * count(degree));
+    let mut result = Vec::with_capacity(rows * count(degree));
     for e in exponents(degree) {
         let [p, q, r] = [0, 1, 2].map(|k| &powers[k][e[k] * rows..][..rows]);
         result.extend(p.iter().zip(q).zip(r).map(|((p, q), r)| p * q * r));

@@ -15,7 +15,6 @@ use crate::motion::AffineMotion;
 use crate::view::brightness::Photometric;
 use crate::view::cost::lane_sum;
 use crate::view::level::Level;
-use crate::workspace::{Buffer, kept};
 
 /// Which entries of the motion are free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -219,9 +218,7 @@ fn apply(motion: &mut AffineMotion, step: &Right, centre: [f64; 2], scale: f64) 
 }
 
 /// A row's values in whole chunks. Values past the end of the row have no weight.
-type Row = Buffer<[f32; CHUNK]>;
-
-kept!([f32; CHUNK]);
+type Row = Vec<[f32; CHUNK]>;
 
 /// Buffers for one row, reused for every row.
 struct RowBuffers {
@@ -234,7 +231,7 @@ struct RowBuffers {
 
 impl RowBuffers {
     fn new(length: usize) -> RowBuffers {
-        let row = || Buffer::filled(length.div_ceil(CHUNK), [0.0; CHUNK]);
+        let row = || vec![[0.0; CHUNK]; length.div_ceil(CHUNK)];
         RowBuffers { x: row(), gx: row(), gy: row(), residual: row(), weight: row() }
     }
 

@@ -2,7 +2,6 @@
 
 use super::Plane;
 use crate::lanes::{LANES, each_with};
-use crate::workspace::Buffer;
 
 /// Radius of a Gaussian window, standard deviations: 0.3 % of the weight lies beyond.
 const WINDOW_RADIUS: f32 = 3.0;
@@ -23,7 +22,7 @@ pub(crate) fn gaussian(plane: &Plane, sigma: f32) -> Plane {
     if sigma <= 0.0 {
         return plane.clone();
     }
-    let mut out = Plane::unwritten(plane.width(), plane.height());
+    let mut out = Plane::filled(plane.width(), plane.height(), 0.0);
     let mut filter = RowFilter::gaussian(plane.width(), sigma);
     for y in 0..plane.height() {
         filter.row(plane, y, out.row_mut(y));
@@ -38,14 +37,14 @@ pub(crate) struct RowFilter {
     /// Start of the values at distance k on both sides.
     places: Vec<[usize; 2]>,
     /// A row after the vertical filter, padded on both sides.
-    padded: Buffer<f32>,
+    padded: Vec<f32>,
 }
 
 impl RowFilter {
     /// For planes of a width.
     fn new(width: usize, weights: Vec<f32>) -> Self {
         let radius = weights.len() - 1;
-        RowFilter { weights, places: vec![[0; 2]; radius], padded: Buffer::unwritten(width + 2 * radius) }
+        RowFilter { weights, places: vec![[0; 2]; radius], padded: vec![0.0; width + 2 * radius] }
     }
 
     /// Gaussian blur of standard deviation `sigma` > 0 pixels.
@@ -118,22 +117,22 @@ fn weighted_block<const N: usize>(
 pub(crate) fn halve(plane: &Plane) -> Plane {
     let (width, height) = (plane.width().div_ceil(2), plane.height().div_ceil(2));
     let mut filter = RowFilter::new(plane.width(), vec![6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0]);
-    let mut half = Buffer::with_capacity(width * height);
-    let mut smooth = Buffer::unwritten(plane.width());
+    let mut half = Vec::with_capacity(width * height);
+    let mut smooth = vec![0.0; plane.width()];
     for y in 0..height {
         filter.row(plane, 2 * y, &mut smooth);
         half.extend(smooth.iter().step_by(2));
     }
-    Plane::from_buffer(width, height, half)
+    Plane::from_vec(width, height, half)
 }
 
 /// Scharr gradients (∂/∂x, ∂/∂y) per pixel: central differences, smoothed by [3 10 3]/16 across.
 pub(crate) fn gradients(plane: &Plane) -> (Plane, Plane) {
     let (width, height) = (plane.width(), plane.height());
-    let mut dx = Plane::unwritten(width, height);
-    let mut dy = Plane::unwritten(width, height);
-    let mut smooth = Buffer::unwritten(width + 2);
-    let mut difference = Buffer::unwritten(width + 2);
+    let mut dx = Plane::filled(width, height, 0.0);
+    let mut dy = Plane::filled(width, height, 0.0);
+    let mut smooth = vec![0.0; width + 2];
+    let mut difference = vec![0.0; width + 2];
     for y in 0..height {
         let (above, here, below) = (plane.row(y.saturating_sub(1)), plane.row(y), plane.row((y + 1).min(height - 1)));
         for line in [&mut smooth, &mut difference] {
@@ -162,8 +161,8 @@ pub(crate) fn gradients(plane: &Plane) -> (Plane, Plane) {
 /// be the median, of the second smallest the three largest, and so on: 13 of 25 remain.
 pub(crate) fn median5(plane: &Plane) -> Plane {
     let (width, height) = (plane.width(), plane.height());
-    let mut out = Plane::unwritten(width, height);
-    let mut columns: [Buffer<f32>; 5] = std::array::from_fn(|_| Buffer::unwritten(width + 4));
+    let mut out = Plane::filled(width, height, 0.0);
+    let mut columns: [Vec<f32>; 5] = std::array::from_fn(|_| vec![0.0; width + 4]);
     for y in 0..height {
         let rows: [&[f32]; 5] = std::array::from_fn(|k| plane.row((y + k).saturating_sub(2).min(height - 1)));
         let whole = width - width % LANES;
@@ -207,7 +206,7 @@ macro_rules! extremes_apart {
 
 /// The five values of each of the columns x…x+N−1 by size: `sorted[0]` gets the smallest, two places further on.
 #[inline(always)]
-fn sort_columns<const N: usize>(rows: [&[f32]; 5], x: usize, sorted: &mut [Buffer<f32>; 5]) {
+fn sort_columns<const N: usize>(rows: [&[f32]; 5], x: usize, sorted: &mut [Vec<f32>; 5]) {
     let [a, b, c, d, e] = rows;
     let (a, b, c, d, e) = (&a[x..x + N], &b[x..x + N], &c[x..x + N], &d[x..x + N], &e[x..x + N]);
     let mut block = [[0.0; N]; 5];
@@ -223,7 +222,7 @@ fn sort_columns<const N: usize>(rows: [&[f32]; 5], x: usize, sorted: &mut [Buffe
 
 /// Medians of the windows of five neighbouring columns from x, …, x+N−1 on.
 #[inline(always)]
-fn medians<const N: usize>(columns: &[Buffer<f32>; 5], x: usize, out: &mut [f32]) {
+fn medians<const N: usize>(columns: &[Vec<f32>; 5], x: usize, out: &mut [f32]) {
     let [smallest, second, third, fourth, largest] = columns;
     let (smallest, second, third) = (&smallest[x..x + N + 4], &second[x..x + N + 4], &third[x..x + N + 4]);
     let (fourth, largest) = (&fourth[x..x + N + 4], &largest[x..x + N + 4]);
@@ -269,8 +268,8 @@ fn median_of_25([smallest, second, third, fourth, largest]: [[f32; 5]; 5]) -> f3
 /// Erosion: the minimum of each 3×3 neighbourhood. Pixels outside the plane count as inside the region.
 pub(crate) fn eroded(mask: &Plane) -> Plane {
     let (width, height) = (mask.width(), mask.height());
-    let mut out = Plane::unwritten(width, height);
-    let mut padded = Buffer::filled(width + 2, f32::INFINITY);
+    let mut out = Plane::filled(width, height, 0.0);
+    let mut padded = vec![f32::INFINITY; width + 2];
     for y in 0..height {
         let (above, below) = (mask.row(y.saturating_sub(1)), mask.row((y + 1).min(height - 1)));
         let middle = &mut padded[1..=width];

@@ -7,7 +7,7 @@ pub(crate) fn lab(colours: &[Plane; 3]) -> [Plane; 3] {
     let (width, height) = (colours[0].width(), colours[0].height());
     let linear: Vec<f32> = (0..=LEVELS).map(|level| linear(level as f32 / LEVELS as f32)).collect();
     let root: Vec<f32> = (0..=ROOTS).map(|k| root(k as f32 / ROOTS as f32)).collect();
-    let mut planes = [(); 3].map(|()| Plane::unwritten(width, height));
+    let mut planes = [(); 3].map(|()| Plane::filled(width, height, 0.0));
     for p in 0..width * height {
         let [r, g, b] = colours.each_ref().map(|plane| between(&linear, plane.values()[p] / 255.0));
         let x = between(&root, 0.433_91 * r + 0.376_22 * g + 0.189_86 * b);

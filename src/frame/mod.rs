@@ -17,7 +17,6 @@ use std::borrow::Cow;
 
 use crate::error::{Error, Result};
 use crate::hash::hash;
-use crate::workspace::Buffer;
 
 /// Smallest side of a frame, pixels.
 pub const MIN_SIDE: usize = 16;
@@ -29,7 +28,7 @@ pub const MAX_SIDE: usize = 4096;
 pub struct Frame {
     luminance: Plane,
     /// Red, green, blue and 255 of every pixel, row by row.
-    rgba: Buffer<u8>,
+    rgba: Vec<u8>,
 }
 
 impl Frame {
@@ -48,7 +47,7 @@ impl Frame {
         if rgba.len() != needed {
             return Err(Error::PixelCountMismatch { width, height, needed, found: rgba.len() });
         }
-        let mut rgba = Buffer::from(rgba.into_owned());
+        let mut rgba = rgba.into_owned();
         let luminance = rgba
             .chunks_exact_mut(4)
             .map(|p| {
@@ -56,7 +55,7 @@ impl Frame {
                 0.299 * f32::from(p[0]) + 0.587 * f32::from(p[1]) + 0.114 * f32::from(p[2])
             })
             .collect();
-        Ok(Frame { luminance: Plane::from_buffer(width, height, luminance), rgba })
+        Ok(Frame { luminance: Plane::from_vec(width, height, luminance), rgba })
     }
 
     /// Width in pixels.

@@ -1,7 +1,6 @@
 //! The quantised colours of a frame.
 
 use super::Frame;
-use crate::workspace::Buffer;
 
 /// Steps per colour channel: 8³ colours are few enough to learn from one frame and still tell clothes from grass. Not varied.
 const STEPS: usize = 8;
@@ -18,7 +17,7 @@ pub(crate) fn brighter(colour: usize) -> Option<usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct Palette {
     size: [usize; 2],
-    indices: Buffer<u16>,
+    indices: Vec<u16>,
 }
 
 impl Palette {
@@ -30,9 +29,8 @@ impl Palette {
     /// Quantises the mean colours over the full-size pixels of each working pixel.
     pub(crate) fn new(frame: &Frame, width: usize, height: usize) -> Palette {
         let step = frame.width().div_ceil(width).next_power_of_two();
-        let mut indices = Buffer::with_capacity(width * height);
-        let mut sums = Buffer::unwritten(4 * width);
-        let sums: &mut [[u32; 4]] = sums.as_chunks_mut().0;
+        let mut indices = Vec::with_capacity(width * height);
+        let mut sums = vec![[0u32; 4]; width];
         for rows in frame.colours().chunks(frame.width() * step) {
             sums.fill([0; 4]);
             for row in rows.chunks(frame.width()) {
@@ -67,7 +65,7 @@ impl Palette {
     /// Every `step`-th pixel of every `step`-th row.
     pub(crate) fn thinned(&self, step: usize) -> Palette {
         let size = self.size.map(|s| s.div_ceil(step));
-        let mut indices = Buffer::with_capacity(size[0] * size[1]);
+        let mut indices = Vec::with_capacity(size[0] * size[1]);
         for row in self.indices.chunks_exact(self.size[0]).step_by(step) {
             indices.extend(row.iter().step_by(step));
         }

@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::filter::halve;
 use super::{Frame, Plane};
-use crate::workspace::Buffer;
 
 /// Luminance and colours of a frame at one size, grey levels.
 #[derive(Clone, Debug)]
@@ -33,7 +32,7 @@ pub(crate) fn colours(frame: &Frame, width: usize) -> [Plane; 3] {
         half_colours(frame)
     } else {
         let plane = |c: usize| frame.colours().iter().map(|colour| f32::from(colour[c])).collect();
-        std::array::from_fn(|c| Plane::from_buffer(frame.width(), frame.height(), plane(c)))
+        std::array::from_fn(|c| Plane::from_vec(frame.width(), frame.height(), plane(c)))
     };
     while planes[0].width() > width {
         planes = planes.each_ref().map(halve);
@@ -46,10 +45,9 @@ fn half_colours(frame: &Frame) -> [Plane; 3] {
     let (width, height) = (frame.width(), frame.height());
     let row = |y: usize| frame.colours()[y * width..(y + 1) * width].as_flattened();
     let [half_width, half_height] = [width, height].map(|size| size.div_ceil(2));
-    let mut planes = [0; 3].map(|_| Plane::unwritten(half_width, half_height));
+    let mut planes = [0; 3].map(|_| Plane::filled(half_width, half_height, 0.0));
     // Vertical sums over three rows, padded by a pixel on both sides.
-    let mut sums = Buffer::unwritten(4 * (width + 2));
-    let sums: &mut [[u16; 4]] = sums.as_chunks_mut().0;
+    let mut sums = vec![[0u16; 4]; width + 2];
     for y in 0..half_height {
         let (above, here, below) = (row((2 * y).saturating_sub(1)), row(2 * y), row((2 * y + 1).min(height - 1)));
         for (((s, a), h), b) in sums[1..].as_flattened_mut().iter_mut().zip(above).zip(here).zip(below) {

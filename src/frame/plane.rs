@@ -1,13 +1,11 @@
 //! A rectangle of `f32` values, row by row: every image quantity of the pipeline.
 
-use crate::workspace::Buffer;
-
 /// Width × height values, row-major; (0, 0) is the top-left pixel.
 #[derive(Debug, PartialEq)]
 pub struct Plane {
     width: usize,
     height: usize,
-    values: Buffer<f32>,
+    values: Vec<f32>,
 }
 
 // Not inlined: a plane takes long enough to make, and the module would contain eighty copies.
@@ -22,23 +20,12 @@ impl Plane {
     /// A plane of one value.
     #[inline(never)]
     pub fn filled(width: usize, height: usize, value: f32) -> Plane {
-        Plane { width, height, values: Buffer::filled(width * height, value) }
-    }
-
-    /// A plane of unspecified values, for callers that overwrite all of them.
-    #[inline(never)]
-    pub(crate) fn unwritten(width: usize, height: usize) -> Plane {
-        Plane { width, height, values: Buffer::unwritten(width * height) }
+        Plane { width, height, values: vec![value; width * height] }
     }
 
     /// A plane from its values, row by row; cut or filled with zeros where their number is not width × height.
-    pub fn from_vec(width: usize, height: usize, values: Vec<f32>) -> Plane {
-        Plane::from_buffer(width, height, values.into())
-    }
-
-    /// [`Plane::from_vec`] of a buffer.
     #[inline(never)]
-    pub(crate) fn from_buffer(width: usize, height: usize, mut values: Buffer<f32>) -> Plane {
+    pub fn from_vec(width: usize, height: usize, mut values: Vec<f32>) -> Plane {
         debug_assert_eq!(values.len(), width * height);
         values.resize(width * height, 0.0);
         Plane { width, height, values }
@@ -46,7 +33,7 @@ impl Plane {
 
     /// A plane computed pixel by pixel from (x, y).
     pub fn from_fn(width: usize, height: usize, mut f: impl FnMut(usize, usize) -> f32) -> Plane {
-        let mut values = Buffer::with_capacity(width * height);
+        let mut values = Vec::with_capacity(width * height);
         for y in 0..height {
             for x in 0..width {
                 values.push(f(x, y));
@@ -82,11 +69,11 @@ impl Plane {
     /// Every `stride`-th pixel of every `stride`-th row.
     pub(crate) fn thinned(&self, stride: usize) -> Plane {
         let (width, height) = (self.width.div_ceil(stride), self.height.div_ceil(stride));
-        let mut values = Buffer::with_capacity(width * height);
+        let mut values = Vec::with_capacity(width * height);
         for row in self.values.chunks_exact(self.width).step_by(stride) {
             values.extend(row.iter().step_by(stride));
         }
-        Plane::from_buffer(width, height, values)
+        Plane::from_vec(width, height, values)
     }
 
     /// Row y.

@@ -263,7 +263,7 @@ fn whole(v: f32) -> u32 {
 /// Warps a plane by a motion: the value at (x, y) is the sample at (x, y) + A (x, y), replicated outside.
 pub(crate) fn warp(plane: &Plane, motion: &AffineMotion) -> Plane {
     let (width, height) = (plane.width(), plane.height());
-    let mut out = Plane::unwritten(width, height);
+    let mut out = Plane::filled(width, height, 0.0);
     let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..height {
         let path = RowPath::new(motion, 0, y);

@@ -13,7 +13,6 @@ pub(crate) mod solver;
 pub(crate) mod terms;
 
 use crate::frame::Plane;
-use crate::workspace::Buffer;
 
 /// The label of the background in every labelling.
 pub(crate) const BACKGROUND: usize = 0;
@@ -57,13 +56,13 @@ pub(crate) fn across_borders(labels: &[u8], width: usize, pair: &mut dyn FnMut(u
 }
 
 /// Indices of the pixels whose label satisfies `which`, in order.
-pub(crate) fn pixels(labels: &[u8], which: impl Fn(usize) -> bool) -> Buffer<usize> {
+pub(crate) fn pixels(labels: &[u8], which: impl Fn(usize) -> bool) -> Vec<usize> {
     (0..labels.len()).filter(|&p| which(usize::from(labels[p]))).collect()
 }
 
 /// Indicator of a label: 1 on its pixels, 0 elsewhere.
 pub(crate) fn mask_of(labels: &[u8], label: u8, width: usize, height: usize) -> Plane {
-    Plane::from_buffer(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())
+    Plane::from_vec(width, height, labels.iter().map(|&l| if l == label { 1.0 } else { 0.0 }).collect())
 }
 
 #[cfg(test)]

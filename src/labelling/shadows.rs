@@ -25,7 +25,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cost};
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// Cost that no pixel of the background pays.
 const NEVER: f32 = 100.0;
@@ -84,8 +83,8 @@ fn cost_of_light(level: &Level, background: &AffineMotion) -> Plane {
 }
 
 /// Log-likelihood ratio of object against ground of every colour, nats; none where there are too few pixels to learn from.
-fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -> Option<Buffer<f32>> {
-    let mut counts = Buffer::filled(COLOURS, [0.0f32; 2]);
+fn colour_ratios(palette: &Palette, labels: &[u8], lit: &Plane, model: &Model) -> Option<Vec<f32>> {
+    let mut counts = vec![[0.0f32; 2]; COLOURS];
     let mut totals = [0.0f32; 2];
     let unexplained = CostModel::labels(model).outside();
     for (p, (&label, &lit)) in labels.iter().zip(lit.values()).enumerate() {

@@ -4,7 +4,6 @@ use nalgebra::DMatrix;
 
 use super::kernels::{add_multiple, dot};
 use super::singular_values::singular_values;
-use crate::workspace::Buffer;
 
 /// An upper triangular m × m matrix, stored column-major including its zeros.
 ///
@@ -24,7 +23,7 @@ use crate::workspace::Buffer;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Triangle {
     size: usize,
-    values: Buffer<f64>,
+    values: Vec<f64>,
 }
 
 impl Triangle {
@@ -32,12 +31,12 @@ impl Triangle {
     pub const LARGEST_DECOMPOSED: usize = 500;
 
     pub(super) fn zeros(size: usize) -> Self {
-        Triangle { size, values: Buffer::filled(size * size, 0.0) }
+        Triangle { size, values: vec![0.0; size * size] }
     }
 
     /// The Cholesky factor R with RᵀR = `gram` + a ridge of `ridge` times the diagonal of `gram`. `gram` is column-major, and only its
     /// upper triangle is read. Squared pivots are raised to the ridge.
-    pub(crate) fn of_gram(size: usize, mut gram: Buffer<f64>, ridge: f64) -> Self {
+    pub(crate) fn of_gram(size: usize, mut gram: Vec<f64>, ridge: f64) -> Self {
         for k in 0..size {
             let (done, rest) = gram.split_at_mut(k * size);
             let (column, below) = rest[..size].split_at_mut(k);

@@ -24,12 +24,11 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, costs};
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// Motions (pixels of the working size) and the label of each pixel.
 pub(super) struct Labelled {
     pub(super) motions: Vec<AffineMotion>,
-    pub(super) labels: Buffer<u8>,
+    pub(super) labels: Vec<u8>,
     /// The best motion that was rejected, here or during selection, because it did not pay for itself.
     pub(super) runner_up: Option<AffineMotion>,
 }
@@ -54,7 +53,7 @@ pub(crate) struct LabelState<'a> {
     uncorrected: LabelCosts,
     /// Estimation costs, from which description lengths are computed.
     raw: Vec<Plane>,
-    pub(super) labels: Buffer<u8>,
+    pub(super) labels: Vec<u8>,
     /// The motion pruned last, or the best one rejected by the selection.
     runner_up: Option<AffineMotion>,
 }
@@ -76,7 +75,7 @@ pub(super) fn label(pair: &Pair, found: Found, settings: &Settings) -> Labelled 
 }
 
 /// Labels that go on from those expected at the working size: unless regions are merged or split, they are solved once.
-pub(super) fn label_on(pair: &Pair, found: Found, expected: Buffer<u8>, settings: &Settings) -> Labelled {
+pub(super) fn label_on(pair: &Pair, found: Found, expected: Vec<u8>, settings: &Settings) -> Labelled {
     let mut state = LabelState::new(pair, found, settings);
     state.labels = expected;
     state.prune();
@@ -125,7 +124,7 @@ impl<'a> LabelState<'a> {
     fn new(pair: &'a Pair, found: Found, settings: &'a Settings) -> LabelState<'a> {
         let motions = found.selected.into_iter().map(|scored| scored.motion).collect();
         let level = &pair.levels[pair.draft];
-        let labels = Buffer::filled(level.width() * level.height(), 0);
+        let labels = vec![0; level.width() * level.height()];
         let mut state =
             LabelState { runner_up: found.runner_up, ..LabelState::resumed(pair, motions, labels, settings) };
         state.reset_costs();
@@ -136,7 +135,7 @@ impl<'a> LabelState<'a> {
     pub(crate) fn resumed(
         pair: &'a Pair,
         motions: Vec<AffineMotion>,
-        labels: Buffer<u8>,
+        labels: Vec<u8>,
         settings: &'a Settings,
     ) -> LabelState<'a> {
         let level = &pair.levels[pair.draft];

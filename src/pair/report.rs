@@ -25,7 +25,6 @@ use crate::motion::AffineMotion;
 use crate::options::SegmentOptions;
 use crate::order::descending;
 use crate::view::cost::{CostModel, costs};
-use crate::workspace::Buffer;
 
 /// What [`segment_pair`](crate::segment_pair) found.
 #[derive(Clone, Debug, Serialize)]
@@ -158,7 +157,7 @@ fn confidence(probabilities: &[Plane], labels: &[u8], width: usize) -> Vec<u8> {
 }
 
 /// Labels by decreasing number of pixels, without those that have none.
-fn by_size(labels: &[u8], of: usize) -> Buffer<usize> {
+fn by_size(labels: &[u8], of: usize) -> Vec<usize> {
     let sizes = counts(labels, of);
     let mut order = descending(sizes.iter().map(|&s| s as f64));
     order.retain(|&k| sizes[k] > 0);

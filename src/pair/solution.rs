@@ -12,7 +12,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::view::cost::{CostModel, cheapest, costs, inverse};
-use crate::workspace::Buffer;
 
 /// What a pair tells about its first frame. The background has label [`BACKGROUND`](crate::labelling::BACKGROUND).
 #[derive(Clone, Debug)]
@@ -20,7 +19,7 @@ pub(crate) struct Solution {
     /// Pixels of the working size.
     pub(crate) motions: Vec<AffineMotion>,
     /// The label of every working pixel.
-    pub(crate) labels: Buffer<u8>,
+    pub(crate) labels: Vec<u8>,
     /// The probability, 0…1, of every motion at every working pixel.
     pub(crate) probabilities: Vec<Plane>,
     /// The group of every motion, named by its smallest label: motions of one rigid background share one.
@@ -74,7 +73,7 @@ pub(crate) enum Expected<'a> {
     /// Objects may have these motions.
     Motions(&'a [AffineMotion]),
     /// The labels of a prior's motions are likely to go on. Where they do not explain the pair, its motions are candidates.
-    Labels(&'a Prior, Buffer<u8>),
+    Labels(&'a Prior, Vec<u8>),
 }
 
 /// Solves the pair of a frame and another one, whose pyramid is `second`.
@@ -130,7 +129,7 @@ pub(crate) fn solve(
 fn follow(
     pair: &mut Pair,
     prior: &Prior,
-    mut labels: Buffer<u8>,
+    mut labels: Vec<u8>,
     settings: &Settings,
 ) -> Option<(labels::Labelled, [f64; 2])> {
     let model = settings.model;

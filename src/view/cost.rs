@@ -18,7 +18,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// The two constants of the cost.
 #[derive(Clone, Copy, Debug)]
@@ -123,7 +122,7 @@ impl<'a> Comparison<'a> {
     }
 
     fn plane(&self, area: &Area) -> Plane {
-        let mut plane = Plane::unwritten(area.width(), area.height());
+        let mut plane = Plane::filled(area.width(), area.height(), 0.0);
         for (k, y) in area.rows.clone().enumerate() {
             self.row(y, area.columns.start, plane.row_mut(k));
         }
@@ -207,7 +206,7 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     let level = &level.thinned(stride.max(1));
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
-    let mut residuals = Buffer::with_capacity(level.energy.values().len());
+    let mut residuals = Vec::with_capacity(level.energy.values().len());
     let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..level.height() {
         let path = level.path(&scaled, 0, y);

@@ -71,7 +71,7 @@ impl Look {
 
     /// A plane of values.
     pub(super) fn plane_of(&self, value: &dyn Fn(usize) -> f32) -> Plane {
-        Plane::from_buffer(self.size[0], self.size[1], (0..self.pixels()).map(value).collect())
+        Plane::from_vec(self.size[0], self.size[1], (0..self.pixels()).map(value).collect())
     }
 
     /// 1 at some pixels, else 0.

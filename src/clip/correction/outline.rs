@@ -27,7 +27,6 @@ use crate::frame::area::Area;
 use crate::frame::filter::gaussian;
 use crate::labelling::resolution::upsampling::upsample;
 use crate::model::Model;
-use crate::workspace;
 
 /// Where an object is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +68,8 @@ pub(in crate::clip) fn outline(
         let reason = format!("{number} is no number of an object: these are 1 to 254");
         return Err(Error::InvalidOption { name: "label", reason });
     }
-    let _call = workspace::begin(clip.size());
     let (look, width) = (Look::new(frame), frame.width());
-    let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(look.size).labels.to_vec());
+    let flow = |kept: Option<Flow>| kept.filter(|of| of.measured).map(|of| of.enlarged(look.size).labels);
     let labels = clip.found_at(index, look.size);
     let found = [Some(labels), flow(clip.onward(index)), flow(clip.back(index))].into_iter().flatten().collect();
     let view = View { look: &look, found };

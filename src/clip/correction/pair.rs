@@ -20,7 +20,6 @@ use crate::pair::report::{SegmentedMotion, describe};
 use crate::pair::settings::Settings;
 use crate::pair::{Pair, check_sizes};
 use crate::progress::{Progress, Stages};
-use crate::workspace;
 
 const STAGES: &[&str] = &["frames", "labels", "masks"];
 
@@ -70,7 +69,6 @@ pub fn relabel(
 ) -> Result<Relabelling> {
     check_sizes(first, second)?;
     correction.check(first.width() * first.height())?;
-    let _call = workspace::begin([first.width(), first.height()]);
     // Strokes follow what a pixel shows, so that nothing is drafted on a coarser level.
     let settings =
         Settings { draft_side: usize::MAX, ..Settings::new(options, [first.width(), first.height()], &Model::DEFAULT) };

@@ -30,7 +30,7 @@ impl Still {
     /// The labels of least energy, given the price of each at every pixel.
     pub(crate) fn labels(&self, costs: &[Plane]) -> Vec<u8> {
         let (look, smoothness) = (&self.0, model().smoothness);
-        look.borders.times(smoothness).solve(costs, Solver::FAST).to_vec()
+        look.borders.times(smoothness).solve(costs, Solver::FAST)
     }
 
     /// The object's mask, 1 inside. `found` is where it was found, and `motion` are its odds from how the pixels move, nats. Only what is

@@ -376,6 +376,6 @@ pub(super) fn solved(look: &Look, area: Area, odds: Vec<f32>, said: Option<&[Sai
 pub(super) fn cut(look: &Look, area: &Area, odds: &[f32]) -> Vec<u8> {
     let (width, height) = (area.width(), area.height());
     let borders = look.borders.cropped(area, model().smoothness);
-    let object = Plane::from_buffer(width, height, odds.iter().map(|&z| -z).collect());
-    borders.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST).to_vec()
+    let object = Plane::from_vec(width, height, odds.iter().map(|&z| -z).collect());
+    borders.solve(&[Plane::filled(width, height, 0.0), object], Solver::FAST)
 }

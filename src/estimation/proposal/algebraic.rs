@@ -17,7 +17,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median_f64;
 use crate::view::level::Level;
-use crate::workspace::{Buffer, kept};
 
 /// Entries of a motion; groups of fewer pixels propose none.
 const ENTRIES: usize = 6;
@@ -25,7 +24,7 @@ const ENTRIES: usize = 6;
 /// The measurements that the dominant motion does not explain, with their weights.
 struct Unexplained {
     measurements: Measurements,
-    weights: Buffer<f64>,
+    weights: Vec<f64>,
 }
 
 /// Motions found by polynomials of degree 1 to `degrees` on at most `most` unexplained pixels.
@@ -55,8 +54,8 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
     let position_sigma = model.position_sigma * model.position_sigma;
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
-    let mut places = Buffer::with_capacity(width * height);
-    let mut weights = Buffer::with_capacity(width * height);
+    let mut places = Vec::with_capacity(width * height);
+    let mut weights = Vec::with_capacity(width * height);
     let (mut seen, mut at) = ([0.0; CHUNK], Footprints::new());
     for y in 0..height {
         let path = RowPath::new(&scaled, 0, y);
@@ -94,7 +93,7 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
         [gx / length, gy / length, temporal / (length * model.algebra_unit)]
     };
     let points = || chosen.clone().map(|k| (places[k] % width, places[k] / width));
-    let measurements = Measurements::checked(
+    let measurements = Measurements::new(
         points().map(|(x, y)| position(x, y)).collect(),
         points().map(|(x, y)| derivatives(x, y)).collect(),
     );
@@ -108,14 +107,14 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
 fn flows_of_degree(data: &Unexplained, degree: usize, model: &Model) -> Vec<[f64; 2]> {
     let refitting = Refitting::new(&data.measurements, degree);
     let mut weights = data.weights.clone();
-    let mut readings = Buffer::default();
+    let mut readings = Vec::new();
     let mut close = 0.0;
     for _ in 0..model.algebra_rounds {
         // A weight belongs to a row; only their ratios count.
         let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
         weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
         readings = read_off(&refitting, &refitting.fit(&weights));
-        let distances: Buffer<f64> = readings.iter().map(|r| r.distance).collect();
+        let distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
         close = model.algebra_inlier * median_f64(&distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
@@ -137,9 +136,7 @@ struct Reading {
     distance: f64,
 }
 
-kept!(Reading);
-
-fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Buffer<Reading> {
+fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Vec<Reading> {
     let all = refitting.read(polynomial);
     all.iter()
         .map(|[value, g @ ..]| {
@@ -157,13 +154,13 @@ fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize
         let sensible = u * u + v * v < largest * largest && r.distance < close;
         sensible.then_some([u, v, p[0], p[1]])
     };
-    let points: Buffer<Point> = readings.iter().zip(positions).filter_map(sensible).collect();
+    let points: Vec<Point> = readings.iter().zip(positions).filter_map(sensible).collect();
     let assignment = k_means(&points, groups);
     (0..groups)
         .filter_map(|g| {
             let member = || points.iter().zip(&assignment).filter(move |&(_, &a)| a == g).map(|(p, _)| p);
             let median = |k: usize| {
-                let values: Buffer<f64> = member().map(|p| p[k]).collect();
+                let values: Vec<f64> = member().map(|p| p[k]).collect();
                 median_f64(&values).unwrap_or(0.0)
             };
             (member().count() >= ENTRIES).then(|| [median(0), median(1)])

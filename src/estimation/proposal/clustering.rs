@@ -1,7 +1,5 @@
 //! Clustering of flows and positions: Lloyd's k-means with farthest-first initialisation.
 
-use crate::workspace::Buffer;
-
 /// A point: flow and position, in comparable units.
 pub(super) type Point = [f64; 4];
 
@@ -13,9 +11,9 @@ fn distance(a: &Point, b: &Point) -> f64 {
 }
 
 /// The group of every point, below `groups`.
-pub(super) fn k_means(points: &[Point], groups: usize) -> Buffer<usize> {
+pub(super) fn k_means(points: &[Point], groups: usize) -> Vec<usize> {
     let mut centres = farthest_first(points, groups);
-    let mut assignment = Buffer::filled(points.len(), 0);
+    let mut assignment = vec![0; points.len()];
     for _ in 0..MAX_ITERATIONS {
         let mut changed = false;
         // Sum and number of the points of each group.
@@ -54,7 +52,7 @@ fn farthest_first(points: &[Point], groups: usize) -> Vec<Point> {
         mean.iter_mut().zip(point).for_each(|(m, p)| *m += p / count);
     }
     let mut centres = vec![mean];
-    let mut nearest: Buffer<f64> = points.iter().map(|p| distance(p, &mean)).collect();
+    let mut nearest: Vec<f64> = points.iter().map(|p| distance(p, &mean)).collect();
     while centres.len() < groups {
         let Some((farthest, _)) = nearest.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) else { break };
         let centre = points[farthest];

@@ -31,7 +31,7 @@ pub(crate) struct Samples {
 pub(crate) fn samples(level: &Level, dominant: &AffineMotion, u: &Plane, v: &Plane) -> Samples {
     let (width, height) = (level.width(), level.height());
     let scaled = level.scaled(dominant);
-    let plane = || Plane::unwritten(width, height);
+    let plane = || Plane::filled(width, height, 0.0);
     let mut out = Samples { gx: plane(), gy: plane(), residual: plane() };
     let (mut px, mut py) = ([0.0; CHUNK], [0.0; CHUNK]);
     let (mut flow_u, mut flow_v) = ([0.0; CHUNK], [0.0; CHUNK]);

@@ -5,14 +5,13 @@ use super::{Proposal, distinct, translated};
 use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// At most `most` motions: the dominant one plus a translation.
 pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Vec<AffineMotion> {
     let (model, stride) = (level.model, level.model.tile_stride);
     let [columns, rows] = [level.width(), level.height()].map(|size| size.div_ceil(stride));
-    let mut certainties = Buffer::with_capacity(columns * rows);
-    let mut places = Buffer::with_capacity(columns * rows);
+    let mut certainties = Vec::with_capacity(columns * rows);
+    let mut places = Vec::with_capacity(columns * rows);
     for y in (stride / 2..level.height()).step_by(stride) {
         for x in (stride / 2..level.width()).step_by(stride) {
             let (u, v) = (flow.u.at(x, y), flow.v.at(x, y));

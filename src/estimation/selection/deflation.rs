@@ -13,7 +13,6 @@ use crate::order::descending;
 use crate::view::brightness::Photometric;
 use crate::view::cost::total;
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// When to add a motion, and how many proposals to try.
 #[derive(Clone, Copy, Debug)]
@@ -97,8 +96,7 @@ pub(crate) fn add_motions(
     loop {
         let current = smallest_cost(selected);
         let current_blocks = blocks(&current, model.block);
-        let gains: Buffer<f64> =
-            rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window, model)).collect();
+        let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window, model)).collect();
         let current_sample = current.thinned(thinning);
         let mut best: Option<(f64, ScoredMotion)> = None;
         let order = descending(gains.iter().copied());
@@ -157,9 +155,9 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflatio
 /// The connected region in which a cost improves most on the current one, as weights 0 and 1.
 fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane, margin: f32) -> Option<Plane> {
     let (width, height) = (improved.width(), improved.height());
-    let mask: Buffer<u8> = improved.values().iter().map(|&d| u8::from(d > margin)).collect();
+    let mask: Vec<u8> = improved.values().iter().map(|&d| u8::from(d > margin)).collect();
     let found = components(&mask, width, Connectivity::Eight);
-    let mut weights = Buffer::filled(found.list.len(), 0.0f64);
+    let mut weights = vec![0.0f64; found.list.len()];
     for ((&region, a), c) in found.of.iter().zip(current.values()).zip(cost.values()) {
         weights[region as usize] += f64::from(a - c);
     }
@@ -172,7 +170,7 @@ fn heaviest_region(improved: &Plane, current: &Plane, cost: &Plane, margin: f32)
     }
     let chosen = heaviest?;
     let values = found.of.iter().map(|&id| if id as usize == chosen { 1.0 } else { 0.0 }).collect();
-    Some(Plane::from_buffer(width, height, values))
+    Some(Plane::from_vec(width, height, values))
 }
 
 /// Removes motions whose absence costs less than their price, the cheapest first. The first motion always stays.

@@ -9,7 +9,6 @@ use crate::frame::warp::Footprint;
 use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// The most promising local corrections of the selected motions.
 pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<AffineMotion> {
@@ -18,9 +17,9 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<Af
     let winners = winners(selected);
     let [xx, xy, yy, xr, yr] = window_sums(level, selected, &winners);
     let [columns, rows] = [width, height].map(|size| size.div_ceil(stride));
-    let mut gains = Buffer::with_capacity(columns * rows);
-    let mut places = Buffer::with_capacity(columns * rows);
-    let mut steps = Buffer::with_capacity(columns * rows);
+    let mut gains = Vec::with_capacity(columns * rows);
+    let mut places = Vec::with_capacity(columns * rows);
+    let mut steps = Vec::with_capacity(columns * rows);
     for y in (stride / 2..height).step_by(stride) {
         for x in (stride / 2..width).step_by(stride) {
             let (a, c, d) = (xx.at(x, y) + flat, xy.at(x, y), yy.at(x, y) + flat);
@@ -53,8 +52,8 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<Af
 }
 
 /// Index of the cheapest motion at every pixel.
-fn winners(selected: &[ScoredMotion]) -> Buffer<usize> {
-    let mut winners = Buffer::filled(selected[0].cost.values().len(), 0);
+fn winners(selected: &[ScoredMotion]) -> Vec<usize> {
+    let mut winners = vec![0; selected[0].cost.values().len()];
     for (p, winner) in winners.iter_mut().enumerate() {
         for k in 1..selected.len() {
             if selected[k].cost.values()[p] < selected[*winner].cost.values()[p] {
@@ -72,7 +71,7 @@ fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [
     let noise = level.noise * level.noise;
     let stride = level.stride as f64;
     let half = 0.5 * level.stride as f32;
-    let mut sums: [Plane; 5] = std::array::from_fn(|_| Plane::unwritten(width, height));
+    let mut sums: [Plane; 5] = std::array::from_fn(|_| Plane::filled(width, height, 0.0));
     for y in 0..height {
         for x in 0..width {
             let [u, v] = scaled[winners[y * width + x]].flow(x as f64, y as f64);

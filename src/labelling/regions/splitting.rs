@@ -12,7 +12,6 @@ use crate::motion::AffineMotion;
 use crate::view::brightness::Photometric;
 use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 fn smallest_part(pixels: usize, model: &Model) -> usize {
     model.smallest_part.max((model.smallest_share * pixels as f64) as usize)
@@ -63,9 +62,9 @@ fn two_bodies(
     level: &Level,
     (label, motion): (usize, &AffineMotion),
     region: &[usize],
-    mut second: Buffer<bool>,
+    mut second: Vec<bool>,
     rounds: usize,
-) -> Option<([AffineMotion; 2], Buffer<bool>)> {
+) -> Option<([AffineMotion; 2], Vec<bool>)> {
     let (width, height) = (level.width(), level.height());
     let model = level.model;
     // As far as a Gaussian window of this deviation reaches.
@@ -110,8 +109,8 @@ fn two_bodies(
 }
 
 /// Which pixels of a region are not connected with most of it; none if all of them are.
-fn apart(region: &[usize], width: usize) -> Option<Buffer<bool>> {
-    let mut mask = Buffer::filled((region.last()? / width + 1) * width, 0u8);
+fn apart(region: &[usize], width: usize) -> Option<Vec<bool>> {
+    let mut mask = vec![0u8; (region.last()? / width + 1) * width];
     region.iter().for_each(|&p| mask[p] = 1);
     let found = components(&mask, width, Connectivity::Eight);
     let parts = found.list.iter().enumerate().filter(|(_, part)| part.label == 1);
@@ -120,7 +119,7 @@ fn apart(region: &[usize], width: usize) -> Option<Buffer<bool>> {
 }
 
 /// Which pixels of a region lie beyond its centre along its long axis.
-fn far_half(region: &[usize], width: usize) -> Buffer<bool> {
+fn far_half(region: &[usize], width: usize) -> Vec<bool> {
     let n = region.len() as f64;
     let place = |p: usize| ((p % width) as f64, (p / width) as f64);
     let (mut cx, mut cy) = (0.0, 0.0);
@@ -142,7 +141,7 @@ fn far_half(region: &[usize], width: usize) -> Buffer<bool> {
 
 /// Number of neighbouring pairs of the region that the split separates.
 fn inner_border(region: &[usize], second: &[bool], width: usize, height: usize) -> usize {
-    let mut side = Buffer::filled(width * height, 0u8);
+    let mut side = vec![0u8; width * height];
     for (&p, &s) in region.iter().zip(second) {
         side[p] = 1 + u8::from(s);
     }

@@ -19,7 +19,6 @@ use crate::lanes::lower;
 use crate::motion::AffineMotion;
 use crate::view::cost::{Comparison, CostModel};
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// Size of a tile, working pixels: as wide as a chunk of a row, low enough to follow a border. For speed.
 const TILE: [usize; 2] = [32, 8];
@@ -37,7 +36,7 @@ pub(crate) struct CoarseLabelling<'a> {
     /// Factor of the noise variance.
     pub(crate) variance_inflation: &'a Plane,
     /// For every label, the pixels at which it may be occluded.
-    pub(crate) hidden: &'a [Buffer<bool>],
+    pub(crate) hidden: &'a [Vec<bool>],
     pub(crate) colours: Option<&'a ColourPrices>,
 }
 
@@ -63,10 +62,9 @@ struct Region {
 }
 
 /// The labels of the working size.
-pub(crate) fn sharpened(coarse: &CoarseLabelling<'_>, fine: &WorkingLevel<'_>, solver: Solver) -> Buffer<u8> {
+pub(crate) fn sharpened(coarse: &CoarseLabelling<'_>, fine: &WorkingLevel<'_>, solver: Solver) -> Vec<u8> {
     let (width, height) = (fine.level.width(), fine.level.height());
-    let mut labels: Buffer<u8> =
-        (0..width * height).map(|p| coarse.labels[coarse.pixel(p % width, p / width)]).collect();
+    let mut labels: Vec<u8> = (0..width * height).map(|p| coarse.labels[coarse.pixel(p % width, p / width)]).collect();
     let comparisons = Comparisons::new(fine);
     for region in regions(coarse.contested(width, height)) {
         region.solve(coarse, fine, &comparisons, solver, &mut labels);
@@ -106,7 +104,7 @@ impl Region {
         // The pixels around the tiles keep their labels and act as boundary conditions.
         let area = self.area.grown(1, width, height);
         let rows = || area.rows.clone().map(|y| y * width + area.columns.start..y * width + area.columns.end);
-        let mut start = Buffer::with_capacity(area.width() * area.height());
+        let mut start = Vec::with_capacity(area.width() * area.height());
         rows().for_each(|row| start.extend_from_slice(&labels[row]));
         let mut present = [false; 256];
         let competing = self.tiles.iter().flat_map(|tile| &tile.labels);
@@ -116,7 +114,7 @@ impl Region {
         present.iter().zip(0..).for_each(|(&l, k)| number[usize::from(l)] = k);
         let fixed = |&label: &u8| {
             let cost = start.iter().map(|&l| if l == label { 0.0 } else { FAR });
-            Plane::from_buffer(area.width(), area.height(), cost.collect())
+            Plane::from_vec(area.width(), area.height(), cost.collect())
         };
         let mut costs: Vec<Plane> = present.iter().map(fixed).collect();
         let mut borders = Borders::uniform(area.width(), area.height(), fine.coherence.smoothness);
@@ -130,7 +128,7 @@ impl Region {
             around.rows.start = around.rows.start.max(corner[1] + 1) - 1;
             borders.follow(fine.picture, &price, &around, corner);
         }
-        let numbered: Buffer<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();
+        let numbered: Vec<u8> = start.iter().map(|&l| number[usize::from(l)]).collect();
         let solved = borders.solve_from(&costs, solver, &numbered);
         for (row, solved) in rows().zip(solved.chunks_exact(area.width())) {
             labels[row].iter_mut().zip(solved).for_each(|(label, &k)| *label = present[usize::from(k)]);

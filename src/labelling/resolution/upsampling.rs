@@ -7,7 +7,6 @@ use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::lanes::each_with;
 use crate::model::Model;
-use crate::workspace::Buffer;
 
 /// Radius of the filter's windows, full-size pixels. Not varied: the sums below are made for it.
 const RADIUS: usize = 4;
@@ -69,7 +68,7 @@ pub(crate) fn enlarged(small: &Plane, width: usize, height: usize) -> Plane {
     let size = [small.width(), small.height()];
     let scale = factor(size[0], width).max(factor(size[1], height));
     let patch = Patch::enlarged(Area::whole(width, height), size, scale, |x, y| small.at(x, y));
-    Plane::from_buffer(width, height, patch.values)
+    Plane::from_vec(width, height, patch.values)
 }
 
 /// The power of two between two sizes of one side.
@@ -122,12 +121,12 @@ fn place(x: usize, scale: usize, size: usize) -> (usize, f32) {
 /// Values of the pixels of an area; rows and columns are addressed as in the frame.
 struct Patch {
     area: Area,
-    values: Buffer<f32>,
+    values: Vec<f32>,
 }
 
 impl Patch {
     fn from_fn(area: Area, f: impl Fn(usize, usize) -> f32) -> Patch {
-        let mut values = Buffer::with_capacity(area.width() * area.height());
+        let mut values = Vec::with_capacity(area.width() * area.height());
         for y in area.rows.clone() {
             values.extend(area.columns.clone().map(|x| f(x, y)));
         }
@@ -137,7 +136,7 @@ impl Patch {
     /// Bilinear enlargement of an area from values at a `scale`-th of the size: full-size pixel X lies at X / scale.
     fn enlarged(area: Area, [width, height]: [usize; 2], scale: usize, at: impl Fn(usize, usize) -> f32) -> Patch {
         // A row of the small grid at the columns of the area.
-        let stretched = |y: usize, row: &mut Buffer<f32>| {
+        let stretched = |y: usize, row: &mut Vec<f32>| {
             row.clear();
             row.extend(area.columns.clone().map(|x| {
                 let (left, share) = place(x, scale, width);
@@ -145,9 +144,9 @@ impl Patch {
                 a + share * (b - a)
             }));
         };
-        let [mut top, mut bottom] = [0; 2].map(|_| Buffer::with_capacity(area.width()));
+        let [mut top, mut bottom] = [0; 2].map(|_| Vec::with_capacity(area.width()));
         let mut between = None;
-        let mut values = Buffer::with_capacity(area.width() * area.height());
+        let mut values = Vec::with_capacity(area.width() * area.height());
         for y in area.rows.clone() {
             let (upper, share) = place(y, scale, height);
             if between != Some(upper) {
@@ -187,10 +186,10 @@ impl Patch {
         let skipped = touched.start - self.area.columns.start;
         let left = RADIUS - (area.columns.start - touched.start);
         let right = (area.columns.end + RADIUS).saturating_sub(width);
-        let mut sums = Buffer::filled(touched.len(), 0.0f32);
-        let mut padded = Buffer::unwritten(left + touched.len() + right);
+        let mut sums = vec![0.0f32; touched.len()];
+        let mut padded = vec![0.0; left + touched.len() + right];
         let (mut two, mut four) = (padded.clone(), padded.clone());
-        let mut mean = Patch { values: Buffer::unwritten(area.width() * area.height()), area };
+        let mut mean = Patch { values: vec![0.0; area.width() * area.height()], area };
         let top = mean.area.rows.start;
         for y in mean.area.rows.clone() {
             let row = |y: usize| &self.row(y.saturating_sub(RADIUS).min(height - 1))[skipped..];

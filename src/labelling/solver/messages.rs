@@ -22,7 +22,6 @@
 use wide::f32x4;
 
 use super::potts::{FORBIDDEN, Potts, cut};
-use crate::workspace::Buffer;
 
 /// Labels are padded to 2, 3, 4, 8 or 16.
 pub(super) const MAX_LABELS: usize = 16;
@@ -50,7 +49,7 @@ type Step = [f32; ROWS];
 
 /// Labels, and a lower bound of the energy.
 pub(super) struct Solution {
-    pub(super) labels: Buffer<u8>,
+    pub(super) labels: Vec<u8>,
     #[cfg_attr(not(test), allow(dead_code))]
     pub(super) bound: f64,
 }
@@ -80,7 +79,7 @@ pub(super) fn minimise(problem: &Potts<'_>, levels: usize, iterations: usize) ->
     }
 
     let grid = &mut pyramid[0];
-    let mut labels = Buffer::filled(grid.width * grid.height, 0u8);
+    let mut labels = vec![0u8; grid.width * grid.height];
     let (mut best, mut lowest) = (labels.clone(), f64::INFINITY);
     let mut bound = f64::NEG_INFINITY;
     let unread = if iterations <= FEW { iterations } else { 0 };
@@ -127,14 +126,14 @@ struct Grid {
     /// Number of labels with the padding.
     labels: usize,
     /// For every step, the costs of each label.
-    costs: Buffer<Step>,
+    costs: Vec<Step>,
     /// Weight of the edge from p to its right and to its lower neighbour; 0 where there is none.
-    to_right: Buffer<Step>,
-    to_below: Buffer<Step>,
+    to_right: Vec<Step>,
+    to_below: Vec<Step>,
     /// Message on the edge from p to its right neighbour and to its lower neighbour, for every step that of each label; all 0 where there
     /// is none.
-    right: Buffer<Step>,
-    down: Buffer<Step>,
+    right: Vec<Step>,
+    down: Vec<Step>,
 }
 
 impl Grid {
@@ -149,7 +148,7 @@ impl Grid {
                 Some(plane) => stagger(&|y| &plane.row(y)[..width], size, FORBIDDEN, costs, labels),
                 // Padding labels keep their price.
                 None => {
-                    let padding = Buffer::filled(width, PADDING);
+                    let padding = vec![PADDING; width];
                     stagger(&|_| &padding, size, PADDING, costs, labels);
                 }
             }
@@ -164,8 +163,8 @@ impl Grid {
     /// A grid without costs, weights and messages.
     fn unconnected(width: usize, height: usize, labels: usize) -> Self {
         let steps = height.div_ceil(ROWS) * (width + BEHIND);
-        let none = |count: usize| Buffer::filled(count, [0.0; ROWS]);
-        let [right, down] = [0; 2].map(|_| Buffer::default());
+        let none = |count: usize| vec![[0.0; ROWS]; count];
+        let [right, down] = [0; 2].map(|_| Vec::new());
         Grid {
             width,
             height,
@@ -217,7 +216,7 @@ impl Grid {
 
     /// Sets all messages to zero.
     fn clear_messages(&mut self) {
-        self.right = Buffer::filled(self.costs.len(), [0.0; ROWS]);
+        self.right = vec![[0.0; ROWS]; self.costs.len()];
         self.down = self.right.clone();
     }
 
@@ -359,8 +358,8 @@ impl Grid {
     fn read_out(&self, labels: &mut [u8]) -> f64 {
         let steps = self.steps();
         let mut energy = 0.0;
-        let mut found_in = Buffer::filled(steps, [0.0; ROWS]);
-        let mut row_above: Buffer<f32> = Buffer::filled(self.width, 0.0);
+        let mut found_in = vec![[0.0; ROWS]; steps];
+        let mut row_above: Vec<f32> = vec![0.0; self.width];
         for (first, labels) in (0..).step_by(steps).zip(labels.chunks_mut(ROWS * self.width)) {
             let mut sums = [0.0f64; ROWS];
             let (mut last, mut weights, mut weights_down) = (f32x4::ZERO, f32x4::ZERO, f32x4::ZERO);

@@ -1,8 +1,6 @@
 //! The labelling energy `E(l) = Σ_p D_p(l_p) + Σ_pq w_pq [l_p ≠ l_q]` on the 4-connected grid.
 
 use crate::frame::Plane;
-#[cfg(test)]
-use crate::workspace::Buffer;
 
 /// Largest absolute cost of a pixel under a label. Larger costs and NaN mean "forbidden" and are cut to this.
 pub(super) const FORBIDDEN: f32 = 1e7;
@@ -101,7 +99,7 @@ impl Potts<'_> {
 
     /// The label of least cost at every pixel, regardless of its neighbours; the first on ties.
     #[cfg(test)]
-    pub(crate) fn cheapest(&self) -> Buffer<u8> {
+    pub(crate) fn cheapest(&self) -> Vec<u8> {
         (0..self.width() * self.height())
             .map(|p| {
                 let mut best = 0;

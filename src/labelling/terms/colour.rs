@@ -8,13 +8,12 @@
 use crate::frame::Plane;
 use crate::frame::palette::{COLOURS, Palette};
 use crate::model::Model;
-use crate::workspace::Buffer;
 
 /// Cost of each colour under each label.
 #[derive(Clone, Debug)]
 pub(crate) struct ColourPrices {
     /// The costs of all labels for the first colour, for the second, …
-    table: Buffer<f32>,
+    table: Vec<f32>,
     labels: usize,
 }
 
@@ -51,7 +50,7 @@ fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Mo
     let half = halves(palette.width(), labels.len(), model.colour_block);
     let tables = [0, 1].map(|which| {
         let of_half = |(&weight, &half): (&f32, &u8)| if half == which { weight } else { 0.0 };
-        posterior(palette, labels, &weights.iter().zip(&half).map(of_half).collect::<Buffer<f32>>(), n, model)
+        posterior(palette, labels, &weights.iter().zip(&half).map(of_half).collect::<Vec<f32>>(), n, model)
     });
     let mut information = vec![(0.0f32, 0.0f32); n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
@@ -66,8 +65,8 @@ fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Mo
 }
 
 /// Which half of the blocks, 0 or 1, every pixel belongs to.
-fn halves(width: usize, pixels: usize, block: usize) -> Buffer<u8> {
-    let mut halves = Buffer::with_capacity(pixels);
+fn halves(width: usize, pixels: usize, block: usize) -> Vec<u8> {
+    let mut halves = Vec::with_capacity(pixels);
     for y in 0..pixels / width {
         halves.extend((0..width).map(|x| ((x / block + y / block) % 2) as u8));
     }
@@ -75,7 +74,7 @@ fn halves(width: usize, pixels: usize, block: usize) -> Buffer<u8> {
 }
 
 /// By how much each pixel's own motion is cheaper than the next one.
-fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
+fn margins(costs: &[Plane], labels: &[u8]) -> Vec<f32> {
     let next = |p: usize, own: usize| {
         let others = (0..costs.len()).filter(|&l| l != own).map(|l| costs[l].values()[p]);
         others.fold(f32::INFINITY, |least, cost| if cost < least { cost } else { least })
@@ -86,9 +85,9 @@ fn margins(costs: &[Plane], labels: &[u8]) -> Buffer<f32> {
 
 /// Probability of every label for every colour, all labels equally likely beforehand; from pixels with these weights.
 #[inline(never)]
-fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> Buffer<f32> {
+fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> Vec<f32> {
     let smallest = model.colour_support;
-    let mut table = Buffer::filled(n * COLOURS, 0.0f32);
+    let mut table = vec![0.0f32; n * COLOURS];
     let mut totals = vec![1e-9f32; n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
         table[palette.index(p) * n + usize::from(label)] += weight;

@@ -9,7 +9,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::{CostModel, cheapest, cost_where_seen};
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// Label cost of every motion at every pixel; the first is the dominant motion.
 ///
@@ -33,8 +32,8 @@ impl LabelCosts {
         let cost = |motion| cost_where_seen(level, motion, CostModel::labels(level.model));
         let mut costs: Vec<Plane> = motions.iter().map(cost).collect();
         let mut inflation_rows = VarianceInflation::new(cheapest(&costs, f32::INFINITY), level.model);
-        let mut inflation = Plane::unwritten(level.width(), level.height());
-        let mut seen = Buffer::unwritten(level.width());
+        let mut inflation = Plane::filled(level.width(), level.height(), 0.0);
+        let mut seen = vec![0.0; level.width()];
         for y in 0..level.height() {
             inflation_rows.write(y, inflation.row_mut(y));
             seen.fill(f32::INFINITY);

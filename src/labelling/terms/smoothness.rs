@@ -8,7 +8,6 @@ use crate::labelling::solver::potts::Potts;
 use crate::labelling::solver::{Solver, minimise};
 use crate::lanes::whole;
 use crate::model::Model;
-use crate::workspace::Buffer;
 
 /// Prices of borders between neighbours.
 #[derive(Clone, Debug)]
@@ -64,12 +63,12 @@ impl Borders {
     }
 
     /// The labels of least energy found, never worse than those given.
-    pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Buffer<u8> {
+    pub(crate) fn solve_from(&self, costs: &[Plane], solver: Solver, labels: &[u8]) -> Vec<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, Some(labels))
     }
 
     /// The labels of least energy found.
-    pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Buffer<u8> {
+    pub(crate) fn solve(&self, costs: &[Plane], solver: Solver) -> Vec<u8> {
         minimise(&Potts { costs, horizontal: &self.horizontal, vertical: &self.vertical }, solver, None)
     }
 }

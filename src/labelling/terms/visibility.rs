@@ -9,7 +9,6 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::cost::inverse;
 use crate::view::level::Level;
-use crate::workspace::Buffer;
 
 /// Costs in which a motion pays no more than [`Model::hidden`] for pixels that it moves behind another object.
 ///
@@ -22,7 +21,7 @@ pub(crate) fn with_visibility(
     labels: &[u8],
     object_bias: f32,
 ) -> Vec<Plane> {
-    let hide = |(k, hidden): (usize, Buffer<bool>)| {
+    let hide = |(k, hidden): (usize, Vec<bool>)| {
         let most = most_where_hidden(k, object_bias, level.model);
         let mut out = costs[k].clone();
         for (c, _) in out.values_mut().iter_mut().zip(&hidden).filter(|(_, hidden)| **hidden) {
@@ -39,7 +38,7 @@ pub(crate) fn most_where_hidden(label: usize, object_bias: f32, model: &Model) -
 }
 
 /// For every motion, the pixels at which [`with_visibility`] limits its cost.
-pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Buffer<bool>> {
+pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<Vec<bool>> {
     let landed = landed(level, motions, labels);
     let hidden = |k: usize| {
         let covered = covered(level, &motions[k], &landed, k);
@@ -54,7 +53,7 @@ pub(crate) fn hidden_under(level: &Level, motions: &[AffineMotion], labels: &[u8
 }
 
 /// Pixels labelled dominant that the dominant motion moves behind an object.
-pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Buffer<bool> {
+pub(crate) fn hidden(level: &Level, motions: &[AffineMotion], labels: &[u8]) -> Vec<bool> {
     let covered = covered(level, &motions[BACKGROUND], &landed(level, motions, labels), BACKGROUND);
     covered.values().iter().zip(labels).map(|(&covered, &label)| is_background(label) && covered > 0.5).collect()
 }

@@ -7,11 +7,10 @@ use crate::labelling::terms::visibility::hidden;
 use crate::pair::Pair;
 use crate::pair::labels::Labelled;
 use crate::view::cost::{CostModel, cost};
-use crate::workspace::Buffer;
 
 /// Working pixels that leave the frame, are occluded, are not explained by their own motion, have no texture around them, or
 /// whose label is more likely wrong than right.
-pub(super) fn unknown(pair: &Pair, labelled: &Labelled, probabilities: &[Plane]) -> Buffer<bool> {
+pub(super) fn unknown(pair: &Pair, labelled: &Labelled, probabilities: &[Plane]) -> Vec<bool> {
     let level = pair.finest();
     let model = level.model;
     let limit = model.unknown_cost * model.label_truncation;

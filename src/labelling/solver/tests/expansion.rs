@@ -3,17 +3,16 @@
 
 use super::max_flow::GridFlow;
 use crate::labelling::solver::potts::Potts;
-use crate::workspace::Buffer;
 
 /// At most `sweeps` times over all labels, from `init` or from the cheapest label of every pixel. Exact for two labels.
-pub(super) fn minimise(problem: &Potts<'_>, sweeps: usize, init: Option<&[u8]>) -> Buffer<u8> {
+pub(super) fn minimise(problem: &Potts<'_>, sweeps: usize, init: Option<&[u8]>) -> Vec<u8> {
     let (width, height) = (problem.width(), problem.height());
     let mut flow = GridFlow::new(width, height);
     if problem.costs.len() == 2 {
         // From label 0 everywhere, one expansion of label 1 can reach any labelling.
-        return expanded(problem, &mut flow, &Buffer::filled(width * height, 0), 1);
+        return expanded(problem, &mut flow, &vec![0; width * height], 1);
     }
-    let mut labels = init.map_or_else(|| problem.cheapest(), Buffer::of);
+    let mut labels = init.map_or_else(|| problem.cheapest(), <[u8]>::to_vec);
     let mut energy = problem.energy(&labels);
     // Consecutive expansions without a change: after a whole round the labels have converged.
     let mut idle = 0;
@@ -36,7 +35,7 @@ pub(super) fn minimise(problem: &Potts<'_>, sweeps: usize, init: Option<&[u8]>) 
 ///
 /// Pixel p is on the source's side if it keeps its label. With A, B, C the price of an edge when both keep theirs, the
 /// first keeps, the second keeps: A + (C − A) x_p − C x_q + (B + C − A) (1 − x_p) x_q, the last bracket never negative.
-fn expanded(problem: &Potts<'_>, flow: &mut GridFlow, labels: &[u8], alpha: u8) -> Buffer<u8> {
+fn expanded(problem: &Potts<'_>, flow: &mut GridFlow, labels: &[u8], alpha: u8) -> Vec<u8> {
     let (width, height) = (problem.width(), problem.height());
     flow.reset();
     for y in 0..height {
@@ -59,7 +58,7 @@ fn expanded(problem: &Potts<'_>, flow: &mut GridFlow, labels: &[u8], alpha: u8) 
         }
     }
     flow.run();
-    let mut result = Buffer::of(labels);
+    let mut result = labels.to_vec();
     for y in 0..height {
         for x in 0..width {
             if flow.is_sink_side(x, y) {

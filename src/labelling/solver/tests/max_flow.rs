@@ -6,8 +6,6 @@
 
 use std::collections::VecDeque;
 
-use crate::workspace::Buffer;
-
 /// Directions right, left, down, up; `d ^ 1` is the opposite one.
 const RIGHT: usize = 0;
 const DOWN: usize = 2;
@@ -25,17 +23,17 @@ pub(super) struct GridFlow {
     height: usize,
     offsets: [isize; 4],
     /// Residual capacity of the edge in each direction.
-    residual: Buffer<[f32; 4]>,
+    residual: Vec<[f32; 4]>,
     /// Residual capacity from the source (> 0) or to the sink (< 0).
-    terminal: Buffer<f32>,
-    parent: Buffer<u8>,
-    in_sink_tree: Buffer<bool>,
+    terminal: Vec<f32>,
+    parent: Vec<u8>,
+    in_sink_tree: Vec<bool>,
     /// Distance to the terminal, valid at the time it was stamped.
-    distance: Buffer<u32>,
-    stamp: Buffer<u32>,
+    distance: Vec<u32>,
+    stamp: Vec<u32>,
     time: u32,
     active: VecDeque<u32>,
-    queued: Buffer<bool>,
+    queued: Vec<bool>,
     orphans: VecDeque<u32>,
 }
 
@@ -47,15 +45,15 @@ impl GridFlow {
             width,
             height,
             offsets: [1, -1, stride as isize, -(stride as isize)],
-            residual: Buffer::filled(nodes, [0.0; 4]),
-            terminal: Buffer::filled(nodes, 0.0),
-            parent: Buffer::filled(nodes, FREE),
-            in_sink_tree: Buffer::filled(nodes, false),
-            distance: Buffer::filled(nodes, 0),
-            stamp: Buffer::filled(nodes, 0),
+            residual: vec![[0.0; 4]; nodes],
+            terminal: vec![0.0; nodes],
+            parent: vec![FREE; nodes],
+            in_sink_tree: vec![false; nodes],
+            distance: vec![0; nodes],
+            stamp: vec![0; nodes],
             time: 0,
             active: VecDeque::new(),
-            queued: Buffer::filled(nodes, false),
+            queued: vec![false; nodes],
             orphans: VecDeque::new(),
         }
     }
