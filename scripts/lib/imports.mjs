@@ -61,7 +61,7 @@ function importsOfCrate(folder) {
   const imports = new Map([...modules].map((name) => [name, new Set()]));
   for (const file of readdirSync(join(root, folder), { recursive: true })) {
     const path = String(file).replaceAll('\\', '/');
-    if (!path.endsWith('.rs') || path === 'lib.rs' || path.includes('/tests/')) continue;
+    if (!path.endsWith('.rs') || path === 'lib.rs' || path.endsWith('/tests.rs')) continue;
     const own = path.split('/')[0].replace(/\.rs$/, '');
     const source = withoutTests(projectText(`${folder}/${path}`));
     // Both `crate::name` and the names in `crate::{name, name::item}`.

@@ -2,8 +2,8 @@
 //!
 //! Finding the minimum is NP-hard from three labels on. Message passing comes close and knows a lower bound of the energy. On generated
 //! scenes, 320×240 pixels, four labels: [`Solver::FAST`] is 0.1 % above the bound, twenty iterations 0.02 %. α-expansion by minimum cuts,
-//! which is exact for two labels and which the tests compare with, is at 0.00 % in about twice the time of twenty iterations. All of
-//! them mislabel the same number of pixels, because of the costs.
+//! which is exact for two labels, was at 0.00 % in about twice the time of twenty iterations. All of them mislabelled the same number of
+//! pixels, because of the costs.
 
 mod messages;
 pub(crate) mod potts;

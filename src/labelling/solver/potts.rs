@@ -96,22 +96,6 @@ impl Potts<'_> {
             }
         }
     }
-
-    /// The label of least cost at every pixel, regardless of its neighbours; the first on ties.
-    #[cfg(test)]
-    pub(crate) fn cheapest(&self) -> Vec<u8> {
-        (0..self.width() * self.height())
-            .map(|p| {
-                let mut best = 0;
-                for l in 1..self.costs.len() {
-                    if self.cost(l, p) < self.cost(best, p) {
-                        best = l;
-                    }
-                }
-                best as u8
-            })
-            .collect()
-    }
 }
 
 /// A value cut to ±`most`; NaN becomes `most`.
