@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use veronese::scene::{SceneOptions, generate};
+use scenes::{SceneOptions, generate};
 use veronese::{Quality, SegmentOptions, segment_pair};
 
 fn pair(criterion: &mut Criterion) {

@@ -1,7 +1,7 @@
 //! Two frames in, masks out, on a scene made for the purpose, whose truth is known: two things move before a background
 //! that moves as well.
 
-use veronese::scene::{SceneOptions, generate};
+use scenes::{SceneOptions, generate};
 use veronese::{Result, SegmentOptions, segment_pair};
 
 fn main() -> Result<()> {

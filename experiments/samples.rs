@@ -7,8 +7,8 @@ use std::path::Path;
 
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder};
+use scenes::{Scene, parallax};
 use veronese::codecs::{decode_image, encode_colour_png};
-use veronese::scene::{Scene, parallax};
 
 const FOLDER: &str = "www/public/samples";
 /// Twice the size on the page, for screens with small pixels.

@@ -18,12 +18,12 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', '--no-fail-fast', '--features', 'codecs']),
+    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', '--workspace', '--no-fail-fast', '--features', 'codecs']),
   },
   wasm: {
     lane: 'cargo',
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked']),
+    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', '--workspace']),
   },
   check: { lane: 'cargo', title: 'checks', run: runChecks },
   package: {

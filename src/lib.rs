@@ -10,18 +10,19 @@
 //! # Segmenting two frames
 //!
 //! [`segment_pair`] takes two [`Frame`]s and returns a [`Segmentation`]: one label for each pixel of the first frame and one
-//! [`AffineMotion`] for each label. The scene of this example is generated, so the true motions are known:
+//! [`AffineMotion`] for each label. In the frames of this example, whose true motions are known, an object moves before a
+//! background:
 //!
 //! ```
-//! use veronese::scene::{self, SceneOptions};
 //! use veronese::{SegmentOptions, segment_pair};
 //!
 //! # fn main() -> veronese::Result<()> {
-//! let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
-//! let found = segment_pair(scene.first(), scene.second(), &SegmentOptions::default(), &mut |_stage| {})?;
+//! # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
+//! # let (first, second, truths) = (scene.first(), scene.second(), &scene.motions);
+//! let found = segment_pair(first, second, &SegmentOptions::default(), &mut |_stage| {})?;
 //! assert_eq!(found.count, 2); // the background and one object
 //! assert_eq!(found.labels.len(), 160 * 120);
-//! for (motion, truth) in found.motions.iter().zip(&scene.motions) {
+//! for (motion, truth) in found.motions.iter().zip(truths) {
 //!     let ([u, v], [p, q]) = (motion.matrix.flow(80.0, 60.0), truth.flow(80.0, 60.0));
 //!     assert!((u - p).abs() < 0.5 && (v - q).abs() < 0.5); // pixels
 //! }
@@ -76,11 +77,10 @@
 //! [`relabel`] decides the labels anew, given a person's strokes. A [`Correction`] holds a set of possible motions for each pixel:
 //!
 //! ```
-//! use veronese::scene::{self, SceneOptions};
 //! use veronese::{AffineMotion, Correction, SegmentOptions, relabel, segment_pair};
 //!
 //! # fn main() -> veronese::Result<()> {
-//! # let scene = scene::generate(&SceneOptions { width: 96, height: 72, objects: 1, ..SceneOptions::default() })?;
+//! # let scene = scenes::generate(&scenes::SceneOptions { width: 96, height: 72, objects: 1, ..Default::default() })?;
 //! # let (first, second, options) = (scene.first(), scene.second(), SegmentOptions::default());
 //! let found = segment_pair(first, second, &options, &mut |_| {})?;
 //! let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();
@@ -141,7 +141,6 @@ mod points;
 mod progress;
 mod random;
 pub mod refinement;
-pub mod scene;
 mod view;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;

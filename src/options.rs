@@ -73,14 +73,14 @@ pub enum Method {
 /// How much work to spend on a pair of frames.
 ///
 /// ```
-/// use veronese::scene::{self, SceneOptions};
 /// use veronese::{Quality, SegmentOptions, segment_pair};
 ///
 /// # fn main() -> veronese::Result<()> {
-/// let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
+/// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
+/// # let (first, second) = (scene.first(), scene.second());
 /// for quality in [Quality::Fast, Quality::Best] {
 ///     let options = SegmentOptions { quality, ..SegmentOptions::default() };
-///     let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {})?;
+///     let found = segment_pair(first, second, &options, &mut |_| {})?;
 ///     assert_eq!(found.labels.len(), 160 * 120); // labels always have the size of the frames
 /// }
 /// # Ok(())
@@ -122,18 +122,18 @@ impl Default for FitOptions {
 /// Options of [`segment_pair`](crate::segment_pair).
 ///
 /// ```
-/// use veronese::scene::{self, SceneOptions};
 /// use veronese::{MotionCount, SegmentOptions, UNLABELLED, segment_pair};
 ///
 /// # fn main() -> veronese::Result<()> {
-/// let scene = scene::generate(&SceneOptions { width: 96, height: 72, ..SceneOptions::default() })?;
+/// # let scene = scenes::generate(&scenes::SceneOptions { width: 96, height: 72, ..Default::default() })?;
+/// # let (first, second) = (scene.first(), scene.second());
 /// let options = SegmentOptions {
 ///     motions: MotionCount::Given(2),
 ///     mark_unknown: true,
 ///     confidence: true,
 ///     ..SegmentOptions::default()
 /// };
-/// let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {})?;
+/// let found = segment_pair(first, second, &options, &mut |_| {})?;
 /// assert_eq!(found.count, 2);
 /// assert_eq!(found.labels.iter().filter(|&&label| label == UNLABELLED).count(), found.unlabelled);
 /// assert_eq!(found.confidence.map(|confidence| confidence.len()), Some(96 * 72));

@@ -14,13 +14,13 @@ pub struct Stage {
 /// A listener that is called at the beginning of every stage. A stage that is entered several times is reported each time.
 ///
 /// ```
-/// use veronese::scene::{self, SceneOptions};
 /// use veronese::{SegmentOptions, segment_pair};
 ///
 /// # fn main() -> veronese::Result<()> {
-/// let scene = scene::generate(&SceneOptions { width: 64, height: 48, objects: 1, ..SceneOptions::default() })?;
+/// # let scene = scenes::generate(&scenes::SceneOptions { width: 64, height: 48, objects: 1, ..Default::default() })?;
+/// # let (first, second) = (scene.first(), scene.second());
 /// let mut names = Vec::new();
-/// segment_pair(scene.first(), scene.second(), &SegmentOptions::default(), &mut |stage| {
+/// segment_pair(first, second, &SegmentOptions::default(), &mut |stage| {
 ///     println!("{} of {}: {}", stage.index + 1, stage.of, stage.name);
 ///     names.push(stage.name);
 /// })?;

@@ -4,7 +4,7 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
-use veronese::scene::{self, Scene, SceneOptions};
+use scenes::{Scene, SceneOptions};
 use veronese::{
     AffineMotion, Correction, Error, Relabelling, SegmentOptions, Segmentation, UNLABELLED, relabel, segment_pair,
 };
@@ -18,7 +18,7 @@ struct Case {
 
 impl Case {
     fn new(width: usize, height: usize, seed: u64) -> Case {
-        let scene = scene::generate(&SceneOptions { width, height, seed, ..SceneOptions::default() }).unwrap();
+        let scene = scenes::generate(&SceneOptions { width, height, seed, ..SceneOptions::default() }).unwrap();
         let options = SegmentOptions::default();
         let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {}).unwrap();
         let motions = found.motions.iter().map(|m| m.matrix).collect();

@@ -11,7 +11,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use serde_json::Value;
 use veronese::clip::{ClipOptions, ClipSegmenter};
 use veronese::codecs::{Picture, decode_image};
-use veronese::{Frame, Quality, SegmentOptions, Segmentation, scene, segment_pair};
+use veronese::{Frame, Quality, SegmentOptions, Segmentation, segment_pair};
 
 /// IoU of a mask with the outline of its object, unless the scene says otherwise.
 const OVERLAP: f64 = 0.85;
@@ -211,7 +211,7 @@ fn ground_is_at_rest_below_the_cars_of_a_camera_at_rest() {
         let options = SegmentOptions { quality, ..SegmentOptions::default() };
         let seeds = 53_000..53_030;
         let moving = seeds.filter(|&seed| {
-            let scene = scene::bare_ground(seed).unwrap();
+            let scene = scenes::bare_ground(seed).unwrap();
             let found = segment_pair(scene.first(), scene.second(), &options, &mut |_| {}).unwrap();
             displacement(&found, [scene.first().width(), scene.first().height()]) >= REST
         });

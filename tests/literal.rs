@@ -4,8 +4,8 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
-use veronese::scene::{self, Background, SceneOptions, Speed};
-use veronese::{KeptPixels, MotionCount, UNLABELLED, derivatives, literal_pair};
+use scenes::{Background, SceneOptions, Speed};
+use veronese::{Frame, KeptPixels, MotionCount, UNLABELLED, derivatives, literal_pair};
 
 /// Small motions of blurred images, whose intensity is nearly linear over the displacement.
 fn gentle() -> SceneOptions {
@@ -15,7 +15,7 @@ fn gentle() -> SceneOptions {
 #[test]
 fn one_motion_is_found_on_the_strongest_pixels() {
     for seed in 1..5 {
-        let scene = scene::generate(&SceneOptions { objects: 0, blur: 2.0, seed, ..gentle() }).unwrap();
+        let scene = scenes::generate(&SceneOptions { objects: 0, blur: 2.0, seed, ..gentle() }).unwrap();
         let keep = KeptPixels::Strongest(0.3);
         for before in [None, Some(scene.before())] {
             let found = literal_pair(scene.first(), scene.second(), before, keep, MotionCount::Given(1)).unwrap();
@@ -34,7 +34,7 @@ fn one_motion_is_found_on_the_strongest_pixels() {
 fn two_objects_on_a_static_background_are_separated() {
     // One of the few scenes on which it works. On most, border pixels, which follow no motion, spoil the fit.
     let options = SceneOptions { background: Background::Static, seed: 4, ..gentle() };
-    let scene = scene::generate(&options).unwrap();
+    let scene = scenes::generate(&options).unwrap();
     let keep = KeptPixels::Strongest(0.0665);
     let found = literal_pair(scene.first(), scene.second(), Some(scene.before()), keep, MotionCount::Given(2)).unwrap();
     assert_eq!(found.fit.count, 2);
@@ -51,7 +51,7 @@ fn two_objects_on_a_static_background_are_separated() {
 
 #[test]
 fn only_pixels_with_a_strong_temporal_derivative_are_labelled() {
-    let scene = scene::leader_follower(2).unwrap();
+    let scene = scenes::leader_follower(2).unwrap();
     let (first, second, before) = (scene.first(), scene.second(), Some(scene.before()));
     let change = derivatives(first, second, before).t;
     let keep = KeptPixels::default();
@@ -63,4 +63,15 @@ fn only_pixels_with_a_strong_temporal_derivative_are_labelled() {
     assert_eq!(found.kept, found.fit.labels.len());
     let strongest = literal_pair(first, second, before, KeptPixels::Strongest(0.0665), MotionCount::Given(2)).unwrap();
     assert!((1990..=1995).contains(&strongest.kept), "{}", strongest.kept);
+}
+
+#[test]
+fn invalid_input_is_rejected() {
+    let scene = scenes::leader_follower(1).unwrap();
+    let frame = scene.first();
+    let run = |second: &Frame, motions| literal_pair(frame, second, None, KeptPixels::default(), motions);
+    assert_eq!(run(frame, MotionCount::Auto).unwrap_err().code(), "too-few-measurements");
+    assert_eq!(run(frame, MotionCount::Given(11)).unwrap_err().code(), "invalid-option");
+    let small = Frame::from_rgba(20, 20, &[0; 1600]).unwrap();
+    assert_eq!(run(&small, MotionCount::Auto).unwrap_err().code(), "frame-size-mismatch");
 }

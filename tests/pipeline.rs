@@ -6,7 +6,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use std::ops::Range;
 
-use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
+use scenes::{Background, Scene, SceneOptions, Speed};
 use veronese::{
     AffineMotion, Frame, MAX_MOTIONS, MotionCount, Plane, Quality, SegmentOptions, Segmentation, SegmentedMotion,
     UNLABELLED, segment_pair,
@@ -126,7 +126,7 @@ fn generated_scenes_are_segmented() {
     let mut right = 0;
     let series = SceneOptions::series(300, &[(200, 150)]);
     for options in &series {
-        let scene = scene::generate(options).unwrap();
+        let scene = scenes::generate(options).unwrap();
         let result = segment(scene.first(), scene.second(), SegmentOptions::default());
         right += usize::from(result.count == scene.motions.len());
         all.push(mean(&overlaps(&scene, &result.labels)));
@@ -149,7 +149,7 @@ fn slow_objects_in_large_frames_are_found() {
             seed,
             ..SceneOptions::default()
         };
-        let scene = scene::generate(&options).unwrap();
+        let scene = scenes::generate(&options).unwrap();
         let result = segment(scene.first(), scene.second(), SegmentOptions::default());
         let overlap = mean(&overlaps(&scene, &result.labels));
         assert!(overlap > 0.9, "seed {seed}: {overlap}");
@@ -167,7 +167,7 @@ fn motions_are_measured_to_a_fraction_of_a_pixel() {
         seed: 12,
         ..SceneOptions::default()
     };
-    let scene = scene::generate(&options).unwrap();
+    let scene = scenes::generate(&options).unwrap();
     let result = segment(scene.first(), scene.second(), SegmentOptions::default());
     assert_eq!(result.count, 2);
     for (k, truth) in scene.motions.iter().enumerate() {
@@ -187,7 +187,7 @@ fn motions_are_measured_to_a_fraction_of_a_pixel() {
 fn the_leader_and_the_follower_are_separate_motions() {
     let mut told_apart = 0;
     for seed in 1..=5 {
-        let scene = scene::leader_follower(seed).unwrap();
+        let scene = scenes::leader_follower(seed).unwrap();
         let result = segment(scene.first(), scene.second(), SegmentOptions::default());
         told_apart += usize::from(result.count == 3 && mean(&overlaps(&scene, &result.labels)) > 0.85);
     }
@@ -198,7 +198,7 @@ fn the_leader_and_the_follower_are_separate_motions() {
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_leader_and_the_follower_are_separate_motions_if_their_number_is_given() {
-    let scene = scene::leader_follower(1).unwrap();
+    let scene = scenes::leader_follower(1).unwrap();
     let options = SegmentOptions { motions: MotionCount::Given(3), ..SegmentOptions::default() };
     let result = segment(scene.first(), scene.second(), options);
     assert!(result.count == 3 && mean(&overlaps(&scene, &result.labels)) > 0.85);
@@ -209,7 +209,7 @@ fn the_leader_and_the_follower_are_separate_motions_if_their_number_is_given() {
 #[test]
 fn a_bare_ground_is_left_at_rest_by_the_cars_on_it() {
     for seed in [1, 2] {
-        let scene = scene::bare_ground(seed).unwrap();
+        let scene = scenes::bare_ground(seed).unwrap();
         let result = segment(scene.first(), scene.second(), SegmentOptions::default());
         assert_eq!(result.motions[0].matrix, AffineMotion::STATIC, "seed {seed}");
         assert!(mean(&overlaps(&scene, &result.labels)) > 0.9, "seed {seed}: {:?}", overlaps(&scene, &result.labels));
@@ -305,7 +305,7 @@ fn the_motion_of_narrow_frames_is_found() {
 
 #[test]
 fn unrelated_frames_give_a_valid_result() {
-    let other = scene::generate(&SceneOptions { width: 96, height: 72, seed: 77, ..SceneOptions::default() }).unwrap();
+    let other = scenes::generate(&SceneOptions { width: 96, height: 72, seed: 77, ..SceneOptions::default() }).unwrap();
     for options in [
         SegmentOptions::default(),
         SegmentOptions { mark_unknown: true, ..SegmentOptions::default() },
@@ -318,7 +318,7 @@ fn unrelated_frames_give_a_valid_result() {
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_number_of_motions_can_be_given() {
-    let scene = scene::generate(&SceneOptions {
+    let scene = scenes::generate(&SceneOptions {
         width: 200,
         height: 150,
         objects: 2,
@@ -337,7 +337,7 @@ fn the_number_of_motions_can_be_given() {
 #[test]
 fn unknown_pixels_are_marked_on_request_only() {
     let options = SceneOptions { width: 200, height: 150, speed: Speed::Large, seed: 9, ..SceneOptions::default() };
-    let scene = scene::generate(&options).unwrap();
+    let scene = scenes::generate(&options).unwrap();
     let marked = SegmentOptions { mark_unknown: true, ..SegmentOptions::default() };
     let result = segment(scene.first(), scene.second(), marked);
     assert!(result.unlabelled > 0);
@@ -381,7 +381,7 @@ fn pixels_without_texture_are_unknown() {
 fn calibration(quality: Quality) -> [(usize, usize); 5] {
     let mut bins = [(0, 0); 5];
     for options in SceneOptions::series(1200, &[(200, 150)]) {
-        let scene = scene::generate(&options).unwrap();
+        let scene = scenes::generate(&options).unwrap();
         let options = SegmentOptions { confidence: true, quality, ..SegmentOptions::default() };
         let result = segment(scene.first(), scene.second(), options);
         // The meaning of a label is the layer that most of its pixels show.
@@ -417,7 +417,7 @@ fn more_confident_labels_are_more_often_right() {
 #[test]
 fn confidence_changes_nothing_else_and_other_numbers_of_motions_score_worse() {
     let scene =
-        scene::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
+        scenes::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
     let plain = segment(scene.first(), scene.second(), SegmentOptions::default());
     let asked = SegmentOptions { confidence: true, ..SegmentOptions::default() };
     let sure = segment(scene.first(), scene.second(), asked);
@@ -475,7 +475,7 @@ fn the_same_bits_on_every_target() {
         SegmentOptions { motions: MotionCount::Given(4), mark_unknown: true, ..SegmentOptions::default() },
     ];
     let scene =
-        scene::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
+        scenes::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
     let found = options.map(|o| fingerprint(&segment(scene.first(), scene.second(), o)));
     assert_eq!(found, expected, "found {found:#018x?}");
 }

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use protocol::Protocol;
-use veronese::scene::{ClipSceneOptions, Event, MIN_CLIP_FRAMES, SceneOptions, generate, generate_clip};
+use scenes::{ClipSceneOptions, Event, MIN_CLIP_FRAMES, SceneOptions, generate, generate_clip};
 use veronese::{
     FitOptions, Frame, Measurements, MotionCount, Quality, SegmentOptions, Stage, fit_motions, segment_pair,
 };

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use scenes::{ClipSceneOptions, Event};
 use serde::{Deserialize, Serialize};
-use veronese::scene::{ClipSceneOptions, Event};
 
 use crate::cases::Case;
 use crate::overlap::{each, masks, mean, of_label, worst};

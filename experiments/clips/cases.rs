@@ -4,8 +4,8 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use scenes::{ClipSceneOptions, Event, generate_clip};
 use veronese::codecs::{Picture, decode_image, encode_colour_png, encode_grey_png};
-use veronese::scene::{ClipSceneOptions, Event, generate_clip};
 use veronese::{Frame, UNLABELLED};
 
 /// Seed of the first generated clip.

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use veronese::scene::Event;
+use scenes::Event;
 
 use crate::cases::word;
 use crate::figures::{FIGURES, mean};

@@ -4,8 +4,8 @@ use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use scenes::{Background, Scene, SceneOptions, Speed};
 use veronese::codecs::{Picture, decode_image, encode_colour_png};
-use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
 use veronese::{AffineMotion, Frame};
 
 use super::scores::VOID;
@@ -283,9 +283,9 @@ impl Case {
     /// Reads or generates the frames.
     pub(crate) fn load(&self) -> Result<Data> {
         match &self.source {
-            Source::Scene(options) => Ok(of_scene(scene::generate(options)?)),
-            Source::Robots(seed) => Ok(of_scene(scene::leader_follower(*seed)?)),
-            Source::Bare(seed) => Ok(of_scene(scene::bare_ground(*seed)?)),
+            Source::Scene(options) => Ok(of_scene(scenes::generate(options)?)),
+            Source::Robots(seed) => Ok(of_scene(scenes::leader_follower(*seed)?)),
+            Source::Bare(seed) => Ok(of_scene(scenes::bare_ground(*seed)?)),
             Source::Folder(folder) => {
                 of_folder(folder, self.set).map_err(|error| format!("{}: {error}", folder.display()).into())
             }

@@ -6,8 +6,8 @@
 use std::error::Error;
 use std::fs;
 
+use scenes::leader_follower;
 use veronese::codecs::{decode_image, encode_indexed_png};
-use veronese::scene::leader_follower;
 use veronese::{Frame, KeptPixels, MotionCount, SegmentOptions, Segmentation, UNLABELLED, literal_pair, segment_pair};
 
 /// Share of the pixels that the paper keeps: 1995 of 150 × 200.

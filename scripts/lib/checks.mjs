@@ -9,21 +9,24 @@ const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
 // Only the benchmarks of masks and clips use the other feature.
 const ALL = ['--features', 'codecs,ablation'];
+// With the crate of generated scenes.
+const ALL_TARGETS = ['--locked', '--workspace', '--all-targets'];
+const TESTS = ['--locked', '--workspace', '--lib', '--tests'];
 const only = (feature) => ['--no-default-features', '--features', feature];
 const DENY = ['--', '-D', 'warnings'];
 const DOC = ['doc', '--locked', '--no-deps'];
 const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
 
 const CHECKS = [
-  ['formatting', 'cargo', ['fmt', '--check']],
-  ['clippy', 'cargo', ['clippy', '--locked', '--all-targets', ...DENY]],
-  ['clippy with codecs and ablation', 'cargo', ['clippy', '--locked', '--all-targets', ...ALL, ...DENY]],
+  ['formatting', 'cargo', ['fmt', '--all', '--check']],
+  ['clippy', 'cargo', ['clippy', ...ALL_TARGETS, ...DENY]],
+  ['clippy with codecs and ablation', 'cargo', ['clippy', ...ALL_TARGETS, ...ALL, ...DENY]],
   // Benchmarks and examples are native programs.
-  ['clippy for wasm', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...DENY]],
+  ['clippy for wasm', 'cargo', ['clippy', ...TESTS, ...WASM, ...DENY]],
   ['clippy for the core module', 'cargo', ['clippy', '--locked', '--lib', ...only('frames'), ...WASM, ...DENY]],
   ['clippy for the module of measurements', 'cargo', ['clippy', '--locked', '--lib', ...only('points'), ...WASM, ...DENY]],
-  ['clippy for wasm with codecs', 'cargo', ['clippy', '--locked', '--lib', '--tests', ...WASM, ...CODECS, ...DENY]],
-  ['documentation', 'cargo', [...DOC, ...CODECS], DENY_IN_DOCS],
+  ['clippy for wasm with codecs', 'cargo', ['clippy', ...TESTS, ...WASM, ...CODECS, ...DENY]],
+  ['documentation', 'cargo', [...DOC, '--workspace', ...CODECS], DENY_IN_DOCS],
   ['documentation for wasm', 'cargo', [...DOC, ...CODECS, ...WASM], DENY_IN_DOCS],
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],

@@ -11,13 +11,13 @@ use crate::frame::Frame;
 ///
 /// ```
 /// use veronese::clip::{ClipOptions, StreamSegmenter};
-/// use veronese::scene::{self, SceneOptions};
 ///
 /// # fn main() -> veronese::Result<()> {
-/// let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
+/// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
+/// # let (first, second) = (scene.first(), scene.second());
 /// let mut stream = StreamSegmenter::new(ClipOptions { look_ahead: Some(0), ..ClipOptions::default() })?;
 /// let mut frames = Vec::new();
-/// for frame in [scene.first(), scene.second()] {
+/// for frame in [first, second] {
 ///     frames.extend(stream.push(frame.clone())?);
 /// }
 /// frames.extend(stream.finish());

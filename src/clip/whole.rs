@@ -21,11 +21,10 @@ use crate::pair::settings::Settings;
 ///
 /// ```
 /// use veronese::clip::{ClipOptions, ClipSegmenter};
-/// use veronese::scene::{self, SceneOptions};
 ///
 /// # fn main() -> veronese::Result<()> {
-/// let scene = scene::generate(&SceneOptions { width: 160, height: 120, objects: 1, ..SceneOptions::default() })?;
-/// let frames = [scene.first(), scene.second()];
+/// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
+/// # let frames = [scene.first(), scene.second()];
 /// let mut segmenter = ClipSegmenter::new(ClipOptions::default())?;
 /// for frame in frames {
 ///     segmenter.push(frame.clone())?;

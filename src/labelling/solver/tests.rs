@@ -211,9 +211,8 @@ fn forbidden_labels_and_odd_sizes_are_handled() {
 /// Costs and weights as the pipeline has them, on a generated scene with the true motions: truncated squared residuals over
 /// the noise, weights that fall across image edges.
 fn scene_costs(seed: u64, width: usize, height: usize, objects: usize) -> Grid {
-    use crate::scene;
-    let options = scene::SceneOptions { width, height, objects, seed, ..scene::SceneOptions::default() };
-    let scene = scene::generate(&options).unwrap();
+    let options = scenes::SceneOptions { width, height, objects, seed, ..Default::default() };
+    let scene = scenes::generate(&options).unwrap();
     let (first, second) = (scene.first().luminance(), scene.second().luminance());
     let at = |x: f64, y: f64| {
         let (x, y) = (x.clamp(0.0, (width - 2) as f64), y.clamp(0.0, (height - 2) as f64));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::random::Random;
+use veronese::Random;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {

@@ -9,7 +9,7 @@ use super::camera::{Camera, swung};
 use super::occurrence::Watch;
 use super::path::{Path, with_stop};
 use super::{ClipSceneOptions, Event, Occurrence};
-use crate::random::Random;
+use veronese::Random;
 
 /// How often a script is drawn again if an event does not happen in it: another object may be in the way.
 const ATTEMPTS: usize = 40;

@@ -4,10 +4,7 @@ use super::layer::{Layer, Sprite};
 use super::shape::Shape;
 use super::warp::Warp;
 use super::{Scene, SceneOptions};
-use crate::error::{Error, Result};
-use crate::frame::Frame;
-use crate::motion::AffineMotion;
-use crate::random::Random;
+use veronese::{AffineMotion, Error, Frame, MAX_SIDE, MIN_SIDE, Random, Result};
 
 /// Renders the frames at t = −1, 0, 1. The layers are in order of depth: the first is the background, the last the nearest.
 pub(super) fn render(layers: &[Layer], options: &SceneOptions, random: &mut Random) -> Result<Scene> {
@@ -156,7 +153,7 @@ fn occlusion(motions: &[AffineMotion], first: &[u8], second: &[u8], width: usize
 pub(super) fn check(options: &SceneOptions) -> Result<()> {
     let bad = |name, reason: &str| Err(Error::InvalidOption { name, reason: reason.to_owned() });
     let (width, height) = (options.width, options.height);
-    let sides = crate::frame::MIN_SIDE..=crate::frame::MAX_SIDE;
+    let sides = MIN_SIDE..=MAX_SIDE;
     if !sides.contains(&width) || !sides.contains(&height) {
         return Err(Error::FrameSizeUnsupported { width, height, min: *sides.start(), max: *sides.end() });
     }

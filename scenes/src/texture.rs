@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 
 use super::shape::{Kind, Shape};
 use super::spline::Spline;
-use crate::random::Random;
+use veronese::Random;
 
-/// Weights of red, green and blue in the luminance (Rec. 601, as in [`Frame`](crate::Frame)).
+/// Weights of red, green and blue in the luminance (Rec. 601, as in [`Frame`](veronese::Frame)).
 const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
 /// Maximum number of patches.
 const MOST_PATCHES: usize = 4000;

@@ -1,6 +1,6 @@
 //! Affine maps of the plane: where a thing is at one time, as seen from another.
 
-use crate::motion::AffineMotion;
+use veronese::AffineMotion;
 
 /// `[a, b, c, d, e, f]` takes (x, y) to (a x + b y + c, d x + e y + f).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use wasm_bindgen_test::wasm_bindgen_test as test;
 
 use std::ops::Range;
 
-use veronese::scene::{ClipScene, ClipSceneOptions, Event, generate_clip};
+use scenes::{ClipScene, ClipSceneOptions, Event, generate_clip};
 
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;

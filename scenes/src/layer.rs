@@ -3,8 +3,7 @@
 use super::SceneOptions;
 use super::shape::Shape;
 use super::texture::{Style, Texture};
-use crate::motion::AffineMotion;
-use crate::random::Random;
+use veronese::{AffineMotion, Random};
 
 /// A texture with an outline.
 pub(super) struct Sprite {

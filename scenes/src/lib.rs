@@ -1,4 +1,5 @@
-//! Synthetic scenes with exact ground truth, for tests and benchmarks: textured objects in affine motion in front of a background.
+//! Synthetic scenes with exact ground truth, for the tests, benchmarks and examples of `veronese`: textured objects in affine motion in
+//! front of a background.
 //!
 //! Three frames at t = −1, 0, 1 show the same layers. The ground truth is that of the middle frame, `first`. The layers have a fixed
 //! depth order, so objects occlude each other and the background. Rendering has sub-pixel accuracy (cubic splines, anti-aliased
@@ -6,9 +7,9 @@
 //! the same bytes on every platform.
 //!
 //! ```
-//! use veronese::scene::{self, SceneOptions};
+//! use scenes::SceneOptions;
 //!
-//! let scene = scene::generate(&SceneOptions { objects: 3, seed: 7, ..SceneOptions::default() })?;
+//! let scene = scenes::generate(&SceneOptions { objects: 3, seed: 7, ..SceneOptions::default() })?;
 //! assert_eq!(scene.labels.len(), 320 * 240);
 //! assert_eq!(scene.motions.len(), 4); // the background and three objects
 //! # Ok::<(), veronese::Error>(())
@@ -24,10 +25,8 @@ mod warp;
 
 use std::f64::consts::PI;
 
-use crate::error::Result;
-use crate::frame::Frame;
-use crate::motion::AffineMotion;
-use crate::random::Random;
+use veronese::{AffineMotion, Frame, Random, Result};
+
 pub use clip::{ClipScene, ClipSceneOptions, Event, MAX_CLIP_FRAMES, MIN_CLIP_FRAMES, Occurrence, generate_clip};
 use layer::{RICH, background, object};
 use shape::{Kind, Shape};
@@ -53,7 +52,7 @@ pub enum Speed {
 ///
 /// ```
 /// use veronese::AffineMotion;
-/// use veronese::scene::{Background, SceneOptions, generate};
+/// use scenes::{Background, SceneOptions, generate};
 ///
 /// let small = SceneOptions { width: 64, height: 48, ..SceneOptions::default() };
 /// let still = generate(&SceneOptions { background: Background::Static, ..small })?;
@@ -72,7 +71,7 @@ pub enum Background {
 /// Contents of a scene and properties of the camera.
 ///
 /// ```
-/// use veronese::scene::{SceneOptions, generate};
+/// use scenes::{SceneOptions, generate};
 ///
 /// // The second frame is 20 % brighter.
 /// let options = SceneOptions { width: 64, height: 48, objects: 0, gain: 1.2, ..SceneOptions::default() };
@@ -134,7 +133,7 @@ impl SceneOptions {
     /// bias −3 to 3 grey levels.
     ///
     /// ```
-    /// use veronese::scene::SceneOptions;
+    /// use scenes::SceneOptions;
     ///
     /// let options = SceneOptions::default().with_drawn_camera();
     /// assert!((0.5..0.8).contains(&options.blur) && (0.97..1.03).contains(&options.gain));
@@ -153,7 +152,7 @@ impl SceneOptions {
     /// all, with one to four objects and random cameras. The seeds are `seed`, `seed + 1`, ….
     ///
     /// ```
-    /// use veronese::scene::SceneOptions;
+    /// use scenes::SceneOptions;
     ///
     /// let series = SceneOptions::series(40, &[(320, 240), (640, 480)]);
     /// assert_eq!((series.len(), series[11].width, series[11].seed), (12, 640, 51));
@@ -184,7 +183,7 @@ impl SceneOptions {
 /// Three frames, and the ground truth of the middle one.
 ///
 /// ```
-/// use veronese::scene::{SceneOptions, generate};
+/// use scenes::{SceneOptions, generate};
 ///
 /// let scene = generate(&SceneOptions { width: 96, height: 72, noise: 0.0, ..SceneOptions::default() })?;
 /// let (first, second) = (scene.first().luminance(), scene.second().luminance());
@@ -269,10 +268,10 @@ fn about(centre: [f64; 2], translation: [f64; 2], b: [f64; 4]) -> AffineMotion {
     AffineMotion::new([b[0], b[1], u, b[2], b[3], v])
 }
 
-/// Generates a scene. See the [module example](self).
+/// Generates a scene. See the [example of the crate](self).
 ///
 /// # Errors
-/// [`Error::FrameSizeUnsupported`](crate::Error::FrameSizeUnsupported); [`Error::InvalidOption`](crate::Error::InvalidOption) for an
+/// [`Error::FrameSizeUnsupported`](veronese::Error::FrameSizeUnsupported); [`Error::InvalidOption`](veronese::Error::InvalidOption) for an
 /// option out of the range given in [`SceneOptions`].
 pub fn generate(options: &SceneOptions) -> Result<Scene> {
     render::check(options)?;
@@ -322,7 +321,7 @@ pub fn generate(options: &SceneOptions) -> Result<Scene> {
 ///
 /// ```
 /// use veronese::AffineMotion;
-/// use veronese::scene::leader_follower;
+/// use scenes::leader_follower;
 ///
 /// let scene = leader_follower(1)?;
 /// assert_eq!((scene.first().width(), scene.first().height()), (200, 150));
@@ -363,7 +362,7 @@ pub fn leader_follower(seed: u64) -> Result<Scene> {
 /// front of a wall; 400 × 300 pixels, colour. Labels are 0 for the wall, 1 to 3 for the objects from far to near.
 ///
 /// ```
-/// use veronese::scene::parallax;
+/// use scenes::parallax;
 ///
 /// let scene = parallax(4)?;
 /// let speeds: Vec<f64> = scene.motions.iter().map(|motion| motion.flow(200.0, 150.0)[0].abs()).collect();
@@ -412,7 +411,7 @@ pub fn parallax(seed: u64) -> Result<Scene> {
 /// The scene is difficult because one affine motion fits all cars at once, and on the ground only a few small marks contradict it.
 ///
 /// ```
-/// use veronese::scene::bare_ground;
+/// use scenes::bare_ground;
 ///
 /// assert_eq!(bare_ground(2)?.motions.len(), 3); // the ground and two cars
 /// assert_eq!(bare_ground(3)?.motions.len(), 4);

@@ -4,7 +4,7 @@
 #[cfg(target_arch = "wasm32")]
 use wasm_bindgen_test::wasm_bindgen_test as test;
 
-use veronese::scene::{self, Background, Scene, SceneOptions, Speed};
+use scenes::{Background, Scene, SceneOptions, Speed};
 use veronese::{AffineMotion, Plane};
 
 /// Cubic convolution (Catmull–Rom) at (x, y); `None` within two pixels of the border.
@@ -59,7 +59,7 @@ fn warping_by_the_true_motions_restores_the_first_frame() {
     for (k, mut options) in SceneOptions::series(40, &[(200, 150)]).into_iter().enumerate() {
         options.noise = 0.0;
         options.colour = k % 2 == 1;
-        let scene = scene::generate(&options).unwrap();
+        let scene = scenes::generate(&options).unwrap();
         assert!(scene.motions.len() > 1, "scene {k} has no objects");
         let truth = residuals(&scene, &scene.motions);
         let wrong: Vec<_> = scene
@@ -84,7 +84,7 @@ fn occluded_pixels_are_those_hidden_or_outside() {
     let mut options =
         SceneOptions { speed: Speed::Large, background: Background::Static, seed: 5, ..Default::default() };
     options.noise = 0.0;
-    let scene = scene::generate(&options).unwrap();
+    let scene = scenes::generate(&options).unwrap();
     // Static background, away from blurred borders: pixels that are visible in both frames are equal in both.
     let (mut seen, mut hidden) = ((0.0, 0), (0.0, 0));
     for y in 3..237 {
@@ -106,7 +106,7 @@ fn occluded_pixels_are_those_hidden_or_outside() {
     assert!(seen.1 > 20_000 && seen.0 < 0.01 * f64::from(seen.1), "{seen:?}");
     assert!(hidden.1 > 100 && hidden.0 > 10.0 * f64::from(hidden.1), "{hidden:?}");
     // With a moving camera, a strip of the background leaves the frame.
-    let moving = scene::generate(&SceneOptions { objects: 0, speed: Speed::Large, ..Default::default() }).unwrap();
+    let moving = scenes::generate(&SceneOptions { objects: 0, speed: Speed::Large, ..Default::default() }).unwrap();
     for y in 0..240 {
         for x in 0..320 {
             let [u, v] = moving.motions[0].flow(x as f64, y as f64);
@@ -120,7 +120,7 @@ fn occluded_pixels_are_those_hidden_or_outside() {
 #[test]
 fn options_out_of_range_are_rejected() {
     let ok = SceneOptions { width: 32, height: 32, ..Default::default() };
-    let code = |o: SceneOptions| scene::generate(&o).map(|_| ()).unwrap_err().code();
+    let code = |o: SceneOptions| scenes::generate(&o).map(|_| ()).unwrap_err().code();
     assert_eq!(code(SceneOptions { width: 15, ..ok }), "frame-size-unsupported");
     assert_eq!(code(SceneOptions { height: 4097, ..ok }), "frame-size-unsupported");
     assert_eq!(code(SceneOptions { objects: 9, ..ok }), "invalid-option");
@@ -129,8 +129,8 @@ fn options_out_of_range_are_rejected() {
     assert_eq!(code(SceneOptions { gain: 0.0, ..ok }), "invalid-option");
     assert_eq!(code(SceneOptions { bias: f64::INFINITY, ..ok }), "invalid-option");
     assert_eq!(code(SceneOptions { blur: -0.1, ..ok }), "invalid-option");
-    assert!(scene::generate(&SceneOptions { width: 16, height: 16, objects: 8, ..ok }).is_ok());
-    assert!(scene::generate(&SceneOptions { objects: 0, ..ok }).unwrap().labels.iter().all(|&l| l == 0));
+    assert!(scenes::generate(&SceneOptions { width: 16, height: 16, objects: 8, ..ok }).is_ok());
+    assert!(scenes::generate(&SceneOptions { objects: 0, ..ok }).unwrap().labels.iter().all(|&l| l == 0));
 }
 
 /// FNV-1a, 64 bits.
@@ -152,11 +152,11 @@ fn the_same_seed_gives_the_same_bytes_on_every_machine() {
     let slow = SceneOptions { speed: Speed::Creeping, background: Background::Static, ..small };
     let colour = SceneOptions { colour: true, ..small }.with_drawn_camera();
     for (scene, expected) in [
-        (scene::generate(&colour), "31adf922886e66fc"),
-        (scene::generate(&slow), "e473519d7a17f54e"),
-        (scene::leader_follower(1), "f0155a546e06d78a"),
-        (scene::bare_ground(5), "63f098d37eb628ff"),
-        (scene::parallax(4), "11e0e8d8f0e01294"),
+        (scenes::generate(&colour), "31adf922886e66fc"),
+        (scenes::generate(&slow), "e473519d7a17f54e"),
+        (scenes::leader_follower(1), "f0155a546e06d78a"),
+        (scenes::bare_ground(5), "63f098d37eb628ff"),
+        (scenes::parallax(4), "11e0e8d8f0e01294"),
     ] {
         assert_eq!(format!("{:016x}", hash_of(&scene.unwrap())), expected);
     }

@@ -19,11 +19,8 @@ use super::render::{blur, check as check_scene, compose, exposed};
 use super::texture::Style;
 use super::warp::Warp;
 use super::{MAX_OBJECTS, SceneOptions};
-use crate::error::{Error, Result};
-use crate::frame::Frame;
-use crate::motion::AffineMotion;
-use crate::random::Random;
 use script::Script;
+use veronese::{AffineMotion, Error, Frame, Random, Result};
 
 /// Smallest number of frames of a clip: with fewer, events have no time to happen.
 pub const MIN_CLIP_FRAMES: usize = 30;
@@ -186,10 +183,10 @@ pub struct ClipScene {
 /// Generates a clip. Frames, labels, motions and flow are computed when asked for.
 ///
 /// ```
-/// use veronese::scene::{self, ClipSceneOptions, Event};
+/// use scenes::{ClipSceneOptions, Event};
 ///
 /// let events = vec![Event::HiddenByBackground, Event::Pan];
-/// let clip = scene::generate_clip(&ClipSceneOptions { width: 160, height: 120, events, ..ClipSceneOptions::default() })?;
+/// let clip = scenes::generate_clip(&ClipSceneOptions { width: 160, height: 120, events, ..ClipSceneOptions::default() })?;
 /// let hidden = &clip.occurrences[0];
 /// assert!(!clip.labels(hidden.frames.start)?.contains(&hidden.objects[0]));
 /// assert!(clip.labels(hidden.frames.end)?.contains(&hidden.objects[0]));
