@@ -7,7 +7,7 @@ import { PAIR, type Upload, axe, differences, done, expect, labelsOnCanvas, merg
 
 const [WIDTH, HEIGHT] = [320, 240];
 
-/** A textured thing of two parts that touch, before a textured ground: between the frames one part moves by 6 pixels, the other by 3. */
+/** A textured thing of two parts that touch, before a textured ground: between the frames one part moves by 6 pixels, the other by 4.2. */
 async function parts(name: string, t: number): Promise<Upload> {
   const wave = (x: number, y: number, seed: number): number => 128 + 60 * Math.sin(0.31 * x + 0.17 * y + seed) + 50 * Math.cos(0.29 * y - 0.11 * x * seed);
   const pixels = new Uint8Array(WIDTH * HEIGHT * 3);
@@ -15,8 +15,8 @@ async function parts(name: string, t: number): Promise<Upload> {
     const [x, y] = [p % WIDTH, Math.floor(p / WIDTH)];
     const inside = (left: number, top: number, width: number, height: number): boolean => x >= left && x < left + width && y >= top && y < top + height;
     const upper = inside(100 + 6 * t, 60, 90, 70);
-    const lower = inside(100 + 3 * t, 130, 90, 50);
-    const [u, seed] = upper ? [x - 6 * t, 2] : lower ? [x - 3 * t, 3] : [x, 1];
+    const lower = inside(100 + 4.2 * t, 130, 90, 50);
+    const [u, seed] = upper ? [x - 6 * t, 2] : lower ? [x - 4.2 * t, 3] : [x, 1];
     for (let c = 0; c < 3; c++) pixels[3 * p + c] = wave(u + 37 * c, y, seed);
   }
   return { name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(WIDTH, HEIGHT, pixels)) };
