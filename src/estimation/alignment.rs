@@ -274,7 +274,7 @@ impl RowBuffers {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
         let (robustness, smallest) = (how.robustness, level.model.smallest_weight);
-        let position_sigma = level.model.position_sigma * level.model.position_sigma;
+        let position = level.model.position_sigma * level.model.position_sigma;
         let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
         // The mean of both gradients, per pixel of this level.
         let half = 0.5 * level.stride as f32;
@@ -315,7 +315,7 @@ impl RowBuffers {
             let [weights_of, residuals_of, gx_of, gy_of] = &mut row;
             for k in 0..CHUNK {
                 let residual = second[k] - first[k] * (1.0 + gain) - bias;
-                let information = 1.0 / (noise + position_sigma * energy[k]);
+                let information = 1.0 / (noise + position * energy[k]);
                 let robust = robustness / (robustness + residual * residual * information);
                 let counts = at.inside(k) & if given[k] > smallest { u32::MAX } else { 0 };
                 let counted = |value: f32| f32::from_bits(value.to_bits() & counts);

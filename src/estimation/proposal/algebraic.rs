@@ -51,7 +51,7 @@ pub(crate) fn from_algebra(
 fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
     let model = level.model;
-    let position_sigma = model.position_sigma * model.position_sigma;
+    let position_variance = model.position_sigma * model.position_sigma;
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut places = Vec::with_capacity(width * height);
@@ -69,7 +69,7 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
                     continue;
                 }
                 let r = seen - level.first.at(x, y);
-                let e = r * r / (level.noise * level.noise + position_sigma * level.energy.at(x, y));
+                let e = r * r / (level.noise * level.noise + position_variance * level.energy.at(x, y));
                 let weight = e / (e + model.algebra_half);
                 if weight > model.algebra_weight {
                     places.push(y * width + x);
