@@ -36,6 +36,11 @@ export const test = base.extend<{ page: Page }>({
       if (!own || request.method() !== 'GET') complaints.push(`request: ${request.method()} ${request.url()}`);
     });
     await page.addInitScript(() => {
+      // What a visitor unfolds, most tests look at.
+      document.addEventListener('DOMContentLoaded', () => {
+        const inspect = document.querySelector('#inspect');
+        if (inspect instanceof HTMLDetailsElement) inspect.open = true;
+      });
       document.addEventListener('securitypolicyviolation', (event) => {
         console.error(`policy violated: ${event.violatedDirective} by ${event.blockedURI}`);
       });

@@ -138,7 +138,7 @@ export const INITIAL: State = {
   found: null,
   edits: NO_EDITS,
   kept: new Map(),
-  look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.5, outlines: true, arrows: false, residual: false, ...FRESH },
+  look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, arrows: false, residual: false, ...FRESH },
   viewport: WHOLE,
   tool: { name: 'look', radius: 8 },
   notice: null,

@@ -43,10 +43,14 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   // A select changes with every arrow key, so it only chooses.
   mergeWith.addEventListener('change', () => (merge.disabled = mergeWith.value === ''));
   merge.addEventListener('click', () => masks.merge(id, Number(mergeWith.value)));
-  row.addEventListener('focusin', () => session.select(id));
-  row.addEventListener('pointerdown', () => session.select(id));
+  // A row that is selected has its actions elsewhere: they would move away from the pointer.
+  const select = ({ target }: Event): void => {
+    if (!(target instanceof Element) || target.closest('.motion-actions') === null) session.select(id);
+  };
+  row.addEventListener('focusin', select);
+  row.addEventListener('pointerdown', select);
   // The background cannot be hidden: it is not painted.
-  for (const control of [shown, colour, solo]) control.hidden = id === 0;
+  for (const control of [shown, colour, solo, find(row, '.thumbnail', HTMLCanvasElement)]) control.hidden = id === 0;
 
   const refresh = (look: Look): void => {
     const called = nameOf(look, id);

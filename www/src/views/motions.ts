@@ -11,6 +11,7 @@ import { type Look, type Result, type State, type Store, isAwaited } from '../st
 import { copyText } from './clipboard.js';
 import { element, find, prefersStillness } from './markup.js';
 import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
+import { drawThumbnail } from './thumbnail.js';
 
 type Segmentation = Result['segmentation'];
 
@@ -38,7 +39,7 @@ export function mountMotions(root: ParentNode, store: Store, session: Session): 
       const typed = typedName(list, before.look.kind);
       const held = heldRow(list);
       list.replaceChildren();
-      rows = result === null || live !== null || look.kind === 'objects' ? [] : fillList(list, now, result.segmentation, store, session);
+      rows = result === null || live !== null || look.kind === 'objects' ? [] : fillList(list, look, result, store, session);
       if (result?.pair.first === before.result?.pair.first) typed?.(list, now);
       if (held !== null && typed === null) focusRow(list, held, look);
     }
@@ -65,12 +66,14 @@ function typedName(list: HTMLElement, kind: Look['kind']): ((list: HTMLElement, 
   };
 }
 
-function fillList(list: HTMLElement, { look }: State, segmentation: Segmentation, store: Store, session: Session): Refresh[] {
+function fillList(list: HTMLElement, look: Look, result: Result, store: Store, session: Session): Refresh[] {
+  const { segmentation } = result;
   const masks = masksOf(segmentation, look.kind);
   return masks.map((mask) => {
     const { element: row, refresh } = maskRow('pair', mask.id, store, session);
     row.style.setProperty('--share', String(mask.share));
     find(row, '.motion-share', HTMLElement).textContent = strings.percent(mask.share);
+    drawThumbnail(find(row, '.thumbnail', HTMLCanvasElement), result, mask.motions.map(({ label }) => label));
     list.append(row);
     const [main] = mask.motions;
     if (main === undefined) {

@@ -4,10 +4,11 @@ import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { Session } from '../session/session.js';
-import type { State, Store } from '../state/state.js';
+import type { Result, State, Store } from '../state/state.js';
 import { type Life, isLocked, livesOf } from '../state/tracked.js';
 import { find } from './markup.js';
 import { focusRow, heldRow, maskRow, offerMerging } from './mask-row.js';
+import { drawThumbnail } from './thumbnail.js';
 import { chooseTool } from './tools.js';
 
 interface Row {
@@ -58,6 +59,8 @@ function rowOf(id: number, store: Store, session: Session): Row {
   const { element: row, refresh } = maskRow('clip', id, store, session);
   const share = find(row, '.motion-share', HTMLElement);
   const facts = find(row, '.motion-facts', HTMLElement);
+  const thumbnail = find(row, '.thumbnail', HTMLCanvasElement);
+  let drawn: Result | null = null;
   const doubtful = find(row, '[data-action=doubtful]', HTMLButtonElement);
   const lock = find(row, '[data-action=lock]', HTMLButtonElement);
   const split = find(row, '[data-action=split]', HTMLButtonElement);
@@ -77,6 +80,8 @@ function rowOf(id: number, store: Store, session: Session): Row {
     const here = result?.segmentation.motions.find(({ label }) => label === id);
     share.textContent = here === undefined ? '' : strings.percent(here.share);
     if (id === 0) return;
+    // Where it is not in sight, it looks as it did.
+    if (result !== null && result !== drawn) drawThumbnail(thumbnail, (drawn = result), [id]);
     facts.textContent = factsOf(life, here === undefined && result !== null);
     const ready = life !== null && tracked !== null && tracked.spans.length > 0;
     for (const control of [lock, split, remove]) control.disabled = !ready;

@@ -22,12 +22,7 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
   camera.hidden = navigator.mediaDevices === undefined;
   const swap = find(root, '#swap', HTMLButtonElement);
   swap.addEventListener('click', () => session.swap());
-  const [header, main, stage] = ['.masthead', 'main', '#stage'].map((part) => find(root, part, HTMLElement)) as [HTMLElement, HTMLElement, HTMLElement];
-  // The picture is at the top, and may be under the header or above it.
-  const show = (): void => {
-    if (stage.getBoundingClientRect().top < header.getBoundingClientRect().bottom) main.scrollIntoView();
-  };
-  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, () => void session.openSample(sample).then(show))));
+  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, () => void session.openSample(sample))));
 
   const slots = (['first', 'second'] as const).map((slot) => {
     const box = find(root, `[data-slot=${slot}]`, HTMLElement);

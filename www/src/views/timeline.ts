@@ -19,14 +19,15 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
   const label = find(root, '#clip-name', HTMLElement);
   const note = find(root, '#clip-note', HTMLElement);
   const play = find(root, '#play', HTMLButtonElement);
+  const pair = find(document, '.clip-rows', HTMLElement);
   const sliders = (['first', 'second'] as const).map((slot) => {
-    const input = find(root, `[name=clip-${slot}]`, HTMLInputElement);
-    const readout = find(root, `#clip-${slot}-at`, HTMLElement);
+    const input = find(pair, `[name=clip-${slot}]`, HTMLInputElement);
+    const readout = find(pair, `#clip-${slot}-at`, HTMLElement);
     input.addEventListener('input', () => (readout.textContent = placeOf(store.get().timeline, input.valueAsNumber)));
     input.addEventListener('change', () => void session.choose(slot, input.valueAsNumber));
     return { slot, input, readout };
   });
-  for (const button of root.querySelectorAll<HTMLButtonElement>('[data-step]')) {
+  for (const button of document.querySelectorAll<HTMLButtonElement>('[data-step]')) {
     const [slot, by] = (button.dataset.step ?? '').split(' ');
     button.addEventListener('click', () => stepOne(store, session, slot as Slot | 'both', Number(by)));
   }
@@ -39,7 +40,7 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
       play.setAttribute('aria-label', playing ? strings.pause : strings.play);
     }
     if (timeline === before.timeline) return;
-    root.hidden = timeline === null;
+    root.hidden = pair.hidden = timeline === null;
     if (timeline === null) return;
     const { clip } = timeline;
     if (clip !== before.timeline?.clip) {

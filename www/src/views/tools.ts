@@ -11,7 +11,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   const names = ['look', 'brush', 'eraser', 'box'] as const;
   const radios = names.map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
   const size = find(form, '[name=radius]', HTMLInputElement);
-  const helps = names.map((name) => ({ name, help: find(form, `#tool-help [data-tool=${name}]`, HTMLElement) }));
+  const helps = names.map((name) => ({ name, help: find(document, `#tool-help [data-help=${name}]`, HTMLElement) }));
   const undo = find(form, '#undo', HTMLButtonElement);
   const redo = find(form, '#redo', HTMLButtonElement);
 
