@@ -23,12 +23,10 @@ interface Pairs {
 }
 
 type Shelf = typeof import('./shelf.js');
-type Say = (sentence: string, code?: string | null) => void;
 
 export class Projects {
   readonly #store: Store;
   readonly #pairs: Pairs;
-  readonly #say: Say;
   /** What has changed and is not written yet, by the fingerprint of its clip or the key of its pair. */
   readonly #changed = new Set<string>();
   /** Projects of files, until their frames are opened. */
@@ -43,10 +41,9 @@ export class Projects {
   #due = Infinity;
   #writing = false;
 
-  constructor(store: Store, pairs: Pairs, say: Say) {
+  constructor(store: Store, pairs: Pairs) {
     this.#store = store;
     this.#pairs = pairs;
-    this.#say = say;
     store.subscribe((now, before) => this.#watch(now, before));
     document.addEventListener('visibilitychange', () => {
       if (document.visibilityState === 'hidden') void this.#write();
@@ -73,9 +70,9 @@ export class Projects {
       const project = opened ?? (await (await this.#load()).get(subject.of, subject.name));
       // Browsers that read a video approximately may count other frames.
       if (project === null || project.frames === subject.frames) return project;
-      this.#say(strings.projects.otherFrames(subject.name, project.frames, subject.frames), 'frame-count-mismatch');
+      this.#store.say(strings.projects.otherFrames(subject.name, project.frames, subject.frames), 'frame-count-mismatch');
     } catch (error) {
-      this.#say(sentenceOf(error), codeOf(error));
+      this.#store.say(sentenceOf(error), codeOf(error));
     }
     return null;
   }
@@ -173,7 +170,7 @@ export class Projects {
   #refuse(sentence: string, code: string): void {
     if (this.#store.get().keeping === 'refused') return;
     this.#store.set({ keeping: 'refused' });
-    this.#say(sentence, code);
+    this.#store.say(sentence, code);
   }
 }
 

@@ -20,15 +20,15 @@ import { type Part, labellingOf, labelsIn, withLabelling } from '../correction/p
 import { Solutions, unpackedResult } from '../correction/solutions.js';
 import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../correction/strokes.js';
 import type { Colour } from '../drawing/palette.js';
-import { UNLABELLED, type Kind, keyOf, labelSet, merged, separated, ungrouped } from '../result/masks.js';
+import { UNLABELLED, keyOf, labelSet, merged, separated, ungrouped } from '../result/masks.js';
 import { type Kept, keptFrom } from '../state/kept.js';
 import { type FramePair, keyOfPair } from '../state/pair.js';
-import { FRESH, type Cause, type Look, type Result, type State, type Store } from '../state/state.js';
-import type { Segmenting } from './segmenting.js';
+import { FRESH, type Cause, type Look, type Result, type State, type Store, isPending } from '../state/state.js';
+import type { PairWorker } from './pair/worker.js';
 
 export class Correcting {
   readonly #store: Store;
-  readonly #segmenting: Segmenting;
+  readonly #segmenting: PairWorker;
   readonly #fail: (error: unknown) => void;
   readonly #solutions = new Solutions();
   /** Identifies the running request. */
@@ -38,7 +38,7 @@ export class Correcting {
   /** Ends the stroke that is being drawn. Set by the brush. */
   finishStroke: () => void = () => undefined;
 
-  constructor(store: Store, segmenting: Segmenting, fail: (error: unknown) => void) {
+  constructor(store: Store, segmenting: PairWorker, fail: (error: unknown) => void) {
     this.#store = store;
     this.#segmenting = segmenting;
     this.#fail = fail;
@@ -263,21 +263,6 @@ export class Correcting {
       look: { ...look, ...carried(before, segmentation, found), ...namesAndColours(edits.appearances, segmentation, found) },
     });
   }
-}
-
-/** Whether the segmentation was made with the current settings. */
-export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>): boolean {
-  return found !== null && (['motions', 'quality', 'markUnknown'] as const).every((name) => found.settings[name] === settings[name]);
-}
-
-/** Whether some strokes are not applied yet. */
-export function isPending({ result, edits }: Pick<State, 'result' | 'edits'>): boolean {
-  return result !== null && lastStroke(edits) !== result.under;
-}
-
-/** Whether a mask of this kind can be ungrouped. */
-export function isMerged(kind: Kind, motions: readonly unknown[]): boolean {
-  return kind === 'groups' && motions.length > 1;
 }
 
 function isSegmenting(run: State['run']): boolean {

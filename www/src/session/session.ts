@@ -3,7 +3,7 @@
 
 import type { Clip } from '../clips/clip.js';
 import { openClip } from '../clips/open.js';
-import { PageError, codeOf, sentenceOf } from '../common/errors.js';
+import { PageError } from '../common/errors.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS } from '../correction/edits.js';
 import type { Path, Stroke } from '../correction/strokes.js';
@@ -16,12 +16,13 @@ import { Projects } from '../projects/projects.js';
 import type { Kind } from '../result/masks.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import type { Settings } from '../state/settings.js';
-import { FRESH, type Look, type Run, type State, type Store } from '../state/state.js';
+import { FRESH, type Look, type Run, type State, type Store, isCurrent, isPending } from '../state/state.js';
 import { type Tracked, isTracked, livesOf } from '../state/tracked.js';
-import { Correcting, isCurrent, isPending } from './correcting.js';
-import type { LiveView } from './live.js';
+import { Correcting } from './correcting.js';
+import type { LiveView } from './camera/live.js';
+import { fail, loaded, report } from './failures.js';
 import { frameOf, resultOf } from '../state/objects.js';
-import { Segmenting } from './segmenting.js';
+import { PairWorker } from './pair/worker.js';
 import { Tracking } from './tracking.js';
 
 /** Distance between the two frames when a clip is opened. */
@@ -35,7 +36,7 @@ const STARTING: Run = { phase: 'working', work: 'segmenting', stage: '', index: 
 
 export class Session {
   readonly #store: Store;
-  readonly #segmenting = new Segmenting();
+  readonly #segmenting = new PairWorker();
   readonly correcting: Correcting;
   readonly tracking: Tracking;
   readonly projects: Projects;
@@ -50,13 +51,13 @@ export class Session {
 
   constructor(store: Store) {
     this.#store = store;
-    this.correcting = new Correcting(store, this.#segmenting, (error) => this.#fail(error));
+    this.correcting = new Correcting(store, this.#segmenting, (error) => fail(this.#store, error));
     this.tracking = new Tracking(store, {
       changed: (before) => this.#showObjects(before),
-      failed: (error) => this.say(sentenceOf(error), codeOf(error)),
+      failed: (error) => report(this.#store, error),
       say: (sentence) => this.say(sentence),
     });
-    this.projects = new Projects(store, this.tracking, (sentence, code) => this.say(sentence, code));
+    this.projects = new Projects(store, this.tracking);
   }
 
   /** Opens a sample and segments it. `swapped`: a pair with the second frame first. */
@@ -83,11 +84,11 @@ export class Session {
       const given = [...(await files)];
       const isOfClip = slot === null && this.#store.get().tracked !== null;
       const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
-      const importing = maybe ? await loaded(import('./importing.js')) : null;
+      const importing = maybe ? await loaded(import('./clip/importing.js')) : null;
       if (importing === null || !(await importing.areMasks(given, this.#store.get()))) await this.#openGiven(given, slot);
       else await importing.importMasks(given, this.#store, this);
     } catch (error) {
-      this.say(sentenceOf(error), codeOf(error));
+      report(this.#store, error);
     }
   }
 
@@ -225,8 +226,8 @@ export class Session {
     return this.#open(
       async (): Promise<() => void> => {
         const turn: number = this.#opened;
-        const { LiveView } = await loaded(import('./live.js'));
-        this.#live ??= new LiveView(this.#store, (error) => this.#fail(error));
+        const { LiveView } = await loaded(import('./camera/live.js'));
+        this.#live ??= new LiveView(this.#store, (error) => fail(this.#store, error));
         return turn === this.#opened ? this.#live.start() : () => undefined;
       },
       (show) => {
@@ -294,7 +295,7 @@ export class Session {
       );
       if (segmentation !== null) await this.correcting.accept(segmentation, { first, second }, began, true);
     } catch (error) {
-      this.#fail(error);
+      fail(this.#store, error);
     }
   }
 
@@ -362,7 +363,7 @@ export class Session {
 
   /** Shows a notice; with a code it is an error. */
   say(sentence: string, code: string | null = null): void {
-    this.#store.set({ notice: { sentence, code } });
+    this.#store.say(sentence, code);
   }
 
   /** The images of the folder that the person chooses, or all; `null` if none. */
@@ -488,7 +489,7 @@ export class Session {
     } catch (error) {
       if (turn !== this.#opened) return;
       this.#stopOpening();
-      this.say(sentenceOf(error), codeOf(error));
+      report(this.#store, error);
     }
   }
 
@@ -543,23 +544,12 @@ export class Session {
     if (current) this.correcting.settle('restored');
     else if (!passing) void this.segment();
   }
-
-  #fail(error: unknown): void {
-    this.#store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
-  }
 }
 
 /** Opens a sample as the folder that it is. */
 async function openFolderOf(sample: SampleClip): Promise<Clip> {
   const [{ openFolder }, images] = await Promise.all([loaded(import('../clips/folder.js')), Promise.all(sample.frames.map(fetchImage))]);
   return openFolder(images.map((image) => withPath(image, `${sample.id}/${image.name}`)), sample);
-}
-
-/** A part of the page that is loaded when it is used. */
-function loaded<T>(part: Promise<T>): Promise<T> {
-  return part.catch(() => {
-    throw new PageError('not-loaded', strings.errors.notLoaded);
-  });
 }
 
 function clamped(index: number, count: number): number {

@@ -15,8 +15,8 @@ import type { Settings } from '../state/settings.js';
 import type { Store } from '../state/state.js';
 import { MOST_OBJECTS, contains, editsIn, fromSpan, lockedIn, numbersOf, spanAt, theirNumber, toSpan, withRun } from '../state/spans.js';
 import { type ClipRun, type Range, type SolvedPairs, type Span, type Tracked, type TrackedFrame, type Version, isLocked, isTracked, savedOf, untracked, versionOf } from '../state/tracked.js';
-import { ClipFrames, STOPPED } from './clip-frames.js';
-import { TimeLeft } from './time-left.js';
+import { ClipFrames, STOPPED } from './clip/frames.js';
+import { TimeLeft } from './clip/time-left.js';
 
 /** Masks are shown at most this often while they come, milliseconds. */
 const OFTEN = 100;

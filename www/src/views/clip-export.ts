@@ -43,7 +43,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
     const files = [...(masks.files ?? [])];
     masks.value = ''; // so that choosing the same file again is a change
     if (files.length === 0) return;
-    import('../session/importing.js').then(
+    import('../session/clip/importing.js').then(
       ({ importMasks }) => importMasks(files, store, session),
       () => session.say(strings.errors.notLoaded, 'not-loaded'),
     );

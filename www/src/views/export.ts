@@ -7,9 +7,8 @@ import { FORMATS, LABELS, MASKS, OVERLAY, RESULT } from '../export/formats.js';
 import { linkFor } from '../export/link.js';
 import { commandFor, scriptFor } from '../export/reproduce.js';
 import { save } from '../export/save.js';
-import { isPending } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
-import type { Result, State, Store } from '../state/state.js';
+import { type Result, type State, type Store, isPending } from '../state/state.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
 

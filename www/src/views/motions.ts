@@ -3,9 +3,8 @@
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { centreOf, partsOf, visibleParts } from '../result/describe.js';
-import { UNLABELLED, type Mask, masksOf } from '../result/masks.js';
+import { UNLABELLED, type Mask, isMerged, masksOf } from '../result/masks.js';
 import { NOTATIONS } from '../result/matrices.js';
-import { isMerged } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
 import { type Look, type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { copyText } from './clipboard.js';

@@ -3,9 +3,8 @@
 import { strings } from '../common/strings.js';
 import { strokesOf } from '../correction/edits.js';
 import { constraintsFrom } from '../correction/strokes.js';
-import { isPending } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
-import type { Cause, Result, State, Store } from '../state/state.js';
+import { type Cause, type Result, type State, type Store, isPending } from '../state/state.js';
 import { find } from './markup.js';
 
 /** The progress bar appears after this time, so that it does not flash up, milliseconds. */

@@ -1,9 +1,9 @@
 //! The frames of a clip as the package reads them: whenever it needs one, so that few stay in memory, or none.
 
-import type { Clip } from '../clips/clip.js';
-import { smaller } from '../frames/frame.js';
-import type { LoadedFrame } from '../state/pair.js';
-import type { Range } from '../state/tracked.js';
+import type { Clip } from '../../clips/clip.js';
+import { smaller } from '../../frames/frame.js';
+import type { LoadedFrame } from '../../state/pair.js';
+import type { Range } from '../../state/tracked.js';
 
 type Picture = Pick<LoadedFrame, 'data' | 'width' | 'height'>;
 

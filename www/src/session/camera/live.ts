@@ -1,14 +1,14 @@
 //! The camera: its frames are a clip that never ends, segmented at quality `fast` as they come. Objects keep their numbers and colours.
 
 import { type Pixels, type Segmentation, Segmenter } from 'veronese';
-import { PageError } from '../common/errors.js';
-import { strings } from '../common/strings.js';
-import { NO_EDITS } from '../correction/edits.js';
-import { frameFromBitmap } from '../frames/frame.js';
-import type { Kind } from '../result/masks.js';
-import { segmentationFrom } from '../state/objects.js';
-import type { LoadedFrame } from '../state/pair.js';
-import { FRESH, type Result, type State, type Store } from '../state/state.js';
+import { PageError } from '../../common/errors.js';
+import { strings } from '../../common/strings.js';
+import { NO_EDITS } from '../../correction/edits.js';
+import { frameFromBitmap } from '../../frames/frame.js';
+import type { Kind } from '../../result/masks.js';
+import { segmentationFrom } from '../../state/objects.js';
+import type { LoadedFrame } from '../../state/pair.js';
+import { FRESH, type Result, type State, type Store } from '../../state/state.js';
 import { Numbering } from './numbering.js';
 
 /** Longer side of the frames, pixels: small enough for a high rate. */

@@ -1,12 +1,12 @@
 //! Masks from files of annotation tools, taken as corrections of the frames that they are of. Loaded on first use, with its texts.
 
 import { readAnnotations } from 'veronese/formats';
-import { PageError, codeOf, sentenceOf } from '../common/errors.js';
-import { strings } from '../common/strings.js';
-import { pathOf, selectOpenable } from '../frames/files.js';
-import type { State, Store } from '../state/state.js';
-import type { Tracked } from '../state/tracked.js';
-import type { Tracking } from './tracking.js';
+import { PageError, codeOf, sentenceOf } from '../../common/errors.js';
+import { strings } from '../../common/strings.js';
+import { pathOf, selectOpenable } from '../../frames/files.js';
+import type { State, Store } from '../../state/state.js';
+import type { Tracked } from '../../state/tracked.js';
+import type { Tracking } from '../tracking.js';
 
 /** What the page does with what was read. */
 interface Page {
