@@ -79,8 +79,8 @@ if (linked.kind !== null) store.look({ kind: linked.kind });
 window.addEventListener('hashchange', () => {
   const { settings, kind, sample, swapped } = settingsFromHash(location.hash);
   if (kind !== null) session.show(kind);
-  session.change(settings);
-  if (sample !== null) void session.openSample(sample, swapped);
+  session.pair.change(settings);
+  if (sample !== null) void session.open.sample(sample, swapped);
 });
 
-void session.openSample(linked.sample ?? SAMPLES[0], linked.swapped);
+void session.open.sample(linked.sample ?? SAMPLES[0], linked.swapped);

@@ -92,6 +92,8 @@ export interface State {
   readonly keptClips: ReadonlyMap<string, Tracked>;
   /** Whether the clip is being played. */
   readonly playing: boolean;
+  /** Whether a pointer is being dragged through the clip. */
+  readonly scrubbing: boolean;
   readonly live: Live | null;
   /** Whether something is being opened. The current pair stays until it is ready. */
   readonly opening: boolean;
@@ -125,6 +127,11 @@ export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>
   return found !== null && (['motions', 'quality', 'markUnknown'] as const).every((name) => found.settings[name] === settings[name]);
 }
 
+/** Whether the frames on screen are left at once, so that their pair is not segmented. */
+export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrubbing'>): boolean {
+  return playing || scrubbing;
+}
+
 /** Whether some strokes are not applied yet. */
 export function isPending({ result, edits }: Pick<State, 'result' | 'edits'>): boolean {
   return result !== null && lastStroke(edits) !== result.under;
@@ -139,6 +146,7 @@ export const INITIAL: State = {
   tracked: null,
   keptClips: new Map(),
   playing: false,
+  scrubbing: false,
   live: null,
   opening: false,
   settings: DEFAULT_SETTINGS,

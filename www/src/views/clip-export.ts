@@ -28,7 +28,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
       const exported = exportOfClip(tracked, look, (done, of) => (told.textContent = strings.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
       await saveFiles(format, await format.make(exported));
-      session.tracking.saved(tracked);
+      session.clip.saved(tracked);
       told.textContent = strings.exported(exported.objects.length, exported.count);
     } catch (error) {
       told.textContent = '';
@@ -42,11 +42,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
   masks.addEventListener('change', () => {
     const files = [...(masks.files ?? [])];
     masks.value = ''; // so that choosing the same file again is a change
-    if (files.length === 0) return;
-    import('../session/clip/importing.js').then(
-      ({ importMasks }) => importMasks(files, store, session),
-      () => session.say(strings.errors.notLoaded, 'not-loaded'),
-    );
+    if (files.length > 0) void session.open.masks(files);
   });
   masks.disabled = false;
 

@@ -36,12 +36,12 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
 
   const download = async (format: Format): Promise<void> => {
     try {
-      const state = await session.correcting.settled();
+      const state = await session.masks.settled();
       if (state.result === null) return;
       const content = await format.make(exportOf(state.result, state.look, background.checked));
       save(content, format.type, format.file);
       // The report alone holds no masks.
-      if (format !== RESULT && !isPending(state)) session.correcting.saved(state);
+      if (format !== RESULT && !isPending(state)) session.masks.saved(state);
     } catch {
       session.say(strings.errors.notWritten(format.title), 'not-written');
     }

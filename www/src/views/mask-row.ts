@@ -26,7 +26,7 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   const solo = find(row, '[data-action=solo]', HTMLButtonElement);
   const mergeWith = find(row, '[data-action=merge-with]', HTMLSelectElement);
   const merge = find(row, '[data-action=merge]', HTMLButtonElement);
-  const masks = of === 'pair' ? session.correcting : session.tracking;
+  const masks = of === 'pair' ? session.masks : session.objects;
 
   shown.addEventListener('change', () => {
     const hidden = new Set(store.get().look.hidden);

@@ -133,7 +133,7 @@ function fillMore(row: HTMLElement, { id, motions }: Mask, masks: readonly Mask[
   stabilise.addEventListener('click', () => toggleStabilised(store, id));
   const ungroup = find(row, '[data-action=ungroup]', HTMLButtonElement);
   ungroup.hidden = !isMerged(store.get().look.kind, motions);
-  ungroup.addEventListener('click', () => session.correcting.ungroup(id));
+  ungroup.addEventListener('click', () => session.masks.ungroup(id));
   const others = masks.map((mask) => mask.id).filter((other) => other !== id && other !== UNLABELLED);
   return (look) => {
     offerMerging(row, others, look);

@@ -18,7 +18,7 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   let patience = 0;
 
   cancel.addEventListener('click', () => session.cancel());
-  again.addEventListener('click', () => session.again());
+  again.addEventListener('click', () => session.pair.again());
 
   store.subscribe((now, before) => {
     const same = (['run', 'pair', 'result', 'edits', 'live', 'opening'] as const).every((part) => now[part] === before[part]);
