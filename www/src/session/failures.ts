@@ -1,7 +1,6 @@
 //! What fails ends as a notice in the state, and the page stays usable.
 
-import { PageError, codeOf, sentenceOf } from '../common/errors.js';
-import { strings } from '../common/strings.js';
+import { codeOf, sentenceOf } from '../common/errors.js';
 import type { Store } from '../state/state.js';
 
 export function report(store: Store, error: unknown): void {
@@ -11,11 +10,4 @@ export function report(store: Store, error: unknown): void {
 /** Reports what ended the work on the pair. */
 export function fail(store: Store, error: unknown): void {
   store.set({ run: { phase: 'failed' }, notice: { sentence: sentenceOf(error), code: codeOf(error) } });
-}
-
-/** A part of the page that is loaded when it is used. */
-export function loaded<T>(part: Promise<T>): Promise<T> {
-  return part.catch(() => {
-    throw new PageError('not-loaded', strings.errors.notLoaded);
-  });
 }

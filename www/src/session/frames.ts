@@ -81,7 +81,7 @@ export class Frames {
     const life = lives[(selected < 0 ? 0 : selected + Number(seen)) % lives.length];
     if (life === undefined) return;
     this.#parts.shown.select(life.id);
-    this.#store.set({ tracked: { ...tracked, checked: new Map(tracked.checked).set(life.id, life.doubtful.index) } });
+    this.#store.clip({ checked: new Map(tracked.checked).set(life.id, life.doubtful.index) });
     void this.goTo(life.doubtful.index);
   }
 

@@ -4,6 +4,7 @@
 import type { Clip } from '../clips/clip.js';
 import { openClip } from '../clips/open.js';
 import { PageError } from '../common/errors.js';
+import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import { type ImageFolder, folderOfAll, foldersOf, likelyFrames, nameIn, selectOpenable, withPath } from '../frames/files.js';
 import { fetchImage, frameFromBlob } from '../frames/frame.js';
@@ -15,7 +16,7 @@ import type { Store } from '../state/state.js';
 import { isTracked } from '../state/tracked.js';
 import type { Objects } from './clip/objects.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
-import { loaded, report } from './failures.js';
+import { report } from './failures.js';
 import { FRAMES_APART, type Frames } from './frames.js';
 import type { Opening } from './opening.js';
 import type { Shown } from './shown.js';
@@ -63,9 +64,8 @@ export class Open {
       const given = [...(await files)];
       const isOfClip = slot === null && this.#store.get().tracked !== null;
       const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
-      const importing = maybe ? await loaded(import('./clip/importing.js')) : null;
-      if (importing !== null && (await importing.areMasks(given, this.#store.get()))) await this.masks(given);
-      else await this.#frames(given, slot);
+      const areMasks = maybe && (await (await importing()).areMasks(given, this.#store.get()));
+      await (areMasks ? this.masks(given) : this.#frames(given, slot));
     } catch (error) {
       report(this.#store, error);
     }
@@ -74,9 +74,8 @@ export class Open {
   /** Imports masks for the frames of the open clip. */
   async masks(files: readonly File[]): Promise<void> {
     try {
-      const { importMasks } = await loaded(import('./clip/importing.js'));
       const { objects, shown } = this.#parts;
-      await importMasks(files, this.#store, objects, shown);
+      await (await importing()).importMasks(files, this.#store, objects, shown);
     } catch (error) {
       report(this.#store, error);
     }
@@ -160,6 +159,10 @@ export class Open {
     const image = await fetchImage(sample[slot]);
     return { ...(await frameFromBlob(image, image.name, this.#store.get().settings.longestSide)), origin: { sample, slot } };
   }
+}
+
+function importing(): Promise<typeof import('./clip/importing.js')> {
+  return loaded(import('./clip/importing.js'));
 }
 
 /** Opens a sample as the folder that it is. */

@@ -42,7 +42,6 @@ export class Opening {
   /** Gives up whatever is being opened. Returns the signal of what is opened next. */
   giveUp(): AbortSignal {
     this.#current.abort();
-    this.#current = new AbortController();
-    return this.#current.signal;
+    return (this.#current = new AbortController()).signal;
   }
 }

@@ -1,16 +1,12 @@
-//! What the page does: views call the parts, and read the state. The session makes the parts, and sends what concerns the masks on screen to
-//! those of the pair or of the clip.
+//! What the page does, in parts: views call them, and read the state. Here they are put together; each says in its file what it owns.
 
-import type { Path, Stroke } from '../correction/strokes.js';
 import { Projects } from '../projects/projects.js';
-import type { Kind } from '../result/masks.js';
 import type { Store } from '../state/state.js';
 import { Camera } from './camera/camera.js';
 import { Carrying } from './clip/carrying.js';
 import { Objects } from './clip/objects.js';
 import { ClipRuns } from './clip/runs.js';
 import { ClipSegmenting } from './clip/segmenting.js';
-import { KnownPairs } from './clip/known-pairs.js';
 import { Spans } from './clip/spans.js';
 import { Frames } from './frames.js';
 import { Open } from './open.js';
@@ -22,11 +18,12 @@ import { PairWorker } from './pair/worker.js';
 import { Playing } from './playing.js';
 import { Shown } from './shown.js';
 
-export class Session {
+export interface Session {
   readonly open: Open;
   readonly frames: Frames;
   readonly play: Playing;
   readonly camera: Camera;
+  readonly shown: Shown;
   /** Segmenting the pair, and the masks of the pair. */
   readonly pair: PairSegmenting;
   readonly masks: Masks;
@@ -34,74 +31,46 @@ export class Session {
   readonly clip: ClipSegmenting;
   readonly objects: Objects;
   readonly projects: Projects;
-  readonly #store: Store;
-  readonly #opening: Opening;
-  readonly #carrying: Carrying;
-  readonly #shown: Shown;
-
-  constructor(store: Store) {
-    this.#store = store;
-    const worker = new PairWorker();
-    const solving = new Solving(store, worker);
-    this.pair = new PairSegmenting(store, worker, solving);
-    this.masks = new Masks(store, solving);
-    this.#shown = new Shown(store, this.pair, solving, this.masks);
-    const runs = new ClipRuns(store);
-    const spans = new Spans(store, runs.segmenter);
-    const known = new KnownPairs();
-    this.clip = new ClipSegmenting(store, runs, spans, known, this.#shown);
-    this.#carrying = new Carrying(store, runs, spans, this.#shown);
-    this.objects = new Objects(store, this.#carrying);
-    this.projects = new Projects(store, known);
-    this.#opening = new Opening(store);
-    this.camera = new Camera(store, this.#opening, this.pair, this.masks, this.clip);
-    const { clip, masks, objects, projects, camera } = this;
-    const common = { clip, projects, opening: this.#opening, shown: this.#shown };
-    this.frames = new Frames(store, { ...common, masks, camera, worker });
-    this.play = new Playing(store, this.frames, this.pair);
-    this.open = new Open(store, { ...common, objects, frames: this.frames });
-  }
-
-  /** Shows masks of this kind. */
-  show(kind: Kind): void {
-    this.#shown.kind(kind);
-  }
-
-  /** Selects a mask. */
-  select(mask: number | null): void {
-    this.#shown.select(mask);
-  }
-
-  /** Begins a stroke with the selected mask. Returns what takes its path, or `null`, and tells why, if it would have no effect. */
-  beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
-    return this.#ofClip ? this.objects.beginStroke(tool) : this.masks.beginStroke(tool);
-  }
-
-  undo(): void {
-    if (this.#ofClip) this.#carrying.undo();
-    else this.masks.undo();
-  }
-
-  redo(): void {
-    if (this.#ofClip) this.#carrying.redo();
-    else this.masks.redo();
-  }
-
+  /** What strokes, undo and redo are about: the masks on screen. */
+  edited(): Masks | Objects;
   /** Stops what is being opened, else the run on the pair, else that on the clip. What is on screen stays. */
-  cancel(): void {
-    const { run, opening } = this.#store.get();
-    if (opening) this.#opening.stop();
-    else if (run.phase === 'working') this.pair.cancel();
-    else this.clip.cancel();
-  }
-
+  cancel(): void;
   /** Shows a notice; with a code it is an error. */
-  say(sentence: string, code: string | null = null): void {
-    this.#store.say(sentence, code);
-  }
+  say(sentence: string, code?: string | null): void;
+}
 
-  /** Whether the masks on screen are those of the clip. */
-  get #ofClip(): boolean {
-    return this.#store.get().look.kind === 'objects';
-  }
+export function sessionOf(store: Store): Session {
+  const worker = new PairWorker();
+  const solving = new Solving(store, worker);
+  const pair = new PairSegmenting(store, worker, solving);
+  const masks = new Masks(store, solving);
+  const shown = new Shown(store, pair, solving, masks);
+  const runs = new ClipRuns(store);
+  const spans = new Spans(store, runs.segmenter);
+  const clip = new ClipSegmenting(store, runs, spans, shown);
+  const objects = new Objects(store, new Carrying(store, runs, spans, shown));
+  const projects = new Projects(store, clip.solvedPairs);
+  const opening = new Opening(store);
+  const camera = new Camera(store, opening, pair, masks, clip);
+  const frames = new Frames(store, { opening, worker, camera, clip, masks, shown, projects });
+  return {
+    open: new Open(store, { opening, frames, projects, clip, objects, shown }),
+    frames,
+    play: new Playing(store, frames, pair),
+    camera,
+    shown,
+    pair,
+    masks,
+    clip,
+    objects,
+    projects,
+    edited: () => (store.get().look.kind === 'objects' ? objects : masks),
+    cancel: () => {
+      const { run, opening: isOpening } = store.get();
+      if (isOpening) opening.stop();
+      else if (run.phase === 'working') pair.cancel();
+      else clip.cancel();
+    },
+    say: (sentence, code) => store.say(sentence, code),
+  };
 }

@@ -61,7 +61,7 @@ export class Shown {
   version(version: Version, run: ClipRun): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
-    this.#store.set({ tracked: { ...tracked, ...versionOf(version), run } });
+    this.#store.clip({ ...versionOf(version), run });
     const { selected } = this.#store.get().look;
     const now = version.became.get(selected ?? 0);
     if (now !== undefined) this.#store.look({ selected: now === 0 ? null : now });

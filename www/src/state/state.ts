@@ -187,6 +187,12 @@ export class Store {
     this.set({ look: { ...this.#state.look, ...change } });
   }
 
+  /** Changes what is known of the open clip, if there is one. */
+  clip(change: Partial<Tracked>): void {
+    const { tracked } = this.#state;
+    if (tracked !== null) this.set({ tracked: { ...tracked, ...change } });
+  }
+
   /** Shows a notice; with a code it is an error. */
   say(sentence: string, code: string | null = null): void {
     this.set({ notice: { sentence, code } });

@@ -97,7 +97,7 @@ export class Brush {
   begin(point: Point): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
-    const take = tool.name === 'box' ? this.#session.objects.beginBox() : this.#session.beginStroke(tool.name);
+    const take = tool.name === 'box' ? this.#session.objects.beginBox() : this.#session.edited().beginStroke(tool.name);
     if (take !== null) this.#now = { points: [...point], take };
     this.hover(point);
     this.#trace();

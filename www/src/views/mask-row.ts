@@ -43,8 +43,8 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   // A select changes with every arrow key, so it only chooses.
   mergeWith.addEventListener('change', () => (merge.disabled = mergeWith.value === ''));
   merge.addEventListener('click', () => masks.merge(id, Number(mergeWith.value)));
-  row.addEventListener('focusin', () => session.select(id));
-  row.addEventListener('pointerdown', () => session.select(id));
+  row.addEventListener('focusin', () => session.shown.select(id));
+  row.addEventListener('pointerdown', () => session.shown.select(id));
   // The background cannot be hidden: it is not painted.
   for (const control of [shown, colour, solo]) control.hidden = id === 0;
 

@@ -35,7 +35,7 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
   return [
     { keys: ['n'], shown: 'N', does: keys.blink, run: () => toggleBlinking(store) },
     { keys: ['s'], shown: 'S', does: keys.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
-    { keys: ['g'], shown: 'G', does: keys.kind, run: () => session.show(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['g'], shown: 'G', does: keys.kind, run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
     { keys: ['l'], shown: 'L', does: keys.outlines, run: toggle('outlines') },
     { keys: ['a'], shown: 'A', does: keys.arrows, run: toggle('arrows') },
     { keys: ['r'], shown: 'R', does: keys.residual, run: toggle('residual') },
@@ -60,9 +60,9 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: [], shown: 'Space', does: keys.stroke, run: () => undefined },
     { keys: ['['], shown: '[', does: keys.thinner, run: () => changeRadius(store, 0.75) },
     { keys: [']'], shown: ']', does: keys.thicker, run: () => changeRadius(store, 4 / 3) },
-    { keys: ['z'], shown: 'Ctrl Z', does: keys.undo, run: () => session.undo(), command: true, shift: false },
-    { keys: ['z'], shown: 'Ctrl Shift Z', does: keys.redo, run: () => session.redo(), command: true, shift: true },
-    { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.redo(), command: true },
+    { keys: ['z'], shown: 'Ctrl Z', does: keys.undo, run: () => session.edited().undo(), command: true, shift: false },
+    { keys: ['z'], shown: 'Ctrl Shift Z', does: keys.redo, run: () => session.edited().redo(), command: true, shift: true },
+    { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.edited().redo(), command: true },
     { keys: ['escape'], shown: 'Esc', does: keys.cancel, run: () => session.cancel() },
   ];
 }

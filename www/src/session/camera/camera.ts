@@ -1,8 +1,8 @@
 //! The camera, switched on and off. It owns the live view, which is loaded when it is used.
 
+import { loaded } from '../../common/loaded.js';
 import type { Store } from '../../state/state.js';
 import type { ClipSegmenting } from '../clip/segmenting.js';
-import { fail, loaded } from '../failures.js';
 import type { Opening } from '../opening.js';
 import type { Masks } from '../pair/masks.js';
 import type { PairSegmenting } from '../pair/segmenting.js';
@@ -33,7 +33,7 @@ export class Camera {
     return this.#opening.open(
       async (signal): Promise<() => void> => {
         const { LiveView } = await loaded(import('./live.js'));
-        this.#live ??= new LiveView(this.#store, (error) => fail(this.#store, error));
+        this.#live ??= new LiveView(this.#store);
         if (signal.aborted) return () => undefined;
         signal.addEventListener('abort', () => this.stop());
         return this.#live.start();

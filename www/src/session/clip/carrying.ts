@@ -68,7 +68,7 @@ export class Carrying {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     if (this.#corrections !== null) return void this.correct({ locks });
-    this.#store.set({ tracked: { ...tracked, past: [...tracked.past, versionOf(tracked)], future: [] } });
+    this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
     this.#shown.version(withSaid(tracked, { locks }), tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
   }
 
@@ -89,7 +89,7 @@ export class Carrying {
     const { tracked } = this.#store.get();
     const version = tracked?.[from].at(-1);
     if (tracked === null || version === undefined || tracked.run.phase === 'working') return;
-    this.#store.set({ tracked: { ...tracked, [from]: tracked[from].slice(0, -1), [to]: [...tracked[to], versionOf(tracked)] } });
+    this.#store.clip({ [from]: tracked[from].slice(0, -1), [to]: [...tracked[to], versionOf(tracked)] });
     this.#shown.version(version, { phase: 'done', cause, changed: changedIn(version, tracked) });
   }
 

@@ -110,6 +110,14 @@ export class Objects {
     return number !== null;
   }
 
+  undo(): void {
+    this.#carrying.undo();
+  }
+
+  redo(): void {
+    this.#carrying.redo();
+  }
+
   /** Locks an object, or unlocks it: whether corrections of others may change it. */
   setLocked(id: number, locked: boolean): void {
     this.#carrying.lock(new Map([[id, locked]]), locked ? 'locked' : 'unlocked');
@@ -124,7 +132,7 @@ export class Objects {
     if ('name' in what && what.name === (given ?? '')) return;
     const names = 'colour' in what ? tracked.names : what.name === '' ? others : { ...others, [key]: what.name };
     const colours = 'colour' in what ? { ...tracked.colours, [key]: what.colour } : tracked.colours;
-    this.#store.set({ tracked: { ...tracked, names, colours } });
+    this.#store.clip({ names, colours });
     this.#store.look({ names, colours });
   }
 

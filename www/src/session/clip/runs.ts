@@ -34,8 +34,7 @@ export class ClipRuns {
     const own = (this.#current = { controller, ends });
     const { signal } = controller;
     const set: Change = (change) => {
-      const { tracked } = this.#store.get();
-      if (tracked !== null && !signal.aborted) this.#store.set({ tracked: { ...tracked, ...change } });
+      if (!signal.aborted) this.#store.clip(change);
     };
     try {
       await work(signal, set);

@@ -3,13 +3,13 @@
 
 import type { ClipFrame } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
+import type { Settings } from '../../state/settings.js';
 import { contains, numbersOf, withRun } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { type ClipRun, type Range, type Tracked, type TrackedFrame, type Version, isTracked, savedOf, untracked, versionOf } from '../../state/tracked.js';
+import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, isTracked, savedOf, untracked, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import { ClipFrames, STOPPED } from './frames.js';
 import type { Change, ClipRuns } from './runs.js';
-import type { KnownPairs } from './known-pairs.js';
 import { type Spans, blobOf, bytesOf, masksOf } from './spans.js';
 import { TimeLeft } from './time-left.js';
 
@@ -17,17 +17,17 @@ import { TimeLeft } from './time-left.js';
 const OFTEN = 100;
 
 export class ClipSegmenting {
+  /** What is known of the pairs of clips, by their fingerprints, for runs that go on. It is large, and no view shows it. */
+  readonly solvedPairs = new Map<string, SolvedPairs>();
   readonly #store: Store;
   readonly #runs: ClipRuns;
   readonly #spans: Spans;
-  readonly #known: KnownPairs;
   readonly #shown: Shown;
 
-  constructor(store: Store, runs: ClipRuns, spans: Spans, known: KnownPairs, shown: Shown) {
+  constructor(store: Store, runs: ClipRuns, spans: Spans, shown: Shown) {
     this.#store = store;
     this.#runs = runs;
     this.#spans = spans;
-    this.#known = known;
     this.#shown = shown;
   }
 
@@ -53,7 +53,7 @@ export class ClipSegmenting {
     const at = Math.min(Math.max(index, 0), end);
     const { first, last } = tracked.range;
     const range = edge === 'first' ? { first: at, last: at > last ? end : last } : { first: at < first ? 0 : first, last: at };
-    this.#store.set({ tracked: { ...tracked, range } });
+    this.#store.clip({ range });
   }
 
   /**
@@ -69,9 +69,9 @@ export class ClipSegmenting {
     const alone = tracked.frames.every((frame, index) => frame === null || contains(range, index));
     const settings = { ...own, motions: motionsElsewhere ?? own.motions, longestSide: alone ? own.longestSide : tracked.longestSide };
     const { longestSide, ...options } = settings;
-    const { pairs } = this.#known.of(clip, range, settings);
+    const { pairs } = this.#knownOf(clip, range, settings);
     const frames = new ClipFrames(clip, longestSide, range);
-    const ends = { cancel: () => this.#finish(frames), stopped: () => this.#stopped() };
+    const ends = { cancel: () => this.#finish(frames), stopped: () => this.#store.clip({ run: { phase: 'cancelled' } }) };
     await this.#runs.run(ends, async (signal, set) => {
       const solved = (): number => [...pairs.keys()].filter((index) => index < frames.length).length;
       const time = new TimeLeft(solved(), frames.length);
@@ -119,8 +119,8 @@ export class ClipSegmenting {
     if (tracked === null || (await this.#spans.areReadable(tracked))) return;
     if (this.#store.get().tracked?.clip !== tracked.clip) return;
     this.#runs.stop();
-    this.#known.forget(tracked.clip);
-    this.#store.set({ tracked: { ...this.#store.get().tracked!, spans: [] } });
+    this.solvedPairs.delete(tracked.clip.fingerprint);
+    this.#store.clip({ spans: [] });
     for (const { range } of tracked.spans) {
       await this.segment(range);
       const { tracked: now } = this.#store.get();
@@ -133,23 +133,12 @@ export class ClipSegmenting {
     this.#runs.cancel();
   }
 
-  /** Records that the masks were exported as they are. */
-  saved(exported: Tracked): void {
-    const { tracked } = this.#store.get();
-    if (tracked?.clip === exported.clip) this.#store.set({ tracked: { ...tracked, saved: savedOf(exported) } });
-  }
-
   /** Frames whose pairs are solved get their masks first; if that is what is under way, it stops at once. */
   #finish(frames: ClipFrames): void {
     const { tracked } = this.#store.get();
     if (tracked?.run.phase !== 'working' || tracked.run.stage !== 'pairs') return this.#runs.stop();
     frames.stop();
-    this.#store.set({ tracked: { ...tracked, run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } } });
-  }
-
-  #stopped(): void {
-    const { tracked } = this.#store.get();
-    if (tracked !== null) this.#store.set({ tracked: { ...tracked, run: { phase: 'cancelled' } } });
+    this.#store.clip({ run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } });
   }
 
   /** Takes the labelled frames as they come, and shows them if there are no masks yet. */
@@ -200,6 +189,15 @@ export class ClipSegmenting {
     else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
     set({ future: [] });
     this.#shown.version(version, corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
+  }
+
+  /** What is known for these settings: other settings and another first frame begin anew. */
+  #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): SolvedPairs {
+    const key = JSON.stringify([first, settings.motions, settings.quality, settings.longestSide]);
+    const before = this.solvedPairs.get(fingerprint);
+    const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };
+    this.solvedPairs.set(fingerprint, known);
+    return known;
   }
 }
 

@@ -3,7 +3,7 @@
 
 import type { Segmentation } from 'veronese';
 import { strings } from '../../common/strings.js';
-import { NO_EDITS, asSaved, grouped, lastStroke, maskIdOf, maskWith, scaled, withAction } from '../../correction/edits.js';
+import { NO_EDITS, grouped, lastStroke, maskIdOf, maskWith, scaled, withAction } from '../../correction/edits.js';
 import { labellingOf, withLabelling } from '../../correction/parts.js';
 import { unpackedResult } from '../../correction/solutions.js';
 import { type Path, type Stroke, allowedLabels } from '../../correction/strokes.js';
@@ -84,17 +84,6 @@ export class Masks {
     const mask = { of: labellingOf(found), labels: labelSet(result.segmentation, kind, id) };
     const appearances = taken ? others : [...others, { kind, id, mask, ...what }];
     this.#store.set({ edits: { ...edits, appearances }, look: { ...look, ...namesAndColours(appearances, result.segmentation, found) } });
-  }
-
-  /** The state once all strokes are applied, or none is being applied. */
-  settled(): Promise<State> {
-    return this.#solving.settled();
-  }
-
-  /** Records that the masks were exported with these edits. */
-  saved({ edits, pair }: State): void {
-    const now = this.#store.get();
-    if (now.pair === pair) this.#store.set({ edits: { ...now.edits, saved: asSaved(edits).saved } });
   }
 
   /** Keeps the edits of the open pair for when it is opened again. */

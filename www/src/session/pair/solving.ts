@@ -64,20 +64,6 @@ export class Solving {
     return last === null ? found : this.#solutions.get(last, found);
   }
 
-  /** The state once all strokes are applied, or none is being applied. */
-  settled(): Promise<State> {
-    return new Promise((resolve) => {
-      const look = (now: State, before: State): void => {
-        const left = now.pair !== before.pair;
-        if (!left && isPending(now) && now.run.phase === 'working') return;
-        end();
-        resolve(left ? before : now);
-      };
-      const end = this.#store.subscribe(look);
-      look(this.#store.get(), this.#store.get());
-    });
-  }
-
   /** Stops the work on the pair. Strokes that are not applied yet stay. */
   stop(): void {
     this.#worker.cancel();
