@@ -3,7 +3,7 @@
 import { settingsFromHash } from './export/link.js';
 import { SAMPLES } from './frames/samples.js';
 import { keepForOffline } from './offline/register.js';
-import { Session } from './session/session.js';
+import { sessionOf } from './session/session.js';
 import { Store } from './state/state.js';
 import { mountArrows } from './views/arrows.js';
 import { mountBlink } from './views/blink.js';
@@ -38,7 +38,7 @@ import { mountTools } from './views/tools.js';
 import { mountZoom } from './views/zoom.js';
 
 const store = new Store();
-const session = new Session(store);
+const session = sessionOf(store);
 const stage = find(document, '#stage', HTMLElement);
 
 mountStage(stage, store);
@@ -78,9 +78,9 @@ store.set({ settings: { ...store.get().settings, ...linked.settings } });
 if (linked.kind !== null) store.look({ kind: linked.kind });
 window.addEventListener('hashchange', () => {
   const { settings, kind, sample, swapped } = settingsFromHash(location.hash);
-  if (kind !== null) session.show(kind);
-  session.change(settings);
-  if (sample !== null) void session.openSample(sample, swapped);
+  if (kind !== null) session.shown.kind(kind);
+  session.pair.change(settings);
+  if (sample !== null) void session.open.sample(sample, swapped);
 });
 
-void session.openSample(linked.sample ?? SAMPLES[0], linked.swapped);
+void session.open.sample(linked.sample ?? SAMPLES[0], linked.swapped);

@@ -18,7 +18,7 @@ import type { Matrix } from '../src/result/describe.js';
 import { suggestionsOf } from '../src/result/junctions.js';
 import { labelSet, masksOf, merged, separated, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
-import { Numbering } from '../src/session/numbering.js';
+import { Numbering } from '../src/session/camera/numbering.js';
 import { becameAfter, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';

@@ -26,7 +26,7 @@ export interface Project extends Subject {
 }
 
 /** What the state has of this subject; `null` if nothing was ever done with it. */
-export function projectFrom(state: State, of: string, solvedPairs: (fingerprint: string) => SolvedPairs | null): Project | null {
+export function projectFrom(state: State, of: string, solvedPairs: ReadonlyMap<string, SolvedPairs>): Project | null {
   const { settings, motionsElsewhere } = state;
   const pairs = new Map([...state.kept].filter(([, kept]) => kept.subject.of === of));
   const open = subjectOf(state.pair)?.of === of ? keptFrom(state) : null;
@@ -35,7 +35,7 @@ export function projectFrom(state: State, of: string, solvedPairs: (fingerprint:
   const clip = tracked !== null && (tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
   const subject = clip === null ? [...pairs.values()][0]?.subject : subjectOfClip(clip.clip);
   if (subject === undefined) return null;
-  return { ...subject, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs(of)), pairs };
+  return { ...subject, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs.get(of) ?? null), pairs };
 }
 
 function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {

@@ -1,7 +1,8 @@
 //! Keeps the work in this browser while it goes on, and finds it when the same frames are opened again. Only what watches is loaded with
 //! the page.
 
-import { PageError, codeOf, sentenceOf } from '../common/errors.js';
+import { codeOf, sentenceOf } from '../common/errors.js';
+import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS, hasEdits } from '../correction/edits.js';
 import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
@@ -16,19 +17,12 @@ const LATER = 10_000;
 const OF_EDITS = ['actions', 'done', 'appearances'] as const;
 const OF_CLIP = ['frames', 'spans', 'names', 'colours', 'locks', 'solved', 'run', 'range'] as const;
 
-/** What is not in the state. */
-interface Pairs {
-  solvedPairs(fingerprint: string): SolvedPairs | null;
-  learn(fingerprint: string, pairs: SolvedPairs): void;
-}
-
 type Shelf = typeof import('./shelf.js');
-type Say = (sentence: string, code?: string | null) => void;
 
 export class Projects {
   readonly #store: Store;
-  readonly #pairs: Pairs;
-  readonly #say: Say;
+  /** What is known of the pairs of clips, by fingerprint: it is not in the state. */
+  readonly #pairs: Map<string, SolvedPairs>;
   /** What has changed and is not written yet, by the fingerprint of its clip or the key of its pair. */
   readonly #changed = new Set<string>();
   /** Projects of files, until their frames are opened. */
@@ -43,10 +37,9 @@ export class Projects {
   #due = Infinity;
   #writing = false;
 
-  constructor(store: Store, pairs: Pairs, say: Say) {
+  constructor(store: Store, pairs: Map<string, SolvedPairs>) {
     this.#store = store;
     this.#pairs = pairs;
-    this.#say = say;
     store.subscribe((now, before) => this.#watch(now, before));
     document.addEventListener('visibilitychange', () => {
       if (document.visibilityState === 'hidden') void this.#write();
@@ -73,9 +66,9 @@ export class Projects {
       const project = opened ?? (await (await this.#load()).get(subject.of, subject.name));
       // Browsers that read a video approximately may count other frames.
       if (project === null || project.frames === subject.frames) return project;
-      this.#say(strings.projects.otherFrames(subject.name, project.frames, subject.frames), 'frame-count-mismatch');
+      this.#store.say(strings.projects.otherFrames(subject.name, project.frames, subject.frames), 'frame-count-mismatch');
     } catch (error) {
-      this.#say(sentenceOf(error), codeOf(error));
+      this.#store.say(sentenceOf(error), codeOf(error));
     }
     return null;
   }
@@ -87,7 +80,7 @@ export class Projects {
     if (project === null || this.#shelf === null) return;
     const { withProject } = this.#shelf;
     this.#opened.delete(project.of);
-    if (project.clip?.solved) this.#pairs.learn(project.of, project.clip.solved);
+    if (project.clip?.solved) this.#pairs.set(project.of, project.clip.solved);
     const now = this.#store.get();
     // The edits on screen are replaced too.
     const own = keyOfPair(now.pair) === keyOfPair(pair) ? { edits: NO_EDITS, found: null, result: null } : {};
@@ -99,7 +92,7 @@ export class Projects {
   async file(): Promise<{ readonly name: string; readonly content: Blob } | null> {
     const { fileOf, projectFrom, withSaved } = await this.#load();
     const state = this.#store.get();
-    const project = projectFrom(state, subjectOf(state.pair)?.of ?? '', (of) => this.#pairs.solvedPairs(of));
+    const project = projectFrom(state, subjectOf(state.pair)?.of ?? '', this.#pairs);
     if (project === null) return null;
     const content = await fileOf(project, new Date());
     this.#store.set(withSaved(this.#store.get(), project));
@@ -107,10 +100,7 @@ export class Projects {
   }
 
   async #load(): Promise<Shelf> {
-    this.#shelf ??= await import('./shelf.js').catch(() => {
-      throw new PageError('not-loaded', strings.errors.notLoaded);
-    });
-    return this.#shelf;
+    return (this.#shelf ??= await loaded(import('./shelf.js')));
   }
 
   #watch(now: State, before: State): void {
@@ -150,7 +140,7 @@ export class Projects {
       const { owns, projectFrom, put, savedAt, withSaved } = await this.#load();
       for (const of of this.#ready()) {
         this.#changed.delete(of);
-        const project = projectFrom(this.#store.get(), of, (fingerprint) => this.#pairs.solvedPairs(fingerprint));
+        const project = projectFrom(this.#store.get(), of, this.#pairs);
         if (project === null) continue;
         if (!(await owns(of, async () => (await savedAt(of)) <= (this.#lookedFor.get(of) ?? '')))) {
           this.#refuse(strings.projects.elsewhere(project.name), 'open-elsewhere');
@@ -173,7 +163,7 @@ export class Projects {
   #refuse(sentence: string, code: string): void {
     if (this.#store.get().keeping === 'refused') return;
     this.#store.set({ keeping: 'refused' });
-    this.#say(sentence, code);
+    this.#store.say(sentence, code);
   }
 }
 

@@ -19,6 +19,11 @@ export interface Mask {
   readonly share: number;
 }
 
+/** Whether a mask of this kind can be ungrouped. */
+export function isMerged(kind: Kind, motions: readonly unknown[]): boolean {
+  return kind === 'groups' && motions.length > 1;
+}
+
 /** The key of a mask's name and colour: the kinds number their masks separately. */
 export function keyOf(kind: Kind, id: number): string {
   return `${kind}-${id}`;

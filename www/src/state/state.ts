@@ -1,7 +1,7 @@
 //! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
 import type { Segmentation } from 'veronese';
-import { NO_EDITS, type Edits } from '../correction/edits.js';
+import { NO_EDITS, type Edits, lastStroke } from '../correction/edits.js';
 import type { Stroke } from '../correction/strokes.js';
 import type { Painting } from '../drawing/paint.js';
 import { WHOLE, type Viewport } from '../drawing/viewport.js';
@@ -92,6 +92,8 @@ export interface State {
   readonly keptClips: ReadonlyMap<string, Tracked>;
   /** Whether the clip is being played. */
   readonly playing: boolean;
+  /** Whether a pointer is being dragged through the clip. */
+  readonly scrubbing: boolean;
   readonly live: Live | null;
   /** Whether something is being opened. The current pair stays until it is ready. */
   readonly opening: boolean;
@@ -120,6 +122,21 @@ export function isAwaited({ result, run }: State): boolean {
   return result === null && run.phase === 'working';
 }
 
+/** Whether the segmentation was made with the current settings. */
+export function isCurrent({ found, settings }: Pick<State, 'found' | 'settings'>): boolean {
+  return found !== null && (['motions', 'quality', 'markUnknown'] as const).every((name) => found.settings[name] === settings[name]);
+}
+
+/** Whether the frames on screen are left at once, so that their pair is not segmented. */
+export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrubbing'>): boolean {
+  return playing || scrubbing;
+}
+
+/** Whether some strokes are not applied yet. */
+export function isPending({ result, edits }: Pick<State, 'result' | 'edits'>): boolean {
+  return result !== null && lastStroke(edits) !== result.under;
+}
+
 /** The initial values of the parts of a look that belong to one result. */
 export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, dismissed: new Set<string>(), blinking: false, names: {}, colours: {} } as const;
 
@@ -129,6 +146,7 @@ export const INITIAL: State = {
   tracked: null,
   keptClips: new Map(),
   playing: false,
+  scrubbing: false,
   live: null,
   opening: false,
   settings: DEFAULT_SETTINGS,
@@ -167,6 +185,17 @@ export class Store {
   /** Changes how the result is displayed. */
   look(change: Partial<Look>): void {
     this.set({ look: { ...this.#state.look, ...change } });
+  }
+
+  /** Changes what is known of the open clip, if there is one. */
+  clip(change: Partial<Tracked>): void {
+    const { tracked } = this.#state;
+    if (tracked !== null) this.set({ tracked: { ...tracked, ...change } });
+  }
+
+  /** Shows a notice; with a code it is an error. */
+  say(sentence: string, code: string | null = null): void {
+    this.set({ notice: { sentence, code } });
   }
 
   /** Calls `listener` at every change. Returns a function that ends the subscription. */

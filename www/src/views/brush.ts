@@ -40,7 +40,7 @@ export class Brush {
     this.#session = session;
     this.#picture = find(stage, '#strokes', SVGSVGElement);
     this.#picture.append(this.#strokes, this.#path, this.#circle);
-    session.correcting.finishStroke = () => this.end();
+    session.masks.finishStroke = () => this.end();
     store.subscribe((now, before) => {
       if (now.pair !== before.pair) {
         this.abandon();
@@ -97,7 +97,7 @@ export class Brush {
   begin(point: Point): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
-    const take = tool.name === 'box' ? this.#session.beginBox() : this.#session.beginStroke(tool.name);
+    const take = tool.name === 'box' ? this.#session.objects.beginBox() : this.#session.edited().beginStroke(tool.name);
     if (take !== null) this.#now = { points: [...point], take };
     this.hover(point);
     this.#trace();

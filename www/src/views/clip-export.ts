@@ -4,6 +4,7 @@ import { strings } from '../common/strings.js';
 import { type ClipFormat, exportOfClip } from '../export/clip-export.js';
 import { save } from '../export/save.js';
 import { zipped } from '../export/zip.js';
+import { clipExported } from '../session/exported.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { find } from './markup.js';
@@ -28,7 +29,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
       const exported = exportOfClip(tracked, look, (done, of) => (told.textContent = strings.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
       await saveFiles(format, await format.make(exported));
-      session.tracking.saved(tracked);
+      clipExported(store, tracked);
       told.textContent = strings.exported(exported.objects.length, exported.count);
     } catch (error) {
       told.textContent = '';
@@ -42,11 +43,7 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
   masks.addEventListener('change', () => {
     const files = [...(masks.files ?? [])];
     masks.value = ''; // so that choosing the same file again is a change
-    if (files.length === 0) return;
-    import('../session/importing.js').then(
-      ({ importMasks }) => importMasks(files, store, session),
-      () => session.say(strings.errors.notLoaded, 'not-loaded'),
-    );
+    if (files.length > 0) void session.open.masks(files);
   });
   masks.disabled = false;
 

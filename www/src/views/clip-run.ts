@@ -14,10 +14,10 @@ export function mountClipRun(root: HTMLElement, store: Store, session: Session):
   const cancel = find(root, '#clip-cancel', HTMLButtonElement);
 
   segment.addEventListener('click', () => {
-    void session.tracking.segment();
+    void session.clip.segment();
     cancel.focus();
   });
-  cancel.addEventListener('click', () => session.tracking.cancel());
+  cancel.addEventListener('click', () => session.clip.cancel());
 
   store.subscribe(({ tracked }, before) => {
     if (tracked === before.tracked || tracked === null) return;

@@ -28,12 +28,12 @@ export function mountDrop(root: HTMLElement, session: Session): void {
     show();
     if (event.dataTransfer === null || !carriesFiles(event)) return;
     event.preventDefault();
-    void session.openFiles(filesOf(event.dataTransfer));
+    void session.open.files(filesOf(event.dataTransfer));
   });
   document.addEventListener('paste', (event) => {
     const { clipboardData } = event;
     if (clipboardData === null || clipboardData.files.length === 0) return; // text for an input
     event.preventDefault();
-    void session.openFiles(filesOf(clipboardData));
+    void session.open.files(filesOf(clipboardData));
   });
 }

@@ -18,7 +18,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
   const buttons = find(root, '.numbers', HTMLElement);
   const choice = find(root, '#evidence-choice', HTMLElement);
   const automatic = find(root, '[data-action=automatic]', HTMLButtonElement);
-  automatic.addEventListener('click', () => session.change({ motions: 'auto' }));
+  automatic.addEventListener('click', () => session.pair.change({ motions: 'auto' }));
   /** The scores of the last automatic search: with a forced number there are none for the others. */
   let scores: readonly { motions: number; score: number }[] = [];
 
@@ -49,7 +49,7 @@ export function mountEvidence(root: HTMLElement, store: Store, session: Session)
         button.classList.toggle('found', motions === found.count);
         button.setAttribute('aria-label', strings.forceNumber(motions, longer));
         if (longer !== null) button.title = strings.descriptionOf(longer);
-        button.addEventListener('click', () => session.forceMotions(motions));
+        button.addEventListener('click', () => session.pair.forceMotions(motions));
         return button;
       }),
     );

@@ -7,9 +7,9 @@ import { FORMATS, LABELS, MASKS, OVERLAY, RESULT } from '../export/formats.js';
 import { linkFor } from '../export/link.js';
 import { commandFor, scriptFor } from '../export/reproduce.js';
 import { save } from '../export/save.js';
-import { isPending } from '../session/correcting.js';
+import { pairExported, settled } from '../session/exported.js';
 import type { Session } from '../session/session.js';
-import type { Result, State, Store } from '../state/state.js';
+import { type Result, type State, type Store, isPending } from '../state/state.js';
 import { copyText } from './clipboard.js';
 import { element, find } from './markup.js';
 
@@ -37,12 +37,12 @@ export function mountExport(root: HTMLElement, store: Store, session: Session): 
 
   const download = async (format: Format): Promise<void> => {
     try {
-      const state = await session.correcting.settled();
+      const state = await settled(store);
       if (state.result === null) return;
       const content = await format.make(exportOf(state.result, state.look, background.checked));
       save(content, format.type, format.file);
       // The report alone holds no masks.
-      if (format !== RESULT && !isPending(state)) session.correcting.saved(state);
+      if (format !== RESULT && !isPending(state)) pairExported(store, state);
     } catch {
       session.say(strings.errors.notWritten(format.title), 'not-written');
     }

@@ -143,5 +143,5 @@ function choose(store: Store, session: Session, [x, y]: readonly [number, number
   const { labels, width, height } = result.segmentation;
   const [px, py] = [Math.min(Math.max(Math.round(x), 0), width - 1), Math.min(Math.max(Math.round(y), 0), height - 1)];
   const mask = maskOf(labels[py * width + px] ?? 255, result.segmentation, look.kind);
-  session.select(look.selected === mask ? null : mask);
+  session.shown.select(look.selected === mask ? null : mask);
 }

@@ -51,7 +51,7 @@ function nameButton(id: number, session: Session): HTMLElement {
   const button = element('button', '', 'lane-name');
   button.type = 'button';
   button.dataset.object = String(id);
-  button.addEventListener('click', () => session.select(id));
+  button.addEventListener('click', () => session.shown.select(id));
   const item = element('li');
   item.append(button);
   return item;

@@ -26,7 +26,7 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   const solo = find(row, '[data-action=solo]', HTMLButtonElement);
   const mergeWith = find(row, '[data-action=merge-with]', HTMLSelectElement);
   const merge = find(row, '[data-action=merge]', HTMLButtonElement);
-  const masks = of === 'pair' ? session.correcting : session.tracking;
+  const masks = of === 'pair' ? session.masks : session.objects;
 
   shown.addEventListener('change', () => {
     const hidden = new Set(store.get().look.hidden);
@@ -45,7 +45,7 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   merge.addEventListener('click', () => masks.merge(id, Number(mergeWith.value)));
   // A row that is selected has its actions elsewhere: they would move away from the pointer.
   const select = ({ target }: Event): void => {
-    if (!(target instanceof Element) || target.closest('.motion-actions') === null) session.select(id);
+    if (!(target instanceof Element) || target.closest('.motion-actions') === null) session.shown.select(id);
   };
   row.addEventListener('focusin', select);
   row.addEventListener('pointerdown', select);

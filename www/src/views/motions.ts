@@ -3,9 +3,8 @@
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
 import { centreOf, partsOf, visibleParts } from '../result/describe.js';
-import { UNLABELLED, type Mask, masksOf } from '../result/masks.js';
+import { UNLABELLED, type Mask, isMerged, masksOf } from '../result/masks.js';
 import { NOTATIONS } from '../result/matrices.js';
-import { isMerged } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
 import { type Look, type Result, type State, type Store, isAwaited } from '../state/state.js';
 import { copyText } from './clipboard.js';
@@ -137,7 +136,7 @@ function fillMore(row: HTMLElement, { id, motions }: Mask, masks: readonly Mask[
   stabilise.addEventListener('click', () => toggleStabilised(store, id));
   const ungroup = find(row, '[data-action=ungroup]', HTMLButtonElement);
   ungroup.hidden = !isMerged(store.get().look.kind, motions);
-  ungroup.addEventListener('click', () => session.correcting.ungroup(id));
+  ungroup.addEventListener('click', () => session.masks.ungroup(id));
   const others = masks.map((mask) => mask.id).filter((other) => other !== id && other !== UNLABELLED);
   return (look) => {
     offerMerging(row, others, look);

@@ -22,7 +22,7 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
   const add = find(root, '#add-object', HTMLButtonElement);
   const rows = new Map<number, Row>();
   add.addEventListener('click', () => {
-    if (session.tracking.addObject()) chooseTool(store, 'brush');
+    if (session.objects.addObject()) chooseTool(store, 'brush');
   });
 
   store.subscribe((now, before) => {
@@ -66,12 +66,12 @@ function rowOf(id: number, store: Store, session: Session): Row {
   const split = find(row, '[data-action=split]', HTMLButtonElement);
   const remove = find(row, '[data-action=remove]', HTMLButtonElement);
   doubtful.addEventListener('click', () => {
-    session.goToDoubtful(id);
+    session.frames.goToDoubtful(id);
     find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
   });
-  lock.addEventListener('click', () => session.tracking.setLocked(id, lock.getAttribute('aria-pressed') === 'false'));
-  split.addEventListener('click', () => session.tracking.split(id));
-  remove.addEventListener('click', () => session.tracking.remove(id));
+  lock.addEventListener('click', () => session.objects.setLocked(id, lock.getAttribute('aria-pressed') === 'false'));
+  split.addEventListener('click', () => session.objects.split(id));
+  remove.addEventListener('click', () => session.objects.remove(id));
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;
 
   const refreshAll: Row['refresh'] = ({ look, result, tracked }, life, ids) => {

@@ -50,7 +50,7 @@ function field(control: Control, helpId: string, session: Session): Field {
       select.append(...control.choices.map(({ value, label }) => new Option(label, String(value))));
       select.addEventListener('change', () => {
         const choice = control.choices[select.selectedIndex];
-        if (choice !== undefined) session.change({ [control.name]: choice.value });
+        if (choice !== undefined) session.pair.change({ [control.name]: choice.value });
       });
       return { elements: [labelFor(select), select], show: (settings) => (select.value = String(settings[control.name])) };
     }
@@ -60,7 +60,7 @@ function field(control: Control, helpId: string, session: Session): Field {
         const input = identified(element('input'), `-${String(value)}`);
         input.type = 'radio';
         input.value = String(value);
-        input.addEventListener('change', () => session.change({ [control.name]: value }));
+        input.addEventListener('change', () => session.pair.change({ [control.name]: value }));
         const wrapping = element('label');
         wrapping.append(input, element('span', label));
         group.append(wrapping);
@@ -72,7 +72,7 @@ function field(control: Control, helpId: string, session: Session): Field {
     case 'switch': {
       const input = identified(element('input'));
       input.type = 'checkbox';
-      input.addEventListener('change', () => session.change({ [control.name]: input.checked }));
+      input.addEventListener('change', () => session.pair.change({ [control.name]: input.checked }));
       const label = element('label', '', 'check');
       label.append(input, control.label);
       return { elements: [label], show: (settings) => (input.checked = settings[control.name] === true) };

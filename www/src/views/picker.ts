@@ -12,17 +12,17 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
     input.addEventListener('change', () => {
       const files = [...(input.files ?? [])];
       input.value = ''; // so that choosing the same file again is a change
-      if (files.length > 0) void session.openFiles(files, slot);
+      if (files.length > 0) void session.open.files(files, slot);
     });
   };
   listen(find(root, '#open-pair', HTMLInputElement), null);
   listen(find(root, '#open-folder', HTMLInputElement), null);
   const camera = find(root, '#open-camera', HTMLButtonElement);
-  camera.addEventListener('click', () => void session.toggleLive());
+  camera.addEventListener('click', () => void session.camera.toggle());
   camera.hidden = navigator.mediaDevices === undefined;
   const swap = find(root, '#swap', HTMLButtonElement);
-  swap.addEventListener('click', () => session.swap());
-  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, () => void session.openSample(sample))));
+  swap.addEventListener('click', () => session.frames.swap());
+  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, () => void session.open.sample(sample))));
 
   const slots = (['first', 'second'] as const).map((slot) => {
     const box = find(root, `[data-slot=${slot}]`, HTMLElement);

@@ -3,9 +3,8 @@
 import { strings } from '../common/strings.js';
 import { strokesOf } from '../correction/edits.js';
 import { constraintsFrom } from '../correction/strokes.js';
-import { isPending } from '../session/correcting.js';
 import type { Session } from '../session/session.js';
-import type { Cause, Result, State, Store } from '../state/state.js';
+import { type Cause, type Result, type State, type Store, isPending } from '../state/state.js';
 import { find } from './markup.js';
 
 /** The progress bar appears after this time, so that it does not flash up, milliseconds. */
@@ -19,7 +18,7 @@ export function mountProgress(root: HTMLElement, store: Store, session: Session)
   let patience = 0;
 
   cancel.addEventListener('click', () => session.cancel());
-  again.addEventListener('click', () => session.again());
+  again.addEventListener('click', () => session.pair.again());
 
   store.subscribe((now, before) => {
     const same = (['run', 'pair', 'result', 'edits', 'live', 'opening'] as const).every((part) => now[part] === before[part]);

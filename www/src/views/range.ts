@@ -33,7 +33,7 @@ export function mountRange(root: HTMLElement, store: Store, session: Session): v
 /** The frame on screen becomes the in point or the out point. */
 export function setEdge(store: Store, session: Session, edge: keyof Range): void {
   const { timeline } = store.get();
-  if (timeline !== null) session.tracking.setRange(edge, currentFrame(timeline));
+  if (timeline !== null) session.clip.setRange(edge, currentFrame(timeline));
 }
 
 function mountHandle(handle: HTMLElement, edge: keyof Range, track: HTMLElement, store: Store, session: Session): void {
@@ -57,10 +57,10 @@ function mountHandle(handle: HTMLElement, edge: keyof Range, track: HTMLElement,
   handle.addEventListener('pointermove', (event) => {
     if (!handle.hasPointerCapture(event.pointerId) || (from !== null && Math.abs(event.clientX - from) < STILL)) return;
     from = null;
-    session.tracking.setRange(edge, Math.round(placeAt(event.clientX - off)) - (edge === 'first' ? 0 : 1));
+    session.clip.setRange(edge, Math.round(placeAt(event.clientX - off)) - (edge === 'first' ? 0 : 1));
   });
   handle.addEventListener('pointerup', (event) => {
-    if (from !== null) void session.goTo(Math.min(Math.max(Math.floor(placeAt(event.clientX)), 0), (store.get().timeline?.clip.count ?? 1) - 1));
+    if (from !== null) void session.frames.goTo(Math.min(Math.max(Math.floor(placeAt(event.clientX)), 0), (store.get().timeline?.clip.count ?? 1) - 1));
     from = null;
   });
   handle.addEventListener('keydown', (event) => {
@@ -68,6 +68,6 @@ function mountHandle(handle: HTMLElement, edge: keyof Range, track: HTMLElement,
     const { tracked } = store.get();
     if (by === undefined || tracked === null || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
-    session.tracking.setRange(edge, tracked.range[edge] + by);
+    session.clip.setRange(edge, tracked.range[edge] + by);
   });
 }

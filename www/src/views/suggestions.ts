@@ -50,7 +50,7 @@ function rowFor({ advice, groups, label, junctions }: Suggestion, sentence: stri
     return made;
   };
   const { join, separate, dismiss } = strings.suggestions;
-  const follow = advice === 'join' ? button(join, () => session.correcting.merge(...groups)) : button(separate, () => session.correcting.separate(label));
+  const follow = advice === 'join' ? button(join, () => session.masks.merge(...groups)) : button(separate, () => session.masks.separate(label));
   const refuse = button(dismiss, () => store.look({ dismissed: new Set([...store.get().look.dismissed, ...junctions]) }));
   row.append(element('span', sentence), follow, refuse);
   return row;

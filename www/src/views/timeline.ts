@@ -24,14 +24,14 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     const input = find(pair, `[name=clip-${slot}]`, HTMLInputElement);
     const readout = find(pair, `#clip-${slot}-at`, HTMLElement);
     input.addEventListener('input', () => (readout.textContent = placeOf(store.get().timeline, input.valueAsNumber)));
-    input.addEventListener('change', () => void session.choose(slot, input.valueAsNumber));
+    input.addEventListener('change', () => void session.frames.choose(slot, input.valueAsNumber));
     return { slot, input, readout };
   });
   for (const button of document.querySelectorAll<HTMLButtonElement>('[data-step]')) {
     const [slot, by] = (button.dataset.step ?? '').split(' ');
     button.addEventListener('click', () => stepOne(store, session, slot as Slot | 'both', Number(by)));
   }
-  play.addEventListener('click', () => void session.togglePlaying());
+  play.addEventListener('click', () => void session.play.toggle());
   mountScrubbing(track, store, session);
 
   store.subscribe(({ timeline, playing }, before) => {
@@ -71,13 +71,13 @@ function mountScrubbing(track: HTMLElement, store: Store, session: Session): voi
   };
   track.addEventListener('pointerdown', (event) => {
     if (event.button !== 0) return;
-    if (event.shiftKey) return void session.choose('second', indexAt(event));
+    if (event.shiftKey) return void session.frames.choose('second', indexAt(event));
     track.setPointerCapture(event.pointerId);
-    void session.scrub(indexAt(event));
+    void session.play.scrub(indexAt(event));
   });
   track.addEventListener('pointermove', (event) => {
     const index = indexAt(event);
-    if (track.hasPointerCapture(event.pointerId) && index !== currentFrame(store.get().timeline)) void session.scrub(index);
+    if (track.hasPointerCapture(event.pointerId) && index !== currentFrame(store.get().timeline)) void session.play.scrub(index);
   });
   track.addEventListener('keydown', (event) => {
     const { timeline } = store.get();
@@ -97,7 +97,7 @@ function mountScrubbing(track: HTMLElement, store: Store, session: Session): voi
     const to = places[event.key];
     if (to === undefined) return;
     event.preventDefault();
-    void session.goTo(to);
+    void session.frames.goTo(to);
   });
 }
 
@@ -110,8 +110,8 @@ export function currentFrame(timeline: Timeline | null): number {
 export function stepOne(store: Store, session: Session, which: Slot | 'both', by: number): void {
   const { timeline } = store.get();
   if (timeline === null) return;
-  if (which === 'both') void session.step(by);
-  else void session.choose(which, (timeline[which] ?? timeline.first ?? timeline.second ?? 0) + by);
+  if (which === 'both') void session.frames.step(by);
+  else void session.frames.choose(which, (timeline[which] ?? timeline.first ?? timeline.second ?? 0) + by);
 }
 
 function placeOf(timeline: Timeline | null, index: number | null): string {

@@ -18,8 +18,8 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   form.addEventListener('submit', (event) => event.preventDefault());
   for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
-  undo.addEventListener('click', () => session.undo());
-  redo.addEventListener('click', () => session.redo());
+  undo.addEventListener('click', () => session.edited().undo());
+  redo.addEventListener('click', () => session.edited().redo());
 
   const render = (): void => {
     const { tool, result, edits, live, look, tracked } = store.get();

@@ -2,7 +2,7 @@
 //! one takes over. What it shows first keeps the number, and so the colour, of what was there before.
 
 import type { ClipFrame } from 'veronese';
-import { UNLABELLED } from '../result/masks.js';
+import { UNLABELLED } from '../../result/masks.js';
 
 type Numbered = Pick<ClipFrame, 'labels' | 'objects' | 'background'>;
 

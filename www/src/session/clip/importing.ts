@@ -1,19 +1,14 @@
 //! Masks from files of annotation tools, taken as corrections of the frames that they are of. Loaded on first use, with its texts.
 
 import { readAnnotations } from 'veronese/formats';
-import { PageError, codeOf, sentenceOf } from '../common/errors.js';
-import { strings } from '../common/strings.js';
-import { pathOf, selectOpenable } from '../frames/files.js';
-import type { State, Store } from '../state/state.js';
-import type { Tracked } from '../state/tracked.js';
-import type { Tracking } from './tracking.js';
-
-/** What the page does with what was read. */
-interface Page {
-  readonly tracking: Tracking;
-  show(kind: 'objects'): void;
-  say(sentence: string, code?: string): void;
-}
+import { PageError } from '../../common/errors.js';
+import { strings } from '../../common/strings.js';
+import { pathOf, selectOpenable } from '../../frames/files.js';
+import type { State, Store } from '../../state/state.js';
+import type { Tracked } from '../../state/tracked.js';
+import { report } from '../failures.js';
+import type { Shown } from '../shown.js';
+import type { Objects } from './objects.js';
 
 interface Size {
   readonly width: number;
@@ -56,18 +51,18 @@ export async function areMasks(files: readonly File[], { tracked }: State): Prom
 }
 
 /** One step of undo. What cannot be taken ends as a notice. */
-export async function importMasks(files: readonly File[], store: Store, page: Page): Promise<void> {
+export async function importMasks(files: readonly File[], store: Store, objects: Objects, shown: Shown): Promise<void> {
   const { tracked } = store.get();
-  if (tracked === null || tracked.spans.length === 0) return page.say(strings.notices.notReady);
+  if (tracked === null || tracked.spans.length === 0) return store.say(strings.notices.notReady);
   try {
     const { painted, names, left } = await masksFrom(files, tracked);
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
-    page.show('objects');
-    for (const [id, name] of names) page.tracking.setAppearance(id, { name });
-    void page.tracking.correct({ painted });
-    if (left.length > 0) page.say(texts.taken(painted.size, left));
+    shown.kind('objects');
+    for (const [id, name] of names) objects.setAppearance(id, { name });
+    objects.paint(painted);
+    if (left.length > 0) store.say(texts.taken(painted.size, left));
   } catch (error) {
-    page.say(sentenceOf(error), codeOf(error));
+    report(store, error);
   }
 }
 

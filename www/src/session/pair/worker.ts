@@ -1,15 +1,15 @@
-//! The only access to the worker. The latest request wins: a new request aborts the one before, as `cancel` does. The package then ends
-//! the worker, and the next request starts a new one.
+//! The only access to the worker of the pair, and the owner of the request under way. The latest request wins: a new one aborts the one
+//! before, as `cancel` does. The package then ends the worker, and the next request starts a new one.
 
 import { type Pixels, type Progress, type Segmentation, Segmenter } from 'veronese';
-import type { Settings } from '../state/settings.js';
+import type { Settings } from '../../state/settings.js';
 
 interface Pair {
   readonly first: Pixels;
   readonly second: Pixels;
 }
 
-export class Segmenting {
+export class PairWorker {
   readonly #segmenter = new Segmenter();
   #current: AbortController | null = null;
   #warm = false;

@@ -1,14 +1,15 @@
 //! The camera: its frames are a clip that never ends, segmented at quality `fast` as they come. Objects keep their numbers and colours.
 
 import { type Pixels, type Segmentation, Segmenter } from 'veronese';
-import { PageError } from '../common/errors.js';
-import { strings } from '../common/strings.js';
-import { NO_EDITS } from '../correction/edits.js';
-import { frameFromBitmap } from '../frames/frame.js';
-import type { Kind } from '../result/masks.js';
-import { segmentationFrom } from '../state/objects.js';
-import type { LoadedFrame } from '../state/pair.js';
-import { FRESH, type Result, type State, type Store } from '../state/state.js';
+import { PageError } from '../../common/errors.js';
+import { strings } from '../../common/strings.js';
+import { NO_EDITS } from '../../correction/edits.js';
+import { frameFromBitmap } from '../../frames/frame.js';
+import type { Kind } from '../../result/masks.js';
+import { segmentationFrom } from '../../state/objects.js';
+import type { LoadedFrame } from '../../state/pair.js';
+import { FRESH, type Result, type State, type Store } from '../../state/state.js';
+import { fail } from '../failures.js';
 import { Numbering } from './numbering.js';
 
 /** Longer side of the frames, pixels: small enough for a high rate. */
@@ -32,7 +33,6 @@ interface View {
 
 export class LiveView {
   readonly #store: Store;
-  readonly #fail: (error: unknown) => void;
   readonly #segmenter = new Segmenter();
   /** Incremented by each start and stop, which ends earlier loops. */
   #turn = 0;
@@ -40,9 +40,8 @@ export class LiveView {
   /** The kind of masks that was shown before. */
   #kind: Kind = 'groups';
 
-  constructor(store: Store, fail: (error: unknown) => void) {
+  constructor(store: Store) {
     this.#store = store;
-    this.#fail = fail;
   }
 
   /**
@@ -96,7 +95,7 @@ export class LiveView {
     } catch (error) {
       if (!current()) return;
       this.stop();
-      this.#fail(error);
+      fail(this.#store, error);
     }
   }
 

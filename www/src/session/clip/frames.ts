@@ -1,9 +1,9 @@
 //! The frames of a clip as the package reads them: whenever it needs one, so that few stay in memory, or none.
 
-import type { Clip } from '../clips/clip.js';
-import { smaller } from '../frames/frame.js';
-import type { LoadedFrame } from '../state/pair.js';
-import type { Range } from '../state/tracked.js';
+import type { Clip } from '../../clips/clip.js';
+import { smaller } from '../../frames/frame.js';
+import type { LoadedFrame } from '../../state/pair.js';
+import type { Range } from '../../state/tracked.js';
 
 type Picture = Pick<LoadedFrame, 'data' | 'width' | 'height'>;
 
@@ -62,9 +62,7 @@ export class ClipFrames {
   }
 
   async #frame(index: number): Promise<Picture> {
-    const isIt = ({ origin, full, width }: LoadedFrame): boolean =>
-      origin !== undefined && 'clip' in origin && origin.clip === this.clip && origin.index === index && smaller(full, this.longestSide).width === width;
-    const shown = this.at.hand.find(isIt);
+    const shown = this.at.hand.find((frame) => isFrameOf(frame, this.clip, index, this.longestSide));
     if (shown !== undefined) return copyOf(shown);
     const { data, width, height, bitmap } = await this.clip.frame(index, this.longestSide);
     bitmap.close();
@@ -82,6 +80,11 @@ export class ClipFrames {
     this.#differ = first !== null && !data.every((value, k) => value === first[k]);
     this.#first = this.#differ ? null : (first ?? data.slice());
   }
+}
+
+/** Whether a frame is that of the clip with this index, at the size for this longest side. */
+export function isFrameOf({ origin, full, width }: LoadedFrame, clip: Clip, index: number, longestSide: number): boolean {
+  return origin !== undefined && 'clip' in origin && origin.clip === clip && origin.index === index && smaller(full, longestSide).width === width;
 }
 
 /** The package may take the buffer. */

@@ -1,0 +1,175 @@
+//! Carries what a person says of one frame through the clip, one correction after another, because each starts from the masks of the one
+//! before; and goes back and forth between the versions that this makes. It owns the corrections that are waiting.
+
+import { type Said, paintedOver, withSaid } from '../../state/said.js';
+import { spanAt } from '../../state/spans.js';
+import type { Store } from '../../state/state.js';
+import { type TrackedFrame, type Version, versionOf } from '../../state/tracked.js';
+import type { Shown } from '../shown.js';
+import type { Change, ClipRuns } from './runs.js';
+import type { Spans } from './spans.js';
+
+/** Masks are shown at most this often while they change, milliseconds. */
+const OFTEN = 100;
+
+/** The beginning of carrying a correction through a clip. */
+const CARRYING = { phase: 'working', stage: 'corrections', left: null, labelled: 0 } as const;
+
+/** What is left of a correction that was taken back, or that failed. */
+const TAKEN_BACK = { phase: 'done', cause: 'undone', changed: 0 } as const;
+
+interface Corrections {
+  /** The masks after those that are done. */
+  settled: Version;
+  /** These, as far as the one under way has changed them. */
+  now: Version;
+  readonly waiting: Said[];
+}
+
+export class Carrying {
+  readonly #store: Store;
+  readonly #runs: ClipRuns;
+  readonly #spans: Spans;
+  readonly #shown: Shown;
+  /** `null` while none is under way. */
+  #corrections: Corrections | null = null;
+
+  constructor(store: Store, runs: ClipRuns, spans: Spans, shown: Shown) {
+    this.#store = store;
+    this.#runs = runs;
+    this.#spans = spans;
+    this.#shown = shown;
+  }
+
+  /** Shows what is said at once in its own frame, and carries it through the clip after what was said before. */
+  async correct(said: Said): Promise<void> {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    const under = this.#corrections;
+    const settled = versionOf(tracked);
+    const corrections: Corrections = under ?? { settled, now: settled, waiting: [] };
+    corrections.waiting.push(said);
+    this.#shown.version(withSaid(tracked, said), tracked.run);
+    if (under !== null) return; // taken by the loop below
+    this.#corrections = corrections;
+    const ends = { cancel: () => this.#takeBack(corrections), stopped: () => this.#stopped(corrections) };
+    while (this.#corrections === corrections && corrections.waiting.length > 0) {
+      await this.#runs.run(ends, (signal, set) => this.#carry(corrections, signal, set));
+      if (this.#corrections !== corrections || this.#store.get().tracked?.run.phase !== 'failed') continue;
+      // Of what failed nothing stays.
+      corrections.waiting.length = 0;
+      this.#shown.version(corrections.settled, TAKEN_BACK);
+    }
+    if (this.#corrections === corrections) this.#corrections = null;
+  }
+
+  /** Locks objects or unlocks them: a step of undo and redo that changes no masks. */
+  lock(locks: ReadonlyMap<number, boolean>, cause: 'locked' | 'unlocked'): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    if (this.#corrections !== null) return void this.correct({ locks });
+    this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
+    this.#shown.version(withSaid(tracked, { locks }), tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
+  }
+
+  undo(): void {
+    const corrections = this.#corrections;
+    const { tracked } = this.#store.get();
+    if (corrections === null || tracked === null) return this.#go('past', 'future', 'undone');
+    // The last correction is what is undone.
+    if (corrections.waiting.pop() === undefined) return this.#runs.stop();
+    this.#shown.version(corrections.waiting.reduce(withSaid, corrections.now), tracked.run);
+  }
+
+  redo(): void {
+    this.#go('future', 'past', 'redone');
+  }
+
+  #go(from: 'past' | 'future', to: 'past' | 'future', cause: 'undone' | 'redone'): void {
+    const { tracked } = this.#store.get();
+    const version = tracked?.[from].at(-1);
+    if (tracked === null || version === undefined || tracked.run.phase === 'working') return;
+    this.#store.clip({ [from]: tracked[from].slice(0, -1), [to]: [...tracked[to], versionOf(tracked)] });
+    this.#shown.version(version, { phase: 'done', cause, changed: changedIn(version, tracked) });
+  }
+
+  /** Takes back the correction that is being carried through the clip. Those said since are carried on. */
+  #takeBack(corrections: Corrections): void {
+    const { settled, waiting } = corrections;
+    if (waiting.length === 0) return this.#runs.stop();
+    this.#runs.interrupt();
+    corrections.now = settled;
+    this.#shown.version(waiting.reduce(withSaid, settled), CARRYING);
+  }
+
+  #stopped({ settled }: Corrections): void {
+    this.#corrections = null;
+    this.#shown.version(settled, TAKEN_BACK);
+  }
+
+  /** Carries the next correction through the frames that were segmented together. */
+  async #carry(corrections: Corrections, signal: AbortSignal, set: Change): Promise<void> {
+    const { settled: before, waiting } = corrections;
+    const next = waiting.shift();
+    if (next === undefined) return;
+    set({ run: CARRYING });
+    const said = 'pointed' in next ? { painted: await this.#spans.outlined(before, next.pointed, signal) } : next;
+    if (signal.aborted) return;
+    if ('painted' in said && said.painted.size === 0) {
+      return this.#shown.version(waiting.reduce(withSaid, before), { phase: 'done', cause: 'corrected', changed: 0 });
+    }
+    corrections.now = withSaid(before, said);
+    if ('pointed' in next) this.#shown.version(waiting.reduce(withSaid, corrections.now), CARRYING);
+    const after = await this.#carried(before, said, corrections, signal);
+    const now = this.#store.get().tracked;
+    if (signal.aborted || now === null) return;
+    corrections.settled = corrections.now = after;
+    set({ past: [...now.past, before], future: [] });
+    // What was said meanwhile stays on screen.
+    const run = waiting.length > 0 ? now.run : ({ phase: 'done', cause: 'corrected', changed: changedIn(after, before) } as const);
+    this.#shown.version(waiting.reduce(withSaid, after), run);
+  }
+
+  /** The masks of all frames after what is said. */
+  async #carried(before: Version, said: Exclude<Said, { readonly pointed: unknown }>, corrections: Corrections, signal: AbortSignal): Promise<Version> {
+    if ('locks' in said) return corrections.now;
+    const changes = this.#shows(corrections);
+    if ('edits' in said) {
+      let after = corrections.now;
+      const objects = new Set([...(said.edits.merge ?? []), said.edits.delete ?? []].flat());
+      const spans = before.spans.filter(({ numbers }) => [...numbers.values()].some((id) => objects.has(id)));
+      for (const span of spans) after = await this.#spans.corrected(after, span, [], signal, changes);
+      return after;
+    }
+    const painted = new Map(before.painted);
+    for (const [index, labels] of said.painted) {
+      painted.set(index, paintedOver(before.painted.get(index), labels, before.frames[index]!.runs));
+    }
+    let after: Version = { ...before, painted };
+    for (const span of before.spans) {
+      const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
+      if (own.length > 0) after = await this.#spans.corrected(after, span, own, signal, changes);
+    }
+    return after;
+  }
+
+  /** Shows frames as a correction changes them: those on screen at once, others soon. */
+  #shows(corrections: Corrections): (index: number, masks: TrackedFrame) => void {
+    const changed = new Set<number>();
+    let shown = -Infinity;
+    return (index, masks) => {
+      const { now, waiting } = corrections;
+      changed.add(index);
+      corrections.now = { ...now, frames: now.frames.with(index, masks), largest: Math.max(now.largest, ...masks.objects.map(({ id }) => id)) };
+      const { timeline } = this.#store.get();
+      if (index !== timeline?.first && index !== timeline?.second && performance.now() - shown < OFTEN) return;
+      shown = performance.now();
+      this.#shown.version(waiting.reduce(withSaid, corrections.now), { ...CARRYING, labelled: changed.size });
+    };
+  }
+}
+
+/** Number of frames that are others than before. */
+function changedIn({ frames }: Version, before: Version): number {
+  return frames.filter((frame, index) => frame !== before.frames[index]).length;
+}

@@ -1,0 +1,168 @@
+//! What a person does to the objects of a clip: strokes, boxes and clicks, merging, splitting and deleting, locks, names and colours. Each
+//! becomes something that is said of frames or objects, in pixels of the masks, which is then carried through the clip.
+
+import type { ClipOptions } from 'veronese';
+import { strings } from '../../common/strings.js';
+import { smallerPieces } from '../../correction/pieces.js';
+import { unpacked } from '../../correction/runs.js';
+import { type Path, type Stroke, eachPixel } from '../../correction/strokes.js';
+import type { Colour } from '../../drawing/palette.js';
+import { UNLABELLED, keyOf } from '../../result/masks.js';
+import type { LoadedFrame } from '../../state/pair.js';
+import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
+import type { Store } from '../../state/state.js';
+import { isLocked } from '../../state/tracked.js';
+import type { Carrying } from './carrying.js';
+
+/** A box with both sides below this share of the frame's width is a click. */
+const STILL = 0.01;
+
+export class Objects {
+  readonly #store: Store;
+  readonly #carrying: Carrying;
+
+  constructor(store: Store, carrying: Carrying) {
+    this.#store = store;
+    this.#carrying = carrying;
+  }
+
+  /**
+   * Begins a stroke over the frame on screen, with the selected object. Returns what takes its path, or `null`, and tells why, if nothing
+   * can be painted.
+   */
+  beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
+    const at = this.#frameToCorrect();
+    const own = this.#store.get().look.selected;
+    if (at === null) return null;
+    if (own === null) return this.#refuse(strings.notices.chooseMask);
+    if (own === UNLABELLED) return this.#refuse(strings.notices.notPainted);
+    if (own === 0 && tool === 'eraser') return this.#refuse(strings.notices.nothingElse);
+    const { index, frame } = at;
+    return ({ points, radius }) => {
+      const { tracked: now } = this.#store.get();
+      const masks = now?.frames[index]?.runs;
+      if (!now || masks === undefined) return;
+      const scale = masks.width / frame.width;
+      const path = { points: points.map((value) => (value + 0.5) * scale - 0.5), radius: radius * scale };
+      const [labels, said] = [unpacked(masks), new Uint8Array(masks.width * masks.height).fill(UNLABELLED)];
+      eachPixel(path, masks.width, masks.height, (p) => {
+        const there = labels[p]!;
+        if (tool === 'eraser' ? there === own : there === own || !isLocked(now, there)) said[p] = tool === 'eraser' ? 0 : own;
+      });
+      if (tool === 'brush' && said.every((label) => label === UNLABELLED)) return void this.#refuse(strings.notices.locked);
+      this.paint(new Map([[index, said]]));
+    };
+  }
+
+  /** Begins a box around a new object, or a click on it, in the frame on screen. Returns what takes its corners, or `null`, and tells why. */
+  beginBox(): ((path: Pick<Path, 'points'>) => void) | null {
+    const at = this.#frameToCorrect();
+    if (at === null) return null;
+    const { index, frame } = at;
+    return ({ points: [x = 0, y = 0, right = x, bottom = y] }) => {
+      const masks = this.#store.get().tracked?.frames[index]?.runs;
+      const id = this.#newNumber();
+      if (masks === undefined || id === null) return;
+      const place = (value: number, side: number): number => Math.min(Math.max(Math.round((value + 0.5) * (masks.width / frame.width) - 0.5), 0), side - 1);
+      const [columns, rows] = [[x, right].map((at) => place(at, masks.width)), [y, bottom].map((at) => place(at, masks.height))];
+      const [left, top] = [Math.min(...columns), Math.min(...rows)];
+      const [width, height] = [Math.max(...columns) + 1 - left, Math.max(...rows) + 1 - top];
+      const isClick = Math.max(width, height) <= Math.max(STILL * masks.width, 1);
+      this.#store.look({ selected: id });
+      void this.#carrying.correct({ pointed: { frame: index, id, at: isClick ? [place(x, masks.width), place(y, masks.height)] : [left, top, width, height] } });
+    };
+  }
+
+  /** Takes what is painted in frames, by index: numbers of objects, and 255 where nothing is said. */
+  paint(painted: ReadonlyMap<number, Uint8Array>): void {
+    void this.#carrying.correct({ painted });
+  }
+
+  /** Two objects become one, under the smaller of their numbers. */
+  merge(one: number, other: number): void {
+    if (one !== other) this.#edit({ merge: [[Math.min(one, other), Math.max(one, other)]] });
+  }
+
+  /** The object becomes background in the whole clip. */
+  remove(id: number): void {
+    this.#edit({ delete: [id] });
+  }
+
+  /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
+  split(id: number): void {
+    const { tracked, timeline } = this.#store.get();
+    const frame = timeline?.first ?? null;
+    const masks = frame === null ? undefined : tracked?.frames[frame]?.runs;
+    if (!this.#takesCorrections() || masks === undefined || frame === null) return;
+    const pieces = smallerPieces(unpacked(masks), masks.width, id);
+    const number = this.#newNumber();
+    if (pieces.length === 0) return void this.#refuse(strings.notices.onePiece);
+    if (number === null) return;
+    const labels = new Uint8Array(masks.width * masks.height).fill(UNLABELLED);
+    for (const p of pieces) labels[p] = number;
+    this.paint(new Map([[frame, labels]]));
+  }
+
+  /** Selects the number of a new object, to be painted. Returns whether there can be one. */
+  addObject(): boolean {
+    const number = this.#takesCorrections() ? this.#newNumber() : null;
+    if (number !== null) this.#store.look({ selected: number });
+    return number !== null;
+  }
+
+  undo(): void {
+    this.#carrying.undo();
+  }
+
+  redo(): void {
+    this.#carrying.redo();
+  }
+
+  /** Locks an object, or unlocks it: whether corrections of others may change it. */
+  setLocked(id: number, locked: boolean): void {
+    this.#carrying.lock(new Map([[id, locked]]), locked ? 'locked' : 'unlocked');
+  }
+
+  /** Sets the name or colour of an object. An empty name restores the default. */
+  setAppearance(id: number, what: { name: string } | { colour: Colour }): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    const key = keyOf('objects', id);
+    const { [key]: given, ...others } = tracked.names;
+    if ('name' in what && what.name === (given ?? '')) return;
+    const names = 'colour' in what ? tracked.names : what.name === '' ? others : { ...others, [key]: what.name };
+    const colours = 'colour' in what ? { ...tracked.colours, [key]: what.colour } : tracked.colours;
+    this.#store.clip({ names, colours });
+    this.#store.look({ names, colours });
+  }
+
+  #edit(edits: NonNullable<ClipOptions['edits']>): void {
+    if (this.#takesCorrections()) void this.#carrying.correct({ edits });
+  }
+
+  /** The frame on screen and its index; `null`, and tells why, if it takes no corrections. */
+  #frameToCorrect(): { readonly index: number; readonly frame: LoadedFrame } | null {
+    const { tracked, timeline, pair } = this.#store.get();
+    const index = timeline?.first ?? null;
+    if (!this.#takesCorrections() || tracked === null || index === null || pair.first === null) return null;
+    return spanAt(tracked.spans, index) === null ? this.#refuse(strings.notTracked) : { index, frame: pair.first };
+  }
+
+  #takesCorrections(): boolean {
+    const { tracked } = this.#store.get();
+    const ready = tracked !== null && tracked.spans.length > 0;
+    if (!ready) this.#refuse(strings.notices.notReady);
+    return ready;
+  }
+
+  #newNumber(): number | null {
+    const { tracked } = this.#store.get();
+    const number = (tracked?.largest ?? 0) + 1;
+    return number > MOST_OBJECTS ? this.#refuse(strings.notices.tooMany) : number;
+  }
+
+  #refuse(sentence: string): null {
+    this.#store.say(sentence);
+    return null;
+  }
+}

@@ -1,0 +1,68 @@
+//! The worker of the clip, and the run under way in it: one at a time, another one takes its place.
+
+import { Segmenter } from 'veronese';
+import { PageError, codeOf } from '../../common/errors.js';
+import { strings } from '../../common/strings.js';
+import type { Store } from '../../state/state.js';
+import type { Tracked } from '../../state/tracked.js';
+import { report } from '../failures.js';
+
+/** Changes what is known of the clip. */
+export type Change = (change: Partial<Tracked>) => void;
+
+/** How a run ends before it is done. */
+interface Ends {
+  /** A person cancels it. */
+  readonly cancel: () => void;
+  /** It was stopped at once. */
+  readonly stopped: () => void;
+}
+
+export class ClipRuns {
+  readonly segmenter = new Segmenter();
+  readonly #store: Store;
+  #current: { readonly controller: AbortController; readonly ends: Ends } | null = null;
+
+  constructor(store: Store) {
+    this.#store = store;
+  }
+
+  /** Runs `work` instead of what is under way. `set` changes what is known of the clip, unless the run has ended. */
+  async run(ends: Ends, work: (signal: AbortSignal, set: Change) => Promise<void>): Promise<void> {
+    this.interrupt();
+    const controller = new AbortController();
+    const own = (this.#current = { controller, ends });
+    const { signal } = controller;
+    const set: Change = (change) => {
+      if (!signal.aborted) this.#store.clip(change);
+    };
+    try {
+      await work(signal, set);
+    } catch (error) {
+      if (signal.aborted) return;
+      set({ run: { phase: 'failed' } });
+      report(this.#store, codeOf(error) === 'invalid-option' ? new PageError('other-state', strings.notices.otherState) : error);
+    } finally {
+      if (this.#current === own) this.#current = null;
+    }
+  }
+
+  /** Ends the run in the way that it provides. */
+  cancel(): void {
+    this.#current?.ends.cancel();
+  }
+
+  /** Stops the run at once; what is done stays. */
+  stop(): void {
+    if (this.#current === null || this.#store.get().tracked?.run.phase !== 'working') return;
+    const { ends } = this.#current;
+    this.interrupt();
+    this.#current = null;
+    ends.stopped();
+  }
+
+  /** Aborts the run for another one. */
+  interrupt(): void {
+    this.#current?.controller.abort();
+  }
+}

@@ -1,0 +1,207 @@
+//! Segmenting a clip from its in point to its out point, and going on with it. What is done stays when a run is cancelled or fails. The
+//! clip itself, the in point and the masks are in the state.
+
+import type { ClipFrame } from 'veronese';
+import type { Clip } from '../../clips/clip.js';
+import type { Settings } from '../../state/settings.js';
+import { contains, numbersOf, withRun } from '../../state/spans.js';
+import type { Store } from '../../state/state.js';
+import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, isTracked, savedOf, untracked, versionOf } from '../../state/tracked.js';
+import type { Shown } from '../shown.js';
+import { ClipFrames, STOPPED } from './frames.js';
+import type { Change, ClipRuns } from './runs.js';
+import { type Spans, blobOf, bytesOf, masksOf } from './spans.js';
+import { TimeLeft } from './time-left.js';
+
+/** Masks are shown at most this often while they come, milliseconds. */
+const OFTEN = 100;
+
+export class ClipSegmenting {
+  /** What is known of the pairs of clips, by their fingerprints, for runs that go on. It is large, and no view shows it. */
+  readonly solvedPairs = new Map<string, SolvedPairs>();
+  readonly #store: Store;
+  readonly #runs: ClipRuns;
+  readonly #spans: Spans;
+  readonly #shown: Shown;
+
+  constructor(store: Store, runs: ClipRuns, spans: Spans, shown: Shown) {
+    this.#store = store;
+    this.#runs = runs;
+    this.#spans = spans;
+    this.#shown = shown;
+  }
+
+  /** What is known of this clip, also from when it was open before. A run on another one ends. */
+  of(clip: Clip | null): Tracked | null {
+    const { tracked } = this.#store.get();
+    if (clip !== null && tracked?.clip === clip) return tracked;
+    this.#runs.stop();
+    const { tracked: left, keptClips } = this.#store.get();
+    const kept = new Map(keptClips);
+    if (left !== null && left.solved > 0) kept.set(left.clip.fingerprint, left);
+    const known = clip === null ? undefined : kept.get(clip.fingerprint);
+    if (clip !== null) kept.delete(clip.fingerprint);
+    this.#store.set({ keptClips: kept });
+    return clip === null ? null : known === undefined ? untracked(clip) : { ...known, clip };
+  }
+
+  /** Moves the in point or the out point of the open clip. The other one makes way. */
+  setRange(edge: keyof Range, index: number): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    const end = tracked.clip.count - 1;
+    const at = Math.min(Math.max(index, 0), end);
+    const { first, last } = tracked.range;
+    const range = edge === 'first' ? { first: at, last: at > last ? end : last } : { first: at < first ? 0 : first, last: at };
+    this.#store.clip({ range });
+  }
+
+  /**
+   * Segments the open clip from its in point to its out point, or continues with it. Masks that there are stay until all new ones are
+   * there; what is outside stays, and corrections are applied again. `part`: other frames than those.
+   */
+  async segment(part?: Range): Promise<void> {
+    const { tracked, settings: own, motionsElsewhere } = this.#store.get();
+    if (tracked === null) return;
+    const { clip, range: chosen } = tracked;
+    const range = part ?? chosen;
+    // The number of motions of a single pair is not that of the clip.
+    const alone = tracked.frames.every((frame, index) => frame === null || contains(range, index));
+    const settings = { ...own, motions: motionsElsewhere ?? own.motions, longestSide: alone ? own.longestSide : tracked.longestSide };
+    const { longestSide, ...options } = settings;
+    const { pairs } = this.#knownOf(clip, range, settings);
+    const frames = new ClipFrames(clip, longestSide, range);
+    const ends = { cancel: () => this.#finish(frames), stopped: () => this.#store.clip({ run: { phase: 'cancelled' } }) };
+    await this.#runs.run(ends, async (signal, set) => {
+      const solved = (): number => [...pairs.keys()].filter((index) => index < frames.length).length;
+      const time = new TimeLeft(solved(), frames.length);
+      const solving = (): void => {
+        if (!frames.stopped) set({ run: { phase: 'working', stage: 'pairs', left: time.at(solved()), labelled: 0 }, solved: solved() });
+      };
+      solving();
+      const found = this.#runs.segmenter.segmentClip(frames, {
+        ...options,
+        signal,
+        transfer: true,
+        knownPairs: (index) => {
+          const known = pairs.get(index);
+          return known && bytesOf(known);
+        },
+        onPairs: (index, bytes) => {
+          pairs.set(index, blobOf(bytes));
+          solving();
+        },
+      });
+      const masks: TrackedFrame[] = [];
+      let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
+      try {
+        await this.#take(found, frames, masks, set);
+        if (frames.same) run = { ...run, cause: 'same' };
+      } catch (error) {
+        if (error !== STOPPED) throw error;
+        run = { phase: 'cancelled' };
+      }
+      const state = masks.length === 0 ? undefined : await found.state();
+      const { tracked: before } = this.#store.get();
+      if (signal.aborted || before === null) return;
+      // A run that was cancelled early has less than there was.
+      const covered = before.frames.every((frame, index) => frame === null || !contains(range, index) || index < range.first + masks.length);
+      if (state === undefined || !covered) return set({ run });
+      await this.#replace(before, masks, { first: range.first, last: range.first + masks.length - 1 }, { state, longestSide, run }, signal, set);
+    });
+  }
+
+  /**
+   * Segments the open clip again if what the package knows of it is of another version. Its masks stay until then, but take no corrections.
+   */
+  async renew(): Promise<void> {
+    const { tracked } = this.#store.get();
+    if (tracked === null || (await this.#spans.areReadable(tracked))) return;
+    if (this.#store.get().tracked?.clip !== tracked.clip) return;
+    this.#runs.stop();
+    this.solvedPairs.delete(tracked.clip.fingerprint);
+    this.#store.clip({ spans: [] });
+    for (const { range } of tracked.spans) {
+      await this.segment(range);
+      const { tracked: now } = this.#store.get();
+      if (now?.clip !== tracked.clip || now.run.phase !== 'done') return;
+    }
+  }
+
+  /** Cancels the run on the clip. A correction under way is taken back. */
+  cancel(): void {
+    this.#runs.cancel();
+  }
+
+  /** Frames whose pairs are solved get their masks first; if that is what is under way, it stops at once. */
+  #finish(frames: ClipFrames): void {
+    const { tracked } = this.#store.get();
+    if (tracked?.run.phase !== 'working' || tracked.run.stage !== 'pairs') return this.#runs.stop();
+    frames.stop();
+    this.#store.clip({ run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } });
+  }
+
+  /** Takes the labelled frames as they come, and shows them if there are no masks yet. */
+  async #take(found: AsyncIterable<ClipFrame>, { clip, longestSide, range, size }: ClipFrames, masks: TrackedFrame[], set: Change): Promise<void> {
+    const { tracked } = this.#store.get();
+    const fresh = !isTracked(tracked);
+    let shown = 0;
+    const show = (): void => {
+      const { tracked: before } = this.#store.get();
+      if (before === null) return;
+      shown = performance.now();
+      set({ run: { phase: 'working', stage: 'labels', left: null, labelled: masks.length } });
+      if (!fresh) return;
+      const frames = untracked(clip).frames.map((_, index) => masks[index - range.first] ?? null);
+      set({ frames, largest: largestOf(frames), longestSide, saved: savedOf({ ...before, frames }) });
+      this.#shown.objects(before);
+    };
+    try {
+      for await (const frame of found) {
+        masks.push(masksOf(frame, size));
+        if (performance.now() - shown >= OFTEN) show();
+      }
+    } finally {
+      if (masks.length > 0) show();
+    }
+  }
+
+  /** Puts the masks of a run in the place of those before, under the same numbers, and corrects them as those were corrected. */
+  async #replace(
+    before: Tracked,
+    masks: readonly TrackedFrame[],
+    range: Range,
+    { state, longestSide, run }: { readonly state: Uint8Array; readonly longestSide: number; readonly run: ClipRun },
+    signal: AbortSignal,
+    set: Change,
+  ): Promise<void> {
+    const { past, painted, became } = before;
+    const isFirst = before.found.every((runs) => runs === null);
+    const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
+    let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
+    const said = [...painted.keys()].filter((index) => contains(range, index));
+    const corrected = said.length > 0 || became.size > 0;
+    if (corrected) version = await this.#spans.corrected(version, version.spans.at(-1)!, said, signal);
+    const { tracked: now } = this.#store.get();
+    if (signal.aborted || now === null) return;
+    // What a person corrected can be brought back.
+    if (past.length > 0) set({ past: [...past, versionOf(before)] });
+    else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
+    set({ future: [] });
+    this.#shown.version(version, corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
+  }
+
+  /** What is known for these settings: other settings and another first frame begin anew. */
+  #knownOf({ fingerprint }: Clip, { first }: Range, settings: Settings): SolvedPairs {
+    const key = JSON.stringify([first, settings.motions, settings.quality, settings.longestSide]);
+    const before = this.solvedPairs.get(fingerprint);
+    const known = before?.settings === key ? before : { settings: key, pairs: new Map<number, Blob>() };
+    this.solvedPairs.set(fingerprint, known);
+    return known;
+  }
+}
+
+/** The largest number of an object in these frames. */
+function largestOf(frames: Version['frames']): number {
+  return frames.reduce((most, frame) => (frame?.objects ?? []).reduce((larger, { id }) => Math.max(larger, id), most), 0);
+}

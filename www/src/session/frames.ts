@@ -1,0 +1,197 @@
+//! Which frames are on screen: a pair, with its place in a clip. Frames are put there with the work on them that is kept. The pair and the
+//! timeline are in the state; how far the two frames are apart is kept here, because near the end of a clip they cannot be.
+
+import type { Clip } from '../clips/clip.js';
+import { WHOLE } from '../drawing/viewport.js';
+import type { Project, ProjectClip } from '../projects/project.js';
+import type { Projects } from '../projects/projects.js';
+import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
+import { FRESH, type Look, type Store } from '../state/state.js';
+import { isTracked, livesOf } from '../state/tracked.js';
+import type { Camera } from './camera/camera.js';
+import { isFrameOf } from './clip/frames.js';
+import type { ClipSegmenting } from './clip/segmenting.js';
+import type { Opening } from './opening.js';
+import type { Masks } from './pair/masks.js';
+import type { PairWorker } from './pair/worker.js';
+import type { Shown } from './shown.js';
+
+/** Distance between the two frames when a clip is opened. */
+export const FRAMES_APART = 1;
+
+/** What else changes with the frames. */
+interface Parts {
+  readonly opening: Opening;
+  readonly worker: PairWorker;
+  readonly camera: Camera;
+  readonly clip: ClipSegmenting;
+  readonly masks: Masks;
+  readonly shown: Shown;
+  readonly projects: Projects;
+}
+
+export class Frames {
+  readonly #store: Store;
+  readonly #parts: Parts;
+  #apart = FRAMES_APART;
+
+  constructor(store: Store, parts: Parts) {
+    this.#store = store;
+    this.#parts = parts;
+  }
+
+  /** Chooses one frame of the open clip; the index is clamped. */
+  choose(slot: Slot, index: number): Promise<void> {
+    const { timeline } = this.#store.get();
+    if (timeline === null) return Promise.resolve();
+    const places = { ...timeline, [slot]: clamped(Math.round(index), timeline.clip.count) };
+    if (places.first !== null && places.second !== null) this.#apart = places.second - places.first;
+    return this.#goTo(places);
+  }
+
+  /** Steps all frames that are of the clip. */
+  step(by: number): Promise<void> {
+    const { timeline } = this.#store.get();
+    const at = timeline?.first ?? timeline?.second ?? null;
+    return at === null ? Promise.resolve() : this.goTo(at + by);
+  }
+
+  /** Goes to a frame of the clip. The second frame keeps its distance, except that masks of a clip can be seen up to its ends. */
+  goTo(index: number): Promise<void> {
+    const { timeline, look } = this.#store.get();
+    if (timeline === null) return Promise.resolve();
+    const { first, second, clip } = timeline;
+    if (first === null || second === null) {
+      const slot = first === null ? 'second' : 'first';
+      return this.#goTo({ [slot]: clamped(index, clip.count) });
+    }
+    const apart = this.#apart;
+    const [least, most] = look.kind === 'objects' ? [0, clip.count - 1] : [Math.max(0, -apart), clip.count - 1 - Math.max(0, apart)];
+    const at = Math.min(Math.max(index, least), most);
+    return this.#goTo({ first: at, second: clamped(at + apart, clip.count) });
+  }
+
+  /** Goes to the frame where an object is least certain, by default the selected one; then, or if none is selected, to that of the next. */
+  goToDoubtful(id: number | null = null): void {
+    const { tracked, look, timeline } = this.#store.get();
+    if (tracked === null || look.kind !== 'objects') return;
+    const lives = livesOf(tracked);
+    const selected = lives.findIndex((life) => life.id === (id ?? look.selected));
+    const seen = id === null && selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
+    const life = lives[(selected < 0 ? 0 : selected + Number(seen)) % lives.length];
+    if (life === undefined) return;
+    this.#parts.shown.select(life.id);
+    this.#store.clip({ checked: new Map(tracked.checked).set(life.id, life.doubtful.index) });
+    void this.goTo(life.doubtful.index);
+  }
+
+  /** Swaps the two frames. */
+  swap(): void {
+    const { first, second } = this.#store.get().pair;
+    this.#apart *= -1;
+    this.#parts.opening.giveUp();
+    this.#setPair({ first: second, second: first });
+  }
+
+  /** Loads frames and puts them into the pair, with the work on them that is kept. `then`: after that. */
+  open(
+    load: (signal: AbortSignal) => Promise<readonly LoadedFrame[]>,
+    place: (frames: readonly LoadedFrame[], pair: FramePair) => FramePair,
+    then: (found: Project | null) => void = () => undefined,
+  ): Promise<void> {
+    const { opening, worker, camera, masks, projects } = this.#parts;
+    worker.prepare();
+    return opening.open(
+      async (signal) => {
+        const frames = await load(signal);
+        return { frames, project: await projects.find(place(frames, this.#store.get().pair)) };
+      },
+      ({ frames, project }) => {
+        const pair = place(frames, this.#store.get().pair);
+        if (frames.length > 0) camera.stop();
+        if (project !== null) masks.keep();
+        projects.restore(project, pair);
+        if (frames.length > 0 || project !== null) this.#setPair(pair);
+        if (project?.clip) this.#continue(project.clip);
+        then(project);
+      },
+      ({ frames }) => {
+        const { first, second } = this.#store.get().pair;
+        for (const frame of frames) {
+          const { bitmap, origin } = frame;
+          if (frame !== first && frame !== second) bitmap.close();
+          if (origin !== undefined && 'clip' in origin && origin.clip !== this.#store.get().timeline?.clip) origin.clip.close();
+        }
+      },
+    );
+  }
+
+  /** A frame of a clip at the size that the settings ask for. */
+  async read(clip: Clip, index: number): Promise<LoadedFrame> {
+    return { ...(await clip.frame(index, this.#store.get().settings.longestSide)), origin: { clip, index } };
+  }
+
+  /** Goes to other frames of the clip. The timeline moves at once; the pair changes when the frames are loaded. */
+  #goTo(places: Partial<Pick<Timeline, Slot>>): Promise<void> {
+    const { timeline, pair, opening } = this.#store.get();
+    if (timeline === null) return Promise.resolve();
+    const { clip } = timeline;
+    const wanted: Timeline = { ...timeline, ...places };
+    const shown = timelineOf(pair);
+    const missing = (['first', 'second'] as const).flatMap((slot) => {
+      const index = wanted[slot];
+      return index === null || index === shown?.[slot] ? [] : [{ slot, index }];
+    });
+    if (missing.length === 0) {
+      if (opening) this.#parts.opening.stop();
+      return Promise.resolve();
+    }
+    this.#store.set({ timeline: wanted });
+    return this.open(
+      async () => {
+        const { longestSide } = this.#store.get().settings;
+        const frames: LoadedFrame[] = [];
+        for (const { index } of missing) {
+          const known = [pair.first, pair.second, ...frames].find((frame) => frame !== null && isFrameOf(frame, clip, index, longestSide));
+          frames.push(known ?? (await this.read(clip, index)));
+        }
+        return frames;
+      },
+      (frames, now) => ({ ...now, ...Object.fromEntries(missing.map(({ slot }, k) => [slot, frames[k]])) }),
+    );
+  }
+
+  /** Goes to where the work on a clip was left. */
+  #continue({ at, hidden }: ProjectClip): void {
+    this.#parts.shown.kind('objects');
+    if (this.#store.get().look.kind === 'objects') this.#store.look({ hidden: new Set(hidden) });
+    void this.#parts.clip.renew();
+    void this.goTo(at);
+  }
+
+  #setPair(pair: FramePair): void {
+    const { clip, masks, shown } = this.#parts;
+    masks.leave();
+    const { look, pair: before, viewport, timeline: left } = this.#store.get();
+    const only: Slot = pair.first === null && pair.second !== null ? 'second' : 'first';
+    const complete = pair.first !== null && pair.second !== null;
+    const view = complete && look.view === 'split' ? 'split' : only;
+    const sameSize = before.first !== null && pair.first !== null && before.first.width === pair.first.width && before.first.height === pair.first.height;
+    const timeline = timelineOf(pair);
+    const sameClip = left?.clip === timeline?.clip;
+    const tracked = clip.of(timeline?.clip ?? null);
+    const kind = isTracked(tracked) && (!sameClip || look.kind === 'objects') ? 'objects' : look.kind === 'objects' ? 'groups' : look.kind;
+    // The objects of a clip are the same in all its frames.
+    const same = kind === 'objects' && sameClip;
+    const carried: Look = same ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };
+    if (!same && timeline !== null && timeline.first !== null && timeline.second !== null) this.#apart = timeline.second - timeline.first;
+    shown.pair(pair, { ...carried, view }, { timeline, tracked, opening: false, viewport: sameSize ? viewport : WHOLE });
+    // The old frames are no longer drawn: free their memory now, not at the next garbage collection.
+    for (const frame of [before.first, before.second]) if (frame !== pair.first && frame !== pair.second) frame?.bitmap.close();
+    if (left !== null && !sameClip) left.clip.close();
+  }
+}
+
+function clamped(index: number, count: number): number {
+  return Math.min(Math.max(index, 0), count - 1);
+}

@@ -1,0 +1,176 @@
+//! What can be opened: samples, images, folders, videos, projects, and masks for the frames on screen. It decides what files are, and reads
+//! them; it keeps nothing.
+
+import type { Clip } from '../clips/clip.js';
+import { openClip } from '../clips/open.js';
+import { PageError } from '../common/errors.js';
+import { loaded } from '../common/loaded.js';
+import { strings } from '../common/strings.js';
+import { type ImageFolder, folderOfAll, foldersOf, likelyFrames, nameIn, selectOpenable, withPath } from '../frames/files.js';
+import { fetchImage, frameFromBlob } from '../frames/frame.js';
+import { SAMPLES, type Sample, type SampleClip, type SamplePair } from '../frames/samples.js';
+import type { Project } from '../projects/project.js';
+import type { Projects } from '../projects/projects.js';
+import type { FramePair, LoadedFrame, Slot } from '../state/pair.js';
+import type { Store } from '../state/state.js';
+import { isTracked } from '../state/tracked.js';
+import type { Objects } from './clip/objects.js';
+import type { ClipSegmenting } from './clip/segmenting.js';
+import { report } from './failures.js';
+import { FRAMES_APART, type Frames } from './frames.js';
+import type { Opening } from './opening.js';
+import type { Shown } from './shown.js';
+
+/** What takes what is opened. */
+interface Parts {
+  readonly opening: Opening;
+  readonly frames: Frames;
+  readonly projects: Projects;
+  readonly clip: ClipSegmenting;
+  readonly objects: Objects;
+  readonly shown: Shown;
+}
+
+export class Open {
+  readonly #store: Store;
+  readonly #parts: Parts;
+
+  constructor(store: Store, parts: Parts) {
+    this.#store = store;
+    this.#parts = parts;
+  }
+
+  /** Opens a sample and segments it. `swapped`: a pair with the second frame first. */
+  sample(sample: Sample = SAMPLES[0], swapped = false): Promise<void> {
+    return this.#parts.frames.open(
+      async () => {
+        if ('frames' in sample) return this.#startOf(await openFolderOf(sample), sample.start);
+        return Promise.all((swapped ? (['second', 'first'] as const) : (['first', 'second'] as const)).map((slot) => this.#frameOfSample(sample, slot)));
+      },
+      pairOf,
+      () => {
+        if (!isTracked(this.#store.get().tracked)) void this.#parts.clip.segment();
+      },
+    );
+  }
+
+  /**
+   * Opens files. A video or more than two images is a clip to choose frames from. Two images make a new pair, in the order of their
+   * names. One image goes into `slot`; without a slot, it becomes the missing second frame or the first of a new pair. A project continues
+   * with its frames: those given with it, those on screen, or whenever they are opened. Masks are imported.
+   */
+  async files(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
+    try {
+      const given = [...(await files)];
+      const isOfClip = slot === null && this.#store.get().tracked !== null;
+      const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
+      const areMasks = maybe && (await (await importing()).areMasks(given, this.#store.get()));
+      await (areMasks ? this.masks(given) : this.#frames(given, slot));
+    } catch (error) {
+      report(this.#store, error);
+    }
+  }
+
+  /** Imports masks for the frames of the open clip. */
+  async masks(files: readonly File[]): Promise<void> {
+    try {
+      const { objects, shown } = this.#parts;
+      await (await importing()).importMasks(files, this.#store, objects, shown);
+    } catch (error) {
+      report(this.#store, error);
+    }
+  }
+
+  #frames(files: readonly File[], slot: Slot | null): Promise<void> {
+    let opened: Project | null = null;
+    let leftOut = '';
+    let folder: Clip | null = null;
+    return this.#parts.frames.open(
+      async (signal) => {
+        const { project, video, images: all } = selectOpenable(files);
+        if (project !== null) opened = await this.#parts.projects.open(project);
+        if (video !== null) return this.#startOf(await openClip(video));
+        const folders = foldersOf(all);
+        const [likely, ...others] = likelyFrames(folders);
+        const images = others.length > 0 ? await this.#chosen(folders, all, signal) : (likely?.images ?? []);
+        if (images === null) return [];
+        if (others.length === 0 && images.length < all.length) leftOut = strings.notices.leftOut(likely!.path, all.length - images.length);
+        if (images.length > 2) {
+          const { openFolder } = await loaded(import('../clips/folder.js'));
+          return this.#startOf((folder = await openFolder(images)));
+        }
+        if (images.length === 0 && project !== null) return [];
+        if (images.length === 0) throw new PageError('no-image', strings.notices.noFiles);
+        const { longestSide } = this.#store.get().settings;
+        const read = images.map((image) => frameFromBlob(image, nameIn(folderOfAll(images), image), longestSide));
+        // Of several that cannot be read, the first one is named.
+        await Promise.allSettled(read);
+        return Promise.all(read);
+      },
+      (frames, pair) => {
+        if (frames.length === 2) return pairOf(frames);
+        const [frame] = frames;
+        if (frame === undefined) return pair;
+        if (slot !== null) return { ...pair, [slot]: frame };
+        return pair.first !== null && pair.second === null ? { ...pair, second: frame } : { first: frame, second: null };
+      },
+      (found) => {
+        if (opened !== null && found !== opened) this.#store.say(strings.projects.waiting(opened.name));
+        else if (leftOut !== '') this.#store.say(leftOut);
+        if (folder !== null) void this.#checkSizes(folder);
+      },
+    );
+  }
+
+  /** The images of the folder that the person chooses, or all; `null` if none. */
+  async #chosen(folders: readonly ImageFolder[], images: readonly File[], signal: AbortSignal): Promise<readonly File[] | null> {
+    if (signal.aborted) return null;
+    const chosen = await new Promise<readonly File[] | null>((resolve) => {
+      const answer = (files: readonly File[] | null): void => {
+        this.#store.set({ question: null });
+        resolve(files);
+      };
+      signal.addEventListener('abort', () => answer(null));
+      this.#store.set({ question: { folders, images, answer } });
+    });
+    if (chosen === null && !signal.aborted) this.#parts.opening.stop();
+    return chosen;
+  }
+
+  /** Tells of a frame that has another size than the clip, which ends where it is segmented. */
+  async #checkSizes(clip: Clip): Promise<void> {
+    const other = await clip.otherSize?.();
+    if (!other || this.#store.get().timeline?.clip !== clip) return;
+    this.#store.say(strings.errors.otherSize(clip.nameOf(other.index), other, clip), 'frame-size-mismatch');
+  }
+
+  /** Two frames of a clip. */
+  async #startOf(clip: Clip, at = 0): Promise<LoadedFrame[]> {
+    const { frames } = this.#parts;
+    try {
+      return [await frames.read(clip, at), await frames.read(clip, Math.min(at + FRAMES_APART, clip.count - 1))];
+    } catch (error) {
+      clip.close();
+      throw error;
+    }
+  }
+
+  async #frameOfSample(sample: SamplePair, slot: Slot): Promise<LoadedFrame> {
+    const image = await fetchImage(sample[slot]);
+    return { ...(await frameFromBlob(image, image.name, this.#store.get().settings.longestSide)), origin: { sample, slot } };
+  }
+}
+
+function importing(): Promise<typeof import('./clip/importing.js')> {
+  return loaded(import('./clip/importing.js'));
+}
+
+/** Opens a sample as the folder that it is. */
+async function openFolderOf(sample: SampleClip): Promise<Clip> {
+  const [{ openFolder }, images] = await Promise.all([loaded(import('../clips/folder.js')), Promise.all(sample.frames.map(fetchImage))]);
+  return openFolder(images.map((image) => withPath(image, `${sample.id}/${image.name}`)), sample);
+}
+
+function pairOf([first, second]: readonly LoadedFrame[]): FramePair {
+  return { first: first ?? null, second: second ?? null };
+}

@@ -1,0 +1,80 @@
+//! Which masks are on screen: those of the pair or those of the clip, of which kind, in which version. They are in the state, where this
+//! alone replaces one kind by another.
+
+import { NO_EDITS } from '../correction/edits.js';
+import type { Kind } from '../result/masks.js';
+import { frameOf, resultOf } from '../state/objects.js';
+import type { FramePair } from '../state/pair.js';
+import { FRESH, type Look, type Run, type State, type Store, isCurrent, isPassing } from '../state/state.js';
+import { type ClipRun, type Tracked, type Version, isTracked, versionOf } from '../state/tracked.js';
+import type { Masks } from './pair/masks.js';
+import { type PairSegmenting, STARTING } from './pair/segmenting.js';
+import type { Solving } from './pair/solving.js';
+
+export class Shown {
+  readonly #store: Store;
+  readonly #segmenting: PairSegmenting;
+  readonly #solving: Solving;
+  readonly #masks: Masks;
+
+  constructor(store: Store, segmenting: PairSegmenting, solving: Solving, masks: Masks) {
+    this.#store = store;
+    this.#segmenting = segmenting;
+    this.#solving = solving;
+    this.#masks = masks;
+  }
+
+  /** Shows masks of this kind. Mask numbers change meaning, so choices that refer to them are reset. */
+  kind(kind: Kind): void {
+    const { look, pair, tracked, live } = this.#store.get();
+    if (live !== null || look.kind === kind || (kind === 'objects' && !isTracked(tracked))) return;
+    const { hidden, solo, stabilised, selected } = FRESH;
+    if (kind !== 'objects' && look.kind !== 'objects') return this.#store.look({ kind, hidden, solo, stabilised, selected });
+    this.#masks.leave();
+    this.pair(pair, { ...look, ...FRESH, kind });
+  }
+
+  /** Selects a mask. */
+  select(mask: number | null): void {
+    if (this.#store.get().look.selected !== mask) this.#store.look({ selected: mask });
+  }
+
+  /** Shows a pair with the masks that there are: those of the clip, or its own, which are found if necessary. */
+  pair(pair: FramePair, look: Look, others: Partial<State> = {}): void {
+    const { tracked, playing, scrubbing } = { ...this.#store.get(), ...others };
+    if (look.kind === 'objects' && tracked !== null) {
+      const { names, colours } = tracked;
+      const result = resultOf(tracked, pair);
+      this.#store.set({ ...others, pair, found: null, edits: NO_EDITS, result, run: { phase: 'done', cause: 'tracked' }, look: { ...look, names, colours } });
+      return;
+    }
+    const restored = this.#masks.stateFor(pair);
+    const current = isCurrent(restored);
+    const passing = isPassing({ playing, scrubbing });
+    const starting: Run = pair.first !== null && pair.second !== null && !passing ? STARTING : { phase: 'idle' };
+    this.#store.set({ ...others, pair, ...restored, run: current ? { phase: 'done', cause: 'restored' } : starting, look });
+    if (current) this.#solving.settle('restored');
+    else if (!passing) void this.#segmenting.segment();
+  }
+
+  /** Shows another version of the clip's masks. */
+  version(version: Version, run: ClipRun): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    this.#store.clip({ ...versionOf(version), run });
+    const { selected } = this.#store.get().look;
+    const now = version.became.get(selected ?? 0);
+    if (now !== undefined) this.#store.look({ selected: now === 0 ? null : now });
+    this.objects(tracked);
+  }
+
+  /** Shows the masks of the clip as soon as there are any, and whenever those on screen change. `before`: what there was. */
+  objects(before: Tracked): void {
+    const { look, pair, tracked } = this.#store.get();
+    if (tracked === null) return;
+    if (!isTracked(before)) return this.kind('objects');
+    const frames = [pair.first, pair.second].filter((frame) => frame !== null);
+    const changed = frames.some((frame) => frameOf(tracked, frame) !== frameOf(before, frame));
+    if (look.kind === 'objects' && changed) this.#store.set({ result: resultOf(tracked, pair) });
+  }
+}
