@@ -71,18 +71,27 @@ export class Frames {
     return this.#goTo({ first: at, second: clamped(at + apart, clip.count) });
   }
 
-  /** Goes to the frame where an object is least certain, by default the selected one; then, or if none is selected, to that of the next. */
-  goToDoubtful(id: number | null = null): void {
+  /** Goes to the frame where an object is least certain, by default the selected one; then, or if none is selected, to that of the next or previous. */
+  goToDoubtful(id: number | null = null, by: 1 | -1 = 1): void {
     const { tracked, look, timeline } = this.#store.get();
     if (tracked === null || look.kind !== 'objects') return;
     const lives = livesOf(tracked);
     const selected = lives.findIndex((life) => life.id === (id ?? look.selected));
     const seen = id === null && selected >= 0 && lives[selected]!.doubtful.index === timeline?.first;
-    const life = lives[(selected < 0 ? 0 : selected + Number(seen)) % lives.length];
+    const life = lives[(selected < 0 ? 0 : selected + by * Number(seen) + lives.length) % lives.length];
     if (life === undefined) return;
     this.#parts.shown.select(life.id);
     this.#store.clip({ checked: new Map(tracked.checked).set(life.id, life.doubtful.index) });
     void this.goTo(life.doubtful.index);
+  }
+
+  /** Goes to the next frame that a person has corrected, or to the one before. */
+  goToCorrected(by: 1 | -1): void {
+    const { tracked, timeline } = this.#store.get();
+    const at = timeline?.first ?? 0;
+    const corrected = [...(tracked?.painted.keys() ?? [])].toSorted((one, other) => by * (one - other));
+    const next = corrected.find((index) => by * (index - at) > 0);
+    if (next !== undefined) void this.goTo(next);
   }
 
   /** Swaps the two frames. */

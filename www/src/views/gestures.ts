@@ -1,5 +1,6 @@
 //! Pointers on the picture. View tool: a tap selects a mask, holding shows the other frame, dragging pans the enlarged picture. Brush and
-//! eraser: dragging paints. Box: dragging draws one, a tap points. All tools: the wheel and two fingers zoom.
+//! eraser: dragging paints. Box: dragging draws one, a tap points. With Shift the wheel changes
+//! the size of the brush. All tools: the wheel and two fingers zoom.
 
 import { inPicture } from '../drawing/viewport.js';
 import { maskOf } from '../result/masks.js';
@@ -7,14 +8,16 @@ import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import type { Brush } from './brush.js';
+import { changeRadius } from './tools.js';
 import type { Zoom } from './zoom.js';
 
 /** A press that moves further is a drag, screen pixels. */
 const STILL = 5;
 /** A press that lasts longer is not a tap, milliseconds. */
 const TAP = 220;
-/** Zoom per pixel of the wheel. */
+/** Zoom per pixel of the wheel, and what a notch makes of the brush. */
 const WHEEL = 0.0025;
+const NOTCH = 1.15;
 
 interface Press {
   x: number;
@@ -114,6 +117,10 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   layers.addEventListener(
     'wheel',
     (event) => {
+      if (event.shiftKey && paints()) {
+        event.preventDefault();
+        return changeRadius(store, (event.deltaY || event.deltaX) < 0 ? NOTCH : 1 / NOTCH);
+      }
       // The whole picture is visible already: let the page scroll.
       if (event.deltaY > 0 && store.get().viewport.zoom <= 1 && !event.ctrlKey) return;
       event.preventDefault();

@@ -46,7 +46,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     const key = keys.find((one) => one.keys.includes(name) && (one.command ?? false) === command && (one.shift ?? event.shiftKey) === event.shiftKey);
     if (key === undefined || (key.arrows && (store.get().viewport.zoom <= 1 || takesArrows(event.target)))) return;
     if (name !== 'escape') event.preventDefault();
-    key.run();
+    key.run(name);
   });
   document.addEventListener('keyup', (event) => {
     if (event.key.toLowerCase() === 'b') peek.release();

@@ -1,4 +1,5 @@
-//! A lane for each object on the timeline: the frames that show it, more faintly the less certain they are.
+//! A lane for each object on the timeline: the frames that show it, more faintly the less certain they are, and marks where a person has
+//! corrected.
 
 import { nameOf } from '../common/naming.js';
 import { strings } from '../common/strings.js';
@@ -34,7 +35,8 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
   };
   store.subscribe((now, before) => {
     const { tracked, look } = now;
-    if (tracked?.frames === before.tracked?.frames && look === before.look) return;
+    const same = tracked?.frames === before.tracked?.frames && tracked?.painted === before.tracked?.painted;
+    if (same && look === before.look) return;
     root.classList.toggle('with-lanes', look.kind === 'objects' && tracked !== null);
     if (tracked === null) return;
     if (tracked.frames !== before.tracked?.frames) {
@@ -57,7 +59,7 @@ function nameButton(id: number, session: Session): HTMLElement {
   return item;
 }
 
-function draw(canvas: HTMLCanvasElement, { frames }: Tracked, lives: readonly Life[], look: Look): void {
+function draw(canvas: HTMLCanvasElement, { frames, painted }: Tracked, lives: readonly Life[], look: Look): void {
   const dense = Math.min(2, devicePixelRatio);
   canvas.width = Math.max(1, Math.round(canvas.clientWidth * dense));
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * dense));
@@ -73,4 +75,22 @@ function draw(canvas: HTMLCanvasElement, { frames }: Tracked, lives: readonly Li
       context.fillRect(left, ((places.get(id) ?? 0) + (1 - THICKNESS) / 2) * row, Math.max(1, right - left), THICKNESS * row);
     }
   });
+  context.globalAlpha = 1;
+  for (const [index, { labels }] of painted) {
+    for (const [id, place] of places) if (labels.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
+  }
+}
+
+/** A diamond that stands out from any lane. */
+function mark(context: CanvasRenderingContext2D, x: number, y: number, size: number): void {
+  context.beginPath();
+  context.moveTo(x, y - size);
+  context.lineTo(x + size, y);
+  context.lineTo(x, y + size);
+  context.lineTo(x - size, y);
+  context.closePath();
+  context.fillStyle = 'white';
+  context.fill();
+  context.strokeStyle = 'black';
+  context.stroke();
 }

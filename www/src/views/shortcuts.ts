@@ -2,8 +2,10 @@
 
 import { strings } from '../common/strings.js';
 import { ZOOM_STEP } from '../drawing/viewport.js';
+import { masksOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
+import { type Tracked, isLocked, livesOf } from '../state/tracked.js';
 import { toggleBlinking } from './blink.js';
 import { setEdge } from './range.js';
 import { stepOne } from './timeline.js';
@@ -16,7 +18,8 @@ export interface Key {
   /** As shown in the list. */
   readonly shown: string;
   readonly does: string;
-  readonly run: () => void;
+  /** Takes the key that was pressed, in lower case. */
+  readonly run: (name: string) => void;
   /** With Ctrl or the command key. */
   readonly command?: boolean;
   /** Requires Shift (true) or excludes it (false). */
@@ -25,6 +28,7 @@ export interface Key {
   readonly arrows?: boolean;
 }
 
+const NUMBERS = ['1', '2', '3', '4', '5', '6', '7', '8', '9'];
 /** How far an arrow key pans the enlarged picture, share of the view. */
 const PAN = 0.1;
 
@@ -36,13 +40,13 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['n'], shown: 'N', does: keys.blink, run: () => toggleBlinking(store) },
     { keys: ['s'], shown: 'S', does: keys.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
     { keys: ['g'], shown: 'G', does: keys.kind, run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
-    { keys: ['l'], shown: 'L', does: keys.outlines, run: toggle('outlines') },
+    { keys: ['l'], shown: 'L', does: keys.outlines, run: toggle('outlines'), shift: false },
     { keys: ['a'], shown: 'A', does: keys.arrows, run: toggle('arrows') },
     { keys: ['r'], shown: 'R', does: keys.residual, run: toggle('residual') },
     { keys: ['+', '='], shown: '+', does: keys.zoomIn, run: () => zoom.by(ZOOM_STEP) },
     { keys: ['-', '_'], shown: '−', does: keys.zoomOut, run: () => zoom.by(1 / ZOOM_STEP) },
     { keys: ['0'], shown: '0', does: keys.whole, run: () => zoom.whole() },
-    { keys: ['1'], shown: '1', does: keys.actual, run: () => zoom.actual() },
+    { keys: ['z'], shown: 'Z', does: keys.actual, run: () => zoom.actual() },
     { keys: ['arrowleft'], shown: '←', does: keys.pan, run: pan(1, 0), arrows: true },
     { keys: ['arrowright'], shown: '→', does: '', run: pan(-1, 0), arrows: true },
     { keys: ['arrowup'], shown: '↑', does: '', run: pan(0, 1), arrows: true },
@@ -52,7 +56,13 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['k'], shown: 'K', does: keys.play, run: () => void session.play.toggle() },
     { keys: ['i'], shown: 'I', does: keys.inPoint, run: () => setEdge(store, session, 'first') },
     { keys: ['o'], shown: 'O', does: keys.outPoint, run: () => setEdge(store, session, 'last') },
-    { keys: ['d'], shown: 'D', does: keys.doubtful, run: () => session.frames.goToDoubtful() },
+    { keys: ['d'], shown: 'D', does: keys.doubtful, run: () => session.frames.goToDoubtful(), shift: false },
+    { keys: ['d'], shown: 'Shift D', does: keys.doubtfulBefore, run: () => session.frames.goToDoubtful(null, -1), shift: true },
+    { keys: ['c'], shown: 'C', does: keys.corrected, run: () => session.frames.goToCorrected(1), shift: false },
+    { keys: ['c'], shown: 'Shift C', does: keys.correctedBefore, run: () => session.frames.goToCorrected(-1), shift: true },
+    { keys: NUMBERS, shown: '1 … 9', does: keys.select, run: (name) => selectMask(store, session, Number(name)) },
+    { keys: ['l'], shown: 'Shift L', does: keys.lock, run: () => ofSelected(store, (id, tracked) => session.objects.setLocked(id, !isLocked(tracked, id))), shift: true },
+    { keys: ['delete', 'backspace'], shown: 'Delete', does: keys.remove, run: () => ofSelected(store, (id) => session.objects.remove(id)) },
     { keys: ['v'], shown: 'V', does: keys.look, run: () => chooseTool(store, 'look') },
     { keys: ['p'], shown: 'P', does: keys.brush, run: () => chooseTool(store, 'brush') },
     { keys: ['e'], shown: 'E', does: keys.eraser, run: () => chooseTool(store, 'eraser') },
@@ -65,4 +75,19 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.edited().redo(), command: true },
     { keys: ['escape'], shown: 'Esc', does: keys.cancel, run: () => session.cancel() },
   ];
+}
+
+/** Selects the object or mask with this place in the list, after the background. */
+function selectMask(store: Store, session: Session, place: number): void {
+  const { look, tracked, result } = store.get();
+  const ofClip = look.kind === 'objects' && tracked !== null;
+  const ids = ofClip ? livesOf(tracked).map(({ id }) => id) : result === null ? [] : masksOf(result.segmentation, look.kind).slice(1).map(({ id }) => id);
+  const id = ids[place - 1];
+  if (id !== undefined) session.shown.select(id);
+}
+
+/** Does something with the selected object of a clip. */
+function ofSelected(store: Store, act: (id: number, tracked: Tracked) => void): void {
+  const { look, tracked } = store.get();
+  if (look.kind === 'objects' && tracked !== null && look.selected !== null && look.selected !== 0) act(look.selected, tracked);
 }

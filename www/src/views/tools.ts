@@ -61,6 +61,8 @@ export function chooseTool(store: Store, name: ToolName): void {
 
 export function changeRadius(store: Store, factor: number): void {
   const { tool } = store.get();
-  const radius = Math.min(Math.max(Math.round(tool.radius * factor), RADII.least), RADII.most);
+  const least = tool.radius + Math.sign(factor - 1); // a small brush changes, too
+  const changed = factor > 1 ? Math.max(Math.round(tool.radius * factor), least) : Math.min(Math.round(tool.radius * factor), least);
+  const radius = Math.min(Math.max(changed, RADII.least), RADII.most);
   store.set({ tool: { ...tool, radius } });
 }

@@ -1,0 +1,63 @@
+//! A clip is corrected by keyboard: its objects, its corrected frames, the size of the brush.
+
+import { clipDone, clipFrames, done, drag, expect, goTo, openSegmented, test } from './support.js';
+
+test('objects are selected, locked and deleted, and corrected frames are found', async ({ page }) => {
+  await openSegmented(page, await clipFrames(8));
+  const rows = page.locator('#objects > li');
+  await expect(rows).toHaveCount(3); // and the background
+  await page.keyboard.press('2');
+  await expect(rows.nth(2)).toHaveClass(/selected/);
+  await page.keyboard.press('1');
+  await expect(rows.nth(1)).toHaveClass(/selected/);
+  await page.keyboard.press('9'); // there is none
+  await expect(rows.nth(1)).toHaveClass(/selected/);
+
+  const lock = rows.nth(1).locator('[data-action=lock]');
+  await page.keyboard.press('Shift+L');
+  await expect(lock).toHaveAttribute('aria-pressed', 'true');
+  await page.keyboard.press('Shift+L');
+  await expect(lock).toHaveAttribute('aria-pressed', 'false');
+
+  for (const index of [2, 6]) {
+    await goTo(page, index);
+    await page.keyboard.press('p');
+    await drag(page, [0.05, 0.85], [0.1, 0.9]);
+    await clipDone(page);
+  }
+  await page.keyboard.press('Shift+C');
+  await expect(page.locator('#caption')).toHaveText('Frame 2');
+  await page.keyboard.press('Shift+C'); // there is none before
+  await expect(page.locator('#caption')).toHaveText('Frame 2');
+  await page.keyboard.press('c');
+  await expect(page.locator('#caption')).toHaveText('Frame 6');
+  await done(page);
+
+  await page.keyboard.press('2');
+  await page.keyboard.press('Delete');
+  await expect(rows).toHaveCount(2);
+  await clipDone(page);
+  await page.keyboard.press('Control+z');
+  await expect(rows).toHaveCount(3);
+});
+
+test('with Shift the wheel changes the size of the brush, and nothing else', async ({ page }) => {
+  await openSegmented(page, await clipFrames(4));
+  const size = page.locator('#tools [name=radius]');
+  const box = (await page.locator('.layers').boundingBox())!;
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.keyboard.down('Shift');
+  await page.mouse.wheel(0, -100);
+  await expect(size).toHaveValue('8');
+  await page.keyboard.up('Shift');
+  await page.locator('#tools [value=brush]').check();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  const zoom = await page.locator('#zoom-value').textContent();
+  await page.keyboard.down('Shift');
+  await page.mouse.wheel(0, -100);
+  await expect(size).toHaveValue('9');
+  for (let k = 0; k < 9; k++) await page.mouse.wheel(0, 100);
+  await expect(size).toHaveValue('2');
+  await page.keyboard.up('Shift');
+  await expect(page.locator('#zoom-value')).toHaveText(zoom!);
+});
