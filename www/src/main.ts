@@ -29,6 +29,7 @@ import { mountProgress } from './views/progress.js';
 import { mountRange } from './views/range.js';
 import { mountResidual } from './views/residual.js';
 import { keysFor } from './views/shortcuts.js';
+import { mountShowing } from './views/showing.js';
 import { mountStage } from './views/stage.js';
 import { mountSuggestions } from './views/suggestions.js';
 import { mountTimeline } from './views/timeline.js';
@@ -83,4 +84,6 @@ window.addEventListener('hashchange', () => {
   if (sample !== null) void session.open.sample(sample, swapped);
 });
 
-void session.open.sample(linked.sample ?? SAMPLES[0], linked.swapped);
+const opened = linked.sample ?? SAMPLES[0];
+if (location.hash === '' && 'frames' in opened) mountShowing(window, store, session, opened);
+void session.open.sample(opened, linked.swapped);

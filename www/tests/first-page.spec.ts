@@ -34,6 +34,11 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
   await expect(page.locator('#clip-cancel')).toBeEnabled();
   await clipDone(page);
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
+  // It plays, and ends where it began.
+  await expect(page.locator('#play')).toHaveAccessibleName('Pause');
+  await expect(page.locator('#caption')).not.toHaveText(`Frame ${START}`);
+  await expect(page.locator('#caption')).toHaveText(`Frame ${START}`, { timeout: 20_000 });
+  await expect(page.locator('#play')).toHaveAccessibleName('Play');
   await expect(page.locator('#objects > li')).toHaveCount(3); // and the background
   await expect(page.locator('#status')).toHaveText('2 objects in this frame.');
   const labels = await labelsOnCanvas(page);
@@ -42,6 +47,17 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
   // Nothing was done that would have to be kept, or asked about.
   await page.waitForTimeout(1000);
   expect(await isAnythingKept(page)).toBe(false);
+});
+
+test('whoever touches the page first is not shown the clip', async ({ page }) => {
+  test.setTimeout(180_000);
+  await page.goto('./');
+  await page.locator('#clip-progress').waitFor();
+  await page.keyboard.press('v');
+  await clipDone(page);
+  await page.waitForTimeout(500);
+  await expect(page.locator('#caption')).toHaveText(`Frame ${START}`);
+  await expect(page.locator('#play')).toHaveAccessibleName('Play');
 });
 
 test('work on the clip is kept, and the next visit continues with it', async ({ page }) => {

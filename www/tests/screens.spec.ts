@@ -3,7 +3,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { PAIR, clipDone, clipFrames, done, expect, openExport, sample, screen, square, test, upload } from './support.js';
+import { PAIR, clipDone, clipFrames, done, expect, goTo, openExport, sample, screen, square, test, upload } from './support.js';
 
 const SIZES = [[1440, 900], [1280, 720], [390, 844]] as const;
 const SCHEMES = ['light', 'dark'] as const;
@@ -31,6 +31,8 @@ for (const { width, height, colorScheme } of SHOWN) {
       await done(page);
       await page.screenshot({ path: screen(`start-working-${width}-${colorScheme}`) });
       await clipDone(page);
+      await page.keyboard.press('v'); // it does not play
+      await goTo(page, 32);
       await shot(page, 'start');
       await shot(page, 'start-whole', true);
     });
