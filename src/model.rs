@@ -72,281 +72,102 @@ model! {
     /// The same with quality `fast`, and of the level on which motions are selected and labels drafted in frames that are not halved.
     /// Speed.
     work_side_fast: usize = 320;
-    /// The same in a stream of quality `fast` for large frames, which then keep at least 160 pixels. Speed.
-    work_side_stream: usize = 319;
-    /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed. Generated.
-    base_side: usize = 224;
-    /// Longer side from which on frames are large: with quality `best` their search is carried on at this size. Generated.
-    detail_side: usize = 960;
     /// The coarsest level keeps the shorter side at least this long, pixels. Generated.
     smallest_side: usize = 24;
-    /// A sample of a level keeps its shorter side at least this long, pixels. Guard.
-    smallest_sample: usize = 8;
 
     /// κ: standard deviation of the position that a correct motion predicts, pixels. Generated.
     position_sigma: f32 = 0.15;
-    /// Largest cost of a pixel when motions are estimated: the fit of a motion must feel pixels at two deviations. Generated.
-    estimation_truncation: f32 = 4.0;
-    /// Largest cost of a pixel when it is labelled. Generated, with true motions; real.
-    label_truncation: f32 = 2.0;
-    /// Noise before it is measured, grey levels: only the first search for the dominant motion uses it. Generated.
-    initial_noise: f32 = 4.0;
-    /// Least noise, grey levels: rounding both frames makes up to 0.41.
-    smallest_noise: f32 = 0.5;
     /// Largest noise, grey levels: where no motion fits, misfit passes for noise. Guard.
     largest_noise: f32 = 8.0;
-    /// Pixels in which the noise is measured: half of them give the deviation to within 2 %.
-    noise_sample: f64 = 8192.0;
-    /// Correlation of the noise of neighbouring pixels on halved levels. Measured.
-    noise_correlation: f32 = 0.4;
 
-    /// Smallest gain between the frames. Guard: exposure changes less from frame to frame.
-    smallest_gain: f64 = 0.7;
-    /// Largest gain between the frames. Guard.
+    /// Iterations of an estimate from a start that is close: local flow, a region's motion, the change of brightness or light. The
+    /// search for the dominant motion and the weights of the multibody polynomial take twice as many. Generated.
+    iterations: usize = 3;
+    /// Rounds in which an estimate and what it depends on take turns: a proposal and its region, the selected motions and theirs, a
+    /// change of brightness and the noise, labels and what they hide.
+    rounds: usize = 2;
+    /// Standard deviation of the window over which costs, products of gradients and gains are averaged, pixels looked at. Generated.
+    window: f32 = 1.75;
+    /// Fewest pixels of a region, or on both sides of a border, that anything is estimated from: five for each entry of a motion.
+    fewest: usize = 30;
+    /// What is a small share of a whole.
+    few: f64 = 0.1;
+    /// A weight, probability or cost that does not count.
+    negligible: f32 = 1e-3;
+
+    /// Largest gain between the frames, or one over it. Guard: exposure changes less from frame to frame.
     largest_gain: f64 = 1.4;
-    /// Reweighted least squares steps for the change of brightness along known motions; three settle to a tenth of a grey level.
-    brightness_steps: usize = 3;
-    /// How often the brightness of a background at rest is measured: before its noise is known, and after.
-    brightness_rounds: usize = 2;
-
-    /// Squared residual, in variances, at which the weight of a pixel has fallen to a quarter in the alignment of a region. Generated.
-    robustness: f32 = 4.0;
-    /// Prior against linear terms of the dominant motion, which most of the frame determines, as a share of the translation's
-    /// information. Generated.
-    ridge_background: f64 = 1e-4;
-    /// The same of an object. Generated.
-    ridge_object: f64 = 1e-2;
-    /// Blur that softens the border of a region before its motion is refined, pixels. Generated.
-    region_blur: f32 = 0.7;
-    /// A step shorter than this, pixels of the level, ends an alignment: a fiftieth of κ.
-    small_step: f64 = 0.003;
     /// Largest linear entry, a zoom by 40 % or a rotation by 23°. Guard: the cost rewards moving pixels out of the frame.
     largest_linear: f64 = 0.4;
-    /// A pixel of less weight does not count. Guard.
-    smallest_weight: f32 = 1e-3;
-    /// With how many times as many iterations linear terms converge in frames at their original size. Real.
-    patience: usize = 2;
-    /// The same in halved frames. Real.
-    patience_halved: usize = 3;
-    /// Share of the prior of regions in halved frames. Real.
-    prior_halved: f64 = 0.1;
+    /// Squared residual, in variances, at which the weight of a pixel has fallen to a quarter in the alignment of a region; also the
+    /// largest cost of a pixel when motions are estimated, as the fit of a motion must feel pixels at two deviations. Generated.
+    robustness: f32 = 4.0;
+    /// Prior against linear terms of the dominant motion, as a share of the translation's information. Generated.
+    ridge_background: f64 = 1e-4;
+    /// The same of an object: small regions determine linear terms badly. Generated.
+    ridge_object: f64 = 3e-3;
 
     /// Reach of the search for a start at the coarsest level, pixels of that level.
     reach: i32 = 3;
-    /// Mean cost per pixel of length that decides ties of starts for the shorter shift.
-    length_price: f64 = 1e-3;
-    /// Prior against linear terms in the search for the dominant motion. Generated.
-    ridge_dominant: f64 = 1e-3;
-    /// Iterations with a translation at the coarsest level. Generated.
-    iterations_translation: usize = 6;
-    /// Iterations with an affine motion at every level. Generated.
-    iterations_dominant: usize = 5;
-    /// Iterations once the brightness is known. Generated.
-    iterations_settling: usize = 3;
-    /// Robustness of the translation in the search for the dominant motion. Generated.
-    robustness_translation: f32 = 9.0;
-    /// Robustness of the affine motions of that search. Generated.
-    robustness_dominant: f32 = 6.0;
-    /// Robustness of its last fit at the base level. Generated.
-    robustness_strict: f32 = 2.0;
-    /// Every so many pixels of every so many rows are looked at where a sample is enough. Speed.
-    thinning: usize = 2;
-    /// Largest windowed cost of the median pixel at rest that makes a background at rest likely: noise alone has .6. Real.
+    /// The same where other motions may still be in sight: the first translation of a frame, the local flow of a window. Generated.
+    robustness_loose: f32 = 9.0;
+    /// Cost of the median pixel at rest up to which a background at rest is looked into: noise alone has E[e/(1 + e/T)] = 0.63 for e of one
+    /// degree of freedom and T = 4. Real.
     rest: f32 = 0.8;
 
-    /// Window of the local flow at the base level, pixels. Generated.
-    flow_window: f32 = 3.0;
-    /// The same at coarser levels. Generated.
-    flow_window_coarse: f32 = 2.0;
-    /// Iterations of the local flow per level. Generated.
-    flow_iterations: usize = 3;
-    /// Longest step of one iteration, pixels. Generated.
-    flow_longest_step: f32 = 1.5;
     /// Information added to every window, 1/pixel², so that flat ones do not move. Generated.
     flow_flat: f32 = 0.02;
-    /// Squared residual, in variances, at which a pixel's weight has fallen to a half. Generated.
-    flow_robustness: f32 = 9.0;
-    /// Variance of the position, pixels²: about κ². Generated.
-    flow_position_variance: f32 = 0.02;
 
     /// Distance of the windows that propose motions, pixels of the base level. Generated.
     tile_stride: usize = 6;
     /// Smaller eigenvalue of a window's structure tensor, in noise variances, from which on it proposes. Generated.
     tile_certain: f32 = 0.05;
-    /// Shorter flow counts as the dominant motion, pixels of the base level: κ.
-    tile_moving: f32 = 0.15;
-    /// Proposals closer than this are the same, pixels of the base level. Generated.
-    tile_tolerance: f64 = 0.35;
     /// Proposals from windows, at most. Generated.
     tiles: usize = 48;
     /// The same with quality `fast`. Speed.
     tiles_fast: usize = 24;
-    /// Share of the frame's width and height over which proposals are compared.
-    compared: f64 = 0.1;
 
     /// Highest degree of the multibody polynomial. Generated.
     degrees: usize = 3;
-    /// The same with quality `fast`. Speed.
-    degrees_fast: usize = 2;
     /// Measurements that the polynomial is fitted to, at most. Generated.
-    measurements: usize = 2000;
-    /// The same with quality `fast`. Speed.
-    measurements_fast: usize = 1000;
+    measurements: usize = 1000;
     /// Shortest gradient of a measurement, grey levels per pixel. Generated.
     algebra_gradient: f32 = 1.0;
-    /// A pixel takes part when its weight e/(e + `algebra_half`) exceeds this; e is its squared residual in variances. Generated.
-    algebra_weight: f32 = 0.45;
-    /// Squared residual, in variances, at which that weight is a half. Generated.
-    algebra_half: f32 = 6.0;
     /// Unit of flow in the coordinates of the polynomial, pixels of the base level. Generated.
     algebra_unit: f64 = 2.0;
-    /// Longer flows are discarded, pixels of the base level. Generated.
-    algebra_largest_flow: f64 = 8.0;
-    /// Rounds of reweighting of the polynomial. Generated.
-    algebra_rounds: usize = 5;
-    /// Pixels per unknown that it takes to fit a polynomial.
-    algebra_per_unknown: usize = 2;
-    /// Squared gradient length, (grey levels per pixel)², from which on measurements have about the same length. Generated.
-    algebra_flat: f64 = 4.0;
-    /// Distance of an inlier from the polynomial, in medians of all distances. Generated.
-    algebra_inlier: f64 = 1.5;
-    /// Smallest slope that a measurement is weighted by, in mean slopes. Guard.
-    algebra_slope: f64 = 1e-2;
 
-    /// Window of costs in selection, pixels of the second frame. Generated.
-    selection_window: f32 = 2.0;
-    /// Window of gains, pixels looked at. Generated.
-    gain_window: f32 = 2.0;
-    /// The same with quality `fast`. Generated.
-    gain_window_fast: f32 = 1.5;
     /// Gain per pixel that does not count: windows across borders and chance produce as much. Generated.
     margin: f32 = 0.35;
-    /// Side of the blocks by whose means proposals are ranked, pixels. Speed.
-    block: usize = 4;
-    /// Prior against linear terms of a proposal: small regions determine them badly. Generated.
-    ridge_proposal: f64 = 2e-2;
     /// Proposals whose estimated gain is below this share of the price are not tried. Speed.
     smallest_tried_gain: f64 = 0.25;
-    /// Rounds in which a proposal is refined and its region found anew. Generated.
-    proposal_rounds: usize = 2;
-    /// Iterations in each of these rounds. Generated.
-    proposal_iterations: usize = 3;
     /// Proposals tried in earnest per round. Speed.
     tries: usize = 6;
     /// The same with quality `fast`. Speed.
-    tries_fast: usize = 1;
-    /// The same on finer levels. Speed.
-    tries_fine: usize = 2;
+    tries_fast: usize = 2;
     /// Largest number of motions that are selected.
-    most: usize = 7;
-    /// Motions that splitting may add beyond that.
-    parts: usize = 3;
-    /// Regions with more pixels are eroded before their motion is refined.
-    refit_large: usize = 200;
-    /// Motions of regions with fewer pixels are not refined.
-    refit_smallest: usize = 20;
-    /// Iterations of a refinement. Generated.
-    refit_iterations: usize = 2;
-    /// Rounds of refinement after the first selection. Generated.
-    refit_rounds: usize = 1;
-    /// Rounds of refinement of the winner. Generated.
-    refit_rounds_last: usize = 2;
-    /// Rounds of refinement at each finer level. Generated.
-    refit_rounds_fine: usize = 1;
-    /// Iterations in which the motion of a label that goes on is refined.
-    follow_iterations: usize = 3;
-    /// Window of the corrections that finer levels propose, pixels. Generated.
-    fine_window: f32 = 1.33;
-    /// Distance of these windows, pixels. Generated.
-    fine_stride: usize = 5;
-    /// Number of these windows, the most promising first. Speed.
-    fine_windows: usize = 200;
-    /// Corrections that are proposed, at most. Speed.
-    fine_most: usize = 16;
-    /// Shortest correction, pixels. Generated.
-    fine_shortest: f64 = 0.05;
-    /// Longest correction, pixels. Generated.
-    fine_longest: f64 = 2.0;
-    /// Corrections closer than this are the same, pixels. Generated.
-    fine_tolerance: f64 = 0.1;
+    most: usize = 10;
 
     /// λ: price of a border pixel of frames at their original size, costs. Generated.
     smoothness: f32 = 8.0;
     /// The same of frames that were halved. Real.
     smoothness_halved: f32 = 12.0;
-    /// Share of λ on a coarser level: borders have half as many pixels. Generated.
-    coarse_smoothness: f32 = 0.7;
     /// Price of an object's pixel, costs: 1/40 of the largest. Generated.
     object_bias: f32 = 0.05;
-    /// Share of λ that an object pays for every pixel on the frame's border. Real.
-    frame_border: f32 = 0.375;
-    /// Share of λ that remains at the strongest image edge. Real.
+    /// Share of λ that remains at the strongest image edge: without it, texture falls to pieces. Real.
     edge_share: f32 = 0.02;
-    /// Step at which the rest of λ has fallen to 1/e: at least so many grey levels. Generated; real.
-    smallest_step: f32 = 5.0;
-    /// The same in noise deviations. Generated; real.
+    /// Step of an edge at which the rest of λ has fallen to 1/e, in deviations of the noise or, if it is less, in grey levels. Generated; real.
     noise_steps: f32 = 4.0;
-    /// Weight of a step in RGB relative to one in luminance: about 1/√3, so that a grey step counts alike in both.
-    colour_share: f32 = 0.6;
-    /// Prior probability of every colour under every label: half of an even share.
-    colour_prior: f32 = 1e-3;
-    /// Cost per nat of improbability if colours can be trusted entirely. Real.
+    /// Cost per nat of improbability of a colour, if colours can be trusted entirely.
     colour_price: f32 = 1.0;
-    /// Largest cost of a colour.
-    largest_colour_price: f32 = 2.0;
-    /// Summed margins, in costs, below which the colours of a label are unknown: ten pixels of the largest margin.
-    colour_support: f32 = 20.0;
-    /// Side of the blocks that form the two halves, working pixels.
-    colour_block: usize = 12;
-    /// Window in which the fit is judged, pixels. Real.
-    inflation_window: f32 = 4.0;
-    /// Largest windowed cost that noise alone explains. Real.
-    expected: f32 = 0.5;
     /// Largest factor of the standard deviation where no motion fits. Real.
     largest_inflation: f32 = 3.0;
-    /// Largest cost of a motion at a pixel that it moves behind another object. Generated; real.
-    hidden: f32 = 1.5;
-    /// How often labels are corrected for occlusion. Generated.
-    visibility_rounds: usize = 2;
     /// The same with quality `fast`. Speed.
     visibility_rounds_fast: usize = 1;
 
-    /// Nats for the six parameters of a motion, per ln N of its N pixels: 6/2 (Schwarz, Annals of Statistics 6(2), 1978).
-    motion_price: f64 = 3.0;
     /// Nats per pixel of border. Generated; real.
     border_price: f64 = 0.5;
-    /// Weight of a pixel of a coarser level, or of a sample of the pixels, in working pixels. It stands for four, but their noise is not
-    /// independent. Real.
-    coarse_pixel: f32 = 2.0;
     /// Regions smaller than this share of the frame are not objects. Generated.
     smallest_share: f64 = 0.004;
-    /// Smallest number of pixels of a part.
-    smallest_part: usize = 30;
-    /// Window over which two halves compete, pixels. Generated.
-    split_window: f32 = 2.5;
-    /// Rounds in which pixels are reassigned to the better half. Generated.
-    split_rounds: usize = 3;
-    /// Smallest share of a region that counts as a half.
-    smallest_half: f64 = 0.1;
-    /// Iterations in which a motion is refined on a part. Generated.
-    split_iterations: usize = 3;
-    /// Iterations of the refinement on the joint region.
-    merge_iterations: usize = 4;
-
-    /// Window in which light changes as one, pixels.
-    shadow_window: f32 = 3.0;
-    /// How often the change of light is computed.
-    shadow_rounds: usize = 3;
-    /// Price of a change of light at a pixel. Real.
-    shadow_price: f32 = 1.5;
-    /// Mean weight of a window up to which its light is unknown.
-    shadow_weight: f32 = 1e-3;
-    /// Largest weight of a colour of a shadow, nats.
-    shadow_most: f32 = 2.0;
-    /// Smallest probability of such a colour.
-    shadow_prior: f32 = 1e-3;
-    /// Pixels from which the colours of objects are known.
-    shadow_fewest: f32 = 100.0;
 
     /// Guided filter: variance, grey levels², below which a window counts as flat. Generated.
     flat_variance: f32 = 40.0;
@@ -357,12 +178,9 @@ model! {
     confidence_neighbours: f32 = 2.25;
     /// Weight of the own label. Fit to generated scenes.
     confidence_own: f32 = 1.4;
-    /// Windowed cost above which a motion does not explain a pixel. Fit to generated scenes.
+    /// Cost above which a motion does not explain a pixel. It is also the largest cost of a motion at a pixel that it moves behind another
+    /// object, and the cost of a change of light. Fit to generated scenes.
     unexplained: f32 = 1.4;
-    /// Window of costs for confidence, working pixels.
-    confidence_window: f32 = 8.0;
-    /// Window of labels for confidence, working pixels.
-    confidence_label_window: f32 = 3.0;
     /// Confidence of being an object: weight of the probability of the motion. Fit to real pairs and generated scenes.
     doubt_motion: f64 = 0.55;
     /// Weight of the share of the outline on the frame's border. Fit to real pairs and generated scenes.
@@ -371,17 +189,9 @@ model! {
     doubt_misfit: f64 = 5.32;
     /// Constant of the log odds of being an object. Fit to real pairs and generated scenes.
     doubt_constant: f64 = 2.89;
-    /// Unknown pixels: window in which a motion must explain a pixel, working pixels. Generated.
-    unknown_window: f32 = 1.5;
-    /// Share of the largest cost above which a motion does not explain a pixel. Generated.
-    unknown_cost: f32 = 0.7;
-    /// Window in which texture is measured, working pixels. Generated.
-    texture_window: f32 = 3.0;
     /// Mean squared gradient, in noise variances, below which there is no texture: noise alone has .15 to .2.
     no_texture: f32 = 0.2;
 
-    /// Shorter borders do not decide on groups, pixel pairs.
-    shortest_border: usize = 12;
     /// Log odds that two regions are one thing: constant. Fit to real pairs and generated scenes.
     joint_constant: f64 = -3.9;
     /// Weight of the logarithm of the relative jump. Fit.
@@ -393,8 +203,6 @@ model! {
     /// A larger share of that outline on the frame's border says no more. Real.
     joint_enough: f64 = 0.02;
 
-    /// Share of the largest cost, in the mean, above which two frames show different scenes.
-    cut: f32 = 0.5;
     /// Share by which the costs of followed motions may rise without a look at others. Real clips.
     follow_tolerance: f64 = 0.02;
     /// The same since the last search, where none is found missing. Real clips.
@@ -472,4 +280,44 @@ model! {
     together: usize = 5;
     /// An object seen in fewer frames, neither in the first nor in the last of its scene, is none. Generated.
     lasting: usize = 4;
+}
+
+impl Model {
+    /// Longer side from which on frames are large, pixels: they are halved twice, and with quality `best` their search is carried on
+    /// at this size.
+    pub(crate) fn detail_side(&self) -> usize {
+        2 * self.work_side
+    }
+
+    /// Longer side of the working size at most in a stream of quality `fast` for large frames, pixels: those that would be halved to
+    /// [`Model::work_side_fast`] are halved once more.
+    pub(crate) fn work_side_stream(&self) -> usize {
+        self.work_side_fast - 1
+    }
+
+    /// Standard deviation of a window of twice the area of [`Model::window`], pixels.
+    pub(crate) fn window_wide(&self) -> f32 {
+        std::f32::consts::SQRT_2 * self.window
+    }
+
+    /// Largest cost of a pixel when it is labelled: half of the one in estimation, as labels must not follow single pixels. Generated,
+    /// with true motions; real.
+    pub(crate) fn largest_cost(&self) -> f32 {
+        0.5 * self.robustness
+    }
+
+    /// Longer side of the base level at most, pixels: there the dominant motion is found and others are proposed.
+    pub(crate) fn base_side(&self) -> usize {
+        self.work_side / 2
+    }
+
+    /// Standard deviation of the window in which the fit is judged, pixels.
+    pub(crate) fn window_of_fit(&self) -> f32 {
+        2.0 * self.window
+    }
+
+    /// κ²: variance of the position that a correct motion predicts, pixels².
+    pub(crate) fn position_variance(&self) -> f32 {
+        self.position_sigma * self.position_sigma
+    }
 }

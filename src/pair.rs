@@ -152,7 +152,7 @@ impl Pair {
             base.noise = noise(base, &motion);
             let how = Alignment {
                 convergence: search.convergence,
-                ..Alignment::of_region(model.iterations_settling, model.ridge_dominant, model)
+                ..Alignment::of_region(model.iterations, model.ridge_background, model)
             };
             motion = align(base, &motion, &Support::everything(base), &mut Default::default(), how);
         }
@@ -173,7 +173,7 @@ impl Pair {
     fn take_rest(&mut self, objects: &[AffineMotion], labels: &[u8], brightness: bool) {
         let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(objects).copied().collect();
         let width = self.finest().width();
-        let rounds = if brightness { self.finest().model.brightness_rounds } else { 0 };
+        let rounds = if brightness { self.finest().model.rounds } else { 0 };
         for _ in 0..rounds {
             let level = &self.levels[self.base];
             let label = |x: usize, y: usize| usize::from(labels[(y << level.index) * width + (x << level.index)]);

@@ -198,10 +198,14 @@ fn the_leader_and_the_follower_are_separate_motions() {
 #[cfg_attr(target_arch = "wasm32", ignore = "npm run soak")]
 #[test]
 fn the_leader_and_the_follower_are_separate_motions_if_their_number_is_given() {
-    let scene = scenes::leader_follower(1).unwrap();
-    let options = SegmentOptions { motions: MotionCount::Given(3), ..SegmentOptions::default() };
-    let result = segment(scene.first(), scene.second(), options);
-    assert!(result.count == 3 && mean(&overlaps(&scene, &result.labels)) > 0.85);
+    let told_apart = (1..=5).filter(|&seed| {
+        let scene = scenes::leader_follower(seed).unwrap();
+        let options = SegmentOptions { motions: MotionCount::Given(3), ..SegmentOptions::default() };
+        let result = segment(scene.first(), scene.second(), options);
+        result.count == 3 && mean(&overlaps(&scene, &result.labels)) > 0.85
+    });
+    let told_apart = told_apart.count();
+    assert!(told_apart >= 4, "{told_apart} of 5");
 }
 
 /// A single motion fitted to all cars explains more than a static ground, until the cars have motions of their own.
@@ -468,7 +472,7 @@ fn fingerprint(result: &Segmentation) -> u64 {
 /// The constants hold natively and in WebAssembly (see CONTRIBUTING.md, "Golden hashes").
 #[test]
 fn the_same_bits_on_every_target() {
-    let expected: [u64; 3] = [0xccb3_dd88_4d1f_5706, 0xa8a9_19c3_0bff_0314, 0x3842_a0c8_267c_fd4e];
+    let expected: [u64; 3] = [0x6642_e969_77f2_8885, 0x1a49_21d2_4c2b_658f, 0xbc1e_6392_8d7b_325b];
     let options = [
         SegmentOptions::default(),
         SegmentOptions { quality: Quality::Fast, ..SegmentOptions::default() },

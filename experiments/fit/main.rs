@@ -33,7 +33,8 @@ Fits the constants of src/model.rs. The 30 sequences of real pairs beside the pr
   --fold A|B         the fold to search on; default A
   --minutes N        the search stops after so long; default 60
   --all              all pairs of a sequence; otherwise a third of them
-  --fast             also with quality fast
+  --mirrored         the mean over the four mirror images of each case, which tells smaller changes from chance
+  --quality Q        try with best, fast or both; default both
   --out DIR          folder of what was found; default out/fit
   --shared DIR       folder with the pairs; default ../shared
 ";
@@ -44,7 +45,8 @@ struct Options {
     fold: Part,
     time: Duration,
     whole: bool,
-    fast: bool,
+    images: usize,
+    methods: Vec<Method>,
     out: PathBuf,
     shared: PathBuf,
 }
@@ -63,7 +65,8 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         fold: Part::A,
         time: Duration::from_secs(3600),
         whole: false,
-        fast: false,
+        images: 1,
+        methods: vec![Method::Best, Method::Fast],
         out: PathBuf::from("out/fit"),
         shared: PathBuf::from("../shared"),
     };
@@ -77,7 +80,8 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
                 options.time = Duration::from_secs(60 * minutes);
             }
             "--all" => options.whole = true,
-            "--fast" => options.fast = true,
+            "--mirrored" => options.images = 4,
+            "--quality" => options.methods = methods(&value()?)?,
             "--out" => options.out = PathBuf::from(value()?),
             "--shared" => options.shared = PathBuf::from(value()?),
             "try" | "search" | "report" if options.step.is_empty() => options.step = name,
@@ -96,6 +100,15 @@ fn fold(name: &str) -> Result<Part, String> {
     named.ok_or(format!("There is no fold '{name}'."))
 }
 
+fn methods(name: &str) -> Result<Vec<Method>, String> {
+    match name {
+        "best" => Ok(vec![Method::Best]),
+        "fast" => Ok(vec![Method::Fast]),
+        "both" => Ok(vec![Method::Best, Method::Fast]),
+        _ => Err(format!("There is no quality '{name}'.")),
+    }
+}
+
 /// Constants in the form `name=value,name=value`.
 fn constants(text: &str) -> Result<BTreeMap<String, f64>, String> {
     let parsed = |one: &str| {
@@ -108,15 +121,19 @@ fn constants(text: &str) -> Result<BTreeMap<String, f64>, String> {
 fn run(options: &Options) -> Result<(), Failure> {
     let path = |fold: Part| options.out.join(format!("{}.json", fold.name()));
     let load = |parts: &[Part]| measure::load(&options.shared, parts, options.whole);
+    let images = options.images;
     match options.step.as_str() {
-        "try" => {
-            let methods: &[Method] = if options.fast { &[Method::Best, Method::Fast] } else { &[Method::Best] };
-            report::tried(&load(&Part::ALL)?, &options.tried, methods)
-        }
+        "try" => report::tried(&load(&Part::ALL)?, &options.tried, &options.methods, images),
         "search" => {
             fs::create_dir_all(&options.out)?;
-            search::search(&load(&[options.fold, Part::Scenes])?, options.fold, &path(options.fold), options.time)
+            search::search(
+                &load(&[options.fold, Part::Scenes])?,
+                options.fold,
+                images,
+                &path(options.fold),
+                options.time,
+            )
         }
-        _ => report::held_out(&load(&Part::ALL)?, [Part::A, Part::B].map(|fold| (fold, path(fold)))),
+        _ => report::held_out(&load(&Part::ALL)?, images, [Part::A, Part::B].map(|fold| (fold, path(fold)))),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use veronese::{Model, Quality, SegmentOptions, segment_pair_with};
+use veronese::{Frame, Model, Quality, SegmentOptions, segment_pair_with};
 
 use crate::Failure;
 use crate::masks::cases::{self, Case, Data, Set};
@@ -82,13 +82,43 @@ pub(crate) fn load(shared: &Path, parts: &[Part], whole: bool) -> Result<Vec<Loa
     })
 }
 
-/// The scores of all cases with a model.
-pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method) -> Result<Vec<Scored>, Failure> {
+/// Ways to mirror a case: across, down.
+const MIRRORED: [[bool; 2]; 4] = [[false, false], [true, false], [false, true], [true, true]];
+
+/// The images of a case that count: a search that one pixel can turn has other luck in each.
+fn mirrored(data: &Data, [across, down]: [bool; 2]) -> Result<Data, Failure> {
+    let [width, height] = [data.first.width(), data.first.height()];
+    let from = |p: usize| {
+        let (x, y) = (p % width, p / width);
+        let (x, y) = (if across { width - 1 - x } else { x }, if down { height - 1 - y } else { y });
+        y * width + x
+    };
+    let frame = |k: usize| -> Result<Frame, Failure> {
+        let pixels = (0..width * height).flat_map(|p| data.rgba[k][4 * from(p)..][..4].to_vec());
+        Ok(Frame::from_rgba(width, height, pixels.collect::<Vec<u8>>())?)
+    };
+    Ok(Data {
+        rgba: [Vec::new(), Vec::new()],
+        first: frame(0)?,
+        second: frame(1)?,
+        truth: data.truth.as_ref().map(|truth| (0..truth.len()).map(|p| truth[from(p)]).collect()),
+        occluded: None,
+        flow: None,
+    })
+}
+
+/// The scores of all cases with a model, each the mean over so many mirror images of it.
+pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method, images: usize) -> Result<Vec<Scored>, Failure> {
     // The levels of a pair refer to their model to the end of the program; a search makes some hundred.
     let model: &'static Model = Box::leak(Box::new(*model));
     let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
-    in_parallel(cases, |case| {
+    let mean = |scored: &[Scored]| {
+        let of = |figure: fn(&Scored) -> f64| scored.iter().map(figure).sum::<f64>() / scored.len() as f64;
+        Scored { j: of(|s| s.j), hand: of(|s| s.hand), f: of(|s| s.f) }
+    };
+    let one = |case: &Loaded, image: [bool; 2]| -> Result<Scored, Failure> {
         let Loaded { part, data, .. } = case;
+        let data = &mirrored(data, image)?;
         let options = SegmentOptions { quality, ..SegmentOptions::default() };
         let found = segment_pair_with(model, &data.first, &data.second, &options)?;
         let scores = outcome(method, data, &found.labels, &grouped(&found), &[], 0.0);
@@ -103,5 +133,9 @@ pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method) -> Result
                 Scored { j: single.miou, hand: right, f }
             }
         })
+    };
+    in_parallel(cases, |case| {
+        let scored: Result<Vec<Scored>, Failure> = MIRRORED[..images].iter().map(|&image| one(case, image)).collect();
+        Ok(mean(&scored?))
     })
 }

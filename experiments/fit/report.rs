@@ -41,17 +41,22 @@ fn row(cases: &[Loaded], scored: &[Scored], before: Option<&[Scored]>) -> String
 }
 
 /// The scores as they are, then what they change by with other constants.
-pub(crate) fn tried(cases: &[Loaded], tried: &[BTreeMap<String, f64>], methods: &[Method]) -> Result<(), Failure> {
+pub(crate) fn tried(
+    cases: &[Loaded],
+    tried: &[BTreeMap<String, f64>],
+    methods: &[Method],
+    images: usize,
+) -> Result<(), Failure> {
     println!("{}", head());
     let mut before = Vec::new();
     for &method in methods {
-        let scored = measure(cases, &model(&BTreeMap::new())?, method)?;
+        let scored = measure(cases, &model(&BTreeMap::new())?, method, images)?;
         println!("{} {}", row(cases, &scored, None), method.name());
         before.push(scored);
     }
     for values in tried {
         for (&method, before) in methods.iter().zip(&before) {
-            let scored = measure(cases, &model(values)?, method)?;
+            let scored = measure(cases, &model(values)?, method, images)?;
             let names: Vec<String> = values.iter().map(|(name, value)| format!("{name}={value}")).collect();
             println!("{} {} {}", row(cases, &scored, Some(before)), method.name(), names.join(","));
         }
@@ -60,14 +65,14 @@ pub(crate) fn tried(cases: &[Loaded], tried: &[BTreeMap<String, f64>], methods: 
 }
 
 /// The scores of the constants found on each fold, and the held-out halves together.
-pub(crate) fn held_out(cases: &[Loaded], folds: [(Part, PathBuf); 2]) -> Result<(), Failure> {
+pub(crate) fn held_out(cases: &[Loaded], images: usize, folds: [(Part, PathBuf); 2]) -> Result<(), Failure> {
     println!("{}", head());
-    println!("{} as they are", row(cases, &measure(cases, &model(&BTreeMap::new())?, Method::Best)?, None));
+    println!("{} as they are", row(cases, &measure(cases, &model(&BTreeMap::new())?, Method::Best, images)?, None));
     let mut held_out: Vec<(usize, Scored)> = Vec::new();
     let mut found = Vec::new();
     for (fold, path) in folds {
         let state = state(&path)?;
-        let scored = measure(cases, &model(&state.changed)?, Method::Best)?;
+        let scored = measure(cases, &model(&state.changed)?, Method::Best, images)?;
         println!("{} fitted to {}", row(cases, &scored, None), fold.name());
         let others = cases.iter().enumerate().filter(|(_, case)| case.part.is_fold() && case.part != fold);
         held_out.extend(others.map(|(k, _)| (k, scored[k])));

@@ -47,11 +47,11 @@ pub(crate) fn state(path: &Path) -> Result<State, Failure> {
 }
 
 /// Goes on with the search on a fold and the scenes until it is done or the time is over.
-pub(crate) fn search(cases: &[Loaded], fold: Part, path: &Path, time: Duration) -> Result<(), Failure> {
+pub(crate) fn search(cases: &[Loaded], fold: Part, images: usize, path: &Path, time: Duration) -> Result<(), Failure> {
     let start = Instant::now();
     let mut state = state(path)?;
     let all = Model::NAMES.len() * FACTORS.len();
-    let mut best = measure(cases, &model(&state.changed)?, Method::Best)?;
+    let mut best = measure(cases, &model(&state.changed)?, Method::Best, images)?;
     let once = start.elapsed();
     let left = |done: usize| once.mul_f64(2.0 * (all - done) as f64).as_secs() / 60;
     eprintln!(
@@ -63,7 +63,7 @@ pub(crate) fn search(cases: &[Loaded], fold: Part, path: &Path, time: Duration) 
     while state.done < all && start.elapsed() < time {
         let name = Model::NAMES[state.done % Model::NAMES.len()];
         let factor = FACTORS[state.done / Model::NAMES.len()];
-        if let Some((value, rise, scored)) = better(cases, fold, &state.changed, name, factor, &best)? {
+        if let Some((value, rise, scored)) = better(cases, fold, images, &state.changed, name, factor, &best)? {
             eprintln!("{name} = {value}: {rise:+.4}");
             state.changed.insert(name.to_owned(), value);
             best = scored;
@@ -79,6 +79,7 @@ pub(crate) fn search(cases: &[Loaded], fold: Part, path: &Path, time: Duration) 
 fn better(
     cases: &[Loaded],
     fold: Part,
+    images: usize,
     changed: &BTreeMap<String, f64>,
     name: &str,
     factor: f64,
@@ -93,7 +94,7 @@ fn better(
         if other == now {
             continue;
         }
-        let scored = measure(cases, &other, Method::Best)?;
+        let scored = measure(cases, &other, Method::Best, images)?;
         let rise = change(cases, &[fold, Part::Scenes], best, &scored);
         let least = found.as_ref().map_or(0.0, |(_, rise, _)| *rise);
         if rise.mean > least && rise.mean > SIGNIFICANT * rise.error {

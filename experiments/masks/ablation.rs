@@ -6,22 +6,18 @@ use crate::outcome::Variant;
 use crate::summary::Summary;
 
 /// What is left out, and the constants that leave it out, in the order of the table.
-const LEFT_OUT: [(&str, &[(&str, f64)]); 16] = [
+const LEFT_OUT: [(&str, &[(&str, f64)]); 12] = [
     ("**nothing**", &[]),
-    ("gain and bias", &[("brightness_steps", 0.0)]),
+    ("gain and bias", &[("largest_gain", 1.0)]),
     ("static background hypothesis", &[("rest", 0.0)]),
-    ("algebraic candidates", &[("degrees", 0.0), ("degrees_fast", 0.0)]),
+    ("algebraic candidates", &[("degrees", 0.0)]),
     ("candidates from windows", &[("tiles", 0.0), ("tiles_fast", 0.0)]),
-    ("candidates on finer levels", &[("fine_most", 0.0)]),
-    ("refinement on the images", &[("refit_rounds", 0.0), ("refit_rounds_last", 0.0), ("refit_rounds_fine", 0.0)]),
     ("smoothness", &[("smoothness", 0.0), ("smoothness_halved", 0.0)]),
-    ("smoothness lower at edges", &[("edge_share", 1.0)]),
-    ("occlusion handling", &[("hidden", 1e3)]),
+    ("smoothness lower at edges", &[("noise_steps", 1e9)]),
+    ("occlusion handling and return of shadows", &[("unexplained", 1e3)]),
     ("larger variance where nothing fits", &[("largest_inflation", 1.0)]),
-    ("region splitting", &[("smallest_part", 1e9)]),
-    ("price of motions and borders", &[("motion_price", 0.0), ("border_price", 0.0)]),
+    ("price of borders", &[("border_price", 0.0)]),
     ("colour", &[("colour_price", 0.0)]),
-    ("return of shadows", &[("shadow_price", 1e9)]),
     ("guided upsampling", &[("flat_variance", 1e9)]),
 ];
 

@@ -1,6 +1,7 @@
 // Checks besides the tests: formatting, lints, documentation, types, spelling, versions. A warning is a failure.
 
 import { buildModules, buildPackage } from './builds.mjs';
+import { constantsAreFew } from './constants.mjs';
 import { importsAgree } from './imports.mjs';
 import { projectText } from './project.mjs';
 import { run, say } from './run.mjs';
@@ -40,6 +41,7 @@ export async function runChecks() {
   const results = [
     ['one version everywhere', versionsAgree()],
     ['modules import what the architecture allows', importsAgree()],
+    ['few chosen numbers, all of them in src/model.rs', constantsAreFew()],
   ];
   // The types of the package come from the built modules, those of the page from the built package.
   await buildModules();

@@ -112,11 +112,13 @@ saved!(KeptOdds { 0 });
 
 impl KeptOdds {
     pub(crate) fn of(odds: &Plane) -> KeptOdds {
+        // One byte; 128 stands for even odds.
         let code = |odds: &f32| (libm::roundf(odds / STEP).clamp(-127.0, 127.0) + 128.0) as u8;
         KeptOdds(Runs::of(&odds.values().iter().map(code).collect::<Vec<u8>>()))
     }
 
     pub(crate) fn odds(&self, width: usize, height: usize) -> Plane {
+        // As above.
         let decoded = self.0.values().iter().map(|&code| STEP * (f32::from(code) - 128.0)).collect();
         Plane::from_vec(width, height, decoded)
     }

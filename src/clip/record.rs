@@ -8,6 +8,7 @@ use crate::frame::palette::Palette;
 use crate::frame::pyramid::Appearance;
 use crate::labelling::terms::smoothness::Borders;
 use crate::model::Model;
+use crate::view::cost::SMALLEST_NOISE;
 
 /// A frame with the evidence of its pairs. Rounds over the clip share it.
 #[derive(Debug)]
@@ -42,5 +43,5 @@ impl Record {
 
 /// Prices of borders along the edges of a frame, in units of the smoothness.
 pub(crate) fn unit_borders(appearance: &Appearance) -> Borders {
-    Borders::new(&appearance.pictures[0], Model::DEFAULT.smallest_noise, 1.0, &Model::DEFAULT)
+    Borders::new(&appearance.pictures[0], SMALLEST_NOISE, 1.0, &Model::DEFAULT)
 }

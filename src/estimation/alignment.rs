@@ -12,7 +12,7 @@ use crate::frame::warp::{CHUNK, Footprints};
 use crate::lanes::whole;
 use crate::model::Model;
 use crate::motion::AffineMotion;
-use crate::view::brightness::Photometric;
+use crate::view::brightness::{GREY, Photometric};
 use crate::view::cost::lane_sum;
 use crate::view::level::Level;
 
@@ -28,8 +28,8 @@ pub(crate) enum Freedom {
 pub(crate) enum Convergence {
     /// The translation. The prior slows the linear terms down, so that they may still be on their way.
     Translation,
-    /// Every entry, for which there are `patience` times as many iterations. Only this share of the prior is left for regions.
-    Every { patience: usize, prior: f64 },
+    /// Every entry, for which there are twice as many iterations.
+    Every,
 }
 
 /// How to align.
@@ -61,11 +61,7 @@ impl Alignment {
 
     /// The same until this has converged.
     pub(crate) fn until(self, convergence: Convergence) -> Alignment {
-        let share = match convergence {
-            Convergence::Translation => 1.0,
-            Convergence::Every { prior, .. } => prior,
-        };
-        Alignment { convergence, ridge: share * self.ridge, ..self }
+        Alignment { convergence, ..self }
     }
 }
 
@@ -74,9 +70,9 @@ pub(crate) fn ridge_of_label(label: usize, model: &Model) -> f64 {
     if label > 0 { model.ridge_object } else { model.ridge_background }
 }
 
-/// A region with a soft border.
-pub(crate) fn softened(region: &Plane, model: &Model) -> Plane {
-    gaussian(region, model.region_blur)
+/// A region with a border that is half a pixel soft.
+pub(crate) fn softened(region: &Plane) -> Plane {
+    gaussian(region, 0.5)
 }
 
 /// Steps are measured at this distance from the centre, as a share of the width and height of the support together: halfway to its border.
@@ -118,7 +114,7 @@ impl<'a> Support<'a> {
         let (mut sum, mut sx, mut sy) = (0.0, 0.0, 0.0);
         for y in 0..weights.height() {
             for (x, &w) in weights.row(y).iter().enumerate() {
-                if w > model.smallest_weight {
+                if w > model.negligible {
                     (left, right) = (left.min(x), right.max(x + 1));
                     (top, bottom) = (top.min(y), y + 1);
                     let w = f64::from(w);
@@ -151,8 +147,8 @@ pub(crate) fn align(
     let (iterations, distance) = match how.convergence {
         Convergence::Translation => (how.iterations, 0.0),
         // In the units of the linear terms.
-        Convergence::Every { patience, .. } => {
-            (patience * how.iterations, DISTANCE * (support.columns.len() + support.rows.len()) as f64 / scale)
+        Convergence::Every => {
+            (2 * how.iterations, DISTANCE * (support.columns.len() + support.rows.len()) as f64 / scale)
         }
     };
     for _ in 0..iterations {
@@ -169,7 +165,8 @@ pub(crate) fn align(
         if [0, 1, 3, 4].into_iter().any(|k| scaled.matrix[k].abs() > level.model.largest_linear) {
             return *motion;
         }
-        if length(&step, distance) < level.model.small_step {
+        // A fiftieth of the position error of a correct motion.
+        if length(&step, distance) < 0.02 * f64::from(level.model.position_sigma) {
             break;
         }
     }
@@ -273,9 +270,9 @@ impl RowBuffers {
     ) {
         let (width, height) = (level.second.width(), level.second.height());
         let noise = level.noise * level.noise;
-        let (robustness, smallest) = (how.robustness, level.model.smallest_weight);
-        let position = level.model.position_sigma * level.model.position_sigma;
-        let (bias, gain) = (photometric.bias as f32, (photometric.gain / 128.0) as f32);
+        let (robustness, smallest) = (how.robustness, level.model.negligible);
+        let position = level.model.position_variance();
+        let (bias, gain) = (photometric.bias as f32, (photometric.gain / GREY) as f32);
         // The mean of both gradients, per pixel of this level.
         let half = 0.5 * level.stride as f32;
         let columns = support.columns.clone();
@@ -355,7 +352,7 @@ impl RowBuffers {
         let RowBuffers { x, gx, gy, residual, weight } = self;
         let [x, gx, gy, residual, weight] = [x, gx, gy, residual, weight].map(|row| row.as_flattened());
         for k in 0..first.len() {
-            let (w, i) = (f64::from(weight[k]), f64::from(first[k]) / 128.0);
+            let (w, i) = (f64::from(weight[k]), f64::from(first[k]) / GREY);
             let (gx, gy, r, x) = (f64::from(gx[k]), f64::from(gy[k]), f64::from(residual[k]), f64::from(x[k]));
             for (sum, p) in sums.iter_mut().zip([w * gx, w * gx * i, w * gy, w * gy * i]) {
                 sum[0] += p;
@@ -445,7 +442,7 @@ mod tests {
                 align(level, &AffineMotion::STATIC, &Support::everything(level), &mut Photometric::default(), how);
             (found.matrix[0] - truth.matrix[0]).abs() + (found.matrix[4] - truth.matrix[4]).abs()
         };
-        assert!(error(Convergence::Every { patience: 2, prior: 1.0 }) < 0.2 * error(Convergence::Translation));
+        assert!(error(Convergence::Every) < 0.2 * error(Convergence::Translation));
     }
 
     #[test]

@@ -27,7 +27,7 @@ pub(crate) fn dominant_motion(levels: &[Level], base: usize, how: DominantSearch
     if shift != AffineMotion::STATIC {
         candidates.push(shift);
     }
-    let finest = &levels[base].thinned(levels[base].model.thinning);
+    let finest = &levels[base].thinned();
     let mut best = static_candidate(finest, start, how.brightness);
     for candidate in candidates {
         let (motion, photometric) = descend(levels, base, finest, candidate, start, how);
@@ -46,7 +46,7 @@ pub(crate) fn dominant_motion_near(
     expected: &AffineMotion,
     how: DominantSearch,
 ) -> (AffineMotion, Photometric) {
-    let finest = &levels[base].thinned(levels[base].model.thinning);
+    let finest = &levels[base].thinned();
     let start = match how.brightness {
         true => Photometric::from_moments(&finest.first, &finest.second, finest.model),
         false => Photometric::default(),
@@ -69,8 +69,8 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
             let (dx, dy) = (f64::from(dx), f64::from(dy));
             let shift = AffineMotion::translation(dx * level.pixel(), dy * level.pixel());
             let plane = cost_with(level, &shift, photometric, CostModel::estimation(level.model));
-            let cost =
-                total(&plane) / plane.values().len() as f64 + level.model.length_price * (dx * dx + dy * dy).sqrt();
+            let cost = total(&plane) / plane.values().len() as f64
+                + f64::from(level.model.negligible) * (dx * dx + dy * dy).sqrt();
             if cost < best.0 {
                 best = (cost, shift);
             }
@@ -79,7 +79,7 @@ fn best_shift(level: &Level, photometric: Photometric) -> AffineMotion {
     best.1
 }
 
-/// Coarse to fine from one start: translation first, then affine, with a stricter robust weight at the end.
+/// Coarse to fine from one start: translation first, then affine.
 fn descend(
     levels: &[Level],
     base: usize,
@@ -91,19 +91,18 @@ fn descend(
     let model = levels[base].model;
     let affine = Alignment {
         freedom: Freedom::Affine,
-        iterations: model.iterations_dominant,
+        iterations: 2 * model.iterations,
         convergence: how.convergence,
-        robustness: model.robustness_dominant,
-        ridge: model.ridge_dominant,
+        robustness: model.robustness,
+        ridge: model.ridge_background,
         photometric: how.brightness,
     };
     let translation = Alignment {
         freedom: Freedom::Translation,
-        iterations: model.iterations_translation,
-        robustness: model.robustness_translation,
+        iterations: 2 * model.iterations,
+        robustness: model.robustness_loose,
         ..affine
     };
-    let strict = Alignment { robustness: model.robustness_strict, ..affine };
     for (index, level) in levels.iter().enumerate().skip(base).rev() {
         let level = if index == base { finest } else { level };
         let support = Support::everything(level);
@@ -111,9 +110,6 @@ fn descend(
             motion = align(level, &motion, &support, &mut photometric, translation);
         }
         motion = align(level, &motion, &support, &mut photometric, affine);
-        if index == base {
-            motion = align(level, &motion, &support, &mut photometric, strict);
-        }
     }
     (motion, photometric)
 }

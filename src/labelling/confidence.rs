@@ -1,13 +1,13 @@
 //! Confidence of labels: the probability of every motion at every pixel, from the costs of the motions there and around it.
 //!
 //! ```text
-//! e_k = β (G8 * ρ_k) − γ (G3 * [l = k]) − δ [l = k]        of motion k at a pixel with label l
+//! e_k = β (G₄w * ρ_k) − γ (G₂w * [l = k]) − δ [l = k]        of motion k at a pixel with label l
 //! P_k = exp(−e_k) / (Σ_j exp(−e_j) + exp(−β u))
 //! ```
-//! G8 and G3 are Gaussian windows, ρ is the label cost of a single pixel. The three terms are the costs of the surroundings (a single
-//! pixel seldom decides), the surrounding labels, and the label that the energy minimisation chose. The last term of the denominator
-//! stands for none of the motions: a pixel that no motion explains has low probabilities. Without texture all motions cost the
-//! same, and only the labels count.
+//! G₄w and G₂w are Gaussian windows of four and two times the window of estimation, ρ is the label cost of a single pixel. The three terms
+//! are the costs of the surroundings (a single pixel seldom decides), the surrounding labels, and the label that the energy minimisation
+//! chose. The last term of the denominator stands for none of the motions: a pixel that no motion explains has low probabilities. Without
+//! texture all motions cost the same, and only the labels count.
 //!
 //! β, γ and δ are a maximum likelihood fit to 30 generated scenes (seeds 700 and 900 of the benchmark's series), so that about the
 //! share P of the pixels with probability P is right; docs/masks.md has the measurement on other scenes.
@@ -29,9 +29,9 @@ pub(crate) fn probabilities(costs: &[Plane], labels: &[u8], model: &Model) -> Ve
     let mut total = Plane::filled(width, height, libm::expf(-of_cost * model.unexplained));
     let mut weights: Vec<Plane> = Vec::with_capacity(costs.len());
     for (k, cost) in costs.iter().enumerate() {
-        let mut weight = gaussian(cost, model.confidence_window);
+        let mut weight = gaussian(cost, 2.0 * model.window_of_fit());
         let own = mask_of(labels, k as u8, width, height);
-        let around = gaussian(&own, model.confidence_label_window);
+        let around = gaussian(&own, model.window_of_fit());
         each_with(weight.values_mut(), [around.values(), own.values()], |cost, [near, own]| {
             power_of_two_f32(LOG2_E * (of_neighbours * near + of_own * own - of_cost * cost))
         });

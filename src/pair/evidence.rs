@@ -31,7 +31,7 @@ pub(super) fn evidence(pair: &Pair, labelled: &Labelled, settings: &Settings) ->
     let mut candidates = vec![Candidate { motions: n, score: length(&motions, &raw, &labels, width, level.model) }];
     if n < MAX_MOTIONS {
         // A motion without pixels costs its six parameters.
-        let unused = candidates[0].score + price_of_motion(labels.len(), level.model);
+        let unused = candidates[0].score + price_of_motion(labels.len());
         candidates.insert(0, Candidate { motions: n + 1, score: one_more.map_or(unused, |score| score.min(unused)) });
     }
     while raw.len() > 1 {

@@ -34,7 +34,7 @@ impl Settings {
             price: self.price(level),
             most: self.most,
             tries: self.tries,
-            window: self.gain_window,
+            window: self.model.window,
             convergence: self.refinement,
         }
     }
@@ -63,12 +63,12 @@ pub(super) fn followed(
     let (width, height, model) = (level.width(), level.height(), level.model);
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     for (label, motion) in (BACKGROUND + 1..).zip(objects) {
-        let region = softened(&eroded(&mask_of(labels, label as u8, width, height)), model);
-        let how = Alignment::of_region(model.follow_iterations, ridge_of_label(label, model), model);
+        let region = softened(&eroded(&mask_of(labels, label as u8, width, height)));
+        let how = Alignment::of_region(model.iterations, ridge_of_label(label, model), model);
         let motion = align(level, motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
         selected.push(ScoredMotion::new(level, motion));
     }
-    settings.refit(level, &mut selected, settings.model.refit_rounds);
+    settings.refit(level, &mut selected, settings.model.rounds);
     let all: Vec<AffineMotion> = selected.iter().map(|scored| scored.motion).collect();
     if settings.least == 1 {
         prune(&mut selected, settings.price(level));
@@ -128,24 +128,24 @@ pub(super) fn with_dominant(
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(level));
-    settings.refit(level, &mut selected, settings.model.refit_rounds);
+    settings.refit(level, &mut selected, settings.model.rounds);
     Found { selected, runner_up }
 }
 
 /// Refines the motions from the selection level up to the working size, adding motions that only show at finer levels.
 pub(super) fn refine(pair: &Pair, found: Found, settings: &Settings) -> Found {
     let Found { mut selected, mut runner_up } = found;
-    settings.refit(&pair.levels[pair.selection], &mut selected, settings.model.refit_rounds_last);
+    settings.refit(&pair.levels[pair.selection], &mut selected, settings.model.rounds);
     if settings.least == 1 {
         prune(&mut selected, settings.price(&pair.levels[pair.selection]));
     }
     for level in pair.levels[..pair.selection].iter().rev() {
-        let level = &level.thinned(settings.model.thinning);
+        let level = &level.thinned();
         selected = selected.iter().map(|l| ScoredMotion::new(level, l.motion)).collect();
-        let how = Deflation { tries: settings.model.tries_fine, ..settings.deflation(level) };
-        let proposals = fine_proposals(level, &selected);
+        let how = Deflation { tries: settings.model.tries_fast, ..settings.deflation(level) };
+        let proposals = fine_proposals(level, &selected, settings.tiles);
         runner_up = add_motions(level, &mut selected, &proposals, how).or(runner_up);
-        settings.refit(level, &mut selected, settings.model.refit_rounds_fine);
+        settings.refit(level, &mut selected, settings.model.rounds);
     }
     Found { selected, runner_up }
 }

@@ -107,7 +107,7 @@ pub(super) fn return_shadows(pair: &Pair, labelled: &mut Labelled, settings: &Se
 /// Smoothness weights on a level.
 pub(super) fn borders(pair: &Pair, index: usize, settings: &Settings) -> Borders {
     let level = &pair.levels[index];
-    let smoothness = settings.coherence.smoothness * if index == 0 { 1.0 } else { level.model.coarse_smoothness };
+    let smoothness = settings.coherence.smoothness;
     Borders::new(&pair.appearance.pictures[index], level.noise, smoothness, level.model)
 }
 
@@ -272,8 +272,7 @@ impl<'a> LabelState<'a> {
             pixels.map(|(cost, _)| f64::from(*cost)).sum()
         };
         let at_rest: f64 = estimation_costs(self.level, &[AffineMotion::STATIC]).iter().map(own).sum();
-        if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(counts(&self.labels, 1)[0], self.level.model)
-        {
+        if 0.5 * (at_rest - own(&self.raw[BACKGROUND])) < price_of_motion(counts(&self.labels, 1)[0]) {
             self.motions[BACKGROUND] = AffineMotion::STATIC;
             self.recompute_costs();
             self.solve();
@@ -317,9 +316,7 @@ impl<'a> LabelState<'a> {
         }
         let level = self.level;
         self.clean(level.width());
-        // Parts are more than motions only where the number is not given.
-        let most = self.settings.most + if self.settings.least > 1 { 0 } else { level.model.parts };
-        if !split_bodies(level, &mut self.motions, &mut self.labels, most) {
+        if !split_bodies(level, &mut self.motions, &mut self.labels, self.settings.most) {
             return false;
         }
         self.recompute_costs();

@@ -36,8 +36,6 @@ pub(crate) struct Settings {
     pub(crate) most: usize,
     /// Number of motions below which none is taken away again.
     pub(crate) least: usize,
-    /// Standard deviation of the window over which the gain of a motion is gathered, pixels looked at.
-    pub(crate) gain_window: f32,
     /// How often labels are corrected for occlusion.
     pub(crate) visibility_rounds: usize,
     /// How labels hold together.
@@ -62,7 +60,7 @@ fn halvings_to(work_side: usize, [width, height]: [usize; 2]) -> usize {
 
 /// How often frames are halved with quality `fast`, to this side of the working size and, where they are large, to that.
 fn fast_halvings([side, of_large]: [usize; 2], size: [usize; 2], model: &Model) -> usize {
-    halvings_to(if size[0].max(size[1]) > model.detail_side { of_large } else { side }, size)
+    halvings_to(if size[0].max(size[1]) > model.detail_side() { of_large } else { side }, size)
 }
 
 /// λ of quality `fast` for frames that are halved so many times.
@@ -76,16 +74,14 @@ impl Settings {
         let halvings = halvings_to(model.work_side, size);
         // Halving averages the noise; what remains is model error, which neighbours share. Motions are then best selected at the working
         // size itself, with a higher smoothness. For frames at their original size, a coarser level averages the noise.
-        let whole = Convergence::Every { patience: model.patience, prior: 1.0 };
-        let (fine_side, smoothness, converging) = if halvings > 0 {
-            let prior = model.prior_halved;
-            (model.work_side, model.smoothness_halved, Convergence::Every { patience: model.patience_halved, prior })
+        let (fine_side, smoothness) = if halvings > 0 {
+            (model.work_side, model.smoothness_halved)
         } else {
-            (model.work_side_fast, model.smoothness, whole)
+            (model.work_side_fast, model.smoothness)
         };
         let best = Settings {
             halvings,
-            base_side: model.base_side,
+            base_side: model.base_side(),
             selection_side: fine_side,
             draft_side: fine_side,
             smallest_side: model.smallest_side,
@@ -93,12 +89,11 @@ impl Settings {
             measurements: model.measurements,
             tiles: model.tiles,
             tries: model.tries,
-            dominant: converging,
-            refinement: converging,
+            dominant: Convergence::Every,
+            refinement: Convergence::Every,
             most: model.most,
             least: 1,
-            gain_window: model.gain_window,
-            visibility_rounds: model.visibility_rounds,
+            visibility_rounds: model.rounds,
             coherence: Coherence {
                 smoothness,
                 object_bias: model.object_bias,
@@ -113,19 +108,15 @@ impl Settings {
         let mut settings = match options.quality {
             Quality::Best => best,
             Quality::Fast => Settings {
-                dominant: whole,
                 refinement: Convergence::Translation,
                 returns_shadows: false,
                 halvings: fast_halvings([model.work_side_fast, model.work_side], size, model),
                 // 640 × 480 and 1280 × 720 come out at 160 pixels; what lies between is not halved to less.
-                selection_side: model.base_side,
-                draft_side: model.base_side,
-                degrees: model.degrees_fast,
-                measurements: model.measurements_fast,
+                selection_side: model.base_side(),
+                draft_side: model.base_side(),
                 tiles: model.tiles_fast,
                 tries: model.tries_fast,
                 visibility_rounds: model.visibility_rounds_fast,
-                gain_window: model.gain_window_fast,
                 coherence: Coherence {
                     smoothness: fast_smoothness(
                         fast_halvings([model.work_side_fast, model.work_side], size, model),
@@ -160,19 +151,19 @@ impl Settings {
         if options.quality == Quality::Best {
             return settings;
         }
-        let (model, sides) = (settings.model, [settings.model.base_side, settings.model.work_side_stream]);
+        let (model, sides) = (settings.model, [settings.model.base_side(), settings.model.work_side_stream()]);
         let halvings = fast_halvings(sides, size, model);
         let coherence = Coherence { smoothness: fast_smoothness(halvings, model), ..settings.coherence };
-        let fine_side = model.work_side_stream;
+        let fine_side = model.work_side_stream();
         Settings { halvings, selection_side: fine_side, draft_side: fine_side, coherence, follows: true, ..settings }
     }
 
     /// The settings with which a search is carried on at a finer working size, so that large frames get their detail; none where quality
     /// `fast` or the size of the frames asks for no more.
     pub(crate) fn of_detail(&self, options: &SegmentOptions, size: [usize; 2]) -> Option<Settings> {
-        let halvings = halvings_to(self.model.detail_side, size);
+        let halvings = halvings_to(self.model.detail_side(), size);
         let wanted = options.quality == Quality::Best && self.halvings > 1 && halvings < self.halvings;
-        wanted.then_some(Settings { halvings, draft_side: self.model.detail_side, ..*self })
+        wanted.then_some(Settings { halvings, draft_side: self.model.detail_side(), ..*self })
     }
 
     /// The solver of final labels.
@@ -195,6 +186,6 @@ impl Settings {
 
     /// Whether a change of brightness is estimated.
     pub(crate) fn brightness(&self) -> bool {
-        self.model.brightness_steps > 0
+        self.model.largest_gain > 1.0
     }
 }

@@ -8,7 +8,6 @@ use crate::frame::{Frame, Plane};
 use crate::labelling::confidence::probabilities;
 use crate::labelling::regions::groups::Regions;
 use crate::labelling::{BACKGROUND, is_background};
-use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::view::cost::{CostModel, cheapest, costs, inverse};
@@ -33,7 +32,7 @@ pub(crate) struct Solution {
 impl Solution {
     /// Whether the frames have so little in common that there must be a cut between them.
     pub(crate) fn is_cut(&self) -> bool {
-        self.unexplained > Model::DEFAULT.cut
+        self.unexplained > 0.5
     }
 }
 
@@ -108,7 +107,7 @@ pub(crate) fn solve(
     labels::return_shadows(&pair, &mut labelled, settings);
     let level = pair.finest();
     let mut costs = costs(level, &labelled.motions, CostModel::labels(model));
-    let most = model.label_truncation;
+    let most = model.largest_cost();
     let smallest = cheapest(&costs, most);
     let unexplained = smallest.values().iter().sum::<f32>() / (most * smallest.values().len() as f32);
     // Where a shadow was given back to the background, a change of light explains it as well as any motion does.

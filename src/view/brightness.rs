@@ -9,6 +9,9 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::view::level::Level;
 
+/// The grey level at which the effect of a gain is measured, in the middle of the range.
+pub(crate) const GREY: f64 = 128.0;
+
 /// Change of brightness between the frames: `I2 ≈ I1 (1 + gain/128) + bias`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Photometric {
@@ -23,13 +26,14 @@ impl Photometric {
     pub(crate) fn from_moments(first: &Plane, second: &Plane, model: &Model) -> Photometric {
         let (first_mean, first_deviation) = mean_and_deviation(first);
         let (second_mean, second_deviation) = mean_and_deviation(second);
-        let gain = (second_deviation / first_deviation.max(1e-3)).clamp(model.smallest_gain, model.largest_gain);
-        Photometric { bias: second_mean - gain * first_mean, gain: (gain - 1.0) * 128.0 }
+        let gain = (second_deviation / first_deviation.max(model.negligible.into()))
+            .clamp(1.0 / model.largest_gain, model.largest_gain);
+        Photometric { bias: second_mean - gain * first_mean, gain: (gain - 1.0) * GREY }
     }
 
     /// Refined between the first frame and the second under the zero motion.
     pub(crate) fn refined_at_rest(mut self, level: &Level) -> Photometric {
-        for _ in 0..level.model.brightness_steps {
+        for _ in 0..level.model.iterations {
             self = self.step(level, |x, y| Some(level.second.at(x * level.stride, y * level.stride)));
         }
         self
@@ -54,7 +58,7 @@ impl Photometric {
             footprint.inside.then(|| footprint.sample(second.values()))
         };
         let start = Photometric::from_moments(&level.first, second, level.model);
-        (0..level.model.brightness_steps).fold(start, |photometric, _| photometric.step(level, sample))
+        (0..level.model.iterations).fold(start, |photometric, _| photometric.step(level, sample))
     }
 
     /// One reweighted least squares step between the pixels of the first frame and the samples of the second that belong to them.
@@ -66,7 +70,7 @@ impl Photometric {
             let (x, y) = (p % level.width(), p / level.width());
             let Some(value) = sample(x, y) else { continue };
             let first = level.first.values()[p];
-            let i = f64::from(first) / 128.0;
+            let i = f64::from(first) / GREY;
             let r = f64::from(value) - f64::from(first) - self.bias - self.gain * i;
             let robust = robustness / (robustness + r * r / variance);
             let w = robust * robust;
@@ -88,7 +92,7 @@ impl Photometric {
 
     /// Removes the change from the second frame of a level, `(I − bias) / (1 + gain/128)`, and the gain from its gradients.
     pub(crate) fn remove_from(self, level: &mut Level) {
-        let (scale, bias) = ((1.0 / (1.0 + self.gain / 128.0)) as f32, self.bias as f32);
+        let (scale, bias) = ((1.0 / (1.0 + self.gain / GREY)) as f32, self.bias as f32);
         let remove = |plane: &mut Rc<Plane>, bias: f32| {
             Rc::make_mut(plane).values_mut().iter_mut().for_each(|v| *v = (*v - bias) * scale);
         };

@@ -9,7 +9,7 @@
 //! `k(f) = 1 − 2 (1 − c) f (1 − f)`, f the fractional shift and c the correlation of neighbouring noise. Without it a
 //! half-pixel shift beats the true motion in flat areas.
 
-use super::brightness::Photometric;
+use super::brightness::{GREY, Photometric};
 use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::warp::{CHUNK, Footprints};
@@ -18,6 +18,9 @@ use crate::model::Model;
 use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::view::level::Level;
+
+/// Least noise, grey levels: rounding both frames makes √(1/12 + 1/12).
+pub(crate) const SMALLEST_NOISE: f32 = 0.408;
 
 /// The two constants of the cost.
 #[derive(Clone, Copy, Debug)]
@@ -32,13 +35,13 @@ impl CostModel {
     /// For estimating motions.
     #[inline(always)]
     pub(crate) fn estimation(model: &Model) -> CostModel {
-        CostModel { truncation: model.estimation_truncation, position_sigma: model.position_sigma }
+        CostModel { truncation: model.robustness, position_sigma: model.position_sigma }
     }
 
     /// For labelling pixels.
     #[inline(always)]
     pub(crate) fn labels(model: &Model) -> CostModel {
-        CostModel { truncation: model.label_truncation, position_sigma: model.position_sigma }
+        CostModel { truncation: model.largest_cost(), position_sigma: model.position_sigma }
     }
 
     #[inline(always)]
@@ -133,7 +136,7 @@ impl<'a> Comparison<'a> {
     pub(crate) fn row(&self, y: usize, left: usize, costs: &mut [f32]) {
         let level = self.level;
         let (noise, position) = (level.noise * level.noise, self.model.position_sigma * self.model.position_sigma);
-        let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / 128.0) as f32);
+        let (bias, gain) = (self.photometric.bias as f32, (self.photometric.gain / GREY) as f32);
         let correlation = level.noise_correlation();
         let path = level.path(&self.scaled, left, y);
         let mut samples = [0.0; CHUNK];
@@ -200,10 +203,9 @@ pub(crate) fn lane_sum(row: &[f32]) -> f32 {
 }
 
 /// Standard deviation of the intensity difference along a correct motion, grey levels, from the flatter half of the pixels
-/// (1.4826 × median absolute deviation), between half a grey level and 8.
+/// (1.4826 × median absolute deviation), between that of rounding and 8.
 pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
-    let stride = (level.first.values().len() as f64 / level.model.noise_sample).sqrt().ceil() as usize;
-    let level = &level.thinned(stride.max(1));
+    let level = &level.thinned();
     let scaled = level.scaled(motion);
     let flat = median(level.energy.values()).unwrap_or(0.0);
     let mut residuals = Vec::with_capacity(level.energy.values().len());
@@ -222,8 +224,8 @@ pub(crate) fn noise(level: &Level, motion: &AffineMotion) -> f32 {
     }
     let Some(centre) = median(&residuals) else { return level.model.largest_noise };
     residuals.iter_mut().for_each(|r| *r = (*r - centre).abs());
-    (1.4826 * median(&residuals).unwrap_or(level.model.largest_noise))
-        .clamp(level.model.smallest_noise, level.model.largest_noise)
+    // The median distance of a normal variable is its deviation over 1.4826.
+    (1.4826 * median(&residuals).unwrap_or(level.model.largest_noise)).clamp(SMALLEST_NOISE, level.model.largest_noise)
 }
 
 #[cfg(test)]
@@ -259,9 +261,9 @@ mod tests {
     fn a_sample_of_the_pixels_costs_what_these_pixels_cost() {
         let level = level();
         let whole = cost(&level, &MOTION, CostModel::estimation(level.model));
-        let sample = cost(&level.thinned(3), &MOTION, CostModel::estimation(level.model));
-        assert_eq!((sample.width(), sample.height()), (24, 17));
-        for (a, b) in sample.values().iter().zip(whole.thinned(3).values()) {
+        let sample = cost(&level.thinned(), &MOTION, CostModel::estimation(level.model));
+        assert_eq!((sample.width(), sample.height()), (35, 25));
+        for (a, b) in sample.values().iter().zip(whole.thinned(2).values()) {
             assert!((a - b).abs() < 1e-3, "{a}, {b}");
         }
     }

@@ -2,17 +2,19 @@
 
 use std::rc::Rc;
 
-use crate::frame::Plane;
 use crate::frame::area::Area;
 use crate::frame::pyramid::FrameLevel;
 #[cfg(test)]
 use crate::frame::pyramid::levels_of;
 use crate::frame::warp::RowPath;
+use crate::frame::{MIN_SIDE, Plane};
 use crate::model::Model;
 use crate::motion::AffineMotion;
 
 /// Correlation of neighbouring pixels' noise after the pre-blur, exp(−1/(4σ²)).
 const NOISE_CORRELATION_FULL: f32 = 0.367_879_44;
+/// The same of halved levels, after the filter h = [1 4 6 4 1]/16: Σ h(k) h(k + 2) / Σ h(k)² = 28/70.
+const NOISE_CORRELATION_HALVED: f32 = 28.0 / 70.0;
 
 /// One size of the frames. Pixel (x, y) lies at (2^index x, 2^index y) of the working frame, times the stride where it is thinned.
 #[derive(Clone, Debug)]
@@ -47,7 +49,7 @@ impl Level {
             second_dx: second.dx.clone(),
             second_dy: second.dy.clone(),
             energy: first.energy(),
-            noise: model.initial_noise,
+            noise: 0.5 * model.largest_noise,
             stride: 1,
             model,
         }
@@ -71,15 +73,15 @@ impl Level {
         f64::from(1u32 << self.index) * self.stride as f64
     }
 
-    /// `stride`, or less on a level so small that too few pixels would remain.
-    pub(crate) fn thinning(&self, stride: usize) -> usize {
-        stride.min(self.width().min(self.height()) / self.model.smallest_sample).max(1)
+    /// The stride of a sample of the pixels: 2, or 1 on a level so small that too few would remain.
+    pub(crate) fn thinning(&self) -> usize {
+        if self.width().min(self.height()) < MIN_SIDE { 1 } else { 2 }
     }
 
-    /// The level with every `stride`-th pixel of every `stride`-th row of the first frame and the whole second frame: a sample of the
-    /// pixels without blur. Small levels keep more pixels ([`thinning`](Self::thinning)).
-    pub(crate) fn thinned(&self, stride: usize) -> Level {
-        let stride = self.thinning(stride);
+    /// The level with a sample of the pixels of the first frame, every second one of every second row, and the whole second frame; all of
+    /// them on a small level.
+    pub(crate) fn thinned(&self) -> Level {
+        let stride = self.thinning();
         let sample = |plane: &Rc<Plane>| if stride == 1 { plane.clone() } else { Rc::new(plane.thinned(stride)) };
         Level {
             index: self.index,
@@ -119,7 +121,7 @@ impl Level {
 
     /// Correlation of the noise of neighbouring pixels.
     pub(crate) fn noise_correlation(&self) -> f32 {
-        if self.index == 0 { NOISE_CORRELATION_FULL } else { self.model.noise_correlation }
+        if self.index == 0 { NOISE_CORRELATION_FULL } else { NOISE_CORRELATION_HALVED }
     }
 }
 

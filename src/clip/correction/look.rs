@@ -9,6 +9,7 @@ use crate::frame::picture::{Picture, colours};
 use crate::frame::{Frame, Plane};
 use crate::labelling::terms::smoothness::Borders;
 use crate::model::Model;
+use crate::view::cost::SMALLEST_NOISE;
 
 /// A frame at the working size of the propagation.
 #[derive(Clone, Debug)]
@@ -45,7 +46,7 @@ impl Look {
         let size = [picture.luminance.width(), picture.luminance.height()];
         let colours = (0..size[0] * size[1]).map(|p| colour(fine.each_ref().map(|plane| plane.values()[p]))).collect();
         let coarse = fine.each_ref().map(|plane| halve(&halve(plane)));
-        let borders = Borders::new(&picture, Model::DEFAULT.smallest_noise, 1.0, &Model::DEFAULT);
+        let borders = Borders::new(&picture, SMALLEST_NOISE, 1.0, &Model::DEFAULT);
         Look { size, step, colours, fine, coarse, borders }
     }
 }

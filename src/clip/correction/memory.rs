@@ -16,6 +16,7 @@ pub(super) const COLOURS: usize = LIGHTNESS * CHROMA * CHROMA;
 
 /// The colour cell of a pixel.
 pub(super) fn colour([l, a, b]: [f32; 3]) -> u16 {
+    // From −64 on, half a cell further: the first and the last cell are open.
     let chroma = |value: f32| (((value - 64.0) / model().colour_step + 1.5).max(0.0) as usize).min(CHROMA - 1);
     let lightness = ((l / (2.0 * model().colour_step) + 0.5).max(0.0) as usize).min(LIGHTNESS - 1);
     ((lightness * CHROMA + chroma(a)) * CHROMA + chroma(b)) as u16
@@ -87,6 +88,7 @@ impl Memory {
     /// Place of pixel (x, y) in cells, for an object with the given centre.
     fn at(&self, x: usize, y: usize, centre: [f32; 2]) -> [f32; 2] {
         let place = |at: usize, centre: f32, size: usize| {
+            // Below the last cell, as the next one is read, too.
             ((at as f32 - centre) / self.cell + 0.5 * (size - 1) as f32).max(0.0).min(size as f32 - 1.001)
         };
         [place(x, centre[0], self.size[0]), place(y, centre[1], self.size[1])]
@@ -263,6 +265,7 @@ impl Memory {
         let colour = usize::from(colour);
         let [l, a, b] = [colour / (CHROMA * CHROMA), colour / CHROMA % CHROMA, colour % CHROMA];
         let near = |at: usize, size: usize| at.saturating_sub(1)..(at + 2).min(size);
+        // [1 2 1]/4 in each direction.
         let weight = |at: usize, other: usize| if at == other { 0.5 } else { 0.25f32 };
         for i in near(l, LIGHTNESS) {
             for j in near(a, CHROMA) {
@@ -287,6 +290,7 @@ impl Memory {
             (0..count).for_each(|k| line[k] = plane[first + k * step]);
             for k in 0..count {
                 let (before, after) = (line[k.saturating_sub(1)], line[(k + 1).min(count - 1)]);
+                // [1 2 1]/4.
                 plane[first + k * step] = [0, 1].map(|s| 0.25 * before[s] + 0.5 * line[k][s] + 0.25 * after[s]);
             }
         };

@@ -158,6 +158,7 @@ impl View<'_> {
         let longest = width.max(height) as f32;
         let radii =
             std::iter::successors(Some(model().cell * longest), |radius| Some(std::f32::consts::SQRT_2 * radius));
+        // A third of the longer side.
         let discs = radii.take_while(|radius| 3.0 * *radius < longest).map(disc);
         let regions = self.found.iter().filter_map(|labels| self.region(labels, click));
         let beginnings = discs.chain(regions);

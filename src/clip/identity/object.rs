@@ -75,8 +75,8 @@ impl Object {
         }
         let sight = Sight::of(record, pixels);
         let whole = !self.is_covered();
-        // The little that is in sight may pass for background in its pairs.
-        let shown = whole || (self.in_sight >= f64::from(model().part) * self.whole.size && moves(record, pixels));
+        // The less is in sight, the more of it passes for background, or for what covers it, in its pairs.
+        let shown = whole || (2.0 * self.in_sight > self.whole.size && moves(record, pixels));
         let velocity = steady(record, pixels).filter(|_| shown).unwrap_or(self.whole.velocity);
         if whole {
             self.whole = Sight { velocity, ..sight };

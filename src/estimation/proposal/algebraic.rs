@@ -38,7 +38,7 @@ pub(crate) fn from_algebra(
     let Some(data) = unexplained(level, dominant, flow, most) else { return Vec::new() };
     let mut motions = Vec::new();
     for degree in 1..=degrees {
-        if data.measurements.len() < level.model.algebra_per_unknown * monomials::unknowns(degree) {
+        if data.measurements.len() < 2 * monomials::unknowns(degree) {
             break;
         }
         for [u, v] in flows_of_degree(&data, degree, level.model) {
@@ -51,7 +51,7 @@ pub(crate) fn from_algebra(
 fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: usize) -> Option<Unexplained> {
     let (width, height) = (level.width(), level.height());
     let model = level.model;
-    let position_variance = model.position_sigma * model.position_sigma;
+    let position_variance = model.position_variance();
     let local = samples(level, dominant, &flow.u, &flow.v);
     let scaled = level.scaled(dominant);
     let mut places = Vec::with_capacity(width * height);
@@ -70,26 +70,29 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
                 }
                 let r = seen - level.first.at(x, y);
                 let e = r * r / (level.noise * level.noise + position_variance * level.energy.at(x, y));
-                let weight = e / (e + model.algebra_half);
-                if weight > model.algebra_weight {
+                if e > model.robustness {
+                    let weight = e / (e + model.robustness);
                     places.push(y * width + x);
                     weights.push(weight);
                 }
             }
         }
     }
-    if places.len() < model.algebra_per_unknown * monomials::unknowns(1) {
+    if places.len() < 2 * monomials::unknowns(1) {
         return None;
     }
     let count = most.min(places.len());
     let chosen = (0..count).map(|k| k * places.len() / count);
     let half = 0.5 * width as f64;
     let position = |x: usize, y: usize| [x as f64 / half - 1.0, (y as f64 - 0.5 * height as f64) / half];
+    // From twice the shortest gradient on, measurements have about the same length.
+    let flat = f64::from(model.algebra_gradient);
     let derivatives = |x: usize, y: usize| {
         let at = |plane: &Plane| f64::from(plane.at(x, y));
         let (gx, gy) = (at(&local.gx), at(&local.gy));
         let temporal = at(&local.residual) - gx * at(&flow.u) - gy * at(&flow.v);
-        let length = (gx * gx + gy * gy + model.algebra_flat).sqrt();
+        // (2 g)² under the root.
+        let length = (gx * gx + gy * gy + 4.0 * flat * flat).sqrt();
         [gx / length, gy / length, temporal / (length * model.algebra_unit)]
     };
     let points = || chosen.clone().map(|k| (places[k] % width, places[k] / width));
@@ -109,17 +112,18 @@ fn flows_of_degree(data: &Unexplained, degree: usize, model: &Model) -> Vec<[f64
     let mut weights = data.weights.clone();
     let mut readings = Vec::new();
     let mut close = 0.0;
-    for _ in 0..model.algebra_rounds {
+    for _ in 0..2 * model.iterations {
         // A weight belongs to a row; only their ratios count.
         let largest = weights.iter().fold(0.0, |m: f64, w| m.max(*w));
         weights.iter_mut().for_each(|w| *w = (*w / largest) * (*w / largest));
         readings = read_off(&refitting, &refitting.fit(&weights));
         let distances: Vec<f64> = readings.iter().map(|r| r.distance).collect();
-        close = model.algebra_inlier * median_f64(&distances).unwrap_or(0.0) + 1e-9;
+        // The deviation of a normal variable whose median distance this is.
+        close = 1.4826 * median_f64(&distances).unwrap_or(0.0) + 1e-9;
         let mean = readings.iter().map(|r| r.slope).sum::<f64>() / readings.len() as f64;
         for ((w, r), given) in weights.iter_mut().zip(&readings).zip(&data.weights) {
             let relative = r.distance / close;
-            *w = given / ((r.slope + model.algebra_slope * mean).max(1e-300) * (1.0 + relative * relative));
+            *w = given / ((r.slope + f64::from(model.negligible) * mean).max(1e-300) * (1.0 + relative * relative));
         }
     }
     group(&readings, data.measurements.positions(), close, 2 * degree + 1, model)
@@ -148,7 +152,8 @@ fn read_off(refitting: &Refitting, polynomial: &MultibodyMotion) -> Vec<Reading>
 
 /// Median flows of clusters of pixels that are similar in flow and position.
 fn group(readings: &[Reading], positions: &[[f64; 2]], close: f64, groups: usize, model: &Model) -> Vec<[f64; 2]> {
-    let largest = model.algebra_largest_flow;
+    // Four units.
+    let largest = 4.0 * model.algebra_unit;
     let sensible = |(r, p): (&Reading, &[f64; 2])| {
         let [u, v] = r.flow.map(|f| f * model.algebra_unit);
         let sensible = u * u + v * v < largest * largest && r.distance < close;

@@ -77,7 +77,7 @@ struct Windows {
 
 fn windows(level: &Level, s: &Samples, sigma: f32) -> Windows {
     let noise = level.noise * level.noise;
-    let (robustness, position) = (1.0 / level.model.flow_robustness, level.model.flow_position_variance);
+    let (robustness, position) = (1.0 / level.model.robustness_loose, level.model.position_variance());
     let mut weight = s.residual.clone();
     each_with(weight.values_mut(), [level.energy.values()], |r, [energy]| {
         1.0 / (noise + r * r * robustness + position * energy)
@@ -109,13 +109,13 @@ pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize)
                 plane.values_mut().iter_mut().for_each(|f| *f *= 2.0);
             }
         }
-        for iteration in 0..level.model.flow_iterations {
-            let sigma = if index == base { level.model.flow_window } else { level.model.flow_window_coarse };
+        for iteration in 0..level.model.iterations {
+            let sigma = if index == base { level.model.window_wide() } else { level.model.window };
             let sums = windows(level, &samples(level, dominant, &u, &v), sigma);
             step(&mut u, &mut v, &sums, level.model);
             u = median5(&u);
             v = median5(&v);
-            if index == base && iteration + 1 == level.model.flow_iterations {
+            if index == base && iteration + 1 == level.model.iterations {
                 certainty = smaller_eigenvalue(&sums);
             }
         }
@@ -124,7 +124,7 @@ pub(crate) fn local_flow(levels: &[Level], dominant: &AffineMotion, base: usize)
 }
 
 fn step(u: &mut Plane, v: &mut Plane, s: &Windows, model: &Model) {
-    let (flat, longest) = (model.flow_flat, model.flow_longest_step);
+    let flat = model.flow_flat;
     let sums = [&s.xx, &s.xy, &s.yy, &s.xr, &s.yr].map(Plane::values);
     let flows = u.values_mut().chunks_mut(CHUNK).zip(v.values_mut().chunks_mut(CHUNK));
     for (k, (u, v)) in flows.enumerate() {
@@ -138,10 +138,7 @@ fn step(u: &mut Plane, v: &mut Plane, s: &Windows, model: &Model) {
             let (a, c, d) = (xx[k] + flat, xy[k], yy[k] + flat);
             let (p, q) = (xr[k], yr[k]);
             let per_determinant = 1.0 / (a * d - c * c);
-            let (du, dv) = ((c * q - d * p) * per_determinant, (c * p - a * q) * per_determinant);
-            let length = (du * du + dv * dv).sqrt();
-            let shorten = if length > longest { longest / length } else { 1.0 };
-            (by_u[k], by_v[k]) = (du * shorten, dv * shorten);
+            (by_u[k], by_v[k]) = ((c * q - d * p) * per_determinant, (c * p - a * q) * per_determinant);
         }
         each_with(u, [&by_u], |u, [by]| u + by);
         each_with(v, [&by_v], |v, [by]| v + by);
@@ -151,6 +148,7 @@ fn step(u: &mut Plane, v: &mut Plane, s: &Windows, model: &Model) {
 fn smaller_eigenvalue(s: &Windows) -> Plane {
     Plane::from_fn(s.xx.width(), s.xx.height(), |x, y| {
         let (a, c, d) = (s.xx.at(x, y), s.xy.at(x, y), s.yy.at(x, y));
+        // The smaller root of λ² − (a + d) λ + a d − c² = 0.
         0.5 * (a + d - ((a - d) * (a - d) + 4.0 * c * c).sqrt())
     })
 }

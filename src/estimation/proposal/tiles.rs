@@ -16,7 +16,7 @@ pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlo
         for x in (stride / 2..level.width()).step_by(stride) {
             let (u, v) = (flow.u.at(x, y), flow.v.at(x, y));
             let certainty = flow.certainty.at(x, y);
-            if certainty > model.tile_certain && u * u + v * v > model.tile_moving * model.tile_moving {
+            if certainty > model.tile_certain && u * u + v * v > model.position_sigma * model.position_sigma {
                 certainties.push(certainty);
                 places.push(y * level.width() + x);
             }
@@ -30,5 +30,5 @@ pub(crate) fn from_tiles(level: &Level, dominant: &AffineMotion, flow: &LocalFlo
             place: [x as f64 * pixel, y as f64 * pixel],
         });
     let size = [level.width() as f64 * pixel, level.height() as f64 * pixel];
-    distinct(&mut proposals, model.tile_tolerance * pixel, size, most, model)
+    distinct(&mut proposals, 2.0 * f64::from(model.position_sigma) * pixel, size, most, model)
 }

@@ -51,6 +51,9 @@ fn gain_of(improvement: &Plane, margin: f32) -> f64 {
     sum
 }
 
+/// Side of the blocks by whose means proposals are ranked, pixels: two pixels of a sample.
+const BLOCK: usize = 4;
+
 /// Means over blocks of `side` × `side` pixels: enough to order proposals.
 fn blocks(plane: &Plane, side: usize) -> Plane {
     let (width, height) = (plane.width(), plane.height());
@@ -71,10 +74,9 @@ fn blocks(plane: &Plane, side: usize) -> Plane {
 
 /// The gain estimated on block means.
 fn rough_gain(current: &Plane, cost: &Plane, window: f32, model: &Model) -> f64 {
-    let block = model.block;
     let mut difference = current.clone();
     each_with(difference.values_mut(), [cost.values()], |d, [c]| d - c);
-    gain_of(&gaussian(&difference, window / block as f32), model.margin) * (block * block) as f64
+    gain_of(&gaussian(&difference, window / BLOCK as f32), model.margin) * (BLOCK * BLOCK) as f64
 }
 
 /// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
@@ -89,13 +91,13 @@ pub(crate) fn add_motions(
     how: Deflation,
 ) -> Option<AffineMotion> {
     let model = level.model;
-    let thinning = level.thinning(model.thinning);
-    let thinned = level.thinned(thinning);
-    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, model.block / thinning);
+    let thinning = level.thinning();
+    let thinned = level.thinned();
+    let rough_cost = |&motion: &AffineMotion| blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
     let rough: Vec<Plane> = proposals.iter().map(rough_cost).collect();
     loop {
         let current = smallest_cost(selected);
-        let current_blocks = blocks(&current, model.block);
+        let current_blocks = blocks(&current, BLOCK);
         let gains: Vec<f64> = rough.iter().map(|cost| rough_gain(&current_blocks, cost, how.window, model)).collect();
         let current_sample = current.thinned(thinning);
         let mut best: Option<(f64, ScoredMotion)> = None;
@@ -131,11 +133,10 @@ fn refined(level: &Level, current: &Plane, proposal: AffineMotion, how: Deflatio
     let mut improved = improvement(current, &scored.cost, how.window);
     let model = level.model;
     let mut gain = gain_of(&improved, model.margin);
-    for round in 0..model.proposal_rounds {
+    for round in 0..model.rounds {
         let Some(region) = heaviest_region(&improved, current, &scored.cost, model.margin) else { break };
         let support = Support::weighted(&region, model);
-        let affine =
-            Alignment::of_region(model.proposal_iterations, model.ridge_proposal, model).until(how.convergence);
+        let affine = Alignment::of_region(model.iterations, model.ridge_object, model).until(how.convergence);
         let mut motion = scored.motion;
         let none = &mut Photometric::default();
         if round == 0 {

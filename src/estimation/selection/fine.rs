@@ -10,10 +10,10 @@ use crate::motion::AffineMotion;
 use crate::order::descending;
 use crate::view::level::Level;
 
-/// The most promising local corrections of the selected motions.
-pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<AffineMotion> {
+/// At most `most` local corrections of the selected motions, the most promising first.
+pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion], most: usize) -> Vec<AffineMotion> {
     let (width, height) = (level.width(), level.height());
-    let (model, stride, flat) = (level.model, level.model.fine_stride, level.model.flow_flat);
+    let (model, stride, flat) = (level.model, level.model.tile_stride, level.model.flow_flat);
     let winners = winners(selected);
     let [xx, xy, yy, xr, yr] = window_sums(level, selected, &winners);
     let [columns, rows] = [width, height].map(|size| size.div_ceil(stride));
@@ -33,20 +33,20 @@ pub(crate) fn fine_proposals(level: &Level, selected: &[ScoredMotion]) -> Vec<Af
     }
     let order = descending(gains.iter().map(|&gain| f64::from(gain)));
     let pixel = level.pixel();
-    let mut proposals = order.iter().take(model.fine_windows).filter_map(|&k| {
+    let mut proposals = order.iter().filter_map(|&k| {
         let [u, v] = steps[k].map(f64::from);
         let length = (u * u + v * v).sqrt();
         let (x, y) = (places[k] % width, places[k] / width);
-        (model.fine_shortest < length && length < model.fine_longest).then(|| Proposal {
+        (length > f64::from(model.position_sigma)).then(|| Proposal {
             motion: translated(&selected[winners[places[k]]].motion, u * pixel, v * pixel),
             place: [x as f64 * pixel, y as f64 * pixel],
         })
     });
     distinct(
         &mut proposals,
-        model.fine_tolerance * pixel,
+        2.0 * f64::from(model.position_sigma) * pixel,
         [width as f64 * pixel, height as f64 * pixel],
-        model.fine_most,
+        most,
         model,
     )
 }
@@ -80,11 +80,11 @@ fn window_sums(level: &Level, selected: &[ScoredMotion], winners: &[usize]) -> [
             let gx = half * (level.first_dx.at(x, y) + at.sample(level.second_dx.values()));
             let gy = half * (level.first_dy.at(x, y) + at.sample(level.second_dy.values()));
             let r = at.sample(level.second.values()) - level.first.at(x, y);
-            let weight = 1.0 / (noise + level.model.flow_position_variance * level.energy.at(x, y));
+            let weight = 1.0 / (noise + level.model.position_variance() * level.energy.at(x, y));
             for (plane, product) in sums.iter_mut().zip([gx * gx, gx * gy, gy * gy, gx * r, gy * r]) {
                 plane.row_mut(y)[x] = weight * product;
             }
         }
     }
-    sums.map(|plane| gaussian(&plane, level.model.fine_window))
+    sums.map(|plane| gaussian(&plane, level.model.window))
 }

@@ -17,7 +17,7 @@ pub(crate) fn refit(level: &Level, selected: &mut [ScoredMotion], rounds: usize,
         let regions: Vec<Option<Plane>> = (0..selected.len()).map(|k| region_of(selected, k, level.model)).collect();
         for (k, (scored, region)) in selected.iter_mut().zip(regions).enumerate() {
             let Some(region) = region else { continue };
-            let how = Alignment::of_region(model.refit_iterations, ridge_of_label(k, model), model).until(convergence);
+            let how = Alignment::of_region(model.iterations, ridge_of_label(k, model), model).until(convergence);
             let motion =
                 align(level, &scored.motion, &Support::weighted(&region, model), &mut Photometric::default(), how);
             let refined = ScoredMotion::new(level, motion);
@@ -44,12 +44,12 @@ fn region_of(selected: &[ScoredMotion], k: usize, model: &Model) -> Option<Plane
             if wins { r } else { 0.0 }
         });
     }
-    let pixels = region.values().iter().filter(|&&w| w > 0.0).count();
-    if pixels < model.refit_smallest {
+    let pixels_of = |region: &Plane| region.values().iter().filter(|&&w| w > 0.0).count();
+    if pixels_of(&region) < model.fewest {
         return None;
     }
-    if pixels > model.refit_large {
-        region = eroded(&region);
-    }
-    Some(softened(&region, model))
+    // Pixels at the border may belong to another motion, where the region can spare them.
+    let inner = eroded(&region);
+    let enough = pixels_of(&inner) >= model.fewest;
+    Some(softened(if enough { &inner } else { &region }))
 }

@@ -19,14 +19,14 @@ const ENTRIES: usize = 6;
 /// Worth of a region that is too small to be an object, nats: less than that of any other.
 const TOO_SMALL: f64 = -1e9;
 
-/// Nats for the six parameters of a motion with so many pixels: (6/2) ln N.
-pub(crate) fn price_of_motion(pixels: usize, model: &Model) -> f64 {
-    model.motion_price * libm::log(pixels.max(ENTRIES) as f64)
+/// Nats for the six parameters of a motion with so many pixels: (6/2) ln N (Schwarz, Annals of Statistics 6(2), 1978).
+pub(crate) fn price_of_motion(pixels: usize) -> f64 {
+    0.5 * ENTRIES as f64 * libm::log(pixels.max(ENTRIES) as f64)
 }
 
 /// Nats by which two motions with so many pixels each need more parameters than one with all of them.
-pub(super) fn price_of_two(pixels: [usize; 2], model: &Model) -> f64 {
-    pixels.iter().map(|&n| price_of_motion(n, model)).sum::<f64>() - price_of_motion(pixels.iter().sum(), model)
+pub(super) fn price_of_two(pixels: [usize; 2]) -> f64 {
+    pixels.iter().map(|&n| price_of_motion(n)).sum::<f64>() - price_of_motion(pixels.iter().sum())
 }
 
 /// Nats for a border of some pixels.
@@ -36,12 +36,12 @@ pub(super) fn price_of_border(pixels: usize, model: &Model) -> f64 {
 
 /// Weight of a pixel of a level, in working pixels.
 pub(crate) fn weight_of_pixel(level: &Level) -> f32 {
-    if level.pixel() > 1.0 { level.model.coarse_pixel } else { 1.0 }
+    level.pixel() as f32
 }
 
 /// The same as [`price_of_motion`], in summed costs of the pixels of a level.
 pub(crate) fn price_on(level: &Level) -> f64 {
-    2.0 * price_of_motion(level.width() * level.height(), level.model) / f64::from(weight_of_pixel(level))
+    2.0 * price_of_motion(level.width() * level.height()) / f64::from(weight_of_pixel(level))
 }
 
 /// Description length in nats of both frames by motions and labels: residuals, six parameters per motion, borders. Rest needs no
@@ -52,7 +52,7 @@ pub(crate) fn length(motions: &[AffineMotion], raw: &[Plane], labels: &[u8], wid
     let left_over: f64 = labels.iter().enumerate().map(|(p, &l)| f64::from(raw[usize::from(l)].values()[p])).sum();
     let pixels = counts(labels, motions.len());
     let moving = motions.iter().zip(pixels).filter(|(motion, _)| **motion != AffineMotion::STATIC);
-    let parameters: f64 = moving.map(|(_, pixels)| price_of_motion(pixels, model)).sum();
+    let parameters: f64 = moving.map(|(_, pixels)| price_of_motion(pixels)).sum();
     // Every pair of neighbours is counted by both of its labels.
     let borders = border_lengths(labels, motions.len(), width).iter().sum::<usize>() / 2;
     0.5 * left_over + parameters + price_of_border(borders, model)
@@ -73,7 +73,7 @@ pub(crate) fn worth(raw: &[Plane], labels: &[u8], width: usize, model: &Model) -
             if (counts[k] as f64) < model.smallest_share * labels.len() as f64 {
                 return TOO_SMALL + counts[k] as f64;
             }
-            let lost = |m: usize| 0.5 * (sums[k][m] - sums[k][k]) - price_of_two([counts[k], counts[m]], model);
+            let lost = |m: usize| 0.5 * (sums[k][m] - sums[k][k]) - price_of_two([counts[k], counts[m]]);
             let others = (0..raw.len()).filter(|&m| m != k);
             others.map(lost).fold(f64::INFINITY, f64::min) - price_of_border(borders[k], model)
         })

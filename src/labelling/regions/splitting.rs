@@ -14,7 +14,7 @@ use crate::view::cost::{CostModel, cost_within};
 use crate::view::level::Level;
 
 fn smallest_part(pixels: usize, model: &Model) -> usize {
-    model.smallest_part.max((model.smallest_share * pixels as f64) as usize)
+    model.fewest.max((model.smallest_share * pixels as f64) as usize)
 }
 
 /// A motion refined on the pixels of a mask.
@@ -44,7 +44,7 @@ pub(crate) fn split_bodies(level: &Level, motions: &mut Vec<AffineMotion>, label
         let known = (label, &motions[label]);
         let split = apart(&region, level.width())
             .and_then(|parts| two_bodies(level, known, &region, parts, 0))
-            .or_else(|| two_bodies(level, known, &region, far_half(&region, level.width()), level.model.split_rounds));
+            .or_else(|| two_bodies(level, known, &region, far_half(&region, level.width()), level.model.iterations));
         if let Some((pair, second)) = split {
             motions[label] = pair[0];
             motions.push(pair[1]);
@@ -68,7 +68,7 @@ fn two_bodies(
     let (width, height) = (level.width(), level.height());
     let model = level.model;
     // As far as a Gaussian window of this deviation reaches.
-    let reach = libm::ceilf(3.0 * model.split_window) as usize;
+    let reach = libm::ceilf(3.0 * model.window) as usize;
     let around = Area::of(region, width).grown(reach, width, height);
     let mut pair = [*motion; 2];
     for round in 0..=rounds {
@@ -78,9 +78,8 @@ fn two_bodies(
             for (&p, &s) in region.iter().zip(&second) {
                 mask.values_mut()[p] = if usize::from(s) == side { 1.0 } else { 0.0 };
             }
-            *motion = aligned_on(level, motion, &mask, model.split_iterations, ridge_of_label(label, model));
-            costs
-                .push(gaussian(&cost_within(level, &around, motion, CostModel::estimation(model)), model.split_window));
+            *motion = aligned_on(level, motion, &mask, model.iterations, ridge_of_label(label, model));
+            costs.push(gaussian(&cost_within(level, &around, motion, CostModel::estimation(model)), model.window));
         }
         if round == rounds {
             break;
@@ -90,7 +89,7 @@ fn two_bodies(
             *s = costs[1].values()[place] < costs[0].values()[place];
         }
         let share = second.iter().filter(|s| **s).count() as f64 / region.len() as f64;
-        if !(model.smallest_half..=1.0 - model.smallest_half).contains(&share) {
+        if !(model.few..=1.0 - model.few).contains(&share) {
             return None;
         }
     }
@@ -103,7 +102,7 @@ fn two_bodies(
     }
     gain *= f64::from(weight_of_pixel(level));
     let of_second = second.iter().filter(|s| **s).count();
-    let price = price_of_two([region.len() - of_second, of_second], model)
+    let price = price_of_two([region.len() - of_second, of_second])
         + price_of_border(inner_border(region, &second, width, height), model);
     (gain > price).then_some((pair, second))
 }
@@ -134,6 +133,7 @@ fn far_half(region: &[usize], width: usize) -> Vec<bool> {
         xy += x * y;
         yy += y * y;
     }
+    // The larger root of λ² − (xx + yy) λ + xx yy − xy² = 0.
     let largest = 0.5 * (xx + yy + ((xx - yy) * (xx - yy) + 4.0 * xy * xy).sqrt());
     let (ax, ay) = if xx >= yy { (largest - yy, xy) } else { (xy, largest - xx) };
     region.iter().map(|&p| (place(p).0 - cx) * ax + (place(p).1 - cy) * ay > 0.0).collect()

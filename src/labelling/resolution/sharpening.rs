@@ -193,7 +193,7 @@ impl<'a> Comparisons<'a> {
         let mut rows = vec![[0.0; TILE[0]]; tile.labels.len()];
         let (mut inflation, mut seen) = ([0.0; TILE[0]], [0.0; TILE[0]]);
         let mut places = [0; TILE[0]];
-        let border = frame_border_price(fine.coherence, fine.level.model);
+        let border = frame_border_price(fine.coherence);
         for y in tile_rows.clone() {
             places.iter_mut().zip(columns.clone()).for_each(|(place, x)| *place = coarse.pixel(x, y));
             let places = &places[..count];

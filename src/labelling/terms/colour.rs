@@ -24,8 +24,8 @@ impl ColourPrices {
         let weights = margins(costs, labels);
         let trust = trust(palette, labels, &weights, n, model);
         let mut table = posterior(palette, labels, &weights, n, model);
-        let (price, largest) = (model.colour_price, model.largest_colour_price);
-        table.iter_mut().for_each(|p| *p = (-price * trust * trust * libm::logf(*p)).min(largest));
+        let largest = model.largest_cost();
+        table.iter_mut().for_each(|p| *p = (-model.colour_price * trust * trust * libm::logf(*p)).min(largest));
         ColourPrices { table, labels: n }
     }
 
@@ -47,7 +47,7 @@ pub(crate) fn add_colours(costs: &mut [Plane], palette: &Palette, labels: &[u8],
 /// How well the colours of one half of the blocks predict the labels of the other: information per pixel as a share of the
 /// information needed, averaged over the labels; 0…1.
 fn trust(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> f32 {
-    let half = halves(palette.width(), labels.len(), model.colour_block);
+    let half = halves(palette.width(), labels.len(), 2 * model.tile_stride);
     let tables = [0, 1].map(|which| {
         let of_half = |(&weight, &half): (&f32, &u8)| if half == which { weight } else { 0.0 };
         posterior(palette, labels, &weights.iter().zip(&half).map(of_half).collect::<Vec<f32>>(), n, model)
@@ -86,7 +86,7 @@ fn margins(costs: &[Plane], labels: &[u8]) -> Vec<f32> {
 /// Probability of every label for every colour, all labels equally likely beforehand; from pixels with these weights.
 #[inline(never)]
 fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model: &Model) -> Vec<f32> {
-    let smallest = model.colour_support;
+    let smallest = model.fewest as f32 * model.largest_cost();
     let mut table = vec![0.0f32; n * COLOURS];
     let mut totals = vec![1e-9f32; n];
     for (p, (&label, &weight)) in labels.iter().zip(weights).enumerate() {
@@ -97,7 +97,7 @@ fn posterior(palette: &Palette, labels: &[u8], weights: &[f32], n: usize, model:
     for of_colour in table.chunks_exact_mut(n) {
         let mut sum = 0.0;
         for (share, total) in of_colour.iter_mut().zip(&totals).filter(|&(_, &total)| total >= smallest) {
-            *share = *share / total + model.colour_prior;
+            *share = *share / total + model.negligible;
             sum += *share;
         }
         // A label without enough pixels to learn from gets the average probability for every colour.

@@ -45,7 +45,7 @@ impl LabelCosts {
                 to_label_costs(label, cost.row_mut(y), &seen, coherence, level.model);
             }
         }
-        costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, coherence, level.model));
+        costs[BACKGROUND + 1..].iter_mut().for_each(|cost| add_frame_border_price(cost, coherence));
         LabelCosts { costs, variance_inflation: inflation }
     }
 }
@@ -67,12 +67,12 @@ pub(crate) fn to_label_costs(label: usize, costs: &mut [f32], seen: &[f32], cohe
 }
 
 /// Price of an object's pixel on the frame's border, for each of the borders it lies on.
-pub(crate) fn frame_border_price(coherence: Coherence, model: &Model) -> f32 {
-    model.frame_border * coherence.smoothness
+pub(crate) fn frame_border_price(coherence: Coherence) -> f32 {
+    0.5 * coherence.smoothness
 }
 
-fn add_frame_border_price(cost: &mut Plane, coherence: Coherence, model: &Model) {
-    let price = frame_border_price(coherence, model);
+fn add_frame_border_price(cost: &mut Plane, coherence: Coherence) {
+    let price = frame_border_price(coherence);
     let (width, height) = (cost.width(), cost.height());
     for y in [0, height - 1] {
         cost.row_mut(y).iter_mut().for_each(|c| *c += price);

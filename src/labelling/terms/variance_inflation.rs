@@ -11,6 +11,9 @@ use crate::lanes::{each, each_with};
 use crate::model::Model;
 use crate::view::cost::CostModel;
 
+/// Mean cost of noise alone: E[e/(1 + e/T)] for e of one degree of freedom and T = 2.
+const NOISE_ALONE: f32 = 0.484;
+
 /// Factor of each pixel's variance, computed row by row from the smallest label cost.
 ///
 /// The mean of the saturated costs grows about as the standard deviation of the residuals.
@@ -24,16 +27,16 @@ impl VarianceInflation {
     /// `smallest` is infinite where all motions move a pixel out of the second frame.
     pub(crate) fn new(mut smallest: Plane, model: &'static Model) -> VarianceInflation {
         each(smallest.values_mut(), |c| if c.is_finite() { c } else { CostModel::labels(model).outside() });
-        let window = RowFilter::gaussian(smallest.width(), model.inflation_window);
+        let window = RowFilter::gaussian(smallest.width(), model.window_of_fit());
         VarianceInflation { smallest, model, window }
     }
 
     /// Writes the factors of row y.
     pub(crate) fn write(&mut self, y: usize, row: &mut [f32]) {
         self.window.row(&self.smallest, y, row);
-        let (expected, largest) = (self.model.expected, self.model.largest_inflation);
+        let largest = self.model.largest_inflation;
         each(row, |m| {
-            let ratio = (m / expected).clamp(1.0, largest);
+            let ratio = (m / NOISE_ALONE).clamp(1.0, largest);
             ratio * ratio
         });
     }
@@ -42,7 +45,7 @@ impl VarianceInflation {
 /// Costs with inflated variance: e / (1 + e/T) with e / inflation in place of e. Infinite costs stay infinite.
 #[inline(never)]
 pub(crate) fn inflate_variance(costs: &mut [f32], inflation: &[f32], model: &Model) {
-    let truncation = model.label_truncation;
+    let truncation = model.largest_cost();
     each_with(costs, [inflation], |cost, [inflation]| {
         let share = cost / truncation;
         let allowed = cost / (inflation * (1.0 - share) + share);

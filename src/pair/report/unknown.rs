@@ -13,12 +13,11 @@ use crate::view::cost::{CostModel, cost};
 pub(super) fn unknown(pair: &Pair, labelled: &Labelled, probabilities: &[Plane]) -> Vec<bool> {
     let level = pair.finest();
     let model = level.model;
-    let limit = model.unknown_cost * model.label_truncation;
-    let texture = gaussian(&level.energy, model.texture_window);
+    let texture = gaussian(&level.energy, model.window_wide());
     let no_texture = model.no_texture * level.noise * level.noise;
     let mut unknown = hidden(level, &labelled.motions, &labelled.labels);
     for (k, motion) in labelled.motions.iter().enumerate() {
-        let own = gaussian(&cost(level, motion, CostModel::labels(model)), model.unknown_window);
+        let own = gaussian(&cost(level, motion, CostModel::labels(model)), model.window);
         let scaled = level.scaled(motion);
         for y in 0..level.height() {
             let path = RowPath::new(&scaled, 0, y);
@@ -28,7 +27,7 @@ pub(super) fn unknown(pair: &Pair, labelled: &Labelled, probabilities: &[Plane])
                     let (px, py) = path.at(x);
                     let inside = Footprint::new(px, py, level.width(), level.height()).inside;
                     let decided = texture.values()[p] > no_texture && probabilities[k].values()[p] >= 0.5;
-                    unknown[p] |= !inside || !decided || own.values()[p] > limit;
+                    unknown[p] |= !inside || !decided || own.values()[p] > model.unexplained;
                 }
             }
         }
