@@ -1,6 +1,6 @@
 //! A clip is corrected by keyboard: its objects, its corrected frames, the size of the brush.
 
-import { clipDone, clipFrames, done, drag, expect, goTo, openSegmented, test } from './support.js';
+import { clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, openSegmented, test } from './support.js';
 
 test('objects are selected, locked and deleted, and corrected frames are found', async ({ page }) => {
   await openSegmented(page, await clipFrames(8));
@@ -60,4 +60,33 @@ test('with Shift the wheel changes the size of the brush, and nothing else', asy
   await expect(size).toHaveValue('2');
   await page.keyboard.up('Shift');
   await expect(page.locator('#zoom-value')).toHaveText(zoom!);
+});
+
+test('a correction spreads where it is told to, and a mask is copied to the next frame', async ({ page }) => {
+  await openSegmented(page, await clipFrames(8));
+  await goTo(page, 4);
+  await page.keyboard.press('1');
+  await page.keyboard.press('p');
+  const follow = page.getByRole('combobox', { name: 'Frames that follow a correction' });
+  const changed = page.locator('#clip-status');
+  await follow.selectOption('none');
+  await drag(page, [0.05, 0.85], [0.1, 0.9]);
+  await expect(changed).toHaveText('Corrected: the masks of one frame have changed.');
+  await clipDone(page);
+  await follow.selectOption('forward');
+  await drag(page, [0.15, 0.85], [0.2, 0.9]);
+  await expect(changed).toHaveText(/^Corrected: the masks of (2|3|4) frames have changed\.$/);
+  await clipDone(page);
+
+  // The painted corner goes with the object to the next frame, and nowhere else.
+  await follow.selectOption('none');
+  const own = (await labelsOnCanvas(page)).map((label) => Number(label === 1));
+  await page.keyboard.press('Shift+>');
+  await expect(page.locator('#caption')).toHaveText('Frame 5');
+  await clipDone(page);
+  await done(page);
+  const copied = (await labelsOnCanvas(page)).map((label) => Number(label === 1));
+  expect(differences(own, copied)).toBeLessThan(0.02 * own.length);
+  await page.keyboard.press('Control+z');
+  await expect(changed).toHaveText('Undone in one frame.');
 });

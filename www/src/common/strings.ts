@@ -292,6 +292,7 @@ export const strings = {
     nothingTicked: 'Tick an object in the list first.',
     notReady: 'Segment the clip first.',
     nothingThere: 'There is nothing there that is not a locked object or one of yours.',
+    noFrameThere: 'There is no segmented frame on that side.',
     locked: 'What you painted belongs to a locked object. Unlock it first.',
     otherState:
       'These masks were made by another version of this page, or in a browser that reads the frames differently. ' +
@@ -344,6 +345,8 @@ export const strings = {
     corrected: 'Next corrected frame',
     correctedBefore: 'Previous corrected frame',
     select: 'Select a mask by its place in the list',
+    copyOn: 'Copy the selected mask to the next frame',
+    copyBack: 'Copy the selected mask to the frame before',
     lock: 'Lock the selected object, or unlock it',
     remove: 'Delete the selected object',
     look: 'View: select masks, pan',

@@ -1,5 +1,6 @@
 //! What a project's file says, besides its header, and the checks of it: a file may come from anywhere.
 
+import type { ClipPropagation } from 'veronese';
 import type { Edits } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
@@ -13,8 +14,9 @@ type Entries<K, V> = readonly (readonly [K, V])[];
 /** A project with lists of entries in place of maps. */
 export interface Content extends Pick<Project, 'settings'> {
   readonly clip:
-    | (Omit<ProjectClip, 'painted' | 'became' | 'locks' | 'spans' | 'solved'> & {
+    | (Omit<ProjectClip, 'painted' | 'spread' | 'became' | 'locks' | 'spans' | 'solved'> & {
         readonly painted: Entries<number, Runs>;
+        readonly spread?: Entries<number, ClipPropagation>;
         readonly became: Entries<number, number>;
         readonly locks?: Entries<number, boolean>;
         readonly spans: readonly (Omit<Span, 'numbers'> & { readonly numbers: Entries<number, number> })[];
@@ -73,8 +75,9 @@ const isColour = listOf(isFrom(0, 255), 3);
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
 const isRange = objectOf({ first: isIndex, last: isIndex });
-/** Files of earlier versions have none. */
+/** Files of earlier versions have neither. */
 const isLocks: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isFrom(1, 254), isFlag))(value);
+const isSpread: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))(value);
 const isClip = objectOf({
   range: isRange,
   longestSide: isSide,
@@ -84,6 +87,7 @@ const isClip = objectOf({
   frames: listOf(orNull(isFrame)),
   found: listOf(orNull(isRuns)),
   painted: listOf(entryOf(isIndex, isRuns)),
+  spread: isSpread,
   became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
   locks: isLocks,
   spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))) })),

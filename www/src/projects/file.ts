@@ -109,6 +109,7 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
       clip: clip && {
         ...clip,
         painted: new Map(clip.painted),
+        spread: new Map(clip.spread),
         became: new Map(clip.became),
         locks: new Map(clip.locks),
         spans: clip.spans.map((span) => ({ ...span, numbers: new Map(span.numbers) })),

@@ -1,6 +1,6 @@
 //! What a person says about a clip, and the masks as they are before it has been carried to the other frames.
 
-import type { ClipFrame, ClipOptions } from 'veronese';
+import type { ClipFrame, ClipOptions, ClipPropagation } from 'veronese';
 import { type Runs, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { becameAfter } from './spans.js';
@@ -10,13 +10,14 @@ import type { Version } from './tracked.js';
 export interface Pointed {
   readonly frame: number;
   readonly id: number;
+  readonly spread: ClipPropagation;
   readonly at: readonly [number, number] | readonly [number, number, number, number];
 }
 
-/** What a person says: pixels of frames, by index, where a new object is, what becomes of whole objects, or which of them are locked. */
+/** What a person says: pixels of frames, by index, and where they spread; where a new object is, what becomes of whole objects, or which of them are locked. */
 export type Said =
   | { readonly pointed: Pointed }
-  | { readonly painted: ReadonlyMap<number, Uint8Array> }
+  | { readonly painted: ReadonlyMap<number, Uint8Array>; readonly spread: ClipPropagation }
   | { readonly edits: NonNullable<ClipOptions['edits']> }
   | { readonly locks: ReadonlyMap<number, boolean> };
 

@@ -1,6 +1,6 @@
 //! The state of the page: one plain object, replaced as a whole and never mutated. Views render it.
 
-import type { Segmentation } from 'veronese';
+import type { ClipPropagation, Segmentation } from 'veronese';
 import { NO_EDITS, type Edits, lastStroke } from '../correction/edits.js';
 import type { Stroke } from '../correction/strokes.js';
 import type { Painting } from '../drawing/paint.js';
@@ -60,6 +60,8 @@ export interface Tool {
   readonly name: ToolName;
   /** Of the brush, pixels of the frame. */
   readonly radius: number;
+  /** Where what is said of a frame of a clip spreads. */
+  readonly spread: ClipPropagation;
 }
 
 /** The state of the camera while it is on. */
@@ -158,7 +160,7 @@ export const INITIAL: State = {
   kept: new Map(),
   look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, arrows: false, residual: false, ...FRESH },
   viewport: WHOLE,
-  tool: { name: 'look', radius: 8 },
+  tool: { name: 'look', radius: 8, spread: 'both' },
   notice: null,
   question: null,
   keeping: 'nothing',

@@ -1,6 +1,6 @@
 //! The objects of a whole clip: how far their segmentation is, the masks of each frame, and what a person said of them.
 
-import type { ClipFrame, ClipProgress } from 'veronese';
+import type { ClipFrame, ClipProgress, ClipPropagation } from 'veronese';
 import type { Clip } from '../clips/clip.js';
 import type { Runs } from '../correction/runs.js';
 import type { Colour } from '../drawing/palette.js';
@@ -63,6 +63,8 @@ export interface Version {
   readonly found: readonly (Runs | null)[];
   /** What was painted in frames, by index: numbers as in `frames`, and 255 where nothing is said. */
   readonly painted: ReadonlyMap<number, Runs>;
+  /** Where that spreads, for frames from which it does not spread both ways. */
+  readonly spread: ReadonlyMap<number, ClipPropagation>;
   /** What became of objects that were merged or deleted: the number of another object, or 0. */
   readonly became: ReadonlyMap<number, number>;
   /** Whether a person wants an object locked or not, by its number. */
@@ -107,6 +109,7 @@ export function untracked(clip: Clip): Tracked {
     longestSide: Infinity,
     found: frames,
     painted: new Map(),
+    spread: new Map(),
     became: new Map(),
     locks: NO_LOCKS,
     largest: 0,
@@ -119,8 +122,8 @@ export function untracked(clip: Clip): Tracked {
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, painted, became, locks, largest }: Version): Version {
-  return { frames, spans, longestSide, found, painted, became, locks, largest };
+export function versionOf({ frames, spans, longestSide, found, painted, spread, became, locks, largest }: Version): Version {
+  return { frames, spans, longestSide, found, painted, spread, became, locks, largest };
 }
 
 /** Whether corrections of other objects leave this one as it is: an object with a name, unless a person says otherwise. */

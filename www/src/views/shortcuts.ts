@@ -60,6 +60,8 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['d'], shown: 'Shift D', does: keys.doubtfulBefore, run: () => session.frames.goToDoubtful(null, -1), shift: true },
     { keys: ['c'], shown: 'C', does: keys.corrected, run: () => session.frames.goToCorrected(1), shift: false },
     { keys: ['c'], shown: 'Shift C', does: keys.correctedBefore, run: () => session.frames.goToCorrected(-1), shift: true },
+    { keys: ['>'], shown: '>', does: keys.copyOn, run: () => copyMask(session, 1) },
+    { keys: ['<'], shown: '<', does: keys.copyBack, run: () => copyMask(session, -1) },
     { keys: NUMBERS, shown: '1 … 9', does: keys.select, run: (name) => selectMask(store, session, Number(name)) },
     { keys: ['l'], shown: 'Shift L', does: keys.lock, run: () => ofSelected(store, (id, tracked) => session.objects.setLocked(id, !isLocked(tracked, id))), shift: true },
     { keys: ['delete', 'backspace'], shown: 'Delete', does: keys.remove, run: () => ofSelected(store, (id) => session.objects.remove(id)) },
@@ -90,4 +92,10 @@ function selectMask(store: Store, session: Session, place: number): void {
 function ofSelected(store: Store, act: (id: number, tracked: Tracked) => void): void {
   const { look, tracked } = store.get();
   if (look.kind === 'objects' && tracked !== null && look.selected !== null && look.selected !== 0) act(look.selected, tracked);
+}
+
+/** Copies the selected mask to a neighbouring frame and goes there. */
+function copyMask(session: Session, by: 1 | -1): void {
+  const to = session.objects.copyMask(by);
+  if (to !== null) void session.frames.goTo(to);
 }

@@ -1,5 +1,6 @@
 //! The tools: view, brush, eraser, box; the size of the brush; undo and redo.
 
+import type { ClipPropagation } from 'veronese';
 import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store, ToolName } from '../state/state.js';
@@ -12,12 +13,14 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   const radios = names.map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
   const size = find(form, '[name=radius]', HTMLInputElement);
   const helps = names.map((name) => ({ name, help: find(document, `#tool-help [data-help=${name}]`, HTMLElement) }));
+  const spread = find(form, '[name=spread]', HTMLSelectElement);
   const undo = find(form, '#undo', HTMLButtonElement);
   const redo = find(form, '#redo', HTMLButtonElement);
 
   form.addEventListener('submit', (event) => event.preventDefault());
   for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
+  spread.addEventListener('change', () => store.set({ tool: { ...store.get().tool, spread: spread.value as ClipPropagation } }));
   undo.addEventListener('click', () => session.edited().undo());
   redo.addEventListener('click', () => session.edited().redo());
 
@@ -33,6 +36,8 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
       if (radio.value === 'box') radio.parentElement!.hidden = clip === null;
     }
     size.value = String(tool.radius);
+    spread.value = tool.spread;
+    spread.parentElement!.hidden = clip === null;
     for (const { name, help } of helps) {
       help.textContent = (clip === null ? strings.toolHelp : strings.clipToolHelp)[name];
       help.classList.toggle('away', tool.name !== name);

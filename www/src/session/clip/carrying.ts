@@ -113,7 +113,7 @@ export class Carrying {
     const next = waiting.shift();
     if (next === undefined) return;
     set({ run: CARRYING });
-    const said = 'pointed' in next ? { painted: await this.#spans.outlined(before, next.pointed, signal) } : next;
+    const said = 'pointed' in next ? { painted: await this.#spans.outlined(before, next.pointed, signal), spread: next.pointed.spread } : next;
     if (signal.aborted) return;
     if ('painted' in said && said.painted.size === 0) {
       return this.#shown.version(waiting.reduce(withSaid, before), { phase: 'done', cause: 'corrected', changed: 0 });
@@ -141,11 +141,13 @@ export class Carrying {
       for (const span of spans) after = await this.#spans.corrected(after, span, [], signal, changes);
       return after;
     }
-    const painted = new Map(before.painted);
+    const [painted, spread] = [new Map(before.painted), new Map(before.spread)];
     for (const [index, labels] of said.painted) {
+      if (said.spread === 'both') spread.delete(index);
+      else spread.set(index, said.spread);
       painted.set(index, paintedOver(before.painted.get(index), labels, before.frames[index]!.runs));
     }
-    let after: Version = { ...before, painted };
+    let after: Version = { ...before, painted, spread };
     for (const span of before.spans) {
       const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
       if (own.length > 0) after = await this.#spans.corrected(after, span, own, signal, changes);

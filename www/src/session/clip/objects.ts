@@ -1,7 +1,7 @@
 //! What a person does to the objects of a clip: strokes, boxes and clicks, merging, splitting and deleting, locks, names and colours. Each
 //! becomes something that is said of frames or objects, in pixels of the masks, which is then carried through the clip.
 
-import type { ClipOptions } from 'veronese';
+import type { ClipOptions, ClipPropagation } from 'veronese';
 import { strings } from '../../common/strings.js';
 import { smallerPieces } from '../../correction/pieces.js';
 import { unpacked } from '../../correction/runs.js';
@@ -50,7 +50,7 @@ export class Objects {
         if (tool === 'eraser' ? there === own : there === own || !isLocked(now, there)) said[p] = tool === 'eraser' ? 0 : own;
       });
       if (tool === 'brush' && said.every((label) => label === UNLABELLED)) return void this.#refuse(strings.notices.locked);
-      this.paint(new Map([[index, said]]));
+      this.paint(new Map([[index, said]]), this.#store.get().tool.spread);
     };
   }
 
@@ -69,13 +69,30 @@ export class Objects {
       const [width, height] = [Math.max(...columns) + 1 - left, Math.max(...rows) + 1 - top];
       const isClick = Math.max(width, height) <= Math.max(STILL * masks.width, 1);
       this.#store.look({ selected: id });
-      void this.#carrying.correct({ pointed: { frame: index, id, at: isClick ? [place(x, masks.width), place(y, masks.height)] : [left, top, width, height] } });
+      const { spread } = this.#store.get().tool;
+      void this.#carrying.correct({ pointed: { frame: index, id, spread, at: isClick ? [place(x, masks.width), place(y, masks.height)] : [left, top, width, height] } });
     };
   }
 
   /** Takes what is painted in frames, by index: numbers of objects, and 255 where nothing is said. */
-  paint(painted: ReadonlyMap<number, Uint8Array>): void {
-    void this.#carrying.correct({ painted });
+  paint(painted: ReadonlyMap<number, Uint8Array>, spread: ClipPropagation = 'both'): void {
+    void this.#carrying.correct({ painted, spread });
+  }
+
+  /** Gives the selected object the mask of the frame on screen in the next frame, or the one before. Returns the index of that frame. */
+  copyMask(by: 1 | -1): number | null {
+    const { tracked, look } = this.#store.get();
+    const at = this.#frameToCorrect();
+    const own = look.selected;
+    if (at === null || tracked === null) return null;
+    if (own === null || own === 0 || own === UNLABELLED) return this.#refuse(strings.notices.chooseMask);
+    const to = at.index + by;
+    const [here, there] = [tracked.frames[at.index]?.runs, tracked.frames[to]?.runs];
+    if (here === undefined || there === undefined || spanAt(tracked.spans, to) === null) return this.#refuse(strings.notices.noFrameThere);
+    const [mask, before] = [unpacked(here), unpacked(there)];
+    const said = before.map((label, p) => (mask[p] === own ? (label === own || !isLocked(tracked, label) ? own : UNLABELLED) : label === own ? 0 : UNLABELLED));
+    this.paint(new Map([[to, said]]), this.#store.get().tool.spread);
+    return to;
   }
 
   /** Two objects become one, under the smaller of their numbers. */
@@ -100,7 +117,7 @@ export class Objects {
     if (number === null) return;
     const labels = new Uint8Array(masks.width * masks.height).fill(UNLABELLED);
     for (const p of pieces) labels[p] = number;
-    this.paint(new Map([[frame, labels]]));
+    this.paint(new Map([[frame, labels]]), this.#store.get().tool.spread);
   }
 
   /** Selects the number of a new object, to be painted. Returns whether there can be one. */

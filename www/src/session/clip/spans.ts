@@ -91,7 +91,11 @@ export class Spans {
     const { first } = span.range;
     const numbers = new Map(span.numbers);
     const frames = framesOf(tracked, version, span, pair);
-    const corrections = painted.map((index) => ({ frame: index - first, labels: toSpan(version.painted.get(index)!, numbers) }));
+    const corrections = painted.map((index) => ({
+      frame: index - first,
+      propagate: version.spread.get(index) ?? 'both',
+      labels: toSpan(version.painted.get(index)!, numbers),
+    }));
     let { largest } = version;
     const named = (frame: ClipFrame): TrackedFrame => {
       const masks = fromSpan(masksOf(frame, frames.size), numbers, largest);
