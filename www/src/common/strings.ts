@@ -5,12 +5,12 @@ import type { MotionParts } from '../result/describe.js';
 import type { Kind } from '../result/masks.js';
 
 const decimals = (digits: number): Intl.NumberFormat => new Intl.NumberFormat('en', { maximumFractionDigits: digits });
-const tenths = decimals(1);
+export const tenths = decimals(1);
 const hundredths = decimals(2);
-const whole = decimals(0);
+export const whole = decimals(0);
 
 /** Keeps a number and its unit on one line. */
-const NBSP = '\u00a0';
+export const NBSP = '\u00a0';
 
 /** Two decimals below one, one decimal above. */
 function amount(value: number): string {
@@ -60,7 +60,7 @@ function displacement(parts: MotionParts): string {
   return `${length < 10 ? amount(length) : whole.format(length)}${NBSP}px ${DIRECTIONS[(eighth + 8) % 8]}`;
 }
 
-const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
+export const frames = (count: number): string => (count === 1 ? 'one frame' : `${whole.format(count)} frames`);
 
 const images = (count: number): string => (count === 1 ? 'one image' : `${whole.format(count)} images`);
 
@@ -69,14 +69,8 @@ interface Size {
   readonly height: number;
 }
 
-const date = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
 
 /** "1.4 MB": of 1000 bytes each, as file managers count. */
-function fileSize(bytes: number): string {
-  if (bytes < 1000) return `${bytes}${NBSP}B`;
-  return bytes < 1e6 ? `${tenths.format(bytes / 1e3)}${NBSP}kB` : `${tenths.format(bytes / 1e6)}${NBSP}MB`;
-}
-
 /** ", about 20 s left"; nothing if it is not known. */
 function remaining(seconds: number | null): string {
   if (seconds === null) return '';
@@ -86,9 +80,8 @@ function remaining(seconds: number | null): string {
 const size = (width: number, height: number): string => `${width}${NBSP}×${NBSP}${height}`;
 const percent = (share: number): string => `${tenths.format(share * 100)}${NBSP}%`;
 const duration = (ms: number): string => (ms < 1000 ? `${whole.format(ms)}${NBSP}ms` : `${tenths.format(ms / 1000)}${NBSP}s`);
-const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest description' : `description ${whole.format(longer)} longer than the shortest`);
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
-const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
+export const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
 
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' },
@@ -130,6 +123,7 @@ export const strings = {
     redone: (changed: number): string => `Redone in ${frames(changed)}.`,
     locked: (): string => 'Locked.',
     unlocked: (): string => 'Unlocked.',
+    accepted: (): string => 'Accepted.',
     found: (count: number, of: number): string => `${objects(count)} in ${frames(of)}.`,
     same: (_count: number, of: number): string => `No objects: all ${frames(of)} are the same, pixel by pixel.`,
     repeated: (count: number, of: number): string => `${objects(count)} in ${frames(of)}, corrected as before.`,
@@ -138,35 +132,12 @@ export const strings = {
     failed: (done: number, of: number): string => `The clip could not be segmented to its end. ${whole.format(done)} of ${frames(of)} ${done === 1 ? 'has' : 'have'} masks.`,
   },
   projects: {
-    nothing: 'What you do is kept in this browser. The frames stay where they are.',
-    kept: 'Your work is kept in this browser. Open the same frames again to continue.',
-    notKept: 'Your work is not kept in this browser. Save the project before you leave.',
-    nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
-    correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
-    saved: (name: string): string => `Saved as ${name}.`,
     waiting: (name: string): string => `The project of “${name}” is open. Now open its frames, which are not part of the file.`,
     full: 'There is no room left to keep your work in this browser. It is still open here: save the project, or forget old ones.',
     refused: 'This browser does not allow the page to keep your work. It is still open here: save the project before you leave.',
     elsewhere: (name: string): string =>
       `“${name}” is open in another tab, whose work is kept. What you do here is not: save the project before you leave, or close the other tab and reload this one.`,
-    damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
-    newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,
     otherFrames: (name: string, saved: number, now: number): string => `The project of “${name}” has ${frames(saved)}, but this browser finds ${frames(now)}.`,
-    summary: (count: number): string => (count === 1 ? 'One project in this browser' : `${count} projects in this browser`),
-    facts: (count: number, bytes: number, saved: Date): string => `${frames(count)}, ${fileSize(bytes)}, ${date.format(saved).replaceAll(' ', NBSP)}`,
-    damagedFile: 'Damaged project',
-    forget: 'Forget',
-    forgetOf: (name: string): string => `Forget the project of ${name}`,
-    forgotten: (name: string): string => `The project of “${name}” is forgotten.`,
-  },
-  exporting: (done: number, of: number): string => `${whole.format(done)} of ${frames(of)}`,
-  exported: (count: number, of: number): string => `Saved: ${objects(count).toLowerCase()} in ${frames(of)}.`,
-  preview: {
-    files: (count: number): string => `, ${whole.format(count)}${NBSP}files`,
-    noMasks: 'There are no masks of this frame.',
-    ofFrame: (name: string, bytes: number): string => `${name}: ${fileSize(bytes)}`,
-    ofAll: (name: string, index: number, bytes: number): string => `${name} with frame ${index} alone: ${fileSize(bytes)}`,
-    picture: (index: number): string => `Masks of frame ${index} as they are saved`,
   },
   sameFrames: 'Both frames are the same, pixel by pixel: nothing moves.',
   frameHas: (count: number): string => `${objects(count)} in this frame.`,
@@ -218,14 +189,6 @@ export const strings = {
     about: (button: string, sentence: string): string => `${button}: ${sentence}`,
   },
 
-  /** `longer`: the length of the description above the shortest; `null` if there is none. */
-  forceNumber: (count: number, longer: number | null): string =>
-    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${longer === null ? '' : `: ${descriptionOf(longer)}`}`,
-  descriptionOf,
-  /** Why the number found has not the shortest description. */
-  otherThanShortest: (found: number, shortest: number): string =>
-    `Automatic took ${found}, though ${shortest} has the shortest description: these lengths are a check made afterwards, and do not decide.`,
-
   toolHelp: {
     look: 'Press on a mask to select it.',
     brush: 'Paint what belongs to the selected mask. The pixels around it follow.',
@@ -233,17 +196,13 @@ export const strings = {
     box: '',
   },
 
+  accepted: (count: number, of: number): string => `${whole.format(count)} of ${whole.format(of)} accepted`,
+
   clipToolHelp: {
     look: 'Press on an object to select it.',
     brush: 'Paint what belongs to the selected object, in any frame. The other frames follow.',
     eraser: 'Paint what does not belong to the selected object. The other frames follow.',
     box: 'Drag a box around something, or press on it: it becomes a new object. The other frames follow.',
-  },
-
-  timings: {
-    decode: (name: string): string => `Decoding ${name}`,
-    total: 'All stages',
-    waited: 'Including transfers',
   },
 
   status: {
@@ -320,45 +279,5 @@ export const strings = {
     notLoaded: 'A part of the page could not be loaded. Check the connection and try again.',
     notExported: (what: string, why: string): string => `${what} could not be exported${why === '' ? '' : `: ${why}`}.`,
     notWritten: (what: string): string => `${what} could not be exported.`,
-  },
-
-  keys: {
-    peek: 'Show the other frame while held',
-    blink: 'Alternate between the frames',
-    split: 'Split view',
-    kind: 'Switch between objects and motions',
-    outlines: 'Outlines',
-    arrows: 'Flow arrows',
-    residual: 'Residual: what the motions do not explain',
-    zoomIn: 'Zoom in',
-    zoomOut: 'Zoom out',
-    whole: 'Fit the picture',
-    actual: 'Zoom to 100 %',
-    pan: 'Pan the enlarged picture',
-    stepBack: 'Step back',
-    stepOn: 'Step forward',
-    play: 'Play the clip, or stop',
-    inPoint: 'In point: segment the clip from this frame on',
-    outPoint: 'Out point: segment the clip up to this frame',
-    doubtful: 'Next frame where an object is least certain',
-    doubtfulBefore: 'Previous frame where an object is least certain',
-    corrected: 'Next corrected frame',
-    correctedBefore: 'Previous corrected frame',
-    select: 'Select a mask by its place in the list',
-    copyOn: 'Copy the selected mask to the next frame',
-    copyBack: 'Copy the selected mask to the frame before',
-    lock: 'Lock the selected object, or unlock it',
-    remove: 'Delete the selected object',
-    look: 'View: select masks, pan',
-    brush: 'Brush: add to the selected mask',
-    eraser: 'Eraser: remove from the selected mask',
-    box: 'Box: make a new object of a clip',
-    stroke: 'With the picture focused: start or end a stroke or a box; arrow keys move the brush',
-    thinner: 'Smaller brush',
-    thicker: 'Larger brush',
-    undo: 'Undo',
-    redo: 'Redo',
-    cancel: 'Cancel',
-    keys: 'Show this list',
   },
 } as const;

@@ -14,11 +14,12 @@ type Entries<K, V> = readonly (readonly [K, V])[];
 /** A project with lists of entries in place of maps. */
 export interface Content extends Pick<Project, 'settings'> {
   readonly clip:
-    | (Omit<ProjectClip, 'painted' | 'spread' | 'became' | 'locks' | 'spans' | 'solved'> & {
+    | (Omit<ProjectClip, 'painted' | 'spread' | 'became' | 'locks' | 'accepted' | 'spans' | 'solved'> & {
         readonly painted: Entries<number, Runs>;
         readonly spread?: Entries<number, ClipPropagation>;
         readonly became: Entries<number, number>;
         readonly locks?: Entries<number, boolean>;
+        readonly accepted?: readonly number[];
         readonly spans: readonly (Omit<Span, 'numbers'> & { readonly numbers: Entries<number, number> })[];
         readonly solved: { readonly settings: SolvedPairs['settings']; readonly pairs: Entries<number, Blob> } | null;
       })
@@ -75,9 +76,10 @@ const isColour = listOf(isFrom(0, 255), 3);
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
 const isRange = objectOf({ first: isIndex, last: isIndex });
-/** Files of earlier versions have neither. */
+/** Files of earlier versions have none of these. */
 const isLocks: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isFrom(1, 254), isFlag))(value);
 const isSpread: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))(value);
+const isAccepted: Check<unknown> = (value): value is unknown => value === undefined || listOf(isIndex)(value);
 const isClip = objectOf({
   range: isRange,
   longestSide: isSide,
@@ -90,6 +92,7 @@ const isClip = objectOf({
   spread: isSpread,
   became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
   locks: isLocks,
+  accepted: isAccepted,
   spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))) })),
   at: isIndex,
   hidden: listOf(isFrom(1, 254)),

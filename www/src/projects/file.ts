@@ -1,11 +1,12 @@
 //! Projects as files: written, and read with every value checked. docs/formats.md describes the format.
 
 import { PageError } from '../common/errors.js';
-import { strings } from '../common/strings.js';
+import { panels } from '../common/strings-of-panels.js';
 import { NO_EDITS } from '../correction/edits.js';
 import type { Runs } from '../correction/runs.js';
 import type { Kept } from '../state/kept.js';
 import type { Subject } from '../state/pair.js';
+import { acceptedIn } from '../state/tracked.js';
 import { isContent, isRuns, upgraded } from './content.js';
 import type { Project } from './project.js';
 import * as check from './schema.js';
@@ -44,7 +45,8 @@ export function streamOf({ of, name, frames, settings, clip, pairs }: Project, n
     if (value instanceof Blob) return { bytes: place(blobs, value) } satisfies BytesPlace;
     return isRuns(value) ? ({ image: place(images, value) } satisfies ImagePlace) : value;
   };
-  const content = JSON.stringify({ settings, clip, pairs: [...pairs].map(([key, kept]) => [key, withoutSaved(kept)]) }, referring);
+  const part = clip && { ...clip, accepted: acceptedIn(clip) };
+  const content = JSON.stringify({ settings, clip: part, pairs: [...pairs].map(([key, kept]) => [key, withoutSaved(kept)]) }, referring);
   const lists = JSON.stringify({ images: [...images.keys()].map(({ width, height, ends }) => [width, height, ends.length]), bytes: [...blobs.keys()].map(({ size }) => size) });
   const header: Header = { format: FORMAT, version: VERSION, of, name, frames, saved: now.toISOString() };
   const lines = [header, content, lists].map((line) => `${typeof line === 'string' ? line : JSON.stringify(line)}\n`);
@@ -112,6 +114,7 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
         spread: new Map(clip.spread),
         became: new Map(clip.became),
         locks: new Map(clip.locks),
+        accepted: new Set(clip.accepted?.flatMap((index) => clip.frames[index] ?? [])),
         spans: clip.spans.map((span) => ({ ...span, numbers: new Map(span.numbers) })),
         solved: clip.solved && { ...clip.solved, pairs: new Map(clip.solved.pairs) },
       },
@@ -125,7 +128,7 @@ async function guarded<T>(name: string, read: () => Promise<T>): Promise<T> {
     return await read();
   } catch (error) {
     if (error instanceof PageError) throw error;
-    throw new PageError('damaged-project', strings.projects.damaged(name));
+    throw new PageError('damaged-project', panels.projects.damaged(name));
   }
 }
 
@@ -148,7 +151,7 @@ const isBytesPlace = check.objectOf<BytesPlace>({ bytes: check.isFrom(0) });
 function headerIn(line: string, name: string): Header {
   const header: unknown = JSON.parse(line);
   if (check.objectOf({ format: check.isOne(FORMAT), version: check.isFrom(VERSION + 1) })(header)) {
-    throw new PageError('newer-project', strings.projects.newer(name));
+    throw new PageError('newer-project', panels.projects.newer(name));
   }
   assert(isHeader(header));
   return header;

@@ -4,7 +4,7 @@ import type { ClipFrame, ClipOptions, ClipPropagation } from 'veronese';
 import { type Runs, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { becameAfter } from './spans.js';
-import type { Version } from './tracked.js';
+import type { TrackedFrame, Version } from './tracked.js';
 
 /** What points to a new object in a frame: x, y, width and height of a box, or x and y of a click, pixels of the masks. */
 export interface Pointed {
@@ -19,7 +19,10 @@ export type Said =
   | { readonly pointed: Pointed }
   | { readonly painted: ReadonlyMap<number, Uint8Array>; readonly spread: ClipPropagation }
   | { readonly edits: NonNullable<ClipOptions['edits']> }
-  | { readonly locks: ReadonlyMap<number, boolean> };
+  | Noted;
+
+/** What changes no masks: which objects are locked, which masks are accepted. */
+export type Noted = { readonly locks: ReadonlyMap<number, boolean> } | { readonly accepted: ReadonlySet<TrackedFrame> };
 
 /** What was painted before in a frame, with this over it. */
 export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
@@ -32,6 +35,7 @@ export function withSaid<V extends Version>(version: V, said: Said): V {
   // Nothing is seen of it yet; its number is taken.
   if ('pointed' in said) return { ...version, largest: Math.max(version.largest, said.pointed.id) };
   if ('locks' in said) return { ...version, locks: new Map([...version.locks, ...said.locks]) };
+  if ('accepted' in said) return { ...version, accepted: said.accepted };
   if ('edits' in said) return { ...version, became: becameAfter(version.became, said.edits) };
   return [...said.painted].reduce((before, [index, labels]) => withPainted(before, index, labels), version);
 }

@@ -24,7 +24,7 @@ type ChangeCause = 'corrected' | 'undone' | 'redone';
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | ChangeCause; readonly changed: number }
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | ChangeCause; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
@@ -69,6 +69,8 @@ export interface Version {
   readonly became: ReadonlyMap<number, number>;
   /** Whether a person wants an object locked or not, by its number. */
   readonly locks: ReadonlyMap<number, boolean>;
+  /** The masks that a person has accepted. Masks that change are others, and are not. */
+  readonly accepted: ReadonlySet<TrackedFrame>;
   /** The largest number that an object ever had. Numbers are not used again. */
   readonly largest: number;
 }
@@ -92,10 +94,11 @@ export interface Tracked extends Version {
   readonly saved: Saved;
 }
 
-type Saved = Pick<Tracked, 'frames' | 'names' | 'colours' | 'locks'>;
+type Saved = Pick<Tracked, 'frames' | 'names' | 'colours' | 'locks' | 'accepted'>;
 
 const NOTHING = {};
 const NO_LOCKS: Version['locks'] = new Map();
+const NONE_ACCEPTED: Version['accepted'] = new Set();
 
 export function untracked(clip: Clip): Tracked {
   const frames = Array.from({ length: clip.count }, () => null);
@@ -112,18 +115,19 @@ export function untracked(clip: Clip): Tracked {
     spread: new Map(),
     became: new Map(),
     locks: NO_LOCKS,
+    accepted: NONE_ACCEPTED,
     largest: 0,
     past: [],
     future: [],
     checked: new Map(),
     names: NOTHING,
     colours: NOTHING,
-    saved: { frames, names: NOTHING, colours: NOTHING, locks: NO_LOCKS },
+    saved: { frames, names: NOTHING, colours: NOTHING, locks: NO_LOCKS, accepted: NONE_ACCEPTED },
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, painted, spread, became, locks, largest }: Version): Version {
-  return { frames, spans, longestSide, found, painted, spread, became, locks, largest };
+export function versionOf({ frames, spans, longestSide, found, painted, spread, became, locks, accepted, largest }: Version): Version {
+  return { frames, spans, longestSide, found, painted, spread, became, locks, accepted, largest };
 }
 
 /** Whether corrections of other objects leave this one as it is: an object with a name, unless a person says otherwise. */
@@ -132,14 +136,15 @@ export function isLocked({ locks, names }: Pick<Tracked, 'locks' | 'names'>, id:
 }
 
 /** What is saved when the clip is kept or exported as it is. */
-export function savedOf({ frames, names, colours, locks }: Saved): Saved {
-  return { frames, names, colours, locks };
+export function savedOf({ frames, names, colours, locks, accepted }: Saved): Saved {
+  return { frames, names, colours, locks, accepted };
 }
 
 /** Whether leaving would lose what a person did. */
-export function isUnsavedClip({ frames, names, colours, locks, saved, past, run }: Tracked): boolean {
+export function isUnsavedClip({ frames, names, colours, locks, accepted, saved, past, run }: Tracked): boolean {
   const corrected = past.length > 0 || isCorrecting(run);
-  return names !== saved.names || colours !== saved.colours || locks !== saved.locks || (frames !== saved.frames && corrected);
+  const said = names !== saved.names || colours !== saved.colours || locks !== saved.locks || accepted !== saved.accepted;
+  return said || (frames !== saved.frames && corrected);
 }
 
 /** Whether a correction is being carried through the clip. */
@@ -168,6 +173,19 @@ export function livesOf({ frames }: Pick<Tracked, 'frames'>): Life[] {
     }
   });
   return [...lives.values()].sort((one, other) => one.id - other.id);
+}
+
+/** The frames whose masks a person has accepted, by index. */
+export function acceptedIn({ frames, accepted }: Pick<Version, 'frames' | 'accepted'>): number[] {
+  return [...frames.keys()].filter((index) => frames[index] != null && accepted.has(frames[index]));
+}
+
+/** The frame that most needs a look: of those with masks that are not accepted, the one with the least certain object; `null` if none is left. */
+export function toReview({ frames, accepted }: Pick<Version, 'frames' | 'accepted'>): number | null {
+  const left = [...frames.keys()].filter((index) => frames[index] != null && !accepted.has(frames[index]));
+  const certainty = (index: number): number => Math.min(1, ...(frames[index]?.objects ?? []).map(({ confidence }) => confidence));
+  const [first] = left.toSorted((one, other) => certainty(one) - certainty(other));
+  return first ?? null;
 }
 
 /** From the first frame that has masks to the last; `null` if there are none. */

@@ -2,35 +2,31 @@
 //! input triggers them.
 
 import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { Peek } from './blink.js';
-import { element, find, takesArrows, takesText } from './markup.js';
+import { find, takesArrows, takesText } from './markup.js';
 import type { Key } from './shortcuts.js';
 
-export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, keys: readonly Key[]): void {
+export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, session: Session, keys: readonly Key[]): void {
   const single = find(dialog, '#single-keys', HTMLInputElement);
   const list = find(dialog, 'dl', HTMLDListElement);
   const peek = new Peek(store);
-  const rows = [{ shown: 'B', does: strings.keys.peek }, ...keys, { shown: '?', does: strings.keys.keys }];
-  for (const { shown, does } of rows) {
-    if (does === '') {
-      list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown)); // another key for the same
-      continue;
+  const show = async (): Promise<void> => {
+    if (list.childElementCount === 0) {
+      try {
+        const { listKeys } = await import('./key-list.js');
+        if (list.childElementCount === 0) listKeys(list, keys);
+      } catch {
+        return session.say(strings.errors.notLoaded, 'not-loaded');
+      }
     }
-    const row = element('div');
-    const term = element('dt');
-    term.append(element('kbd', shown));
-    row.append(term, element('dd', does));
-    list.append(row);
-  }
-
-  const show = (): void => {
-    dialog.showModal();
+    if (!dialog.open) dialog.showModal();
     // From the top, which the first control may be far from.
     dialog.focus();
     dialog.scrollTop = 0;
   };
-  open.addEventListener('click', show);
+  open.addEventListener('click', () => void show());
   find(dialog, '[data-action=close]', HTMLButtonElement).addEventListener('click', () => dialog.close());
   dialog.addEventListener('click', (event) => {
     if (event.target === dialog) dialog.close(); // a click on the backdrop
@@ -41,7 +37,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
     const name = event.key.toLowerCase();
     const command = event.ctrlKey || event.metaKey;
     if (!command && !single.checked && name !== 'escape') return;
-    if (!command && name === '?') return show();
+    if (!command && name === '?') return void show();
     if (!command && name === 'b') return peek.press();
     const key = keys.find((one) => one.keys.includes(name) && (one.command ?? false) === command && (one.shift ?? event.shiftKey) === event.shiftKey);
     if (key === undefined || (key.arrows && (store.get().viewport.zoom <= 1 || takesArrows(event.target)))) return;

@@ -1,6 +1,6 @@
 //! The projects: whether the work is kept, saving it as a file, and the list of those that this browser keeps. Loaded with the panel.
 
-import { strings } from '../common/strings.js';
+import { panels } from '../common/strings-of-panels.js';
 import { codeOf, sentenceOf } from '../common/errors.js';
 import { save } from '../export/save.js';
 import { type Listed, list, remove } from '../projects/shelf.js';
@@ -16,19 +16,19 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   const summary = find(all, 'summary', HTMLElement);
   const rows = find(all, '#projects', HTMLUListElement);
 
-  const show = ({ keeping }: State): void => void (status.textContent = keeping === 'refused' ? strings.projects.notKept : strings.projects[keeping]);
+  const show = ({ keeping }: State): void => void (status.textContent = keeping === 'refused' ? panels.projects.notKept : panels.projects[keeping]);
 
   const refresh = async (): Promise<void> => {
     const listed = await list().catch((): Listed[] => []);
     all.hidden = listed.length === 0;
-    summary.textContent = strings.projects.summary(listed.length);
+    summary.textContent = panels.projects.summary(listed.length);
     rows.replaceChildren(...listed.map((one) => rowOf(one, () => void forget(one))));
   };
 
   const forget = async ({ file, header }: Listed): Promise<void> => {
     try {
       await remove(file);
-      session.say(strings.projects.forgotten(header?.name ?? file));
+      session.say(panels.projects.forgotten(header?.name ?? file));
     } catch (error) {
       session.say(sentenceOf(error), codeOf(error));
     }
@@ -39,12 +39,12 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   const button = find(root, '#save-project', HTMLButtonElement);
   button.addEventListener('click', async () => {
     const { tracked } = store.get();
-    if (tracked !== null && isCorrecting(tracked.run)) return session.say(strings.projects.correcting);
+    if (tracked !== null && isCorrecting(tracked.run)) return session.say(panels.projects.correcting);
     try {
       const file = await session.projects.file();
-      if (file === null) return session.say(strings.projects.nothingYet);
+      if (file === null) return session.say(panels.projects.nothingYet);
       save(file.content, file.content.type, file.name);
-      session.say(strings.projects.saved(file.name));
+      session.say(panels.projects.saved(file.name));
     } catch (error) {
       session.say(sentenceOf(error), codeOf(error));
     }
@@ -65,11 +65,11 @@ function rowOf({ file, header, bytes }: Listed, forget: () => void): HTMLElement
   const row = element('li');
   const text = element('div');
   const name = header?.name ?? file;
-  text.append(element('strong', header === null ? strings.projects.damagedFile : name));
-  text.append(element('span', header === null ? file : strings.projects.facts(header.frames, bytes, new Date(header.saved)), 'faint'));
-  const button = element('button', strings.projects.forget, 'button small quiet');
+  text.append(element('strong', header === null ? panels.projects.damagedFile : name));
+  text.append(element('span', header === null ? file : panels.projects.facts(header.frames, bytes, new Date(header.saved)), 'faint'));
+  const button = element('button', panels.projects.forget, 'button small quiet');
   button.type = 'button';
-  button.setAttribute('aria-label', strings.projects.forgetOf(name));
+  button.setAttribute('aria-label', panels.projects.forgetOf(name));
   button.addEventListener('click', forget);
   row.append(text, button);
   return row;

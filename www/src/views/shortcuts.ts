@@ -1,14 +1,15 @@
 //! The keyboard shortcuts as data. `keys.ts` handles and lists them.
 
-import { strings } from '../common/strings.js';
 import { ZOOM_STEP } from '../drawing/viewport.js';
 import { masksOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { type Tracked, isLocked, livesOf } from '../state/tracked.js';
 import { toggleBlinking } from './blink.js';
+import type { KeyName } from './key-list.js';
 import { setEdge } from './range.js';
 import { stepOne } from './timeline.js';
+import { accept } from './review.js';
 import { changeRadius, chooseTool } from './tools.js';
 import type { Zoom } from './zoom.js';
 
@@ -17,7 +18,8 @@ export interface Key {
   readonly keys: readonly string[];
   /** As shown in the list. */
   readonly shown: string;
-  readonly does: string;
+  /** What it does, or nothing if that is what the key before it does. */
+  readonly does: KeyName | '';
   /** Takes the key that was pressed, in lower case. */
   readonly run: (name: string) => void;
   /** With Ctrl or the command key. */
@@ -33,49 +35,50 @@ const NUMBERS = ['1', '2', '3', '4', '5', '6', '7', '8', '9'];
 const PAN = 0.1;
 
 export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Key[] {
-  const { keys } = strings;
   const toggle = (name: 'outlines' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
   const pan = (right: number, down: number) => () => zoom.pan(right * PAN, down * PAN);
   return [
-    { keys: ['n'], shown: 'N', does: keys.blink, run: () => toggleBlinking(store) },
-    { keys: ['s'], shown: 'S', does: keys.split, run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
-    { keys: ['g'], shown: 'G', does: keys.kind, run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
-    { keys: ['l'], shown: 'L', does: keys.outlines, run: toggle('outlines'), shift: false },
-    { keys: ['a'], shown: 'A', does: keys.arrows, run: toggle('arrows') },
-    { keys: ['r'], shown: 'R', does: keys.residual, run: toggle('residual') },
-    { keys: ['+', '='], shown: '+', does: keys.zoomIn, run: () => zoom.by(ZOOM_STEP) },
-    { keys: ['-', '_'], shown: '−', does: keys.zoomOut, run: () => zoom.by(1 / ZOOM_STEP) },
-    { keys: ['0'], shown: '0', does: keys.whole, run: () => zoom.whole() },
-    { keys: ['z'], shown: 'Z', does: keys.actual, run: () => zoom.actual() },
-    { keys: ['arrowleft'], shown: '←', does: keys.pan, run: pan(1, 0), arrows: true },
+    { keys: ['n'], shown: 'N', does: 'blink', run: () => toggleBlinking(store) },
+    { keys: ['s'], shown: 'S', does: 'split', run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
+    { keys: ['g'], shown: 'G', does: 'kind', run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
+    { keys: ['l'], shown: 'L', does: 'outlines', run: toggle('outlines'), shift: false },
+    { keys: ['a'], shown: 'A', does: 'arrows', run: toggle('arrows') },
+    { keys: ['r'], shown: 'R', does: 'residual', run: toggle('residual') },
+    { keys: ['+', '='], shown: '+', does: 'zoomIn', run: () => zoom.by(ZOOM_STEP) },
+    { keys: ['-', '_'], shown: '−', does: 'zoomOut', run: () => zoom.by(1 / ZOOM_STEP) },
+    { keys: ['0'], shown: '0', does: 'whole', run: () => zoom.whole() },
+    { keys: ['z'], shown: 'Z', does: 'actual', run: () => zoom.actual() },
+    { keys: ['arrowleft'], shown: '←', does: 'pan', run: pan(1, 0), arrows: true },
     { keys: ['arrowright'], shown: '→', does: '', run: pan(-1, 0), arrows: true },
     { keys: ['arrowup'], shown: '↑', does: '', run: pan(0, 1), arrows: true },
     { keys: ['arrowdown'], shown: '↓', does: '', run: pan(0, -1), arrows: true },
-    { keys: [','], shown: ',', does: keys.stepBack, run: () => stepOne(store, session, 'both', -1) },
-    { keys: ['.'], shown: '.', does: keys.stepOn, run: () => stepOne(store, session, 'both', 1) },
-    { keys: ['k'], shown: 'K', does: keys.play, run: () => void session.play.toggle() },
-    { keys: ['i'], shown: 'I', does: keys.inPoint, run: () => setEdge(store, session, 'first') },
-    { keys: ['o'], shown: 'O', does: keys.outPoint, run: () => setEdge(store, session, 'last') },
-    { keys: ['d'], shown: 'D', does: keys.doubtful, run: () => session.frames.goToDoubtful(), shift: false },
-    { keys: ['d'], shown: 'Shift D', does: keys.doubtfulBefore, run: () => session.frames.goToDoubtful(null, -1), shift: true },
-    { keys: ['c'], shown: 'C', does: keys.corrected, run: () => session.frames.goToCorrected(1), shift: false },
-    { keys: ['c'], shown: 'Shift C', does: keys.correctedBefore, run: () => session.frames.goToCorrected(-1), shift: true },
-    { keys: ['>'], shown: '>', does: keys.copyOn, run: () => copyMask(session, 1) },
-    { keys: ['<'], shown: '<', does: keys.copyBack, run: () => copyMask(session, -1) },
-    { keys: NUMBERS, shown: '1 … 9', does: keys.select, run: (name) => selectMask(store, session, Number(name)) },
-    { keys: ['l'], shown: 'Shift L', does: keys.lock, run: () => ofSelected(store, (id, tracked) => session.objects.setLocked(id, !isLocked(tracked, id))), shift: true },
-    { keys: ['delete', 'backspace'], shown: 'Delete', does: keys.remove, run: () => ofSelected(store, (id) => session.objects.remove(id)) },
-    { keys: ['v'], shown: 'V', does: keys.look, run: () => chooseTool(store, 'look') },
-    { keys: ['p'], shown: 'P', does: keys.brush, run: () => chooseTool(store, 'brush') },
-    { keys: ['e'], shown: 'E', does: keys.eraser, run: () => chooseTool(store, 'eraser') },
-    { keys: ['x'], shown: 'X', does: keys.box, run: () => chooseTool(store, 'box') },
-    { keys: [], shown: 'Space', does: keys.stroke, run: () => undefined },
-    { keys: ['['], shown: '[', does: keys.thinner, run: () => changeRadius(store, 0.75) },
-    { keys: [']'], shown: ']', does: keys.thicker, run: () => changeRadius(store, 4 / 3) },
-    { keys: ['z'], shown: 'Ctrl Z', does: keys.undo, run: () => session.edited().undo(), command: true, shift: false },
-    { keys: ['z'], shown: 'Ctrl Shift Z', does: keys.redo, run: () => session.edited().redo(), command: true, shift: true },
+    { keys: [','], shown: ',', does: 'stepBack', run: () => stepOne(store, session, 'both', -1) },
+    { keys: ['.'], shown: '.', does: 'stepOn', run: () => stepOne(store, session, 'both', 1) },
+    { keys: ['k'], shown: 'K', does: 'play', run: () => void session.play.toggle() },
+    { keys: ['i'], shown: 'I', does: 'inPoint', run: () => setEdge(store, session, 'first') },
+    { keys: ['o'], shown: 'O', does: 'outPoint', run: () => setEdge(store, session, 'last') },
+    { keys: ['d'], shown: 'D', does: 'doubtful', run: () => session.frames.goToDoubtful(), shift: false },
+    { keys: ['d'], shown: 'Shift D', does: 'doubtfulBefore', run: () => session.frames.goToDoubtful(null, -1), shift: true },
+    { keys: ['c'], shown: 'C', does: 'corrected', run: () => session.frames.goToCorrected(1), shift: false },
+    { keys: ['c'], shown: 'Shift C', does: 'correctedBefore', run: () => session.frames.goToCorrected(-1), shift: true },
+    { keys: ['>'], shown: '>', does: 'copyOn', run: () => copyMask(session, 1) },
+    { keys: ['<'], shown: '<', does: 'copyBack', run: () => copyMask(session, -1) },
+    { keys: ['y'], shown: 'Y', does: 'accept', run: () => accept(session, 'shown'), shift: false },
+    { keys: ['y'], shown: 'Shift Y', does: 'acceptAll', run: () => accept(session, 'all'), shift: true },
+    { keys: NUMBERS, shown: '1 … 9', does: 'select', run: (name) => selectMask(store, session, Number(name)) },
+    { keys: ['l'], shown: 'Shift L', does: 'lock', run: () => ofSelected(store, (id, tracked) => session.objects.setLocked(id, !isLocked(tracked, id))), shift: true },
+    { keys: ['delete', 'backspace'], shown: 'Delete', does: 'remove', run: () => ofSelected(store, (id) => session.objects.remove(id)) },
+    { keys: ['v'], shown: 'V', does: 'look', run: () => chooseTool(store, 'look') },
+    { keys: ['p'], shown: 'P', does: 'brush', run: () => chooseTool(store, 'brush') },
+    { keys: ['e'], shown: 'E', does: 'eraser', run: () => chooseTool(store, 'eraser') },
+    { keys: ['x'], shown: 'X', does: 'box', run: () => chooseTool(store, 'box') },
+    { keys: [], shown: 'Space', does: 'stroke', run: () => undefined },
+    { keys: ['['], shown: '[', does: 'thinner', run: () => changeRadius(store, 0.75) },
+    { keys: [']'], shown: ']', does: 'thicker', run: () => changeRadius(store, 4 / 3) },
+    { keys: ['z'], shown: 'Ctrl Z', does: 'undo', run: () => session.edited().undo(), command: true, shift: false },
+    { keys: ['z'], shown: 'Ctrl Shift Z', does: 'redo', run: () => session.edited().redo(), command: true, shift: true },
     { keys: ['y'], shown: 'Ctrl Y', does: '', run: () => session.edited().redo(), command: true },
-    { keys: ['escape'], shown: 'Esc', does: keys.cancel, run: () => session.cancel() },
+    { keys: ['escape'], shown: 'Esc', does: 'cancel', run: () => session.cancel() },
   ];
 }
 

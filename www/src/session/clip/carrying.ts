@@ -1,7 +1,7 @@
 //! Carries what a person says of one frame through the clip, one correction after another, because each starts from the masks of the one
 //! before; and goes back and forth between the versions that this makes. It owns the corrections that are waiting.
 
-import { type Said, paintedOver, withSaid } from '../../state/said.js';
+import { type Noted, type Said, paintedOver, withSaid } from '../../state/said.js';
 import { spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type TrackedFrame, type Version, versionOf } from '../../state/tracked.js';
@@ -63,13 +63,13 @@ export class Carrying {
     if (this.#corrections === corrections) this.#corrections = null;
   }
 
-  /** Locks objects or unlocks them: a step of undo and redo that changes no masks. */
-  lock(locks: ReadonlyMap<number, boolean>, cause: 'locked' | 'unlocked'): void {
+  /** Notes what changes no masks: a step of undo and redo. */
+  note(said: Noted, cause: 'locked' | 'unlocked' | 'accepted'): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
-    if (this.#corrections !== null) return void this.correct({ locks });
+    if (this.#corrections !== null) return void this.correct(said);
     this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
-    this.#shown.version(withSaid(tracked, { locks }), tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
+    this.#shown.version(withSaid(tracked, said), tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
   }
 
   undo(): void {
@@ -132,7 +132,7 @@ export class Carrying {
 
   /** The masks of all frames after what is said. */
   async #carried(before: Version, said: Exclude<Said, { readonly pointed: unknown }>, corrections: Corrections, signal: AbortSignal): Promise<Version> {
-    if ('locks' in said) return corrections.now;
+    if ('locks' in said || 'accepted' in said) return corrections.now;
     const changes = this.#shows(corrections);
     if ('edits' in said) {
       let after = corrections.now;

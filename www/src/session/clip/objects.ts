@@ -11,7 +11,7 @@ import { UNLABELLED, keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { isLocked } from '../../state/tracked.js';
+import { isLocked, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
 /** A box with both sides below this share of the frame's width is a click. */
@@ -137,7 +137,22 @@ export class Objects {
 
   /** Locks an object, or unlocks it: whether corrections of others may change it. */
   setLocked(id: number, locked: boolean): void {
-    this.#carrying.lock(new Map([[id, locked]]), locked ? 'locked' : 'unlocked');
+    this.#carrying.note({ locks: new Map([[id, locked]]) }, locked ? 'locked' : 'unlocked');
+  }
+
+  /**
+   * Accepts the masks of the frame on screen, or those of all frames. Returns the frame that most needs a look then; `null` if none is left or
+   * nothing could be accepted.
+   */
+  accept(which: 'shown' | 'all'): number | null {
+    const { tracked, timeline } = this.#store.get();
+    if (!this.#takesCorrections() || tracked === null) return null;
+    const { frames, accepted } = tracked;
+    const masks = (which === 'all' ? frames : [frames[timeline?.first ?? -1] ?? null]).filter((frame) => frame !== null);
+    if (masks.length === 0) return this.#refuse(strings.notTracked);
+    const now = new Set([...frames.filter((frame) => frame !== null && accepted.has(frame)), ...masks].filter((frame) => frame !== null));
+    if (masks.some((frame) => !accepted.has(frame))) this.#carrying.note({ accepted: now }, 'accepted');
+    return toReview({ frames, accepted: now });
   }
 
   /** Sets the name or colour of an object. An empty name restores the default. */

@@ -1,0 +1,54 @@
+//! The words of what is loaded when it is opened: exports and *Inspect*.
+
+import { NBSP, frames, objects, tenths, whole } from './strings.js';
+
+const date = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+
+function fileSize(bytes: number): string {
+  if (bytes < 1000) return `${bytes}${NBSP}B`;
+  return bytes < 1e6 ? `${tenths.format(bytes / 1e3)}${NBSP}kB` : `${tenths.format(bytes / 1e6)}${NBSP}MB`;
+}
+
+const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest description' : `description ${whole.format(longer)} longer than the shortest`);
+
+export const panels = {
+  projects: {
+    nothing: 'What you do is kept in this browser. The frames stay where they are.',
+    kept: 'Your work is kept in this browser. Open the same frames again to continue.',
+    notKept: 'Your work is not kept in this browser. Save the project before you leave.',
+    nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
+    correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
+    saved: (name: string): string => `Saved as ${name}.`,
+    damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
+    newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,
+    summary: (count: number): string => (count === 1 ? 'One project in this browser' : `${count} projects in this browser`),
+    facts: (count: number, bytes: number, saved: Date): string => `${frames(count)}, ${fileSize(bytes)}, ${date.format(saved).replaceAll(' ', NBSP)}`,
+    damagedFile: 'Damaged project',
+    forget: 'Forget',
+    forgetOf: (name: string): string => `Forget the project of ${name}`,
+    forgotten: (name: string): string => `The project of “${name}” is forgotten.`,
+  },
+  exporting: (done: number, of: number): string => `${whole.format(done)} of ${frames(of)}`,
+  exported: (count: number, of: number): string => `Saved: ${objects(count).toLowerCase()} in ${frames(of)}.`,
+  preview: {
+    files: (count: number): string => `, ${whole.format(count)}${NBSP}files`,
+    noMasks: 'There are no masks of this frame.',
+    ofFrame: (name: string, bytes: number): string => `${name}: ${fileSize(bytes)}`,
+    ofAll: (name: string, index: number, bytes: number): string => `${name} with frame ${index} alone: ${fileSize(bytes)}`,
+    picture: (index: number): string => `Masks of frame ${index} as they are saved`,
+  },
+
+  /** `longer`: the length of the description above the shortest; `null` if there is none. */
+  forceNumber: (count: number, longer: number | null): string =>
+    `Use ${count} ${count === 1 ? 'motion' : 'motions'} for this pair${longer === null ? '' : `: ${descriptionOf(longer)}`}`,
+  descriptionOf,
+  /** Why the number found has not the shortest description. */
+  otherThanShortest: (found: number, shortest: number): string =>
+    `Automatic took ${found}, though ${shortest} has the shortest description: these lengths are a check made afterwards, and do not decide.`,
+
+  timings: {
+    decode: (name: string): string => `Decoding ${name}`,
+    total: 'All stages',
+    waited: 'Including transfers',
+  },
+} as const;

@@ -1,0 +1,38 @@
+//! The review of a clip: accepting the masks of a frame or of all frames, and how far that is.
+
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import type { Store } from '../state/state.js';
+import { acceptedIn, isTracked, masksIn, toReview } from '../state/tracked.js';
+import { contextOf, find } from './markup.js';
+
+export function mountReview(root: HTMLElement, store: Store, session: Session): void {
+  const box = find(root, '#review', HTMLElement);
+  const told = find(root, '#reviewed', HTMLElement);
+  const one = find(root, '#accept', HTMLButtonElement);
+  const all = find(root, '#accept-all', HTMLButtonElement);
+  const bar = find(root, '#review-bar', HTMLCanvasElement);
+  one.addEventListener('click', () => accept(session, 'shown'));
+  all.addEventListener('click', () => accept(session, 'all'));
+
+  store.subscribe(({ tracked, look, timeline }, before) => {
+    if (tracked === before.tracked && look === before.look && timeline === before.timeline) return;
+    box.hidden = bar.hidden = !isTracked(tracked) || tracked.spans.length === 0 || look.kind !== 'objects';
+    if (box.hidden || tracked === null) return;
+    const { frames, clip } = tracked;
+    const accepted = acceptedIn(tracked);
+    told.textContent = strings.accepted(accepted.length, masksIn(frames, { first: 0, last: clip.count - 1 }));
+    one.disabled = accepted.includes(timeline?.first ?? -1) && toReview(tracked) === null;
+    all.disabled = toReview(tracked) === null;
+    bar.width = clip.count;
+    const context = contextOf(bar);
+    context.fillStyle = '#3fbf6f';
+    for (const index of accepted) context.fillRect(index, 0, 1, 1);
+  });
+}
+
+/** Accepts masks, and goes to the frame that most needs a look. */
+export function accept(session: Session, which: 'shown' | 'all'): void {
+  const next = session.objects.accept(which);
+  if (next !== null) void session.frames.goTo(next);
+}

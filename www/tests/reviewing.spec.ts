@@ -1,0 +1,48 @@
+//! The review of a clip: frames are accepted one by one, the least certain first, or all at once.
+
+import { axe, clipDone, clipFrames, done, drag, expect, goTo, openExport, openSegmented, test } from './support.js';
+
+test('frames are accepted, the least certain next, and a correction takes back what it changes', async ({ page }) => {
+  await openSegmented(page, await clipFrames(8));
+  const reviewed = page.locator('#reviewed');
+  await expect(reviewed).toHaveText('0 of 8 accepted');
+  await goTo(page, 3);
+  await page.keyboard.press('y');
+  await expect(reviewed).toHaveText('1 of 8 accepted');
+  await expect(page.locator('#clip-status')).toHaveText('Accepted.');
+  await expect(page.locator('#caption')).not.toHaveText('Frame 3');
+  await done(page);
+  // Whatever is left is gone through.
+  for (let count = 2; count <= 8; count++) {
+    await page.getByRole('button', { name: 'Accept', exact: true }).click();
+    await expect(reviewed).toHaveText(`${count} of 8 accepted`);
+    await done(page);
+  }
+  await expect(page.getByRole('button', { name: 'Accept all' })).toBeDisabled();
+  expect(await axe(page)).toEqual([]);
+
+  // A correction changes masks, which are then to be accepted again; undone, they are the accepted ones.
+  await goTo(page, 4);
+  await page.keyboard.press('1');
+  await page.keyboard.press('p');
+  await page.getByRole('combobox', { name: 'Frames that follow a correction' }).selectOption('none');
+  await drag(page, [0.05, 0.85], [0.1, 0.9]);
+  await clipDone(page);
+  await expect(reviewed).toHaveText('7 of 8 accepted');
+  await page.keyboard.press('Control+z');
+  await expect(reviewed).toHaveText('8 of 8 accepted');
+  await page.keyboard.press('Control+z'); // the last that was accepted
+  await expect(reviewed).toHaveText('7 of 8 accepted');
+});
+
+test('all frames are accepted at once, and are after a reload', async ({ page }) => {
+  await page.goto('./#quality=fast');
+  await clipDone(page);
+  await page.getByRole('button', { name: 'Accept all' }).click();
+  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
+  await openExport(page);
+  await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
+  await page.reload();
+  await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 51 frames.');
+  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
+});
