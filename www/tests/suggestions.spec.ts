@@ -99,7 +99,7 @@ for (const colorScheme of ['light', 'dark'] as const) {
       expect((await suggestion!.boundingBox())!.height).toBeLessThan(70);
       expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
       // The lists above stay where they are when it is dismissed.
-      const place = async (): Promise<number> => page.evaluate(() => document.querySelector('#motions')!.getBoundingClientRect().bottom + scrollY);
+      const place = async (): Promise<number> => page.evaluate(() => document.querySelector('#motions > :last-child')!.getBoundingClientRect().bottom + scrollY);
       const before = await place();
       await suggestion!.getByRole('button', { name: 'Dismiss' }).click();
       expect(await place()).toBe(before);

@@ -134,6 +134,7 @@ export async function chooseMotions(page: Page, motions: number | 'Automatic'): 
 
 /** Waits until this number is chosen. */
 export async function motionsChosen(page: Page, motions: number | 'Automatic'): Promise<void> {
+  await page.locator('#inspect').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
   await expect(page.locator('#evidence button[aria-pressed=true]')).toHaveText(String(motions));
 }
 

@@ -484,13 +484,17 @@ test('the button for the least certain frame goes once a person has looked there
   await segmentClip(page);
   const row = page.locator('#objects > li').nth(1);
   const check = row.locator('[data-action=doubtful]');
+  await row.locator('.thumbnail').click();
   const index = Number(/^Check #(\d)$/.exec((await check.textContent())!)![1]);
   await check.click();
   await shows(page, index);
   await expect(row).toHaveClass(/selected/);
   await expect(check).toBeHidden();
   await expect(page.locator('.layers')).toBeFocused();
-  await expect(page.locator('#objects > li').nth(2).locator('[data-action=doubtful]')).toBeVisible();
+  const other = page.locator('#objects > li').nth(2);
+  await other.locator('.thumbnail').click();
+  await expect(other.locator('[data-action=doubtful]')).toBeVisible();
+  await row.locator('.thumbnail').click();
   await goTo(page, (index + 3) % 6);
   await expect(check).toBeHidden();
 });

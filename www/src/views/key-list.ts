@@ -1,7 +1,6 @@
 //! What the keyboard shortcuts do, in words: the list that `?` opens, loaded when it does.
 
 import { element } from './markup.js';
-import type { Key } from './shortcuts.js';
 
 const WORDS = {
   peek: 'Show the other frame while held',
@@ -47,9 +46,15 @@ const WORDS = {
 
 export type KeyName = keyof typeof WORDS;
 
+/** A key as shown, and what it does. */
+interface Line {
+  readonly shown: string;
+  readonly does: KeyName | '';
+}
+
 /** Fills the list. Keys without words are other ones for what the key before them does. */
-export function listKeys(list: HTMLDListElement, keys: readonly Key[]): void {
-  const rows: readonly Pick<Key, 'shown' | 'does'>[] = [{ shown: 'B', does: 'peek' }, ...keys, { shown: '?', does: 'keys' }];
+export function listKeys(list: HTMLDListElement, keys: readonly Line[]): void {
+  const rows: readonly Line[] = [{ shown: 'B', does: 'peek' }, ...keys, { shown: '?', does: 'keys' }];
   for (const { shown, does } of rows) {
     if (does === '') {
       list.lastElementChild?.firstElementChild?.append(' ', element('kbd', shown));

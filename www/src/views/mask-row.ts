@@ -43,12 +43,18 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
   // A select changes with every arrow key, so it only chooses.
   mergeWith.addEventListener('change', () => (merge.disabled = mergeWith.value === ''));
   merge.addEventListener('click', () => masks.merge(id, Number(mergeWith.value)));
-  // A row that is selected has its actions elsewhere: they would move away from the pointer.
+  // A row that is selected has its actions elsewhere, and another one that was loses its own: nothing may move away from a pointer that is down.
+  let pressed = false;
   const select = ({ target }: Event): void => {
-    if (!(target instanceof Element) || target.closest('.motion-actions') === null) session.shown.select(id);
+    if (!pressed && (!(target instanceof Element) || target.closest('.motion-actions') === null)) session.shown.select(id);
   };
+  row.addEventListener('pointerdown', () => {
+    pressed = true;
+    for (const end of ['pointerup', 'pointercancel']) window.addEventListener(end, () => (pressed = false), { once: true, capture: true });
+  });
   row.addEventListener('focusin', select);
-  row.addEventListener('pointerdown', select);
+  // Once the box that was clicked has changed.
+  row.addEventListener('click', (event) => setTimeout(() => select(event)));
   // The background cannot be hidden: it is not painted.
   for (const control of [shown, colour, solo, find(row, '.thumbnail', HTMLCanvasElement)]) control.hidden = id === 0;
 
