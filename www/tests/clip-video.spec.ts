@@ -45,8 +45,13 @@ async function played(page: Page, bytes: Buffer, type: string, times: readonly n
       const frames: string[] = [];
       for (const time of times) {
         const seeked = event('seeked');
+        // On a busy machine the frame before is still shown when the search ends.
+        const presented = new Promise((resolve) => {
+          video.requestVideoFrameCallback(resolve);
+          setTimeout(resolve, 1000);
+        });
         video.currentTime = time;
-        await seeked;
+        await Promise.all([seeked, presented]);
         context.clearRect(0, 0, video.videoWidth, video.videoHeight);
         context.drawImage(video, 0, 0);
         const { data } = context.getImageData(0, 0, video.videoWidth, video.videoHeight);
