@@ -5,7 +5,7 @@ export class Piecewise {
   readonly #later: boolean;
   #turn = 0;
 
-  /** `piece`: pixels per task, a few milliseconds of work. `later`: the first piece is a task of its own as well. */
+  /** `piece`: pixels per task, a few milliseconds of work. `later`: the first of several pieces is a task of its own as well. */
   constructor(piece: number, later: boolean) {
     this.#piece = piece;
     this.#later = later;
@@ -30,7 +30,7 @@ export class Piecewise {
       if (to === height) done();
       else setTimeout(() => next(to));
     };
-    if (this.#later) setTimeout(() => next(0));
+    if (this.#later && step < height) setTimeout(() => next(0));
     else next(0);
   }
 }
