@@ -97,6 +97,12 @@ async function isContinued(page: Page, files: readonly Upload[]): Promise<void> 
   }
 }
 
+/** Removes all projects from the browser, once none is being written. */
+async function forgetAll(page: Page): Promise<void> {
+  const remove = async (): Promise<void> => page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('projects', { recursive: true }));
+  await expect(remove).toPass({ timeout: 10_000 });
+}
+
 test('a corrected clip is there after a reload, and can be corrected further', async ({ page }) => {
   const files = await clipFrames(6);
   await correctedClip(page, files);
@@ -209,7 +215,7 @@ test('a project whose state is of an older version is segmented again and correc
   const unpacked = gunzipSync(project.buffer).toString('latin1');
   expect(unpacked).toContain('VERCLIP4');
   const old = { ...project, buffer: gzipSync(Buffer.from(unpacked.replaceAll('VERCLIP4', 'VERCLIP3'), 'latin1')) };
-  await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('projects', { recursive: true }));
+  await forgetAll(page);
   await page.reload();
   await upload(page, [old, ...files]);
   await expect(page.locator('#caption')).toHaveText('Frame 3');
@@ -418,7 +424,7 @@ test('a project of the first version is opened, and takes corrections', async ({
   const { spans, found: _, became: __, ...clip } = project.clip;
   const [{ state }] = spans as [{ state: unknown }];
   const old = [header.replace('"version":2', '"version":1'), JSON.stringify({ ...project, clip: { ...clip, state } }), ...rest].join('\n');
-  await page.evaluate(async () => (await navigator.storage.getDirectory()).removeEntry('projects', { recursive: true }));
+  await forgetAll(page);
   await page.reload();
   await upload(page, [{ name, mimeType, buffer: gzipSync(Buffer.from(old, 'latin1')) }, ...files]);
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
