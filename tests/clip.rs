@@ -272,6 +272,27 @@ fn a_clip_goes_on_from_known_pairs_to_the_same_labels() {
 }
 
 #[test]
+fn previews_show_what_pairs_tell_and_change_nothing() {
+    let things = [
+        thing(2, [36.0, 30.0], |t| [10.0 + 5.0 * t as f32, 12.0]),
+        thing(3, [30.0, 34.0], |t| [115.0 - 5.0 * t as f32, 70.0]),
+    ];
+    let (frames, truths) = scene(1, &things, 8);
+    let options = options(Quality::Fast, None);
+    let mut segmenter = ClipSegmenter::new(options).unwrap();
+    assert!(segmenter.preview().is_none());
+    let mut previews = Vec::new();
+    for frame in &frames {
+        segmenter.push(frame.clone()).unwrap();
+        previews.extend(segmenter.preview());
+        assert!(segmenter.preview().is_none(), "none comes twice");
+    }
+    assert_eq!(previews.iter().map(|frame| frame.index).collect::<Vec<_>>(), (0..7).collect::<Vec<_>>());
+    assert_ne!(one_number(&previews, &truths, 1, 0..7), one_number(&previews, &truths, 2, 0..7));
+    assert!(segmenter.conclude().to_bytes() == whole(&frames, options).to_bytes());
+}
+
+#[test]
 fn pairs_of_a_whole_clip_follow_from_their_two_frames_alone() {
     let (frames, _) = moving_and_resting();
     // Also a frame that is repeated, and a cut.

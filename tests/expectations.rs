@@ -19,6 +19,8 @@ const OVERLAP: f64 = 0.85;
 const COVERED: f64 = 0.97;
 /// Pixels outside the outline of a clip that have the object's number, as a share of those inside: cars have shadows right below them.
 const OUTSIDE: f64 = 0.4;
+/// Share of the pixels that are right of *fast* and of *best*.
+const KEPT: f64 = 0.99;
 /// Largest displacement of a background at rest, pixels.
 const REST: f64 = 0.1;
 
@@ -192,6 +194,38 @@ fn two_cars_on_a_plain_road_are_two_objects_and_the_road_is_at_rest() {
 #[test]
 fn things_that_a_camera_passes_are_three_objects() {
     check_pair("parallax");
+}
+
+/// The page shows what *fast* finds until *best* is there.
+#[test]
+fn what_fast_gets_right_of_the_samples_best_has_right() {
+    for name in ["two-cars", "parallax"] {
+        let expected = expected(name);
+        let pictures = [0, 1].map(|k| picture(expected["frames"][k].as_str().unwrap()));
+        let [first, second] = [0, 1].map(|k| Altered::No.frame(&pictures[k]));
+        let size = [first.width(), first.height()];
+        let centre = |x: usize, y: usize| [x as f64 + 0.5, y as f64 + 0.5];
+        let right = |quality: Quality| {
+            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let found = segment_pair(&first, &second, &options, &mut |_| {}).unwrap();
+            let group = |p: usize| found.motions[usize::from(found.labels[p])].group;
+            let objects = expected["objects"].as_array().unwrap().iter().map(|object| {
+                let (own, _) = best_group(object, |x, y| group(y * size[0] + x), centre, size);
+                (outline(&object["outline"]), outline(&object["shadow"]), own)
+            });
+            let objects: Vec<(Outline, Outline, u8)> = objects.collect();
+            let is_right = |&p: &usize| {
+                let [x, y] = centre(p % size[0], p / size[0]);
+                let there = objects.iter().find(|(inner, _, _)| contains(inner, x, y));
+                let own = there.map_or(found.motions[0].group, |(_, _, own)| *own);
+                group(p) == own && !objects.iter().any(|(_, shadow, _)| there.is_none() && contains(shadow, x, y))
+            };
+            (0..size[0] * size[1]).filter(is_right).collect::<BTreeSet<usize>>()
+        };
+        let [fast, best] = [Quality::Fast, Quality::Best].map(right);
+        let kept = fast.intersection(&best).count() as f64 / fast.len() as f64;
+        assert!(kept >= KEPT, "{name}: {kept:.4} of what fast gets right");
+    }
 }
 
 #[test]

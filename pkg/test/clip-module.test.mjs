@@ -38,11 +38,12 @@ describe('clips in the module', () => {
     const pairs = [0, 1, 2].map((t) => glue.pushClip(clip, frame(t, SIZE)));
     assert.ok(pairs.every((pair) => pair instanceof Uint8Array));
     const nothing = new Uint8Array(64 * 48).fill(255);
-    const early = () => [glue.saveClip(clip), glue.clipFrame(clip, 0, frame(0, SIZE)), glue.correctClip(clip, 0, nothing, true, true), glue.takeCorrection(clip, frame(0, SIZE)), glue.renumberClip(clip, 1, 2), glue.reserveClip(clip, nothing), glue.lockClip(clip, nothing), glue.pushClip(again, frame(0, SIZE)), glue.concludeClip(again)];
-    assert.deepEqual(early(), Array(9).fill(null));
+    const early = () => [glue.saveClip(clip), glue.previewClip(again), glue.clipFrame(clip, 0, frame(0, SIZE)), glue.correctClip(clip, 0, nothing, true, true), glue.takeCorrection(clip, frame(0, SIZE)), glue.renumberClip(clip, 1, 2), glue.reserveClip(clip, nothing), glue.lockClip(clip, nothing), glue.pushClip(again, frame(0, SIZE)), glue.concludeClip(again)];
+    assert.deepEqual(early(), Array(10).fill(null));
     const summary = { length: 3, ...SIZE, dropped: 0 };
     assert.deepEqual(glue.concludeClip(clip), summary);
     assert.equal(glue.pushClip(clip, frame(3, SIZE)), null, 'it is concluded');
+    assert.equal(glue.previewClip(clip), null);
     assert.equal(glue.takeCorrection(clip, frame(0, SIZE)), null, 'no correction has begun');
     const saved = glue.saveClip(clip);
     assert.throws(() => glue.clipFrame(clip, 3, frame(3, SIZE)), { code: 'invalid-option' });

@@ -288,6 +288,7 @@ const CLIPS = {
   changesOnly: [(v) => [[first, second], { changesOnly: v }], ['undefined', 'true', 'false']],
   onPairs: [(v) => [[first, second], { onPairs: v }], ['undefined', 'function']],
   knownPairs: [(v) => [[first, second], { knownPairs: v }], ['undefined']],
+  onPreview: [(v) => [[first, second], { onPreview: v }], ['undefined', 'function']],
   'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
 };
 

@@ -221,6 +221,18 @@ for (const [way, make] of Object.entries(WAYS)) {
       assert.deepEqual([unfit.error.code, unfit.given], ['invalid-input', []]);
     });
 
+    test('shows what the pairs tell while they are solved, and returns the same', async (t) => {
+      const segment = make(t);
+      const previews = [];
+      const onPreview = async (preview) => void previews.push(preview);
+      const { frames, tracks, state } = await outcome(segment, readable(), { onPreview });
+      assert.deepEqual({ frames, tracks, state }, { frames: whole.frames, tracks: whole.tracks, state: whole.state });
+      assert.deepEqual(previews.map(({ index, labels }) => [index, labels.length]), ALL.slice(0, -1).map((index) => [index, PIXELS]));
+      assert.deepEqual(previews[3].objects.map(({ id, pixels }) => [id, Math.abs(pixels - 36 * 36) < 200]), [[1, true]], 'the square');
+      const failing = until(segment(readable(), { ...FAST, onPreview: ({ index }) => { if (index === 2) throw MINE; } }));
+      assert.deepEqual(await failing, { given: [], error: MINE });
+    });
+
     test('a frame that cannot be read the first time ends the clip before it, one of the second time there', async (t) => {
       const segment = make(t);
       for (const fail of [(index) => index === 4, (index, { length }) => length === COUNT + 5]) {
@@ -315,6 +327,7 @@ for (const [way, make] of Object.entries(WAYS)) {
         [{ changesOnly: 1 }, /'changesOnly': must be true or false/],
         [{ onPairs: 1 }, /'onPairs': must be a function/],
         [{ knownPairs: {} }, /'knownPairs': must be a function/],
+        [{ onPreview: 'yes' }, /'onPreview': must be a function/],
         [{ state: whole.state, lookAhead: 9 }, /'lookAhead'/],
       ];
       for (const [{ frames = list, ...options }, message] of cases) {
@@ -351,7 +364,7 @@ describe('what makes a clip a whole one', () => {
   });
 
   test('what comes once cannot be one, and nothing is taken from it', async () => {
-    const options = [{ lookAhead: 'all' }, { corrections: [] }, { edits: {} }, { state: whole.state }, { changesOnly: true }, { onPairs() {} }, { knownPairs() {} }];
+    const options = [{ lookAhead: 'all' }, { corrections: [] }, { edits: {} }, { state: whole.state }, { changesOnly: true }, { onPairs() {} }, { knownPairs() {} }, { onPreview() {} }];
     for (const option of options) {
       let taken = 0;
       const once = (function* () { for (const one of list) yield ((taken += 1), one); })();

@@ -347,6 +347,11 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
    * another frame or other frames before it count as unknown.
    */
   knownPairs?: ((index: number) => Uint8Array | undefined | Promise<Uint8Array | undefined>) | undefined;
+  /**
+   * Called with each frame but the last as soon as its pairs are solved: the masks that they tell alone, to show while the clip is
+   * segmented. They lack the evidence of other frames, and their objects may get other numbers. Each takes the time of its labels.
+   */
+  onPreview?: ((frame: ClipFrame) => void | Promise<void>) | undefined;
   /** `true`: frames are transferred; those of a whole clip only when they are read for their labels. See {@link CallOptions}. */
   transfer?: boolean | undefined;
   /** Called for each frame before work on it begins. If it throws, the clip ends with that exception. */

@@ -32,6 +32,17 @@ pub(crate) struct Tracker {
     prior: Option<Prior>,
     rounds: [Round; 2],
     identities: Identities,
+    /// The frame that went to the rounds last.
+    latest: Option<Latest>,
+}
+
+/// A frame with what its own pairs tell.
+#[derive(Debug)]
+pub(crate) struct Latest {
+    pub(crate) record: Rc<Record>,
+    pub(crate) frame: Rc<Frame>,
+    /// Odds of object against background, nats.
+    pub(crate) odds: Plane,
 }
 
 /// The newest frame.
@@ -80,6 +91,7 @@ impl Tracker {
             prior: None,
             rounds,
             identities,
+            latest: None,
         })
     }
 
@@ -168,6 +180,7 @@ impl Tracker {
 
     /// The frames that still wait, in order. The tracker is then ready for another clip, whose objects get new numbers.
     pub(crate) fn finish(&mut self) -> Vec<Tracked> {
+        self.latest = None;
         let Some(last) = self.last.take() else { return Vec::new() };
         let mut frames = Vec::new();
         if self.waits {
@@ -181,6 +194,11 @@ impl Tracker {
         }
         (self.count, self.size, self.waits, self.prior) = (0, None, false, None);
         frames
+    }
+
+    /// The frame that went to the rounds last, once.
+    pub(crate) fn latest(&mut self) -> Option<Latest> {
+        self.latest.take()
     }
 
     /// Number of objects that were seen when all numbers had been given, and count as background.
@@ -217,9 +235,10 @@ impl Tracker {
         // The pyramid's levels have told all they can.
         let appearance = pyramid.appearance(&frame);
         let (palette, unit_borders) = (appearance.palette.clone(), unit_borders(appearance));
-        let frame = Some(frame).filter(|_| self.keeps_frames);
-        let record = Rc::new(Record { index: self.count, frame, repeats, palette, unit_borders, onward, back });
+        let kept = Some(frame.clone()).filter(|_| self.keeps_frames);
+        let record = Rc::new(Record { index: self.count, frame: kept, repeats, palette, unit_borders, onward, back });
         self.count += 1;
+        self.latest = Some(Latest { record: record.clone(), frame, odds: odds.clone() });
         let foreground = self.rounds[0].push(record, odds)?;
         self.second_round(foreground)
     }

@@ -4,12 +4,12 @@ use super::correction::{ClipCorrection, Prompt, outline};
 use super::description::WorkingFrame;
 use super::evidence::{Flow, KeptFlow, KeptOdds, KeptPairs, Pairs};
 use super::grouping::Census;
-use super::identity::Parting;
+use super::identity::{Identities, Parting};
 use super::layer::{Layer, SaidFrame, Spread};
 use super::parting::divide;
 use super::runs::Runs;
 use super::saved::{Format, saved};
-use super::tracker::{Tracked, Tracker};
+use super::tracker::{Latest, Tracked, Tracker};
 use super::{ClipFrame, ClipOptions, model};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, MAX_SIDE, MIN_SIDE, Plane};
@@ -46,6 +46,8 @@ pub struct ClipSegmenter {
     options: u64,
     /// Of what the pairs of the newest frame follow from.
     origin: u64,
+    /// The objects of the previews, and the index of the last one.
+    previews: (Identities, Option<usize>),
 }
 
 /// What the pairs of a frame with the one before have told: nearly all the work of [`ClipSegmenter::push`].
@@ -91,7 +93,8 @@ impl ClipSegmenter {
         let motions = if let MotionCount::Given(motions) = motions { motions as u8 } else { 0 };
         let look_ahead = look_ahead.map_or(u8::MAX, |frames| frames as u8);
         let options = hash(0, &[motions, u8::from(quality == Quality::Best), look_ahead]);
-        Ok(ClipSegmenter { tracker, frames: Vec::new(), hashes: Vec::new(), options, origin: options })
+        let (frames, hashes, previews) = (Vec::new(), Vec::new(), (Identities::new(), None));
+        Ok(ClipSegmenter { tracker, frames, hashes, options, origin: options, previews })
     }
 
     /// Takes the next frame. What it returns need not be kept.
@@ -110,6 +113,23 @@ impl ClipSegmenter {
     /// the one before it, with a look-ahead all those before it; the frame can be pushed then.
     pub fn push_known(&mut self, frame: Frame, pairs: &FramePairs) -> Result<()> {
         self.take(frame, Some(pairs)).map(|_| ())
+    }
+
+    /// The newest frame whose pairs are all solved, with the masks that they tell alone: without the evidence of other frames, and with numbers
+    /// that need not be those of the segmented clip. There is none before there are such pairs, and none twice. Asked after each frame,
+    /// previews are those of all frames but the last, and objects keep their number from one to the next.
+    pub fn preview(&mut self) -> Option<ClipFrame> {
+        let Latest { record, frame, odds } = self.tracker.latest()?;
+        let (objects, last) = &mut self.previews;
+        if last.replace(record.index) != record.index.checked_sub(1) {
+            *objects = Identities::new();
+        }
+        let mask: Vec<u8> = odds.values().iter().map(|&odds| u8::from(odds > 0.0)).collect();
+        let labels = objects.assign(&record, &mask);
+        let mark_unknown = self.tracker.options().pair.mark_unknown;
+        let onward = record.onward.as_ref();
+        let preview = WorkingFrame { index: record.index, labels: &labels, odds: &odds, onward, mark_unknown };
+        Some(preview.described(frame.luminance()))
     }
 
     fn take(&mut self, frame: Frame, known: Option<&FramePairs>) -> Result<Pairs> {

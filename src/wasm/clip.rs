@@ -85,6 +85,16 @@ fn push_pairs(segmenter: &mut ClipSegmenter, frame: Frame, known: Option<Vec<u8>
     segmenter.push(frame).map(|pairs| bytes(&pairs.to_bytes()))
 }
 
+/// What the pairs of a whole clip tell so far of the newest frame whose pairs are all solved, as [`push_clip`] of a stream returns it;
+/// `undefined` if there is none that was not returned before.
+#[wasm_bindgen(js_name = previewClip)]
+pub fn preview_clip(clip: u32) -> Result<JsValue, JsValue> {
+    step(clip, &mut |clip| match clip {
+        Clip::Pairs(segmenter) => Some(Ok(segmenter.preview().map_or(JsValue::UNDEFINED, |frame| clip_frame(&frame)))),
+        _ => None,
+    })
+}
+
 /// Ends a stream. Returns `{ frames, dropped }`: the frames that were still waiting, and the number of objects beyond the last number.
 #[wasm_bindgen(js_name = finishClip)]
 pub fn finish_clip(clip: u32) -> JsValue {

@@ -36,7 +36,7 @@ export type ClipStep =
   | { call: 'takeCorrection'; frame: Pixels }
   | { call: 'renumberClip'; object: number; number: number }
   | { call: 'clipFrame'; index: number; frame: Pixels }
-  | { call: 'finishClip' | 'concludeClip' | 'saveClip' | 'endClip' };
+  | { call: 'previewClip' | 'finishClip' | 'concludeClip' | 'saveClip' | 'endClip' };
 
 /** `clip` is its number. */
 export type ClipTask = { clip: number } & (ClipStep | { call: 'beginClip'; whole: boolean; settings: Settings });

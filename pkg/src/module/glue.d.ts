@@ -22,6 +22,7 @@ export interface FramesGlue extends Glue {
 
   beginClip(clip: number, whole: boolean, options: unknown): void;
   pushClip(clip: number, frame: unknown, known?: Uint8Array): unknown;
+  previewClip(clip: number): unknown;
   finishClip(clip: number): unknown;
   concludeClip(clip: number): unknown;
   restoreClip(clip: number, state: Uint8Array, markUnknown: boolean): unknown;

@@ -97,7 +97,7 @@ export async function follow(frames: AsyncIterable<ImageData>, read: (index: num
   const edits: ClipEdits = { merge: [[2, 5]], delete: [3], background: [4], names: { 1: 'car' } };
   const pairs = new Map<number, Uint8Array>();
   const kept: ClipOptions = { onPairs: (index, bytes) => void pairs.set(index, bytes), knownPairs: async (index) => pairs.get(index) };
-  const again = segmentClip({ length: 32, read }, { state, corrections: [...corrections, ...prompts], edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), ...kept });
+  const again = segmentClip({ length: 32, read }, { state, corrections: [...corrections, ...prompts], edits, changesOnly: true, onProgress: ({ stage }) => console.log(stage), onPreview: ({ objects }) => console.log(objects.length), ...kept });
   console.log(again.tracks().objects[0]?.name);
   // @ts-expect-error a clip tells the confidence of objects alone
   segmentClip([], { confidence: true });

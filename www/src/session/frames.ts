@@ -7,7 +7,7 @@ import type { Project, ProjectClip } from '../projects/project.js';
 import type { Projects } from '../projects/projects.js';
 import { type FramePair, type LoadedFrame, type Slot, type Timeline, timelineOf } from '../state/pair.js';
 import { FRESH, type Look, type Store } from '../state/state.js';
-import { isTracked, livesOf } from '../state/tracked.js';
+import { isSeen, livesOf } from '../state/tracked.js';
 import type { Camera } from './camera/camera.js';
 import { isFrameOf } from './clip/frames.js';
 import type { ClipSegmenting } from './clip/segmenting.js';
@@ -189,7 +189,7 @@ export class Frames {
     const timeline = timelineOf(pair);
     const sameClip = left?.clip === timeline?.clip;
     const tracked = clip.of(timeline?.clip ?? null);
-    const kind = isTracked(tracked) && (!sameClip || look.kind === 'objects') ? 'objects' : look.kind === 'objects' ? 'groups' : look.kind;
+    const kind = isSeen(tracked) && (!sameClip || look.kind === 'objects') ? 'objects' : look.kind === 'objects' ? 'groups' : look.kind;
     // The objects of a clip are the same in all its frames.
     const same = kind === 'objects' && sameClip;
     const carried: Look = same ? { ...look, stabilised: null, blinking: false } : { ...look, ...FRESH, kind };

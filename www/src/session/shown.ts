@@ -6,7 +6,7 @@ import type { Kind } from '../result/masks.js';
 import { frameOf, resultOf } from '../state/objects.js';
 import type { FramePair } from '../state/pair.js';
 import { FRESH, type Look, type Run, type State, type Store, isCurrent, isPassing } from '../state/state.js';
-import { type ClipRun, type Tracked, type Version, isTracked, versionOf } from '../state/tracked.js';
+import { type ClipRun, type Tracked, type Version, isSeen, isTracked, versionOf } from '../state/tracked.js';
 import type { Masks } from './pair/masks.js';
 import { type PairSegmenting, STARTING } from './pair/segmenting.js';
 import type { Solving } from './pair/solving.js';
@@ -27,7 +27,7 @@ export class Shown {
   /** Shows masks of this kind. Mask numbers change meaning, so choices that refer to them are reset. */
   kind(kind: Kind): void {
     const { look, pair, tracked, live } = this.#store.get();
-    if (live !== null || look.kind === kind || (kind === 'objects' && !isTracked(tracked))) return;
+    if (live !== null || look.kind === kind || (kind === 'objects' && !isSeen(tracked))) return;
     const { hidden, solo, stabilised, selected } = FRESH;
     if (kind !== 'objects' && look.kind !== 'objects') return this.#store.look({ kind, hidden, solo, stabilised, selected });
     this.#masks.leave();
@@ -65,16 +65,26 @@ export class Shown {
     const { selected } = this.#store.get().look;
     const now = version.became.get(selected ?? 0);
     if (now !== undefined) this.#store.look({ selected: now === 0 ? null : now });
+    if (!isTracked(tracked)) this.kind('objects');
     this.objects(tracked);
   }
 
-  /** Shows the masks of the clip as soon as there are any, and whenever those on screen change. `before`: what there was. */
+  /** Shows the masks of the clip as soon as there are some of a frame on screen, and whenever these change. `before`: what there was. */
   objects(before: Tracked): void {
     const { look, pair, tracked } = this.#store.get();
     if (tracked === null) return;
-    if (!isTracked(before)) return this.kind('objects');
     const frames = [pair.first, pair.second].filter((frame) => frame !== null);
+    const came = !isTracked(before) && frames.some((frame) => frameOf(before, frame) === null && frameOf(tracked, frame) !== null);
+    if (came) this.kind('objects');
+    // Objects of previews have other numbers.
+    if (look.selected !== null && isSeen(before) && isTracked(tracked) !== isTracked(before)) this.select(null);
     const changed = frames.some((frame) => frameOf(tracked, frame) !== frameOf(before, frame));
     if (look.kind === 'objects' && changed) this.#store.set({ result: resultOf(tracked, pair) });
+  }
+
+  /** Goes back to the masks of the pair if there are none of the clip, as a run on it has ended early. */
+  pairIfAlone(): void {
+    const { look, tracked } = this.#store.get();
+    if (look.kind === 'objects' && tracked !== null && !isSeen(tracked)) this.kind('groups');
   }
 }

@@ -5,7 +5,7 @@ import { unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import type { FramePair, LoadedFrame } from './pair.js';
 import type { Result } from './state.js';
-import type { Tracked, TrackedFrame } from './tracked.js';
+import { type Tracked, type TrackedFrame, shownFrames } from './tracked.js';
 
 /** The masks of both frames of a pair; `null` if there are none of the first. */
 export function resultOf(tracked: Tracked | null, { first, second }: FramePair): Result | null {
@@ -16,9 +16,9 @@ export function resultOf(tracked: Tracked | null, { first, second }: FramePair):
 }
 
 /** What the clip knows of a frame that is open. */
-export function frameOf({ clip, frames }: Tracked, { origin }: LoadedFrame): TrackedFrame | null {
-  if (origin === undefined || !('clip' in origin) || origin.clip !== clip) return null;
-  return frames[origin.index] ?? null;
+export function frameOf(tracked: Tracked, { origin }: LoadedFrame): TrackedFrame | null {
+  if (origin === undefined || !('clip' in origin) || origin.clip !== tracked.clip) return null;
+  return shownFrames(tracked)[origin.index] ?? null;
 }
 
 /** The matrix of what has no motion that is known. */

@@ -80,6 +80,8 @@ export interface Tracked extends Version {
   readonly run: ClipRun;
   /** The frames to segment, from the in point to the out point. */
   readonly range: Range;
+  /** Masks of frames whose pairs are solved, by index, to show while there are no others. They are no work of anyone, and go when a run ends. */
+  readonly previews: Version['frames'];
   /** Number of frames whose pairs are solved, nearly all the work. They are kept when a run is cancelled. */
   readonly solved: number;
   /** Earlier versions, and later ones that were undone; the nearest is last. */
@@ -97,6 +99,7 @@ export interface Tracked extends Version {
 type Saved = Pick<Tracked, 'frames' | 'names' | 'colours' | 'locks' | 'accepted'>;
 
 const NOTHING = {};
+const NO_PREVIEWS: Tracked['previews'] = [];
 const NO_LOCKS: Version['locks'] = new Map();
 const NONE_ACCEPTED: Version['accepted'] = new Set();
 
@@ -106,6 +109,7 @@ export function untracked(clip: Clip): Tracked {
     clip,
     run: { phase: 'idle' },
     range: { first: 0, last: clip.count - 1 },
+    previews: NO_PREVIEWS,
     solved: 0,
     frames,
     spans: [],
@@ -207,6 +211,19 @@ export function masksIn(frames: Version['frames'], { first, last }: Range): numb
 /** Whether there are masks of any frame. */
 export function isTracked(tracked: Tracked | null): tracked is Tracked {
   return tracked !== null && tracked.frames.some((frame) => frame !== null);
+}
+
+/** The masks that are on screen: those of the clip, or while these are being found what is seen of them. */
+export function shownFrames(tracked: Tracked | null): Version['frames'] {
+  if (tracked === null) return NO_PREVIEWS;
+  const { frames, previews, run } = tracked;
+  if (isTracked(tracked)) return frames;
+  return run.phase === 'working' ? previews : NO_PREVIEWS;
+}
+
+/** Whether there are masks of any frame to show. */
+export function isSeen(tracked: Tracked | null): tracked is Tracked {
+  return shownFrames(tracked).some((frame) => frame !== null);
 }
 
 /** Whether all frames to segment have their masks, and take corrections. */

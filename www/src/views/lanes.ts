@@ -7,12 +7,14 @@ import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, livesOf } from '../state/tracked.js';
+import { type Life, type Tracked, isTracked, livesOf, shownFrames } from '../state/tracked.js';
 import { contextOf, element, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
 const LEAST_CONFIDENCE = 0.5;
 const LEAST_OPACITY = 0.2;
+/** At least as many lanes have room. */
+const LEAST_LANES = 2;
 /** Height of a lane in its row. */
 const THICKNESS = 0.6;
 
@@ -35,18 +37,25 @@ export function mountLanes(root: HTMLElement, store: Store, session: Session): v
   };
   store.subscribe((now, before) => {
     const { tracked, look } = now;
-    const same = tracked?.frames === before.tracked?.frames && tracked?.painted === before.tracked?.painted;
-    if (same && look === before.look) return;
-    root.classList.toggle('with-lanes', look.kind === 'objects' && tracked !== null);
+    const frames = shownFrames(tracked);
+    const sameFrames = frames === shownFrames(before.tracked);
+    const same = sameFrames && tracked?.painted === before.tracked?.painted;
+    if (same && look === before.look && hasRoom(now) === hasRoom(before)) return;
+    root.classList.toggle('with-lanes', hasRoom(now));
     if (tracked === null) return;
-    if (tracked.frames !== before.tracked?.frames) {
-      lives = livesOf(tracked);
-      root.style.setProperty('--lanes', String(lives.length));
+    if (!sameFrames) {
+      lives = livesOf({ frames });
+      root.style.setProperty('--lanes', String(Math.max(LEAST_LANES, lives.length)));
       names.replaceChildren(...lives.map(({ id }) => nameButton(id, session)));
     }
     render(now);
   });
   new ResizeObserver(() => render(store.get())).observe(canvas);
+}
+
+/** Whether there is room for lanes: from when a clip is being segmented, so that the picture keeps its place when they come. */
+function hasRoom({ tracked, look }: State): boolean {
+  return tracked !== null && (look.kind === 'objects' || (tracked.run.phase === 'working' && !isTracked(tracked)));
 }
 
 function nameButton(id: number, session: Session): HTMLElement {
@@ -59,11 +68,12 @@ function nameButton(id: number, session: Session): HTMLElement {
   return item;
 }
 
-function draw(canvas: HTMLCanvasElement, { frames, painted }: Tracked, lives: readonly Life[], look: Look): void {
+function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[], look: Look): void {
   const dense = Math.min(2, devicePixelRatio);
   canvas.width = Math.max(1, Math.round(canvas.clientWidth * dense));
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * dense));
   const context = contextOf(canvas);
+  const frames = shownFrames(tracked);
   const [column, row] = [canvas.width / frames.length, canvas.height / Math.max(1, lives.length)];
   const places = new Map(lives.map(({ id }, k) => [id, k]));
   frames.forEach((frame, index) => {
@@ -76,7 +86,7 @@ function draw(canvas: HTMLCanvasElement, { frames, painted }: Tracked, lives: re
     }
   });
   context.globalAlpha = 1;
-  for (const [index, { labels }] of painted) {
+  for (const [index, { labels }] of tracked.painted) {
     for (const [id, place] of places) if (labels.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
   }
 }

@@ -4,7 +4,7 @@ import { strings } from '../common/strings.js';
 import type { Kind } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { Look, Store } from '../state/state.js';
-import { isTracked } from '../state/tracked.js';
+import { isSeen } from '../state/tracked.js';
 import { find } from './markup.js';
 
 const VIEWS = ['first', 'split', 'second'] as const;
@@ -30,7 +30,7 @@ export function mountLook(form: HTMLFormElement, store: Store, session: Session)
 
   store.subscribe(({ look, pair, tracked, live }, before) => {
     if (live !== before.live) kindsBox.hidden = live !== null;
-    if (tracked !== before.tracked) clipOnly.hidden = !isTracked(tracked);
+    if (tracked !== before.tracked) clipOnly.hidden = !isSeen(tracked);
     if (look === before.look && pair === before.pair) return;
     const both = pair.first !== null && pair.second !== null;
     for (const view of views) {

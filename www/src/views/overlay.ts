@@ -5,10 +5,13 @@ import { fillOf, outlinesOf } from '../drawing/paint.js';
 import { Piecewise } from '../drawing/piecewise.js';
 import { transformOf } from '../drawing/warp.js';
 import type { Look, Result, Store } from '../state/state.js';
-import { contextOf, find } from './markup.js';
+import { contextOf, find, prefersStillness } from './markup.js';
 
 /** Outlines are one pixel thick for every so many pixels of the longer side. */
 const PIXELS_PER_OUTLINE = 400;
+
+/** How long masks take to appear where there were none, milliseconds. */
+const APPEARING = 350;
 
 type Segmentation = Result['segmentation'];
 type Painter = (segmentation: Segmentation, from: number, to: number) => Uint32Array<ArrayBuffer>;
@@ -23,12 +26,17 @@ export function mountOverlay(stage: HTMLElement, store: Store): void {
     if (look.opacity !== before.look.opacity) fill.style.opacity = String(look.opacity);
     if (look.outlines !== before.look.outlines) outlines.hidden = !look.outlines;
     if (result === before.result && !repaints(look, before.look)) return;
+    if (before.result === null && result !== null && !prefersStillness()) for (const canvas of [fill, outlines]) appear(canvas);
     paint(fill, fillWork, result, look, (segmentation, from, to) => fillOf(segmentation, look, from, to));
     paint(outlines, outlineWork, result, look, (segmentation, from, to) =>
       outlinesOf(segmentation, look, thicknessFor(segmentation), from, to),
     );
   });
   fill.style.opacity = String(store.get().look.opacity);
+}
+
+function appear(canvas: HTMLCanvasElement): void {
+  canvas.animate([{ opacity: 0 }, { opacity: canvas.style.opacity || 1 }], { duration: APPEARING, easing: 'ease-out' });
 }
 
 /** Whether masks are drawn at their positions in the first frame. */

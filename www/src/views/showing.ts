@@ -1,12 +1,12 @@
-//! The clip that opens the page plays once its objects are found, so that a visitor sees what follows them. Whoever touches anything first
-//! is not interrupted.
+//! The clip that opens the page shows what is found while it is found: its frames come one after another with their masks. Then it plays.
+//! Whoever touches anything first is not interrupted.
 
 import type { SampleClip } from '../frames/samples.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { prefersStillness } from './markup.js';
 
-/** How often it plays. */
+/** How often it plays when all is found. */
 const TIMES = 2;
 const TOUCHES = ['pointerdown', 'keydown', 'wheel', 'dragover'] as const;
 
@@ -21,16 +21,31 @@ export function mountShowing(root: Window, store: Store, session: Session, { sta
   };
   for (const kind of TOUCHES) root.addEventListener(kind, touch, { capture: true, passive: true });
 
-  const show = async (): Promise<void> => {
+  const play = async (): Promise<void> => {
     for (let time = 0; time < TIMES && !touched; time++) {
       await session.frames.goTo(0);
       if (!touched) await session.play.toggle();
     }
     if (!touched) await session.frames.goTo(start);
   };
-  const leave = store.subscribe(({ tracked }) => {
-    if (tracked?.run.phase !== 'done') return;
+  let going = Promise.resolve();
+  let isGoing = false;
+  const follow = async (index: number): Promise<void> => {
+    isGoing = true;
+    session.shown.kind('objects');
+    await session.frames.goTo(index);
+    isGoing = false;
+  };
+  const leave = store.subscribe(({ tracked, look, result }, before) => {
+    if (tracked === null) return;
+    const { previews, run } = tracked;
+    if (previews !== before.tracked?.previews && run.phase === 'working' && result !== null && !isGoing) {
+      const newest = previews.findLastIndex((frame) => frame !== null);
+      // The masks of the first pair stay until there is something to see.
+      if (newest >= 0 && (look.kind === 'objects' || previews[newest]!.objects.length > 0)) going = follow(newest);
+    }
+    if (run.phase !== 'done') return;
     leave();
-    if (tracked.run.cause === 'found') void show();
+    if (run.cause === 'found') void going.then(play);
   });
 }

@@ -14,7 +14,7 @@ const LOOK_AHEAD_OF_STREAMS = 8;
 
 const OF_ALL = ['motions', 'quality', 'markUnknown', 'lookAhead'];
 /** Options that need frames which can be read again. */
-const OF_WHOLE = ['masks', 'corrections', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs'] as const;
+const OF_WHOLE = ['masks', 'corrections', 'edits', 'locked', 'state', 'changesOnly', 'onChange', 'knownPairs', 'onPairs', 'onPreview'] as const;
 
 /** Frames that come once. */
 export interface Stream {
@@ -29,7 +29,7 @@ export interface Whole {
   length: number;
 }
 
-export interface Asked extends Corrections, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs'> {
+export interface Asked extends Corrections, Pick<ClipOptions, 'signal' | 'onChange' | 'knownPairs' | 'onPairs' | 'onPreview'> {
   source: Stream | Whole;
   onProgress: ((progress: ClipProgress) => void) | undefined;
   transfer: boolean;
@@ -45,12 +45,12 @@ export interface Asked extends Corrections, Pick<ClipOptions, 'signal' | 'onChan
 
 export function asked(frames: unknown, options: unknown): Asked {
   const given = entriesOf(options, [...OF_ALL, ...OF_WHOLE, 'signal', 'onProgress', 'transfer'], ['seed']);
-  const { masks, corrections = [], edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, ...rest } = given;
+  const { masks, corrections = [], edits = {}, locked, state, changesOnly = false, onChange, knownPairs, onPairs, onPreview, ...rest } = given;
   const { call, transfer, settings } = parted(rest, OF_ALL);
   const name = OF_WHOLE.find((name) => given[name] !== undefined && (name !== 'changesOnly' || changesOnly !== false));
   const source = sourceOf(frames, settings['lookAhead'], name);
   if (typeof changesOnly !== 'boolean') throw invalidOption('changesOnly', 'true or false', changesOnly);
-  for (const [name, listener] of Object.entries({ onChange, knownPairs, onPairs })) {
+  for (const [name, listener] of Object.entries({ onChange, knownPairs, onPairs, onPreview })) {
     if (listener !== undefined && typeof listener !== 'function') throw invalidOption(name, 'a function', listener);
   }
   const known = editsOf(edits, (reason) => new VeroneseError('invalid-option', `option 'edits': ${reason}`));
@@ -69,6 +69,7 @@ export function asked(frames: unknown, options: unknown): Asked {
     onChange: onChange as Asked['onChange'],
     knownPairs: knownPairs as Asked['knownPairs'],
     onPairs: onPairs as Asked['onPairs'],
+    onPreview: onPreview as Asked['onPreview'],
   };
 }
 

@@ -56,6 +56,10 @@ async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<Cli
     frames.ahead();
     const pairs = await step;
     if (pairs) await clip.wait(task.onPairs?.(index, pairs));
+    if (task.onPreview) {
+      const preview = await clip.step<ClipFrame | undefined>({ call: 'previewClip' });
+      if (preview) await clip.wait(task.onPreview(preview));
+    }
     index += 1;
   }
   return clip.step({ call: 'concludeClip' });

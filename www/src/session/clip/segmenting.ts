@@ -78,6 +78,7 @@ export class ClipSegmenting {
       const solving = (): void => {
         if (!frames.stopped) set({ run: { phase: 'working', stage: 'pairs', left: time.at(solved()), labelled: 0 }, solved: solved() });
       };
+      set({ previews: untracked(clip).frames });
       solving();
       const found = this.#runs.segmenter.segmentClip(frames, {
         ...options,
@@ -91,6 +92,7 @@ export class ClipSegmenting {
           pairs.set(index, blobOf(bytes));
           solving();
         },
+        onPreview: isTracked(tracked) ? undefined : (frame) => this.#preview(frame, frames, set),
       });
       const masks: TrackedFrame[] = [];
       let run: ClipRun = { phase: 'done', cause: 'found', changed: frames.length };
@@ -109,6 +111,7 @@ export class ClipSegmenting {
       if (state === undefined || !covered) return set({ run });
       await this.#replace(before, masks, { first: range.first, last: range.first + masks.length - 1 }, { state, longestSide, run }, signal, set);
     });
+    this.#shown.pairIfAlone();
   }
 
   /**
@@ -139,6 +142,14 @@ export class ClipSegmenting {
     if (tracked?.run.phase !== 'working' || tracked.run.stage !== 'pairs') return this.#runs.stop();
     frames.stop();
     this.#store.clip({ run: { phase: 'working', stage: 'labels', left: null, labelled: 0 } });
+  }
+
+  /** Shows what the pairs tell of a frame while the clip has no masks. */
+  #preview(frame: ClipFrame, { range, size }: ClipFrames, set: Change): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null) return;
+    set({ previews: tracked.previews.with(range.first + frame.index, masksOf(frame, size)) });
+    this.#shown.objects(tracked);
   }
 
   /** Takes the labelled frames as they come, and shows them if there are no masks yet. */
