@@ -32,7 +32,13 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
   await expect(page.locator('#clip-progress')).toBeVisible();
   await expect(page.locator('#clip-detail')).toContainText('of 51 frames');
   await expect(page.locator('#clip-cancel')).toBeEnabled();
+  // The frames come with what is found, which cannot be worked on yet.
+  await expect(page.locator('#objects > li')).toHaveCount(3, { timeout: 60_000 }); // and the background
+  await expect(page.locator('#caption')).not.toHaveText(`Frame ${START}`);
+  await expect(page.locator('#objects')).toHaveAttribute('inert');
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   await clipDone(page);
+  await expect(page.locator('#objects')).not.toHaveAttribute('inert');
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
   // It plays, and ends where it began.
   await expect(page.locator('#play')).toHaveAccessibleName('Pause');
