@@ -1,6 +1,7 @@
-// npm run bench:page: opens a long generated video in the page, segments all of it and steps through it, in headless Chromium, and samples
-// the memory of all processes of the browser (Linux only). Then it paints in frames of a clip of 854 × 480 pixels and measures the time until
-// the corrected frame is drawn. Writes out/bench/page.json and prints a table. Options:
+// npm run bench:page: opens the page as a first visitor does and measures the time until masks are there. Then it opens a long generated video,
+// segments all of it and steps through it, in headless Chromium, and samples the memory of all processes of the browser (Linux only). Then it
+// paints in frames of a clip of 854 × 480 pixels and measures the time until the corrected frame is drawn. Tasks that block the page are
+// counted throughout. Writes out/bench/page.json and prints a table. Options:
 //   --frames N     length of the video (2000)
 //   --size WxH     size of its frames (1920x1080)
 //   --quality Q    fast or best (fast)
@@ -14,6 +15,7 @@ import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 
 import { buildAll } from './lib/builds.mjs';
+import { firstVisits, tasksSince, watchTasks } from './lib/first-visit.mjs';
 import { writeLongClip } from './lib/long-clip.mjs';
 import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -45,6 +47,8 @@ await command(async (args) => {
   const { chromium: engine } = createRequire(join(root, 'www/package.json'))('@playwright/test');
   const browser = await engine.launch({ executablePath: chromium.path, args: ['--no-sandbox'] });
   try {
+    console.log('Opening the page as a first visitor …');
+    const first = await firstVisits(browser, address);
     console.log(`Making a video of ${frames} frames …`);
     const maker = await browser.newPage();
     await maker.goto(`${address}#sample=intel-two-cars`);
@@ -53,7 +57,7 @@ await command(async (args) => {
     await writeLongClip(maker, VIDEO, CORRECTED.frames, CORRECTED.size);
     await maker.close();
     const corrected = await correctedFrames(browser, address, quality);
-    const report = { date: new Date().toISOString().slice(0, 10), processor: cpus()[0].model, cores: cpus().length, chromium: browser.version(), frames, size, quality, ...measured, corrected };
+    const report = { date: new Date().toISOString().slice(0, 10), processor: cpus()[0].model, cores: cpus().length, chromium: browser.version(), frames, size, quality, first, ...measured, corrected };
     writeFileSync(join(OUT, 'page.json'), `${JSON.stringify(report, undefined, 2)}\n`);
     const text = tableOf(report);
     console.log(`\n${text}`);
@@ -92,6 +96,7 @@ async function segmented(browser, address, quality) {
   await page.waitForFunction(() => document.querySelector('#clip-name').textContent !== '');
   await reached(page, '#run', 'done');
   const opened = await memory(session);
+  await page.evaluate(watchTasks);
   await page.locator('#clip-segment').click();
   await reached(page, '#clip-run', 'working');
   const began = Date.now();
@@ -118,12 +123,14 @@ async function segmented(browser, address, quality) {
   const seconds = (Date.now() - began) / 1000;
   const status = await page.locator('#clip-status').textContent();
   const done = await memory(session);
+  const segmenting = await page.evaluate(tasksSince);
   const track = page.locator('#track');
   for (const key of ['End', 'Home', ...Array.from({ length: 30 }, () => 'PageUp')]) {
     await track.press(key);
     await reached(page, '#run', 'done');
   }
-  return { seconds, status, opened, samples, done, stepped: await memory(session) };
+  const tasks = { segmenting, stepping: await page.evaluate(tasksSince) };
+  return { seconds, status, opened, samples, done, stepped: await memory(session), tasks };
 }
 
 /** Times from the end of strokes until the stroke is drawn, the corrected frame is, and the correction has spread, milliseconds. */
@@ -140,6 +147,7 @@ async function correctedFrames(browser, address, quality) {
   await page.locator('#tools [value=brush]').check();
   await page.locator('#objects > li').nth(1).locator('.motion-facts').click();
   const track = page.locator('#track');
+  await page.evaluate(watchTasks);
   const times = [];
   for (const index of CORRECTED.at) {
     await track.press('Home');
@@ -149,12 +157,13 @@ async function correctedFrames(browser, address, quality) {
     times.push(await page.evaluate(strokeTimes));
     await page.locator('#undo').click();
   }
+  const painting = await page.evaluate(tasksSince);
   await page.close();
   const figures = ['stroke', 'frame', 'clip'].map((name) => {
     const sorted = times.map((time) => time[name]).sort((one, other) => one - other);
     return [name, { median: sorted[Math.floor(sorted.length / 2)], worst: sorted.at(-1) }];
   });
-  return { ...Object.fromEntries(figures), times };
+  return { ...Object.fromEntries(figures), times, painting };
 }
 
 /** Runs in the page: draws a stroke across the first object. */
@@ -201,7 +210,7 @@ function proportional(id) {
   }
 }
 
-function tableOf({ date, processor, cores, chromium, frames, size, quality, seconds, status, opened, samples, done, stepped, corrected }) {
+function tableOf({ date, processor, cores, chromium, frames, size, quality, seconds, status, opened, samples, done, stepped, tasks, first, corrected }) {
   const head = `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: ${frames} frames of ${size.join(' × ')} pixels, quality *${quality}*, in ${seconds.toFixed(0)} seconds, ${(frames / seconds).toFixed(1)} frames a second. “${status}”`;
   const at = Array.from({ length: ROWS }, (_, k) => samples[Math.floor(((k + 1) / ROWS) * (samples.length - 1))]);
   const rows = [['opened', opened], ...at.map(({ seconds, bytes }) => [`after ${seconds.toFixed(0)} s`, bytes]), ['segmented', done], ['after steps to 32 other frames', stepped]];
@@ -209,7 +218,10 @@ function tableOf({ date, processor, cores, chromium, frames, size, quality, seco
   const intro = `A stroke in ${corrected.times.length} frames of a clip of ${CORRECTED.frames} frames of ${CORRECTED.size.join(' × ')} pixels; the corrected frame is to be drawn within ${BAR} ms:`;
   const times = [['stroke', 'stroke'], ['corrected frame', 'frame'], ['all frames', 'clip']].map(([name, key]) => [name, corrected[key].median, corrected[key].worst]);
   const lines = times.map(([name, ...values]) => `| ${name} | ${values.map((value) => value.toFixed(0)).join(' | ')} |`);
-  return [...memory, '', intro, '', '| drawn | median, ms | worst, ms |', '| --- | --- | --- |', ...lines].join('\n');
+  const visit = `A first visit, with nothing kept: the module is there after ${first.module.toFixed(0)} ms, the first masks are drawn after ${first.masks.toFixed(0)} ms, and the clip of 51 frames is found after ${(first.found / 1000).toFixed(1)} s (medians). The longest task that blocks the page takes ${first.longest.toFixed(0)} ms.`;
+  const blocked = Object.entries({ ...tasks, painting: corrected.painting }).map(([name, { count, longest }]) => `| ${name} | ${count} | ${longest.toFixed(0)} |`);
+  const blocking = ['Tasks that block the page for more than 50 ms:', '', '| while | number | longest, ms |', '| --- | --- | --- |', ...blocked];
+  return [visit, '', ...memory, '', ...blocking, '', intro, '', '| drawn | median, ms | worst, ms |', '| --- | --- | --- |', ...lines].join('\n');
 }
 
 function mib(bytes) {
