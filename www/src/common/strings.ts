@@ -145,6 +145,8 @@ export const strings = {
   play: 'Play',
   pause: 'Pause',
   frameSlider: (index: number, count: number, seconds: number | null): string =>
+  speed: (times: number): string => `${{ 0.25: '¼', 0.5: '½' }[times] ?? times}×`,
+  speedIs: (times: number): string => `Speed ${strings.speed(times)}`,
     `Frame ${index} of 0–${count - 1}${seconds === null ? '' : `, ${seconds.toFixed(2)} s`}`,
   life: (first: number, last: number): string => (first === last ? `frame ${first} only` : `frames ${first} to ${last}`),
   away: 'not in this frame',

@@ -99,6 +99,8 @@ export interface State {
   readonly live: Live | null;
   /** Whether something is being opened. The current pair stays until it is ready. */
   readonly opening: boolean;
+  /** How many times as fast as it was taken. */
+  readonly speed: number;
   readonly settings: Settings;
   /** The number of motions set for all other pairs, while this pair has its own; otherwise `null`. */
   readonly motionsElsewhere: Settings['motions'] | null;
@@ -159,6 +161,7 @@ export const INITIAL: State = {
   edits: NO_EDITS,
   kept: new Map(),
   look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, arrows: false, residual: false, ...FRESH },
+  speed: 1,
   viewport: WHOLE,
   tool: { name: 'look', radius: 8, spread: 'both' },
   notice: null,

@@ -18,6 +18,8 @@ const WORDS = {
   stepBack: 'Step back',
   stepOn: 'Step forward',
   play: 'Play the clip, or stop',
+  slower: 'Play slower',
+  faster: 'Play faster',
   inPoint: 'In point: segment the clip from this frame on',
   outPoint: 'Out point: segment the clip up to this frame',
   doubtful: 'Next frame where an object is least certain',

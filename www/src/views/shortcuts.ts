@@ -55,6 +55,8 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: [','], shown: ',', does: 'stepBack', run: () => stepOne(store, session, 'both', -1) },
     { keys: ['.'], shown: '.', does: 'stepOn', run: () => stepOne(store, session, 'both', 1) },
     { keys: ['k'], shown: 'K', does: 'play', run: () => void session.play.toggle() },
+    { keys: ['j'], shown: 'J', does: 'slower', run: () => session.play.change(-1), shift: false },
+    { keys: ['j'], shown: 'Shift J', does: 'faster', run: () => session.play.change(1), shift: true },
     { keys: ['i'], shown: 'I', does: 'inPoint', run: () => setEdge(store, session, 'first') },
     { keys: ['o'], shown: 'O', does: 'outPoint', run: () => setEdge(store, session, 'last') },
     { keys: ['d'], shown: 'D', does: 'doubtful', run: () => session.frames.goToDoubtful(), shift: false },
