@@ -299,6 +299,32 @@ describe('frames one after another', () => {
     assert.deepEqual(formats.encodeCocoVideo(labels, meta).categories, [{ id: 2, name: 'car' }]);
   });
 
+  test('listed classes come first, with or without a mask, and keep their numbers', () => {
+    const [{ labels: image }] = labels;
+    const known = { names: { 1: 'car', 2: 'bus' }, labels: [1, 2], classes: ['person', 'car'], tracked: true };
+    const { tracked: _, ...one } = known;
+    const listed = [{ id: 1, name: 'person' }, { id: 2, name: 'car' }, { id: 5, name: 'bus' }];
+    for (const { categories, annotations } of [formats.encodeCoco(image, 4, 2, one), formats.encodeCocoImages(labels, known), formats.encodeCocoVideo(labels, known)]) {
+      assert.deepEqual(categories, listed);
+      assert.deepEqual([...new Set(annotations.map(({ category_id }) => category_id))].sort(), [2, 5]);
+    }
+    const names = (xml) => [...xml.matchAll(/<label><name>(\w+)</g)].map(([, name]) => name);
+    for (const xml of [formats.encodeCvatXml(image, 4, 2, one), formats.encodeCvatImages(labels, known), formats.encodeCvatVideo(labels, known)]) {
+      assert.deepEqual(names(xml), ['person', 'car', 'bus']);
+    }
+    const yolo = formats.encodeYolo(image, 4, 2, one);
+    assert.deepEqual([yolo.names, yolo.text.match(/^\d+/gm)], [['person', 'car', 'bus'], ['1', '2']]);
+    assert.deepEqual(formats.encodeYolo(image, 4, 2, one, { classes: ['bus', 'car'] }).names, ['bus', 'car']);
+    const mots = formats.encodeMots(labels, known);
+    assert.deepEqual([mots.names, mots.gt.match(/^1 \d+/gm)], [['person', 'car', 'bus'], ['1 2001', '1 3002']]);
+    assert.deepEqual(formats.encodeMotChallenge(labels, known).names, mots.names);
+    const archive = unzipSync(formats.encodeCvatMots(labels, known));
+    assert.equal(new TextDecoder().decode(archive['default/instances/labels.txt']), 'person\ncar\nbus\n');
+    const many = Array.from({ length: 65 }, (_, k) => `class ${k}`);
+    assert.throws(() => formats.encodeMots(labels, { ...known, classes: many }), { code: 'invalid-input' });
+    assert.throws(() => formats.encodeCoco(image, 4, 2, { classes: ['car', 'car'] }), { code: 'invalid-input' });
+  });
+
   test('an object is in a frame once', () => {
     const twice = [1, 1].map((label) => ({ label, matrix: [0, 0, label, 0, 0, 0] }));
     for (const name of MANY) {

@@ -19,6 +19,11 @@ export interface FormatMeta {
   image?: string;
   /** Names by label; default `motion-0`, `motion-1` … Labels with the same name are instances of one class. */
   names?: Readonly<Record<number, string>>;
+  /**
+   * All classes in the order of their numbers, each once: formats that list classes or number them have these first, also those without
+   * a mask, so that they are the same for all files of a data set. Default those of the masks.
+   */
+  classes?: readonly string[];
   /** The motions of the masks. */
   motions?: readonly FormatMotion[];
   /** The labels to write; default all but 255, which never becomes a mask. `encodeDavis` and `encodeVeronese` write all labels. */
@@ -338,7 +343,7 @@ export function encodeLabelMe(
 
 /**
  * YOLO segmentation: one line per label; bridges join parts and holes. `classes` gives the names in the order of their numbers, which
- * all images of a data set share; default the names that are there.
+ * all images of a data set share; default those of the `meta`, then the names that are there.
  */
 export function encodeYolo(
   labels: Uint8Array,

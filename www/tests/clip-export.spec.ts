@@ -7,7 +7,7 @@ import { unzipSync } from 'fflate';
 import { decodeImage } from 'veronese/codecs';
 import { davisPalette } from 'veronese';
 
-import { clipFrames, clipInNode, differences, done, expect, open, openExport, test, upload } from './support.js';
+import { clipDone, clipFrames, clipInNode, differences, done, dropOn, expect, open, openExport, openSegmented, test, upload } from './support.js';
 
 async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
   await openExport(page);
@@ -87,6 +87,95 @@ test('a clip is exported in the formats of annotation tools, with the objects th
   await openExport(page);
   await page.getByRole('button', { name: 'Save clip' }).click();
   await expect(page.locator('#notice')).toContainText('Tick an object in the list first.');
+});
+
+test('objects have classes of a list: given by keyboard, undone, exported with the numbers of the list, and imported again', async ({ page }) => {
+  await openSegmented(page, await clipFrames(4));
+  const notice = page.locator('#notice-sentence');
+  const file = (name: string, content: string) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
+  await dropOn(page, [file('labels.json', JSON.stringify([{ name: 'person', color: '#ff0000' }, { name: 'ball' }]))]);
+  await expect(notice).toHaveText('2 classes added to the list.');
+  const categories = [{ id: 8, name: 'box' }, { id: 3, name: 'ball' }];
+  await dropOn(page, [file('categories.json', JSON.stringify({ images: [], annotations: [], categories }))]);
+  await expect(notice).toHaveText('One class added to the list.');
+  // What is no list of classes says so, and adds nothing.
+  const list = page.locator('#class-list');
+  await page.getByRole('button', { name: 'Classes…' }).click();
+  await list.locator('input').setInputFiles([file('label.txt', '0 0.25 0.5 0.75 0.5\n')]);
+  await expect(notice).toHaveText(/^“label\.txt” is no list of classes/);
+  await list.locator('input').setInputFiles([file('names.txt', '\ufeffperson\r\ntree\r\n')]);
+  const lines = list.getByRole('textbox', { name: 'Classes' });
+  await expect(lines).toHaveValue('person\nball\nbox\ntree');
+  await lines.fill('person\nbox\nball\n\nbox\n');
+  await list.getByRole('button', { name: 'Done' }).click();
+  await expect(page.locator('#class-names option')).toHaveText(['person', 'box', 'ball']);
+
+  const names = page.locator('#objects .motion-name');
+  const give = async (object: string, name: string): Promise<void> => {
+    await page.keyboard.press(object);
+    await page.keyboard.press('t');
+    await page.keyboard.type(name);
+    await page.keyboard.press('Enter');
+  };
+  // A colour that is looked for in the palette is one step.
+  const colour = page.getByLabel('Colour of Object 1');
+  const first = await colour.inputValue();
+  await colour.evaluate((field: HTMLInputElement) => {
+    for (const value of ['#101010', '#202020', '#303030']) {
+      field.value = value;
+      field.dispatchEvent(new Event('input', { bubbles: true }));
+    }
+    field.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await names.nth(2).fill('the cube');
+  await names.nth(2).press('Enter');
+  await give('1', 'ball');
+  await give('2', 'crate');
+  const own = page.locator('#objects .class');
+  await expect(names.nth(1)).toHaveValue('ball 1');
+  await expect(names.nth(2)).toHaveValue('the cube');
+  await expect(own.nth(2)).toHaveValue('crate');
+  await expect(page.locator('#class-names option')).toHaveText(['person', 'box', 'ball', 'crate']);
+
+  // Classes and names are steps of undo.
+  const undo = page.locator('#undo');
+  await undo.click();
+  await expect(own.nth(2)).toHaveValue('');
+  await undo.click();
+  await expect(names.nth(1)).toHaveValue('Object 1');
+  await undo.click();
+  await expect(names.nth(2)).toHaveValue('Object 2');
+  await expect(colour).toHaveValue('#303030');
+  await undo.click();
+  await expect(colour).toHaveValue(first);
+  await expect(undo).toBeDisabled();
+  for (let k = 0; k < 4; k++) await page.locator('#redo').click();
+  await expect(names.nth(1)).toHaveValue('ball 1');
+  await expect(own.nth(2)).toHaveValue('crate');
+
+  const numbered = ['person', 'box', 'ball', 'crate'].map((name, k) => ({ id: k + 1, name }));
+  const coco = await savedAs(page, 'COCO, RLE');
+  const { categories: written, annotations } = JSON.parse(coco.bytes.toString()) as { categories: unknown; annotations: { category_id: number }[] };
+  expect(written).toEqual(numbered);
+  expect(new Set(annotations.map(({ category_id }) => category_id))).toEqual(new Set([3, 4]));
+  expect((JSON.parse((await savedAs(page, 'YouTube-VIS')).bytes.toString()) as { categories: unknown }).categories).toEqual(numbered);
+  const cvat = (await savedAs(page, 'CVAT, tracks')).bytes.toString();
+  expect([...cvat.matchAll(/<label><name>(\w+)/g)].map(([, name]) => name)).toEqual(['person', 'box', 'ball', 'crate']);
+  expect([...cvat.matchAll(/<track [^>]*label="([^"]*)"/g)].map(([, label]) => label)).toEqual(['ball', 'crate']);
+  const yolo = unzipSync((await savedAs(page, 'YOLO segmentation')).bytes);
+  expect([text(yolo['yolo/names.txt']), text(yolo['yolo/labels/f00.txt']).match(/^\d+/gm)]).toEqual(['person\nbox\nball\ncrate\n', ['2', '3']]);
+  await page.keyboard.press('Escape');
+
+  // The classes of a file are those of its objects.
+  await page.keyboard.press('1');
+  await own.nth(1).fill('');
+  await own.nth(1).press('Enter');
+  await expect(names.nth(1)).toHaveValue('Object 1');
+  await dropOn(page, [file('coco.json', coco.bytes.toString())]);
+  await clipDone(page);
+  await expect(names.nth(1)).toHaveValue('ball 1');
+  await undo.click();
+  await expect(names.nth(1)).toHaveValue('Object 1');
 });
 
 test('the preview lists the files that are written, and shows one frame as they have it', async ({ page }) => {

@@ -82,6 +82,49 @@ test('an MP4 video gives exactly the requested frames', async ({ page }) => {
   expect(await numbers(page)).toEqual([7, 11]);
 });
 
+for (const kind of ['a video', 'a folder'] as const) {
+  test(`${kind} is played more slowly, and faster`, async ({ page }) => {
+    await page.addInitScript(() => {
+      // How long frames are to be shown: what runs then goes on with a promise.
+      const asked: number[] = [];
+      Object.assign(window, { asked });
+      const wait = window.setTimeout;
+      window.setTimeout = ((run: TimerHandler, time?: number, ...rest: unknown[]) => {
+        if (document.querySelector('#play')?.getAttribute('aria-label') === 'Pause' && String(run).includes('[native code]')) asked.push(time ?? 0);
+        return wait(run, time, ...rest);
+      }) as typeof window.setTimeout;
+    });
+    await open(page);
+    const count = 6;
+    const files = kind === 'a video' ? [await video(page, count, 'webm', 'vp8')] : await Promise.all([...'abcdef'].map((name, k) => square(`${name}.png`, 96, 64, k, 0)));
+    await upload(page, files);
+    await expect(page.locator('#clip-name')).toContainText('6 frames');
+    await done(page);
+    const speed = page.getByRole('button', { name: 'Speed' });
+    const longest = async (): Promise<number> => {
+      await page.evaluate(() => void ((window as unknown as { asked: number[] }).asked.length = 0));
+      await page.getByRole('slider', { name: 'Current frame' }).press('Home');
+      await expect(page.locator('[data-slot=first] .slot-name')).toContainText(kind === 'a video' ? '#0,' : 'a.png');
+      await page.getByRole('button', { name: 'Play', exact: true }).click();
+      await expect(page.getByRole('button', { name: 'Play', exact: true })).toBeVisible();
+      return page.evaluate(() => Math.max(...(window as unknown as { asked: number[] }).asked));
+    };
+    const usual = kind === 'a video' ? 1000 / 30 : 40;
+    await expect(speed).toHaveText('1×');
+    expect(await longest()).toBeLessThanOrEqual(usual + 1);
+    await page.keyboard.press('j');
+    await page.keyboard.press('j');
+    await page.keyboard.press('j'); // there is none below
+    await expect(speed).toHaveText('¼×');
+    expect(await longest()).toBeGreaterThan(usual + 1);
+    for (let k = 0; k < 3; k++) await page.keyboard.press('Shift+J');
+    await expect(speed).toHaveText('2×');
+    expect(await longest()).toBeLessThanOrEqual(usual / 2 + 1);
+    await speed.click();
+    await expect(speed).toHaveAccessibleName('Speed ¼×');
+  });
+}
+
 test('frames are marked approximate without WebCodecs', async ({ page, context }) => {
   const maker = await context.newPage();
   await maker.goto(PAIR);

@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 import { encodeCocoImages, encodeCvatVideo, encodeDavis, encodeLabelMe } from 'veronese/formats';
 
-import { type Upload, clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, open, openExport, test, upload } from './support.js';
+import { type Upload, clipFrames, clipInNode, differences, done, dropOn, expect, labelsOnCanvas, open, openExport, test, upload } from './support.js';
 import { HEIGHT, WIDTH, video } from './video.js';
 
 const SIZE = { width: 200, height: 140 };
@@ -56,7 +56,10 @@ test('a file of annotations corrects the frames that it is of, in one step that 
     await goTo(page, index);
     expect(differences(await labelsOnCanvas(page), said[k]!)).toBe(0);
   }
-  await expect(page.locator('#lane-names button')).toContainText(['Plate']);
+  // Their class is one of the list from now on.
+  await expect(page.locator('#lane-names button')).toContainText(['Plate 7']);
+  await expect(page.getByLabel('Class of Plate 7')).toHaveValue('Plate');
+  await expect(page.locator('#class-names option')).toHaveText(['Plate']);
 
   await page.locator('#undo').click();
   await expect(page.locator('#clip-status')).toHaveText(/^Undone/);
@@ -87,15 +90,7 @@ test('the frames of a video are known by their numbers', async ({ page }) => {
 
 test('masks that are dropped on the clip are no frames, and frames are', async ({ page }) => {
   const found = await openClip(page);
-  const drop = (files: Upload[]): Promise<void> =>
-    page.evaluate(
-      (all) => {
-        const transfer = new DataTransfer();
-        for (const { name, type, bytes } of all) transfer.items.add(new File([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))], name, { type }));
-        document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
-      },
-      files.map(({ name, mimeType, buffer }) => ({ name, type: mimeType, bytes: buffer.toString('base64') })),
-    );
+  const drop = (files: Upload[]): Promise<void> => dropOn(page, files);
   const said = withBox(found[1]!, 3, 100);
   await drop([{ name: 'f01.png', mimeType: 'image/png', buffer: Buffer.from(encodeDavis(said, SIZE.width, SIZE.height)) }]);
   await corrected(page);

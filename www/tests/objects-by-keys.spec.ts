@@ -41,6 +41,83 @@ test('objects are selected, locked and deleted, and corrected frames are found',
   await expect(rows).toHaveCount(3);
 });
 
+test('several objects are selected by mouse and keyboard, and what is done with them is one step', async ({ page }) => {
+  await openSegmented(page, await clipFrames(5));
+  const rows = page.locator('#objects > li');
+  const row = (id: number) => page.locator(`#objects > [data-mask="${id}"]`);
+  const boxes = page.getByRole('checkbox', { name: /^Select / });
+  const bar = page.getByRole('group', { name: 'Selected objects' });
+  const told = bar.getByRole('status');
+  const undo = page.locator('#undo');
+  await expect(boxes).toHaveCount(0);
+  await expect(bar).toBeHidden();
+
+  await row(1).locator('.thumbnail').click();
+  await row(2).locator('.thumbnail').click({ modifiers: ['ControlOrMeta'] });
+  await expect(told).toHaveText('2 selected');
+  await expect(page.getByRole('checkbox', { name: 'Select Object 1' })).toBeChecked();
+  await expect(page.getByRole('checkbox', { name: 'Select Object 2' })).toBeChecked();
+  await expect(page.locator('#select-several')).toHaveAttribute('aria-pressed', 'true');
+
+  // Locks and classes of all, each in one step.
+  const lock = bar.getByRole('button', { name: 'Lock' });
+  await lock.click();
+  await expect(lock).toHaveAttribute('aria-pressed', 'true');
+  await undo.click();
+  await expect(lock).toHaveAttribute('aria-pressed', 'false');
+  await page.keyboard.press('t');
+  await page.keyboard.type('toy');
+  await page.keyboard.press('Enter');
+  const names = page.locator('#objects .motion-name');
+  await expect(names.nth(1)).toHaveValue('toy 1');
+  await expect(names.nth(2)).toHaveValue('toy 2');
+  await undo.click();
+  await expect(names.nth(1)).toHaveValue('Object 1');
+  await expect(names.nth(2)).toHaveValue('Object 2');
+  await expect(undo).toBeDisabled();
+
+  // Export ticks these alone.
+  await row(1).getByRole('checkbox').click();
+  await expect(told).toHaveText('1 selected');
+  await bar.getByRole('button', { name: 'Export' }).click();
+  await expect(page.locator('#export')).toBeVisible();
+  await expect(bar).toBeHidden();
+  await page.keyboard.press('Escape');
+  await expect(page.getByLabel('Show Object 1')).not.toBeChecked();
+  await expect(page.getByLabel('Show Object 2')).toBeChecked();
+
+  // A plain press selects one again; from there Shift and the arrow keys extend.
+  await row(1).locator('.thumbnail').click();
+  await expect(row(1)).toHaveClass(/selected/);
+  await page.keyboard.press('Shift+ArrowDown');
+  await expect(told).toHaveText('2 selected');
+  await expect(page.getByRole('checkbox', { name: 'Select Object 2' })).toBeFocused();
+  await page.keyboard.press('ArrowUp');
+  await page.keyboard.press('Space');
+  await expect(told).toHaveText('1 selected');
+  await page.keyboard.press('ControlOrMeta+a');
+  await expect(told).toHaveText('2 selected');
+  await bar.getByRole('button', { name: 'Merge' }).click();
+  await expect(rows).toHaveCount(2);
+  await expect(rows.nth(1).locator('summary')).toBeFocused();
+  await expect(bar).toBeHidden();
+  await clipDone(page);
+  await undo.click();
+  await expect(rows).toHaveCount(3);
+
+  await row(2).locator('.thumbnail').click();
+  await expect(row(2)).toHaveClass(/selected/);
+  await row(1).locator('.thumbnail').click({ modifiers: ['Shift'] });
+  await expect(told).toHaveText('2 selected');
+  await page.keyboard.press('Delete');
+  await expect(rows).toHaveCount(1);
+  await expect(told).toHaveText('0 selected');
+  await clipDone(page);
+  await page.keyboard.press('ControlOrMeta+z');
+  await expect(rows).toHaveCount(3);
+  await expect(undo).toBeDisabled();
+});
+
 test('with Shift the wheel changes the size of the brush, and nothing else', async ({ page }) => {
   await openSegmented(page, await clipFrames(4));
   const size = page.locator('#tools [name=radius]');

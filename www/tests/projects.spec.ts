@@ -126,6 +126,39 @@ test('a corrected clip is there after a reload, and can be corrected further', a
   expect(new Set(await numbersOnCanvas(page))).toEqual(new Set([0, 2]));
 });
 
+test('classes are those of the project, and their list is there for the next clip', async ({ page }) => {
+  const files = await clipFrames(4);
+  await openClip(page, files);
+  await segmentClip(page);
+  const own = page.getByLabel(/^Class of .* 1$/);
+  await page.keyboard.press('1');
+  await own.fill('ball');
+  await own.press('Enter');
+  await page.getByRole('button', { name: 'Classes…' }).click();
+  await page.getByRole('textbox', { name: 'Classes' }).fill('person\nball');
+  await page.keyboard.press('Escape');
+  const saved = await savedProject(page);
+  expect(gunzipSync(saved.buffer).toString('latin1')).toContain('"classList":["person","ball"]');
+  await kept(page);
+
+  // Another clip, without the project.
+  await forgetAll(page);
+  await page.reload();
+  await openClip(page, files);
+  await segmentClip(page);
+  const offered = page.locator('#class-names option');
+  await expect(offered).toHaveText(['person', 'ball']);
+  await expect(own).toHaveValue('');
+  await page.getByRole('button', { name: 'Classes…' }).click();
+  await page.getByRole('textbox', { name: 'Classes' }).fill('tree');
+  await page.keyboard.press('Escape');
+
+  // The classes of the project keep their numbers.
+  await upload(page, [saved]);
+  await expect(own).toHaveValue('ball');
+  await expect(offered).toHaveText(['person', 'ball', 'tree']);
+});
+
 test('the settings are those of the project', async ({ page }) => {
   const files = await clipFrames(5);
   await openClip(page, files);

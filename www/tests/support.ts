@@ -193,6 +193,18 @@ export async function clipInNode(files: readonly Upload[], options: ClipOptions 
   return labels;
 }
 
+/** Drops files on the page. */
+export async function dropOn(page: Page, files: readonly Upload[]): Promise<void> {
+  await page.evaluate(
+    (all) => {
+      const transfer = new DataTransfer();
+      for (const { name, type, bytes } of all) transfer.items.add(new File([Uint8Array.from(atob(bytes), (c) => c.charCodeAt(0))], name, { type }));
+      document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
+    },
+    files.map(({ name, mimeType, buffer }) => ({ name, type: mimeType, bytes: buffer.toString('base64') })),
+  );
+}
+
 /** Opens the panel of exports, if it is closed. */
 export async function openExport(page: Page): Promise<void> {
   if (!(await page.locator('#export').isVisible())) await page.locator('#open-export').click();

@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { clipFrames, done, expect, open, test, upload } from './support.js';
+import { clipFrames, done, expect, open, openSegmented, test, upload } from './support.js';
 
 test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
@@ -183,4 +183,19 @@ test('a finger finds the buttons and both handles of the timeline, and drags the
       expect(hit).toEqual([true, true, true]);
     }
   }
+});
+
+test('several objects are selected by touch', async ({ page }) => {
+  await openSegmented(page, await clipFrames(4));
+  const bar = page.getByRole('group', { name: 'Selected objects' });
+  const select = page.getByRole('button', { name: 'Select', exact: true });
+  await select.tap();
+  await expect(bar).toBeVisible();
+  for (const id of [1, 2]) await page.getByRole('checkbox', { name: `Select Object ${id}` }).tap();
+  await expect(bar.getByRole('status')).toHaveText('2 selected');
+  for (const control of await bar.locator('button, input').all()) expect((await control.boundingBox())!.height).toBeGreaterThanOrEqual(44);
+  await bar.getByRole('button', { name: 'Delete' }).tap();
+  await expect(page.locator('#objects > li')).toHaveCount(1);
+  await expect(bar).toBeHidden();
+  await expect(select).toHaveAttribute('aria-pressed', 'false');
 });

@@ -7,9 +7,9 @@ import { type Frame, gathered, type Gathering, idOf } from './frames.js';
 type Annotation = CocoVideoDocument['annotations'][number];
 
 export function encodeCocoVideo<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, CocoVideoDocument> {
-  return gathered(frames, meta, ({ tracked }): Gathering<CocoVideoDocument> => {
+  return gathered(frames, meta, ({ classes = [], tracked }): Gathering<CocoVideoDocument> => {
     const file_names: string[] = [];
-    const categories = new Map<number, string>();
+    const categories = new Map(classes.entries());
     const annotations = new Map<number, Annotation>();
     return {
       add(frame) {

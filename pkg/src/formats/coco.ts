@@ -3,7 +3,7 @@
 import type { ClipMeta, CocoDocument, CocoRle, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
 import { cocoRle } from './coco-rle.js';
 import { type Frame, gathered, type Gathering, idOf } from './frames.js';
-import { checkedOptions, imageOf, masksOf } from './input.js';
+import { checkedMeta, checkedOptions, imageOf, masksOf } from './input.js';
 import { Outlines } from './outline.js';
 
 export function encodeCoco(
@@ -13,7 +13,7 @@ export function encodeCoco(
   meta: FormatMeta = {},
   options?: FormatOptions<'rle' | 'polygon'>,
 ): CocoDocument {
-  const instances = new Instances(options, 'image', false);
+  const instances = new Instances(options, 'image', checkedMeta(meta));
   const masks = masksOf(labels, width, height, meta);
   instances.add({ index: 0, image: imageOf(meta), width, height, masks });
   return instances.finish();
@@ -24,7 +24,7 @@ export function encodeCocoImages<Frames extends LabelFrames>(
   meta?: ClipMeta,
   options?: FormatOptions<'rle' | 'polygon'>,
 ): Encoded<Frames, CocoDocument> {
-  return gathered(frames, meta, ({ tracked }) => new Instances(options, 'clip', tracked));
+  return gathered(frames, meta, (clip) => new Instances(options, 'clip', clip));
 }
 
 class Instances implements Gathering<CocoDocument> {
@@ -33,14 +33,15 @@ class Instances implements Gathering<CocoDocument> {
   readonly #tracked: boolean;
   readonly #images: CocoDocument['images'] = [];
   readonly #annotations: CocoDocument['annotations'] = [];
-  /** Names by the smallest label that has them. */
-  readonly #categories = new Map<number, string>();
+  /** Names by number. */
+  readonly #categories: Map<number, string>;
 
-  constructor(options: unknown, kind: 'image' | 'clip', tracked: boolean) {
+  constructor(options: unknown, kind: 'image' | 'clip', { classes = [], tracked = false }: Pick<ClipMeta, 'classes' | 'tracked'>) {
     const { shape, tolerance } = checkedOptions(options, ['rle', 'polygon']);
     this.#shape = shape;
     this.#outlines = new Outlines(tolerance, kind);
     this.#tracked = tracked;
+    this.#categories = new Map(classes.entries());
   }
 
   add({ index, image, width, height, masks }: Frame): void {
@@ -64,7 +65,7 @@ class Instances implements Gathering<CocoDocument> {
   }
 
   finish(): CocoDocument {
-    // COCO counts from 1: label 0 is category 1.
+    // COCO counts from 1: the first class is category 1, and without a list label 0.
     const categories = [...this.#categories].sort(([a], [b]) => a - b).map(([category, name]) => ({ id: category + 1, name }));
     return { info: { description: 'Masks of what moves together' }, images: this.#images, categories, annotations: this.#annotations };
   }

@@ -14,8 +14,8 @@ const LABELS = 'default/instances/labels.txt';
 const EPOCH = { mtime: new Date(1980, 0, 1) };
 
 export function encodeCvatMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, Uint8Array> {
-  return gathered(frames, meta, ({ tracked }): Gathering<Uint8Array> => {
-    const ids = new MotsIds();
+  return gathered(frames, meta, ({ classes, tracked }): Gathering<Uint8Array> => {
+    const ids = new MotsIds(classes);
     // Where labels are no objects, each is a class of its own and its number is that of its track as well.
     const tracks = new Numbering();
     const taken = new Set<string>();

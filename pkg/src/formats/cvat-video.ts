@@ -21,7 +21,7 @@ export function encodeCvatVideo<Frames extends LabelFrames>(
   options?: FormatOptions<'polygon' | 'box'>,
 ): Encoded<Frames, string> {
   const { shape, tolerance } = checkedOptions(options, ['polygon', 'box']);
-  return gathered(frames, meta, ({ name }): Gathering<string> => {
+  return gathered(frames, meta, ({ name, classes = [] }): Gathering<string> => {
     const outlines = new Outlines(tolerance, 'clip');
     const tracks = new Map<number, Track>();
     return {
@@ -41,7 +41,7 @@ export function encodeCvatVideo<Frames extends LabelFrames>(
         for (const [, track] of all) leave(track, length, shape);
         const size = `<original_size><width>${width}</width><height>${height}</height></original_size>`;
         return [
-          ...cvatHead('interpolation', length, all.map(([, track]) => track.name), [size, `<source>${escaped(name)}</source>`]),
+          ...cvatHead('interpolation', length, [...classes, ...all.map(([, track]) => track.name)], [size, `<source>${escaped(name)}</source>`]),
           ...all.flatMap(([label, track]) => [
             `  <track id="${label}" label="${escaped(track.name)}" source="auto">`,
             ...track.shapes,

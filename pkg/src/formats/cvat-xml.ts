@@ -2,7 +2,7 @@
 
 import type { ClipMeta, Encoded, FormatMeta, FormatOptions, LabelFrames } from '../../types/formats.js';
 import { type Frame, gathered, type Gathering, idOf } from './frames.js';
-import { checkedOptions, classNames, imageOf, type Mask, masksOf } from './input.js';
+import { checkedMeta, checkedOptions, imageOf, type Mask, masksOf } from './input.js';
 import { Outlines, points, type Ring } from './outline.js';
 import { rowRuns } from './runs.js';
 import { escaped } from './xml.js';
@@ -14,7 +14,7 @@ export function encodeCvatXml(
   meta: FormatMeta = {},
   options?: FormatOptions<'mask' | 'polygon'>,
 ): string {
-  const images = new Images(options, 'image', false);
+  const images = new Images(options, 'image', checkedMeta(meta));
   const masks = masksOf(labels, width, height, meta);
   images.add({ index: 0, image: imageOf(meta), width, height, masks });
   return images.finish();
@@ -25,27 +25,28 @@ export function encodeCvatImages<Frames extends LabelFrames>(
   meta?: ClipMeta,
   options?: FormatOptions<'mask' | 'polygon'>,
 ): Encoded<Frames, string> {
-  return gathered(frames, meta, ({ tracked }) => new Images(options, 'clip', tracked));
+  return gathered(frames, meta, (clip) => new Images(options, 'clip', clip));
 }
 
 class Images implements Gathering<string> {
   readonly #shape: 'mask' | 'polygon';
   readonly #outlines: Outlines;
   readonly #tracked: boolean;
-  readonly #names = new Set<string>();
+  readonly #names: Set<string>;
   readonly #elements: string[] = [];
   #count = 0;
 
-  constructor(options: unknown, kind: 'image' | 'clip', tracked: boolean) {
+  constructor(options: unknown, kind: 'image' | 'clip', { classes, tracked = false }: Pick<ClipMeta, 'classes' | 'tracked'>) {
     const { shape, tolerance } = checkedOptions(options, ['mask', 'polygon']);
     this.#shape = shape;
     this.#outlines = new Outlines(tolerance, kind);
     this.#tracked = tracked;
+    this.#names = new Set(classes);
   }
 
   add({ index, image, width, height, masks }: Frame): void {
     this.#count++;
-    for (const name of classNames(masks)) this.#names.add(name);
+    for (const { name } of masks) this.#names.add(name);
     this.#elements.push(`  <image id="${index}" name="${escaped(image)}" width="${width}" height="${height}">`);
     const elements =
       this.#shape === 'mask'

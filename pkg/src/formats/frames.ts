@@ -109,8 +109,8 @@ function checkedFrame(given: unknown, extent: Extent | undefined, clip: Clip): F
   if (extent && (width !== extent.width || height !== extent.height)) {
     throw new VeroneseError('frame-size-mismatch', 'the frames must have one size');
   }
-  const { names, labels: wanted, motions: always } = clip;
-  const meta = { names, labels: wanted, motions: motions === undefined ? always : motions };
+  const { names, classes, labels: wanted, motions: always } = clip;
+  const meta = { names, classes, labels: wanted, motions: motions === undefined ? always : motions };
   const masks = masksOf(labels, width, height, meta as FormatMeta);
   return { index, image: image ?? (index === 0 ? imageOf(clip) : `frame-${index}.png`), width, height, masks };
 }
@@ -148,6 +148,10 @@ export function idOf(label: number): number {
 /** Gives each entry that is new the next number, from 1. */
 export class Numbering {
   readonly entries: string[] = [];
+
+  constructor(first: readonly string[] = []) {
+    for (const entry of first) this.of(entry);
+  }
 
   of(entry: string): number {
     const found = this.entries.indexOf(entry);

@@ -19,7 +19,7 @@ import {
 export interface Mask {
   label: number;
   name: string;
-  /** The smallest label that has the same name: it stands for the class. */
+  /** Number of its class: the place in the list of classes, if it is there; otherwise after that list by the smallest label that has the same name. */
   category: number;
   /** Top-left corner and size of the bounding box in the image, pixels. */
   left: number;
@@ -53,15 +53,18 @@ export function nameOf(label: number, { names }: Pick<FormatMeta, 'names'>): str
   return names?.[label] ?? `motion-${label}`;
 }
 
-function categoryOf(name: string, label: number, meta: Pick<FormatMeta, 'names'>): number {
+function categoryOf(name: string, label: number, meta: Pick<FormatMeta, 'names' | 'classes'>): number {
+  const { classes = [] } = meta;
+  const listed = classes.indexOf(name);
+  if (listed >= 0) return listed;
   let category = 0;
   while (category < label && nameOf(category, meta) !== name) category++;
-  return category;
+  return classes.length + category;
 }
 
-/** The names of the masks' classes, each once, in the order of the masks. */
-export function classNames(masks: readonly Mask[]): string[] {
-  return [...new Set(masks.map(({ name }) => name))];
+/** The names of the classes, each once: those of the list, then others in the order of the masks. */
+export function classNames(masks: readonly Mask[], { classes = [] }: Pick<FormatMeta, 'classes'>): string[] {
+  return [...new Set([...classes, ...masks.map(({ name }) => name)])];
 }
 
 /** The name of the first frame's file. */
@@ -83,12 +86,15 @@ export function checkedMeta(meta: unknown, more: readonly string[] = []): Format
   return reading(() => {
     if (meta === undefined) return {};
     if (!isObject(meta)) throw invalidInput('what is known beside the labels must be an object');
-    const unknown = unknownOf(meta, ['image', 'names', 'motions', 'labels', ...more]);
+    const unknown = unknownOf(meta, ['image', 'names', 'classes', 'motions', 'labels', ...more]);
     if (unknown !== undefined) throw invalidInput(`nothing is known as ${unknown}`);
-    const { image, names, motions, labels } = meta;
+    const { image, names, classes, motions, labels } = meta;
     if (!isText(image)) throw invalidInput('image must be text, the name of a file');
     if (names !== undefined && !(typeof names === 'object' && names && Object.values(names).every(isText))) {
       throw invalidInput('names must hold a text for each label');
+    }
+    if (classes !== undefined && !(isListOf(classes, isName) && new Set(classes).size === classes.length)) {
+      throw invalidInput('classes must be a list of names, each once');
     }
     if (motions !== undefined && !isListOf(motions, isMotion)) {
       throw invalidInput('motions must each have a label and a matrix of six numbers');
@@ -98,6 +104,7 @@ export function checkedMeta(meta: unknown, more: readonly string[] = []): Format
     return {
       ...(image !== undefined && { image }),
       ...(names !== undefined && { names: { ...(names as Record<number, string>) } }),
+      ...(classes !== undefined && { classes: [...classes] }),
       ...(motions !== undefined && { motions: motions.map(copied) }),
       ...(labels !== undefined && { labels }),
     };
@@ -133,6 +140,10 @@ export function checkedOptions<Shape extends string, Texts extends Record<string
 /** Where there is one. */
 export function isText(value: unknown): value is string | undefined {
   return value === undefined || typeof value === 'string';
+}
+
+function isName(value: unknown): value is string {
+  return typeof value === 'string';
 }
 
 function isLabel(value: unknown): value is number {

@@ -5,7 +5,7 @@ import { type Clip, type Extent, gathered, type Gathering, idOf, Numbering } fro
 
 export function encodeMotChallenge<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, MotFiles> {
   return gathered(frames, meta, (clip): Gathering<MotFiles> => {
-    const classes = new Numbering();
+    const classes = new Numbering(clip.classes?.map(oneLine));
     const lines: string[] = [];
     const images: string[] = [];
     return {

@@ -12,7 +12,11 @@ const MOST = 64;
 
 /** Numbers of objects: 1000 × class + instance. */
 export class MotsIds {
-  readonly #classes = new Numbering();
+  readonly #classes: Numbering;
+
+  constructor(classes: readonly string[] = []) {
+    this.#classes = new Numbering(classes.map(oneLine));
+  }
 
   of(name: string, label: number): number {
     const number = this.#classes.of(oneLine(name));
@@ -28,7 +32,7 @@ export class MotsIds {
 
 export function encodeMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, MotFiles> {
   return gathered(frames, meta, (clip): Gathering<MotFiles> => {
-    const ids = new MotsIds();
+    const ids = new MotsIds(clip.classes);
     const lines: string[] = [];
     const images: string[] = [];
     return {

@@ -2,7 +2,7 @@
 
 import type { FormatMeta, YoloFiles } from '../../types/formats.js';
 import { invalidInput, invalidOption, isListOf, reading } from '../common/checks.js';
-import { checkedOptions, classNames, type Mask, masksOf } from './input.js';
+import { checkedMeta, checkedOptions, classNames, type Mask, masksOf } from './input.js';
 import { Outlines } from './outline.js';
 
 /** Enough for an error far below a thousandth of a pixel. */
@@ -17,7 +17,7 @@ export function encodeYolo(
 ): YoloFiles {
   const { tolerance, classes } = checkedOptions(options, [], {}, ['classes']);
   const masks = masksOf(labels, width, height, meta);
-  const names = reading(() => listed(classes)) ?? classNames(masks);
+  const names = reading(() => listed(classes)) ?? classNames(masks, checkedMeta(meta));
   const [shareX, shareY] = [shares(width), shares(height)];
   const lines = new Outlines(tolerance).singles({ masks, width, height }).map((ring, at) => {
     const share = ring.map((value, at) => (at % 2 === 0 ? shareX : shareY)[2 * value]);

@@ -1,14 +1,16 @@
-//! The name of a mask: the user's, or its kind and number.
+//! The name of a mask: the user's, or its class or kind and its number.
 
 import { UNLABELLED, type Kind, keyOf } from '../result/masks.js';
 import { strings } from './strings.js';
 
-/** Which masks are meant, and the names that the user gave them, by {@link keyOf}. */
+/** Which masks are meant, and the names and classes that the user gave them, by {@link keyOf}. */
 interface Naming {
   readonly kind: Kind;
   readonly names: Readonly<Record<string, string>>;
+  readonly classes: Readonly<Record<string, string>>;
 }
 
-export function nameOf({ kind, names }: Naming, id: number): string {
-  return names[keyOf(kind, id)] ?? (id === UNLABELLED ? strings.unknownName : strings.maskName(kind, id));
+export function nameOf({ kind, names, classes }: Naming, id: number): string {
+  const key = keyOf(kind, id);
+  return names[key] ?? (key in classes ? `${classes[key]} ${id}` : id === UNLABELLED ? strings.unknownName : strings.maskName(kind, id));
 }

@@ -1,4 +1,4 @@
-//! The words of what is loaded when it is opened: exports and *Inspect*.
+//! The words of what is loaded when it is used: exports, *Inspect*, and what the list of a clip's objects has beside its rows.
 
 import { NBSP, frames, objects, tenths, whole } from './strings.js';
 
@@ -28,6 +28,10 @@ export const panels = {
     forgetOf: (name: string): string => `Forget the project of ${name}`,
     forgotten: (name: string): string => `The project of “${name}” is forgotten.`,
   },
+  select: (name: string): string => `Select ${name}`,
+  selected: (count: number): string => `${whole.format(count)} selected`,
+  classOf: (name: string): string => `Class of ${name}`,
+
   exporting: (done: number, of: number): string => `${whole.format(done)} of ${frames(of)}`,
   exported: (count: number, of: number): string => `Saved: ${objects(count).toLowerCase()} in ${frames(of)}.`,
   preview: {

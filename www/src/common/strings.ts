@@ -124,6 +124,7 @@ export const strings = {
     locked: (): string => 'Locked.',
     unlocked: (): string => 'Unlocked.',
     accepted: (): string => 'Accepted.',
+    described: (): string => 'Changed.',
     found: (count: number, of: number): string => `${objects(count)} in ${frames(of)}.`,
     same: (_count: number, of: number): string => `No objects: all ${frames(of)} are the same, pixel by pixel.`,
     repeated: (count: number, of: number): string => `${objects(count)} in ${frames(of)}, corrected as before.`,
@@ -144,6 +145,8 @@ export const strings = {
   notTracked: 'This frame has no masks yet.',
   play: 'Play',
   pause: 'Pause',
+  speed: (times: number): string => `${{ 0.25: '¼', 0.5: '½' }[times] ?? times}×`,
+  speedIs: (times: number): string => `Speed ${strings.speed(times)}`,
   frameSlider: (index: number, count: number, seconds: number | null): string =>
     `Frame ${index} of 0–${count - 1}${seconds === null ? '' : `, ${seconds.toFixed(2)} s`}`,
   life: (first: number, last: number): string => (first === last ? `frame ${first} only` : `frames ${first} to ${last}`),

@@ -4,11 +4,11 @@ import type { ClipMeta, LabelFrame } from 'veronese/formats';
 import type { Clip } from '../clips/clip.js';
 import { UNLABELLED, keyOf } from '../result/masks.js';
 import { segmentationOf } from '../state/objects.js';
-import type { Look } from '../state/state.js';
+import type { State } from '../state/state.js';
 import { type Life, type Tracked, livesOf } from '../state/tracked.js';
 import { atSize } from './full-size.js';
 
-/** The class of objects without a name of their own, as of `veronese convert`. */
+/** The class of objects that have neither a class nor a name, as of `veronese convert`. */
 const CLASS = 'object';
 
 export interface ClipFile extends LabelFrame {
@@ -50,27 +50,31 @@ export interface ClipFormat {
   picture?(exported: ClipExport): Promise<Blob>;
 }
 
+/** What is ticked, and the list of classes. */
+type Shown = Pick<State, 'look' | 'classList'>;
+
 /** The frames that have masks. `told` is called when a frame has been made. */
-export function exportOfClip(tracked: Tracked, look: Look, told: (done: number, of: number) => void = () => undefined): ClipExport {
-  return exportOfFrames(tracked, look, [...tracked.frames.keys()].filter((index) => tracked.frames[index] !== null), told);
+export function exportOfClip(tracked: Tracked, shown: Shown, told: (done: number, of: number) => void = () => undefined): ClipExport {
+  return exportOfFrames(tracked, shown, [...tracked.frames.keys()].filter((index) => tracked.frames[index] !== null), told);
 }
 
 /** One frame of {@link exportOfClip}; `null` if it has no masks. */
-export function exportOfFrame(tracked: Tracked, look: Look, index: number): ClipExport | null {
-  return (tracked.frames[index] ?? null) === null ? null : exportOfFrames(tracked, look, [index], () => undefined);
+export function exportOfFrame(tracked: Tracked, shown: Shown, index: number): ClipExport | null {
+  return (tracked.frames[index] ?? null) === null ? null : exportOfFrames(tracked, shown, [index], () => undefined);
 }
 
 /** The objects are those of all frames. */
-function exportOfFrames(tracked: Tracked, look: Look, indices: readonly number[], told: (done: number, of: number) => void): ClipExport {
+function exportOfFrames(tracked: Tracked, { look, classList }: Shown, indices: readonly number[], told: (done: number, of: number) => void): ClipExport {
   const { clip, frames } = tracked;
   const count = indices.length;
   const objects = livesOf(tracked).filter(({ id }) => !look.hidden.has(id));
-  const names = Object.fromEntries(objects.map(({ id }) => [id, tracked.names[keyOf('objects', id)] ?? CLASS]));
+  const names = Object.fromEntries(objects.map(({ id }) => [id, classOf(tracked, id)]));
   const wanted = new Set(objects.map(({ id }) => id));
   const sequence = (exported: readonly number[]): Sequence => ({
     meta: {
       clip: stemOf(clip.name).replace(/[\\/:*?"<>|#]/g, '_'),
       names,
+      ...(classList.length > 0 && { classes: classList }),
       labels: [...wanted],
       tracked: true,
       ...(clip.times === null ? {} : { timestamps: exported.map((index) => clip.times![index]! - clip.times![exported[0]!]!) }),
@@ -101,6 +105,12 @@ function exportOfFrames(tracked: Tracked, look: Look, indices: readonly number[]
   const stems = indices.map((index) => stemOf(clip.nameOf(index)));
   const fromStart = Array.from({ length: (indices.at(-1) ?? -1) + 1 }, (_, index) => index);
   return { clip, objects, count, stems, ...sequence(indices), fromStart: sequence(fromStart) };
+}
+
+/** A name says what an object is unless a class does. */
+function classOf({ classes, names }: Tracked, id: number): string {
+  const key = keyOf('objects', id);
+  return classes[key] ?? names[key] ?? CLASS;
 }
 
 function stemOf(name: string): string {

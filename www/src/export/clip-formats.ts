@@ -18,8 +18,8 @@ function lines(texts: readonly string[]): string {
 }
 
 /** What the encoders of one image take. */
-function given({ meta: { names, labels } }: ClipExport, frame: ClipFile): readonly [Uint8Array, number, number, FormatMeta] {
-  return [frame.labels, frame.width, frame.height, { image: frame.image, names, labels, motions: frame.motions ?? [] }];
+function given({ meta: { names, classes, labels } }: ClipExport, frame: ClipFile): readonly [Uint8Array, number, number, FormatMeta] {
+  return [frame.labels, frame.width, frame.height, { image: frame.image, names, ...(classes && { classes }), labels, motions: frame.motions ?? [] }];
 }
 
 /** How a format makes one file. */
@@ -55,9 +55,9 @@ function sequence(folder: string, encode: (exported: ClipExport) => Promise<MotF
   };
 }
 
-/** The names of the classes, each once. */
-function classesOf({ meta: { names, labels } }: ClipExport): string[] {
-  return [...new Set(labels.map((label) => names[label]!))];
+/** The names of the classes, each once: those of the list, then others. */
+function classesOf({ meta: { names, classes = [], labels } }: ClipExport): string[] {
+  return [...new Set([...classes, ...labels.map((label) => names[label]!)])];
 }
 
 /** All formats that this browser can write, in the order of the menu. */

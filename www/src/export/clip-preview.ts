@@ -1,7 +1,7 @@
 //! What an export of a clip will write: the names of its files, and what it writes of one frame.
 
 import { unzipSync } from 'fflate';
-import type { Look } from '../state/state.js';
+import type { State } from '../state/state.js';
 import type { Tracked } from '../state/tracked.js';
 import { type ClipFormat, exportOfClip, exportOfFrame } from './clip-export.js';
 
@@ -27,11 +27,11 @@ export interface Preview {
 const BEGINNING = 480;
 
 /** `null` if no object is ticked. */
-export async function previewOf(format: ClipFormat, tracked: Tracked, look: Look, index: number): Promise<Preview | null> {
-  const whole = exportOfClip(tracked, look);
+export async function previewOf(format: ClipFormat, tracked: Tracked, shown: Pick<State, 'look' | 'classList'>, index: number): Promise<Preview | null> {
+  const whole = exportOfClip(tracked, shown);
   if (whole.objects.length === 0) return null;
   const folders = foldersOf(format.names(whole));
-  const one = exportOfFrame(tracked, look, index);
+  const one = exportOfFrame(tracked, shown, index);
   if (one === null) return { folders, file: null, shown: null };
   if (format.picture !== undefined) return { folders, file: null, shown: await format.picture(one) };
   const [[name, content]] = Object.entries(await format.make(one)) as [[string, string | Uint8Array<ArrayBuffer>]];

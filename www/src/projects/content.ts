@@ -12,14 +12,15 @@ import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, ma
 type Entries<K, V> = readonly (readonly [K, V])[];
 
 /** A project with lists of entries in place of maps. */
-export interface Content extends Pick<Project, 'settings'> {
+export interface Content extends Pick<Project, 'settings'>, Partial<Pick<Project, 'classList'>> {
   readonly clip:
-    | (Omit<ProjectClip, 'painted' | 'spread' | 'became' | 'locks' | 'accepted' | 'spans' | 'solved'> & {
+    | (Omit<ProjectClip, 'painted' | 'spread' | 'became' | 'locks' | 'accepted' | 'classes' | 'spans' | 'solved'> & {
         readonly painted: Entries<number, Runs>;
         readonly spread?: Entries<number, ClipPropagation>;
         readonly became: Entries<number, number>;
         readonly locks?: Entries<number, boolean>;
         readonly accepted?: readonly number[];
+        readonly classes?: ProjectClip['classes'];
         readonly spans: readonly (Omit<Span, 'numbers'> & { readonly numbers: Entries<number, number> })[];
         readonly solved: { readonly settings: SolvedPairs['settings']; readonly pairs: Entries<number, Blob> } | null;
       })
@@ -80,11 +81,14 @@ const isRange = objectOf({ first: isIndex, last: isIndex });
 const isLocks: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isFrom(1, 254), isFlag))(value);
 const isSpread: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))(value);
 const isAccepted: Check<unknown> = (value): value is unknown => value === undefined || listOf(isIndex)(value);
+const isClasses: Check<unknown> = (value): value is unknown => value === undefined || mapOf(isText)(value);
+const isClassList: Check<unknown> = (value): value is unknown => value === undefined || listOf(isText)(value);
 const isClip = objectOf({
   range: isRange,
   longestSide: isSide,
   largest: isFrom(0, 254),
   names: mapOf(isText),
+  classes: isClasses,
   colours: mapOf(isColour),
   frames: listOf(orNull(isFrame)),
   found: listOf(orNull(isRuns)),
@@ -125,7 +129,7 @@ const isReport = objectOf({
 const isFound = objectOf({ packed: objectOf({ report: isReport, runs: isRuns }), waited: isNumber });
 const isPair = objectOf({ edits: isEdits, found: orNull(isFound), ownMotions: orNull(isMotions), width: isSide, height: isSide });
 
-const isProject = objectOf({ settings: isSettings, clip: orNull(isClip), pairs: listOf(entryOf(isText, isPair)) });
+const isProject = objectOf({ settings: isSettings, classList: isClassList, clip: orNull(isClip), pairs: listOf(entryOf(isText, isPair)) });
 
 /** What {@link upgraded} reads of a file of version 1. */
 const isOld = objectOf<{ readonly clip: { readonly state: Blob | null; readonly frames: readonly (TrackedFrame | null)[]; readonly largest: number } | null }>({

@@ -32,7 +32,7 @@ export interface Header extends Subject {
 }
 
 /** The bytes of the project's file. */
-export function streamOf({ of, name, frames, settings, clip, pairs }: Project, now: Date): ReadableStream<Uint8Array<ArrayBuffer>> {
+export function streamOf({ of, name, frames, settings, classList, clip, pairs }: Project, now: Date): ReadableStream<Uint8Array<ArrayBuffer>> {
   const [images, blobs] = [new Map<Runs, number>(), new Map<Blob, number>()];
   const place = <T>(map: Map<T, number>, value: T): number => {
     const at = map.get(value) ?? map.size;
@@ -46,7 +46,7 @@ export function streamOf({ of, name, frames, settings, clip, pairs }: Project, n
     return isRuns(value) ? ({ image: place(images, value) } satisfies ImagePlace) : value;
   };
   const part = clip && { ...clip, accepted: acceptedIn(clip) };
-  const content = JSON.stringify({ settings, clip: part, pairs: [...pairs].map(([key, kept]) => [key, withoutSaved(kept)]) }, referring);
+  const content = JSON.stringify({ settings, classList, clip: part, pairs: [...pairs].map(([key, kept]) => [key, withoutSaved(kept)]) }, referring);
   const lists = JSON.stringify({ images: [...images.keys()].map(({ width, height, ends }) => [width, height, ends.length]), bytes: [...blobs.keys()].map(({ size }) => size) });
   const header: Header = { format: FORMAT, version: VERSION, of, name, frames, saved: now.toISOString() };
   const lines = [header, content, lists].map((line) => `${typeof line === 'string' ? line : JSON.stringify(line)}\n`);
@@ -103,17 +103,19 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
     const { of, name: called, frames, version } = header;
     const value = version === 1 ? upgraded(parsed) : parsed;
     assert(isContent(value, frames));
-    const { settings, clip, pairs } = value;
+    const { settings, classList = [], clip, pairs } = value;
     const subject = { of, name: called, frames };
     return {
       ...subject,
       settings,
+      classList,
       clip: clip && {
         ...clip,
         painted: new Map(clip.painted),
         spread: new Map(clip.spread),
         became: new Map(clip.became),
         locks: new Map(clip.locks),
+        classes: clip.classes ?? {},
         accepted: new Set(clip.accepted?.flatMap((index) => clip.frames[index] ?? [])),
         spans: clip.spans.map((span) => ({ ...span, numbers: new Map(span.numbers) })),
         solved: clip.solved && { ...clip.solved, pairs: new Map(clip.solved.pairs) },

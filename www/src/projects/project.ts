@@ -4,12 +4,11 @@
 import { asSaved } from '../correction/edits.js';
 import { type Kept, keptFrom } from '../state/kept.js';
 import { type FramePair, type Subject, keyOfPair, subjectOf, subjectOfClip, timelineOf } from '../state/pair.js';
-import type { Settings } from '../state/settings.js';
 import type { State } from '../state/state.js';
 import { type SolvedPairs, type Tracked, type Version, isComplete, isTracked, lengthOf, savedOf, untracked, versionOf } from '../state/tracked.js';
 
 /** The objects of a clip. */
-export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'names' | 'colours'> {
+export interface ProjectClip extends Version, Pick<Tracked, 'range'> {
   /** The frame on screen and the objects that are not ticked, when the project was written. */
   readonly at: number;
   readonly hidden: readonly number[];
@@ -17,8 +16,7 @@ export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'names' | 
   readonly solved: SolvedPairs | null;
 }
 
-export interface Project extends Subject {
-  readonly settings: Settings;
+export interface Project extends Subject, Pick<State, 'settings' | 'classList'> {
   /** `null` if the subject is no clip, or is not segmented. */
   readonly clip: ProjectClip | null;
   /** The edited pairs, by their key. */
@@ -27,7 +25,7 @@ export interface Project extends Subject {
 
 /** What the state has of this subject; `null` if nothing was ever done with it. */
 export function projectFrom(state: State, of: string, solvedPairs: ReadonlyMap<string, SolvedPairs>): Project | null {
-  const { settings, motionsElsewhere } = state;
+  const { settings, motionsElsewhere, classList } = state;
   const pairs = new Map([...state.kept].filter(([, kept]) => kept.subject.of === of));
   const open = subjectOf(state.pair)?.of === of ? keptFrom(state) : null;
   if (open !== null) pairs.set(...open);
@@ -35,7 +33,7 @@ export function projectFrom(state: State, of: string, solvedPairs: ReadonlyMap<s
   const clip = tracked !== null && (tracked.solved > 0 || isTracked(tracked)) ? tracked : null;
   const subject = clip === null ? [...pairs.values()][0]?.subject : subjectOfClip(clip.clip);
   if (subject === undefined) return null;
-  return { ...subject, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs.get(of) ?? null), pairs };
+  return { ...subject, classList, settings: { ...settings, motions: motionsElsewhere ?? settings.motions }, clip: clip && partOf(clip, state, solvedPairs.get(of) ?? null), pairs };
 }
 
 function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {
@@ -43,12 +41,12 @@ function trackedOf({ tracked, keptClips }: State, of: string): Tracked | null {
 }
 
 function partOf(tracked: Tracked, { settings, timeline, look }: State, solved: SolvedPairs | null): ProjectClip {
-  const { range, names, colours } = tracked;
+  const { range } = tracked;
   const open = timeline?.clip === tracked.clip ? timeline : null;
   const hidden = open !== null && look.kind === 'objects' ? [...look.hidden] : [];
   const longestSide = Math.min(tracked.longestSide, settings.longestSide); // unknown before the first masks
   // What is complete can be corrected without its pairs.
-  return { ...versionOf(tracked), range, longestSide, names, colours, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
+  return { ...versionOf(tracked), range, longestSide, at: open?.first ?? 0, hidden, solved: isComplete(tracked) ? null : solved };
 }
 
 /** The state in which what the project has counts as saved, unless it has changed since. */
@@ -68,9 +66,11 @@ export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of
 }
 
 /** The state with the work of the project, which is of this pair or of its clip. */
-export function withProject(state: State, { of, settings, clip, pairs }: Project, pair: FramePair): Partial<State> {
+export function withProject(state: State, { of, settings, classList: saved, clip, pairs }: Project, pair: FramePair): Partial<State> {
   const kept = new Map([...state.kept, ...[...pairs].map(([key, one]) => [key, { ...one, edits: asSaved(one.edits) }] as const)]);
-  const common = { settings, motionsElsewhere: null, kept };
+  // The project's classes keep their numbers.
+  const classList = [...new Set([...saved, ...state.classList])];
+  const common = { settings, motionsElsewhere: null, classList, kept };
   const opened = timelineOf(pair)?.clip;
   if (clip === null || opened === undefined) return common;
   const { tracked, keptClips } = state;

@@ -15,7 +15,7 @@ const SOON = 500;
 const LATER = 10_000;
 
 const OF_EDITS = ['actions', 'done', 'appearances'] as const;
-const OF_CLIP = ['frames', 'spans', 'names', 'colours', 'locks', 'accepted', 'solved', 'run', 'range'] as const;
+const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locks', 'accepted', 'solved', 'run', 'range'] as const;
 
 type Shelf = typeof import('./shelf.js');
 
@@ -110,7 +110,8 @@ export class Projects {
     const [clip, clipBefore] = [now.tracked, before.tracked];
     if (clip === null || clip.clip !== clipBefore?.clip) return;
     const ticked = now.look.kind === 'objects' && before.look.kind === 'objects' && now.look.hidden !== before.look.hidden;
-    if (!ticked && OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
+    const listed = now.classList !== before.classList;
+    if (!ticked && !listed && OF_CLIP.every((part) => clip[part] === clipBefore[part])) return;
     // What the page does by itself when it opens a sample is not kept.
     if (clip.solved > 0 && (!clip.clip.sample || isUnsavedClip(clip))) this.#touch(clip.clip.fingerprint, clip.run.phase === 'working' ? LATER : SOON);
   }

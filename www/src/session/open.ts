@@ -1,5 +1,5 @@
-//! What can be opened: samples, images, folders, videos, projects, and masks for the frames on screen. It decides what files are, and reads
-//! them; it keeps nothing.
+//! What can be opened: samples, images, folders, videos, projects, masks for the frames on screen, lists of classes. It decides what files
+//! are, and reads them; it keeps nothing.
 
 import type { Clip } from '../clips/clip.js';
 import { openClip } from '../clips/open.js';
@@ -57,11 +57,14 @@ export class Open {
   /**
    * Opens files. A video or more than two images is a clip to choose frames from. Two images make a new pair, in the order of their
    * names. One image goes into `slot`; without a slot, it becomes the missing second frame or the first of a new pair. A project continues
-   * with its frames: those given with it, those on screen, or whenever they are opened. Masks are imported.
+   * with its frames: those given with it, those on screen, or whenever they are opened. Masks are imported,
+   * and lists of classes.
    */
   async files(files: Iterable<File> | Promise<Iterable<File>>, slot: Slot | null = null): Promise<void> {
     try {
       const given = [...(await files)];
+      const maybeList = slot === null && given.every(({ name }) => /\.(json|txt)$/i.test(name));
+      if (maybeList && (await (await loaded(import('./class-list.js'))).importClasses(given, this.#store))) return;
       const isOfClip = slot === null && this.#store.get().tracked !== null;
       const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
       const areMasks = maybe && (await (await importing()).areMasks(given, this.#store.get()));

@@ -6,6 +6,8 @@ import type { Store } from '../state/state.js';
 import type { Frames } from './frames.js';
 import type { PairSegmenting } from './pair/segmenting.js';
 
+/** How fast a clip can be played, as a multiple of how fast it was taken. */
+const SPEEDS = [0.25, 0.5, 1, 2];
 /** Frame rate at which folders are played, as their frames have no times. */
 const FRAMES_PER_SECOND = 25;
 
@@ -28,18 +30,34 @@ export class Playing {
     this.#store.set({ playing: !playing });
     if (playing || timeline === null) return;
     const { clip, first } = timeline;
-    let at = first === null || first >= clip.count - 1 ? -1 : first;
-    while (this.#store.get().playing && at < clip.count - 1) {
-      const began = performance.now();
-      const next = at + 1;
+    let next = first === null || first >= clip.count - 1 ? 0 : first + 1;
+    let end = performance.now(); // of the time of the frame before
+    while (this.#store.get().playing && next < clip.count) {
       await this.#frames.goTo(next);
-      const now = this.#store.get().timeline;
+      const { timeline: now, speed } = this.#store.get();
       if (now?.clip !== clip || now.first !== next) break; // the end of the pair, or gone elsewhere
-      await new Promise((resolve) => setTimeout(resolve, durationOf(clip, next) - (performance.now() - began)));
-      at = next;
+      const duration = (): number => durationOf(clip, next) / speed;
+      end += duration();
+      next += 1;
+      // Above the speed at which it was taken, frames whose time is over are left out. Else all are shown, if need be more slowly.
+      if (speed > 1) for (; next < clip.count - 1 && end + duration() < performance.now(); next++) end += duration();
+      else end = Math.max(end, performance.now());
+      await new Promise((resolve) => setTimeout(resolve, end - performance.now()));
     }
     this.#store.set({ playing: false });
     this.#segmenting.rest();
+  }
+
+  /** Plays faster by as many steps, or more slowly. */
+  change(by: number): void {
+    const { speed } = this.#store.get();
+    this.#store.set({ speed: SPEEDS[SPEEDS.indexOf(speed) + by] ?? speed });
+  }
+
+  /** Plays faster by a step, and after the fastest at the slowest. */
+  cycle(): void {
+    const { speed } = this.#store.get();
+    this.#store.set({ speed: SPEEDS[(SPEEDS.indexOf(speed) + 1) % SPEEDS.length]! });
   }
 
   /** Goes to the frames that a pointer is dragged over, but reads none that it has left meanwhile. */

@@ -28,24 +28,25 @@ export class Shown {
   kind(kind: Kind): void {
     const { look, pair, tracked, live } = this.#store.get();
     if (live !== null || look.kind === kind || (kind === 'objects' && !isSeen(tracked))) return;
-    const { hidden, solo, stabilised, selected } = FRESH;
-    if (kind !== 'objects' && look.kind !== 'objects') return this.#store.look({ kind, hidden, solo, stabilised, selected });
+    const { hidden, solo, stabilised, selected, among } = FRESH;
+    if (kind !== 'objects' && look.kind !== 'objects') return this.#store.look({ kind, hidden, solo, stabilised, selected, among });
     this.#masks.leave();
     this.pair(pair, { ...look, ...FRESH, kind });
   }
 
-  /** Selects a mask. */
+  /** Selects a mask alone. */
   select(mask: number | null): void {
-    if (this.#store.get().look.selected !== mask) this.#store.look({ selected: mask });
+    const { selected, among } = this.#store.get().look;
+    if (selected !== mask || among !== null) this.#store.look({ selected: mask, among: null });
   }
 
   /** Shows a pair with the masks that there are: those of the clip, or its own, which are found if necessary. */
   pair(pair: FramePair, look: Look, others: Partial<State> = {}): void {
     const { tracked, playing, scrubbing } = { ...this.#store.get(), ...others };
     if (look.kind === 'objects' && tracked !== null) {
-      const { names, colours } = tracked;
+      const { names, classes, colours } = tracked;
       const result = resultOf(tracked, pair);
-      this.#store.set({ ...others, pair, found: null, edits: NO_EDITS, result, run: { phase: 'done', cause: 'tracked' }, look: { ...look, names, colours } });
+      this.#store.set({ ...others, pair, found: null, edits: NO_EDITS, result, run: { phase: 'done', cause: 'tracked' }, look: { ...look, names, classes, colours } });
       return;
     }
     const restored = this.#masks.stateFor(pair);
@@ -62,7 +63,11 @@ export class Shown {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     this.#store.clip({ ...versionOf(version), run });
-    const { selected } = this.#store.get().look;
+    const { names, classes, colours } = version;
+    const { look } = this.#store.get();
+    const { selected } = look;
+    const same = look.names === names && look.classes === classes && look.colours === colours;
+    if (look.kind === 'objects' && !same) this.#store.look({ names, classes, colours });
     const now = version.became.get(selected ?? 0);
     if (now !== undefined) this.#store.look({ selected: now === 0 ? null : now });
     if (!isTracked(tracked)) this.kind('objects');

@@ -4,7 +4,7 @@ import type { ClipFrame, ClipOptions, ClipPropagation } from 'veronese';
 import { type Runs, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
 import { becameAfter } from './spans.js';
-import type { TrackedFrame, Version } from './tracked.js';
+import type { Notes, Version } from './tracked.js';
 
 /** What points to a new object in a frame: x, y, width and height of a box, or x and y of a click, pixels of the masks. */
 export interface Pointed {
@@ -14,15 +14,17 @@ export interface Pointed {
   readonly at: readonly [number, number] | readonly [number, number, number, number];
 }
 
-/** What a person says: pixels of frames, by index, and where they spread; where a new object is, what becomes of whole objects, or which of them are locked. */
+/** What a person says: pixels of frames, by index, and where they spread; where a new object is, what becomes of whole objects, or what changes no masks. */
 export type Said =
   | { readonly pointed: Pointed }
-  | { readonly painted: ReadonlyMap<number, Uint8Array>; readonly spread: ClipPropagation }
-  | { readonly edits: NonNullable<ClipOptions['edits']> }
+  | ({ readonly painted: ReadonlyMap<number, Uint8Array>; readonly spread: ClipPropagation } & Partial<Noted>)
+  | ({ readonly edits: NonNullable<ClipOptions['edits']> } & Partial<Noted>)
   | Noted;
 
-/** What changes no masks: which objects are locked, which masks are accepted. */
-export type Noted = { readonly locks: ReadonlyMap<number, boolean> } | { readonly accepted: ReadonlySet<TrackedFrame> };
+/** What changes no masks: these notes in the place of those before. */
+export interface Noted {
+  readonly notes: Partial<Notes>;
+}
 
 /** What was painted before in a frame, with this over it. */
 export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: Pick<Runs, 'width' | 'height'>): Runs {
@@ -34,10 +36,9 @@ export function paintedOver(before: Runs | undefined, labels: Uint8Array, size: 
 export function withSaid<V extends Version>(version: V, said: Said): V {
   // Nothing is seen of it yet; its number is taken.
   if ('pointed' in said) return { ...version, largest: Math.max(version.largest, said.pointed.id) };
-  if ('locks' in said) return { ...version, locks: new Map([...version.locks, ...said.locks]) };
-  if ('accepted' in said) return { ...version, accepted: said.accepted };
-  if ('edits' in said) return { ...version, became: becameAfter(version.became, said.edits) };
-  return [...said.painted].reduce((before, [index, labels]) => withPainted(before, index, labels), version);
+  const noted = { ...version, ...said.notes };
+  if ('edits' in said) return { ...noted, became: becameAfter(version.became, said.edits) };
+  return 'painted' in said ? [...said.painted].reduce((before, [index, labels]) => withPainted(before, index, labels), noted) : noted;
 }
 
 function withPainted<V extends Version>(version: V, index: number, said: Uint8Array): V {

@@ -50,8 +50,11 @@ export interface Look extends Painting {
   readonly stabilised: number | null;
   /** The junctions about which the user does not want to be asked. */
   readonly dismissed: ReadonlySet<string>;
-  /** Names that the user gave to masks, by `keyOf`. Like the colours, they follow from the edits. */
+  /** The objects of a clip that are selected together, `selected` among them; `null` while one is selected alone. */
+  readonly among: ReadonlySet<number> | null;
+  /** Names and classes that the user gave to masks, by `keyOf`. Like the colours, they follow from the edits. */
   readonly names: Readonly<Record<string, string>>;
+  readonly classes: Readonly<Record<string, string>>;
 }
 
 export type ToolName = 'look' | 'brush' | 'eraser' | 'box';
@@ -92,8 +95,12 @@ export interface State {
   readonly tracked: Tracked | null;
   /** Other clips that were segmented, by fingerprint. */
   readonly keptClips: ReadonlyMap<string, Tracked>;
+  /** The classes that objects can have, in the order of their numbers in files. */
+  readonly classList: readonly string[];
   /** Whether the clip is being played. */
   readonly playing: boolean;
+  /** How many times as fast as it was taken. */
+  readonly speed: number;
   /** Whether a pointer is being dragged through the clip. */
   readonly scrubbing: boolean;
   readonly live: Live | null;
@@ -134,20 +141,27 @@ export function isPassing({ playing, scrubbing }: Pick<State, 'playing' | 'scrub
   return playing || scrubbing;
 }
 
+/** The objects that are selected. */
+export function selectedIn({ selected, among }: Look): readonly number[] {
+  return [...(among ?? (selected === null ? [] : [selected]))];
+}
+
 /** Whether some strokes are not applied yet. */
 export function isPending({ result, edits }: Pick<State, 'result' | 'edits'>): boolean {
   return result !== null && lastStroke(edits) !== result.under;
 }
 
 /** The initial values of the parts of a look that belong to one result. */
-export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, dismissed: new Set<string>(), blinking: false, names: {}, colours: {} } as const;
+export const FRESH = { hidden: new Set<number>(), solo: null, stabilised: null, selected: null, dismissed: new Set<string>(), blinking: false, among: null, names: {}, classes: {}, colours: {} } as const;
 
 export const INITIAL: State = {
   pair: { first: null, second: null },
   timeline: null,
   tracked: null,
   keptClips: new Map(),
+  classList: [],
   playing: false,
+  speed: 1,
   scrubbing: false,
   live: null,
   opening: false,

@@ -24,7 +24,7 @@ type ChangeCause = 'corrected' | 'undone' | 'redone';
 export type ClipRun =
   | { readonly phase: 'idle' | 'cancelled' | 'failed' }
   /** `changed`: number of frames whose masks are others than before. */
-  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | ChangeCause; readonly changed: number }
+  | { readonly phase: 'done'; readonly cause: 'found' | 'same' | 'repeated' | 'continued' | 'locked' | 'unlocked' | 'accepted' | 'described' | ChangeCause; readonly changed: number }
   | {
       readonly phase: 'working';
       readonly stage: ClipProgress['stage'];
@@ -71,9 +71,16 @@ export interface Version {
   readonly locks: ReadonlyMap<number, boolean>;
   /** The masks that a person has accepted. Masks that change are others, and are not. */
   readonly accepted: ReadonlySet<TrackedFrame>;
+  /** Names, classes and colours that a person gave to objects, by `keyOf`. */
+  readonly names: Readonly<Record<string, string>>;
+  readonly classes: Readonly<Record<string, string>>;
+  readonly colours: Readonly<Record<string, Colour>>;
   /** The largest number that an object ever had. Numbers are not used again. */
   readonly largest: number;
 }
+
+/** What a version says of objects and frames that changes no masks. */
+export type Notes = Pick<Version, 'locks' | 'accepted' | 'names' | 'classes' | 'colours'>;
 
 export interface Tracked extends Version {
   readonly clip: Clip;
@@ -89,19 +96,14 @@ export interface Tracked extends Version {
   readonly future: readonly Version[];
   /** The frames at which a person looked because an object is least certain there, by its number. */
   readonly checked: ReadonlyMap<number, number>;
-  /** Names and colours that the user gave to objects, by `keyOf`. */
-  readonly names: Readonly<Record<string, string>>;
-  readonly colours: Readonly<Record<string, Colour>>;
   /** What was last exported, kept as a project, or found by itself. */
   readonly saved: Saved;
 }
 
-type Saved = Pick<Tracked, 'frames' | 'names' | 'colours' | 'locks' | 'accepted'>;
+type Saved = Notes & Pick<Version, 'frames'>;
 
-const NOTHING = {};
 const NO_PREVIEWS: Tracked['previews'] = [];
-const NO_LOCKS: Version['locks'] = new Map();
-const NONE_ACCEPTED: Version['accepted'] = new Set();
+const NO_NOTES: Notes = { locks: new Map(), accepted: new Set(), names: {}, classes: {}, colours: {} };
 
 export function untracked(clip: Clip): Tracked {
   const frames = Array.from({ length: clip.count }, () => null);
@@ -118,37 +120,38 @@ export function untracked(clip: Clip): Tracked {
     painted: new Map(),
     spread: new Map(),
     became: new Map(),
-    locks: NO_LOCKS,
-    accepted: NONE_ACCEPTED,
+    ...NO_NOTES,
     largest: 0,
     past: [],
     future: [],
     checked: new Map(),
-    names: NOTHING,
-    colours: NOTHING,
-    saved: { frames, names: NOTHING, colours: NOTHING, locks: NO_LOCKS, accepted: NONE_ACCEPTED },
+    saved: { frames, ...NO_NOTES },
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, painted, spread, became, locks, accepted, largest }: Version): Version {
-  return { frames, spans, longestSide, found, painted, spread, became, locks, accepted, largest };
+export function versionOf({ frames, spans, longestSide, found, painted, spread, became, largest, ...others }: Version): Version {
+  return { frames, spans, longestSide, found, painted, spread, became, largest, ...notesOf(others) };
+}
+
+export function notesOf({ locks, accepted, names, classes, colours }: Notes): Notes {
+  return { locks, accepted, names, classes, colours };
 }
 
 /** Whether corrections of other objects leave this one as it is: an object with a name, unless a person says otherwise. */
-export function isLocked({ locks, names }: Pick<Tracked, 'locks' | 'names'>, id: number): boolean {
+export function isLocked({ locks, names }: Pick<Notes, 'locks' | 'names'>, id: number): boolean {
   return locks.get(id) ?? keyOf('objects', id) in names;
 }
 
 /** What is saved when the clip is kept or exported as it is. */
-export function savedOf({ frames, names, colours, locks, accepted }: Saved): Saved {
-  return { frames, names, colours, locks, accepted };
+export function savedOf({ frames, ...others }: Saved): Saved {
+  return { frames, ...notesOf(others) };
 }
 
 /** Whether leaving would lose what a person did. */
-export function isUnsavedClip({ frames, names, colours, locks, accepted, saved, past, run }: Tracked): boolean {
+export function isUnsavedClip({ frames, saved, past, run, ...others }: Tracked): boolean {
   const corrected = past.length > 0 || isCorrecting(run);
-  const said = names !== saved.names || colours !== saved.colours || locks !== saved.locks || accepted !== saved.accepted;
-  return said || (frames !== saved.frames && corrected);
+  const noted = (Object.keys(NO_NOTES) as (keyof Notes)[]).some((part) => others[part] !== saved[part]);
+  return noted || (frames !== saved.frames && corrected);
 }
 
 /** Whether a correction is being carried through the clip. */

@@ -22,12 +22,12 @@ export function mountClipExport(panel: HTMLElement, store: Store, session: Sessi
   select.addEventListener('change', describe);
 
   button.addEventListener('click', async () => {
-    const { tracked, look } = store.get();
+    const { tracked } = store.get();
     const format = chosen();
     if (tracked === null) return;
     button.disabled = true;
     try {
-      const exported = exportOfClip(tracked, look, (done, of) => (told.textContent = panels.exporting(done, of)));
+      const exported = exportOfClip(tracked, store.get(), (done, of) => (told.textContent = panels.exporting(done, of)));
       if (exported.objects.length === 0) return session.say(strings.notices.nothingTicked);
       await saveFiles(format, await format.make(exported));
       clipExported(store, tracked);

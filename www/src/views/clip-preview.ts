@@ -44,7 +44,7 @@ export function mountClipPreview(panel: HTMLElement, store: Store, formats: read
       const index = timeline?.first ?? 0;
       picture.alt = panels.preview.picture(index);
       try {
-        const made = await previewOf(format, tracked, look, index);
+        const made = await previewOf(format, tracked, store.get(), index);
         if (!outdated) show(made, captionOf(made, index));
       } catch (error) {
         show(null, sentenceOf(error));

@@ -34,7 +34,12 @@ export function maskRow(of: 'pair' | 'clip', id: number, store: Store, session: 
     else hidden.add(id);
     store.look({ hidden, solo: null });
   });
-  colour.addEventListener('input', () => masks.setAppearance(id, { colour: colourFromHex(colour.value) }));
+  let picking = false;
+  colour.addEventListener('input', () => {
+    masks.setAppearance(id, { colour: colourFromHex(colour.value) }, picking);
+    picking = true;
+  });
+  colour.addEventListener('change', () => (picking = false));
   name.addEventListener('change', () => masks.setAppearance(id, { name: name.value.trim() }));
   name.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') name.blur();

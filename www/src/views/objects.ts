@@ -19,7 +19,9 @@ interface Row {
 
 export function mountObjects(root: ParentNode, store: Store, session: Session): void {
   const list = find(root, '#objects', HTMLOListElement);
-  const add = find(root, '#add-object', HTMLButtonElement);
+  const foot = find(root, '#list-foot', HTMLElement);
+  const add = find(foot, '#add-object', HTMLButtonElement);
+  let begun = false;
   const rows = new Map<number, Row>();
   add.addEventListener('click', () => {
     if (session.objects.addObject()) chooseTool(store, 'brush');
@@ -30,7 +32,7 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
     if (tracked === before.tracked && look === before.look && result === before.result) return;
     list.hidden = look.kind !== 'objects' || tracked === null;
     if (tracked === null) return;
-    add.hidden = list.hidden;
+    foot.hidden = list.hidden;
     add.disabled = tracked.spans.length === 0;
     if (list.hidden) return;
     const lives = livesOf({ frames: shownFrames(tracked) });
@@ -52,6 +54,9 @@ export function mountObjects(root: ParentNode, store: Store, session: Session): 
       row.refresh(now, lives.find((life) => life.id === id) ?? null, ids);
     }
     if (held !== null && !rows.has(held)) focusRow(list, held, look);
+    if (begun) return;
+    begun = true;
+    void import('./list-tools.js').then(({ mountListTools }) => mountListTools(root, store, session), () => undefined);
   });
 }
 
@@ -70,7 +75,7 @@ function rowOf(id: number, store: Store, session: Session): Row {
     session.frames.goToDoubtful(id);
     find(document, '.layers', HTMLElement).focus({ preventScroll: true }); // the button has gone
   });
-  lock.addEventListener('click', () => session.objects.setLocked(id, lock.getAttribute('aria-pressed') === 'false'));
+  lock.addEventListener('click', () => session.objects.toggleLock(id));
   split.addEventListener('click', () => session.objects.split(id));
   remove.addEventListener('click', () => session.objects.remove(id));
   find(row, '.motion-actions', HTMLElement).hidden = id === 0;

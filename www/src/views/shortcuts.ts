@@ -3,8 +3,8 @@
 import { ZOOM_STEP } from '../drawing/viewport.js';
 import { masksOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
-import type { Store } from '../state/state.js';
-import { type Tracked, isLocked, livesOf } from '../state/tracked.js';
+import { type Store, selectedIn } from '../state/state.js';
+import { livesOf } from '../state/tracked.js';
 import { toggleBlinking } from './blink.js';
 import type { KeyName } from './key-list.js';
 import { setEdge } from './range.js';
@@ -55,6 +55,8 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: [','], shown: ',', does: 'stepBack', run: () => stepOne(store, session, 'both', -1) },
     { keys: ['.'], shown: '.', does: 'stepOn', run: () => stepOne(store, session, 'both', 1) },
     { keys: ['k'], shown: 'K', does: 'play', run: () => void session.play.toggle() },
+    { keys: ['j'], shown: 'J', does: 'slower', run: () => session.play.change(-1), shift: false },
+    { keys: ['j'], shown: 'Shift J', does: 'faster', run: () => session.play.change(1), shift: true },
     { keys: ['i'], shown: 'I', does: 'inPoint', run: () => setEdge(store, session, 'first') },
     { keys: ['o'], shown: 'O', does: 'outPoint', run: () => setEdge(store, session, 'last') },
     { keys: ['d'], shown: 'D', does: 'doubtful', run: () => session.frames.goToDoubtful(), shift: false },
@@ -66,8 +68,9 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['y'], shown: 'Y', does: 'accept', run: () => accept(session, 'shown'), shift: false },
     { keys: ['y'], shown: 'Shift Y', does: 'acceptAll', run: () => accept(session, 'all'), shift: true },
     { keys: NUMBERS, shown: '1 … 9', does: 'select', run: (name) => selectMask(store, session, Number(name)) },
-    { keys: ['l'], shown: 'Shift L', does: 'lock', run: () => ofSelected(store, (id, tracked) => session.objects.setLocked(id, !isLocked(tracked, id))), shift: true },
-    { keys: ['delete', 'backspace'], shown: 'Delete', does: 'remove', run: () => ofSelected(store, (id) => session.objects.remove(id)) },
+    { keys: ['l'], shown: 'Shift L', does: 'lock', run: () => session.objects.toggleLock(...chosen(store)), shift: true },
+    { keys: ['delete', 'backspace'], shown: 'Delete', does: 'remove', run: () => session.objects.remove(...chosen(store)) },
+    { keys: ['t'], shown: 'T', does: 'class', run: toClass },
     { keys: ['v'], shown: 'V', does: 'look', run: () => chooseTool(store, 'look') },
     { keys: ['p'], shown: 'P', does: 'brush', run: () => chooseTool(store, 'brush') },
     { keys: ['e'], shown: 'E', does: 'eraser', run: () => chooseTool(store, 'eraser') },
@@ -91,10 +94,15 @@ function selectMask(store: Store, session: Session, place: number): void {
   if (id !== undefined) session.shown.select(id);
 }
 
-/** Does something with the selected object of a clip. */
-function ofSelected(store: Store, act: (id: number, tracked: Tracked) => void): void {
+/** The objects of a clip that are selected. */
+function chosen(store: Store): number[] {
   const { look, tracked } = store.get();
-  if (look.kind === 'objects' && tracked !== null && look.selected !== null && look.selected !== 0) act(look.selected, tracked);
+  return look.kind === 'objects' && tracked !== null ? selectedIn(look).filter((id) => id !== 0) : [];
+}
+
+/** Goes to the class of what is selected. */
+function toClass(): void {
+  document.querySelector<HTMLElement>(':is(#several, #objects:not(.choosing) .selected) .class')?.focus();
 }
 
 /** Copies the selected mask to a neighbouring frame and goes there. */

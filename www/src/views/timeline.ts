@@ -19,6 +19,7 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
   const label = find(root, '#clip-name', HTMLElement);
   const note = find(root, '#clip-note', HTMLElement);
   const play = find(root, '#play', HTMLButtonElement);
+  const speeds = find(root, '#speed', HTMLButtonElement);
   const pair = find(document, '.clip-rows', HTMLElement);
   const sliders = (['first', 'second'] as const).map((slot) => {
     const input = find(pair, `[name=clip-${slot}]`, HTMLInputElement);
@@ -32,12 +33,17 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     button.addEventListener('click', () => stepOne(store, session, slot as Slot | 'both', Number(by)));
   }
   play.addEventListener('click', () => void session.play.toggle());
+  speeds.addEventListener('click', () => session.play.cycle());
   mountScrubbing(track, store, session);
 
-  store.subscribe(({ timeline, playing }, before) => {
+  store.subscribe(({ timeline, playing, speed }, before) => {
     if (playing !== before.playing) {
       play.textContent = playing ? '❚❚' : '▶';
       play.setAttribute('aria-label', playing ? strings.pause : strings.play);
+    }
+    if (speed !== before.speed) {
+      speeds.textContent = strings.speed(speed);
+      speeds.setAttribute('aria-label', strings.speedIs(speed));
     }
     if (timeline === before.timeline) return;
     root.hidden = pair.hidden = timeline === null;

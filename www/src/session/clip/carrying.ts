@@ -1,10 +1,10 @@
 //! Carries what a person says of one frame through the clip, one correction after another, because each starts from the masks of the one
 //! before; and goes back and forth between the versions that this makes. It owns the corrections that are waiting.
 
-import { type Noted, type Said, paintedOver, withSaid } from '../../state/said.js';
+import { type Said, paintedOver, withSaid } from '../../state/said.js';
 import { spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { type TrackedFrame, type Version, versionOf } from '../../state/tracked.js';
+import { type ClipRun, type Notes, type TrackedFrame, type Version, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import type { Change, ClipRuns } from './runs.js';
 import type { Spans } from './spans.js';
@@ -63,13 +63,13 @@ export class Carrying {
     if (this.#corrections === corrections) this.#corrections = null;
   }
 
-  /** Notes what changes no masks: a step of undo and redo. */
-  note(said: Noted, cause: 'locked' | 'unlocked' | 'accepted'): void {
+  /** Notes what changes no masks: a step of undo and redo, or, if it `goesOn`, part of the last one. The first masks are complete before there are steps. */
+  note(notes: Partial<Notes>, cause: Extract<ClipRun, { readonly phase: 'done' }>['cause'], goesOn = false): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
-    if (this.#corrections !== null) return void this.correct(said);
-    this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
-    this.#shown.version(withSaid(tracked, said), tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
+    if (this.#corrections !== null) return void this.correct({ notes });
+    if (!goesOn && tracked.spans.length > 0) this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
+    this.#shown.version({ ...tracked, ...notes }, tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
   }
 
   undo(): void {
@@ -132,7 +132,7 @@ export class Carrying {
 
   /** The masks of all frames after what is said. */
   async #carried(before: Version, said: Exclude<Said, { readonly pointed: unknown }>, corrections: Corrections, signal: AbortSignal): Promise<Version> {
-    if ('locks' in said || 'accepted' in said) return corrections.now;
+    if (!('edits' in said || 'painted' in said)) return corrections.now;
     const changes = this.#shows(corrections);
     if ('edits' in said) {
       let after = corrections.now;
@@ -147,7 +147,7 @@ export class Carrying {
       else spread.set(index, said.spread);
       painted.set(index, paintedOver(before.painted.get(index), labels, before.frames[index]!.runs));
     }
-    let after: Version = { ...before, painted, spread };
+    let after: Version = { ...before, ...said.notes, painted, spread };
     for (const span of before.spans) {
       const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
       if (own.length > 0) after = await this.#spans.corrected(after, span, own, signal, changes);

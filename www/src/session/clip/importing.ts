@@ -35,7 +35,7 @@ const NO_PICTURES = /\.(json|xml|zip|txt)$/i;
 const PNG = { colourType: 25, indexed: 3 };
 /** The largest number of an object. */
 const MOST_OBJECTS = 254;
-/** What exports call objects without a name of their own. */
+/** The class of objects that were given none. */
 const CLASS = 'object';
 
 /** Whether files are masks, and no frames: annotations without images, or indexed PNG files called as the frames of the clip are. */
@@ -55,11 +55,10 @@ export async function importMasks(files: readonly File[], store: Store, objects:
   const { tracked } = store.get();
   if (tracked === null || tracked.spans.length === 0) return store.say(strings.notices.notReady);
   try {
-    const { painted, names, left } = await masksFrom(files, tracked);
+    const { painted, classes, left } = await masksFrom(files, tracked);
     if (store.get().tracked?.clip !== tracked.clip) return; // left meanwhile
     shown.kind('objects');
-    for (const [id, name] of names) objects.setAppearance(id, { name });
-    objects.paint(painted);
+    objects.paint(painted, 'both', classes);
     if (left.length > 0) store.say(texts.taken(painted.size, left));
   } catch (error) {
     report(store, error);
@@ -69,7 +68,7 @@ export async function importMasks(files: readonly File[], store: Store, objects:
 interface Imported {
   /** Labels by index of the frame: numbers of objects here, and 255 where nothing is said. */
   readonly painted: ReadonlyMap<number, Uint8Array>;
-  readonly names: ReadonlyMap<number, string>;
+  readonly classes: ReadonlyMap<number, string>;
   /** Frames of the files that have no masks here, by name. */
   readonly left: readonly string[];
 }
@@ -97,8 +96,8 @@ async function masksFrom(files: readonly File[], tracked: Tracked): Promise<Impo
     await new Promise((resolve) => setTimeout(resolve));
   }
   if (painted.size === 0) throw new PageError('invalid-input', texts.none(left));
-  const named = Object.entries(found.names).filter(([, name]) => name !== CLASS);
-  return { painted, left, names: new Map(named.map(([label, name]) => [numbers[Number(label)]!, name])) };
+  const given = Object.entries(found.names).filter(([, name]) => name !== CLASS);
+  return { painted, left, classes: new Map(given.map(([label, name]) => [numbers[Number(label)]!, name])) };
 }
 
 /** The labels of the frame as it was segmented, by nearest neighbour. */

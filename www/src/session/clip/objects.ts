@@ -1,5 +1,5 @@
-//! What a person does to the objects of a clip: strokes, boxes and clicks, merging, splitting and deleting, locks, names and colours. Each
-//! becomes something that is said of frames or objects, in pixels of the masks, which is then carried through the clip.
+//! What a person does to the objects of a clip: strokes, boxes and clicks, merging, splitting and deleting, locks, names, classes and colours.
+//! Each becomes something that is said of frames or objects, in pixels of the masks, which is then carried through the clip.
 
 import type { ClipOptions, ClipPropagation } from 'veronese';
 import { strings } from '../../common/strings.js';
@@ -11,7 +11,7 @@ import { UNLABELLED, keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { isLocked, toReview } from '../../state/tracked.js';
+import { type Notes, isLocked, toReview } from '../../state/tracked.js';
 import type { Carrying } from './carrying.js';
 
 /** A box with both sides below this share of the frame's width is a click. */
@@ -74,9 +74,9 @@ export class Objects {
     };
   }
 
-  /** Takes what is painted in frames, by index: numbers of objects, and 255 where nothing is said. */
-  paint(painted: ReadonlyMap<number, Uint8Array>, spread: ClipPropagation = 'both'): void {
-    void this.#carrying.correct({ painted, spread });
+  /** Takes what is painted in frames, by index: numbers of objects, and 255 where nothing is said. `classes`: of the objects, by number. */
+  paint(painted: ReadonlyMap<number, Uint8Array>, spread: ClipPropagation = 'both', classes?: ReadonlyMap<number, string>): void {
+    void this.#carrying.correct({ painted, spread, ...(classes && { notes: this.#withClasses(classes) }) });
   }
 
   /** Gives the selected object the mask of the frame on screen in the next frame, or the one before. Returns the index of that frame. */
@@ -95,14 +95,18 @@ export class Objects {
     return to;
   }
 
-  /** Two objects become one, under the smaller of their numbers. */
-  merge(one: number, other: number): void {
-    if (one !== other) this.#edit({ merge: [[Math.min(one, other), Math.max(one, other)]] });
+  /** Objects become one, under the smallest of their numbers and with the class of the first that has one. */
+  merge(...ids: readonly number[]): void {
+    const group = [...new Set(ids)].sort((one, other) => one - other);
+    const { tracked } = this.#store.get();
+    if (group.length < 2 || tracked === null) return;
+    const [name] = group.flatMap((id) => tracked.classes[keyOf('objects', id)] ?? []);
+    this.#edit({ merge: [group] }, name === undefined ? {} : this.#withClasses(new Map([[group[0]!, name]])));
   }
 
-  /** The object becomes background in the whole clip. */
-  remove(id: number): void {
-    this.#edit({ delete: [id] });
+  /** The objects become background in the whole clip. */
+  remove(...ids: readonly number[]): void {
+    if (ids.length > 0) this.#edit({ delete: [...ids] });
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
@@ -135,9 +139,12 @@ export class Objects {
     this.#carrying.redo();
   }
 
-  /** Locks an object, or unlocks it: whether corrections of others may change it. */
-  setLocked(id: number, locked: boolean): void {
-    this.#carrying.note({ locks: new Map([[id, locked]]) }, locked ? 'locked' : 'unlocked');
+  /** Locks the objects, or unlocks them if all are locked: whether corrections of others may change them. */
+  toggleLock(...ids: readonly number[]): void {
+    const { tracked } = this.#store.get();
+    if (tracked === null || ids.length === 0) return;
+    const locked = !ids.every((id) => isLocked(tracked, id));
+    this.#carrying.note({ locks: new Map([...tracked.locks, ...ids.map((id) => [id, locked] as const)]) }, locked ? 'locked' : 'unlocked');
   }
 
   /**
@@ -155,21 +162,33 @@ export class Objects {
     return toReview({ frames, accepted: now });
   }
 
-  /** Sets the name or colour of an object. An empty name restores the default. */
-  setAppearance(id: number, what: { name: string } | { colour: Colour }): void {
+  /** Sets the name or colour of an object. An empty name restores the default. `goesOn`: in the same step of undo as the last one. */
+  setAppearance(id: number, what: { name: string } | { colour: Colour }, goesOn = false): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     const key = keyOf('objects', id);
-    const { [key]: given, ...others } = tracked.names;
-    if ('name' in what && what.name === (given ?? '')) return;
-    const names = 'colour' in what ? tracked.names : what.name === '' ? others : { ...others, [key]: what.name };
-    const colours = 'colour' in what ? { ...tracked.colours, [key]: what.colour } : tracked.colours;
-    this.#store.clip({ names, colours });
-    this.#store.look({ names, colours });
+    if ('colour' in what) return this.#carrying.note({ colours: { ...tracked.colours, [key]: what.colour } }, 'described', goesOn);
+    const { [key]: given = '', ...others } = tracked.names;
+    if (what.name !== given) this.#carrying.note({ names: what.name === '' ? others : { ...others, [key]: what.name } }, 'described');
   }
 
-  #edit(edits: NonNullable<ClipOptions['edits']>): void {
-    if (this.#takesCorrections()) void this.#carrying.correct({ edits });
+  /** Gives objects a class, which is in the list from then on; an empty text takes it away. */
+  setClass(ids: readonly number[], name: string): void {
+    const { tracked } = this.#store.get();
+    const others = ids.filter((id) => (tracked?.classes[keyOf('objects', id)] ?? '') !== name);
+    if (others.length > 0) this.#carrying.note(this.#withClasses(new Map(others.map((id) => [id, name]))), 'described');
+  }
+
+  #withClasses(given: ReadonlyMap<number, string>): Partial<Notes> {
+    const { tracked, classList } = this.#store.get();
+    const added = [...given.values()].filter((name) => name !== '');
+    if (added.some((name) => !classList.includes(name))) this.#store.set({ classList: [...new Set([...classList, ...added])] });
+    const all = [...Object.entries(tracked?.classes ?? {}), ...[...given].map(([id, name]) => [keyOf('objects', id), name] as const)];
+    return { classes: Object.fromEntries([...new Map(all)].filter(([, name]) => name !== '')) };
+  }
+
+  #edit(edits: NonNullable<ClipOptions['edits']>, notes: Partial<Notes> = {}): void {
+    if (this.#takesCorrections()) void this.#carrying.correct({ edits, notes });
   }
 
   /** The frame on screen and its index; `null`, and tells why, if it takes no corrections. */

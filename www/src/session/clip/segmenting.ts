@@ -6,7 +6,7 @@ import type { Clip } from '../../clips/clip.js';
 import type { Settings } from '../../state/settings.js';
 import { contains, numbersOf, withRun } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
-import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, isTracked, savedOf, untracked, versionOf } from '../../state/tracked.js';
+import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, isTracked, notesOf, savedOf, untracked, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
 import { ClipFrames, STOPPED } from './frames.js';
 import type { Change, ClipRuns } from './runs.js';
@@ -199,7 +199,8 @@ export class ClipSegmenting {
     if (past.length > 0) set({ past: [...past, versionOf(before)] });
     else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
     set({ future: [] });
-    this.#shown.version(version, corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
+    // What was noted meanwhile stays.
+    this.#shown.version({ ...version, ...notesOf(now) }, corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
   }
 
   /** What is known for these settings: other settings and another first frame begin anew. */

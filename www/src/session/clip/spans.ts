@@ -53,7 +53,7 @@ export class Spans {
       changesOnly: true,
       signal,
       corrections: [at.length === 2 ? { frame: frame - first, label, click: at } : { frame: frame - first, label, box: at }],
-      locked: lockedIn(span, version, [], locksOf(version, tracked)),
+      locked: lockedIn(span, version, [], (id) => isLocked(version, id)),
       // The first frame that changes is this one; the others are carried later, with all that was said before.
       onChange: async (index, segmented) => {
         if (first + index === frame) labels = (await segmented()).labels;
@@ -117,7 +117,7 @@ export class Spans {
       edits: editsIn(numbers, version.became),
       corrections,
       // When the clip is segmented again, all is said again that was said before objects were locked.
-      locked: changes ? lockedIn(span, version, painted, locksOf(version, tracked)) : [],
+      locked: changes ? lockedIn(span, version, painted, (id) => isLocked(version, id)) : [],
       ...(changes && { onChange }),
     });
     const masks = [...version.frames];
@@ -136,11 +136,6 @@ export class Spans {
 function framesOf({ clip }: Tracked, { longestSide }: Version, { range }: Span, { first, second }: State['pair']): ClipFrames {
   const hand = [first, second].filter((frame): frame is LoadedFrame => frame !== null);
   return new ClipFrames(clip, longestSide, range, { hand, room: ROOM });
-}
-
-/** Which objects are locked in a version: those with names, which it does not keep, unless a person says otherwise. */
-function locksOf({ locks }: Version, { names }: Tracked): (id: number) => boolean {
-  return (id) => isLocked({ locks, names }, id);
 }
 
 export async function bytesOf(blob: Blob): Promise<Uint8Array> {

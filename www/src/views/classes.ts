@@ -1,0 +1,69 @@
+//! Classes of objects: the field in each row, what it offers, and the dialogue with the list. Loaded with the first list of objects.
+
+import { nameOf } from '../common/naming.js';
+import { panels } from '../common/strings-of-panels.js';
+import { keyOf } from '../result/masks.js';
+import { importClasses, keepClasses, namesIn } from '../session/class-list.js';
+import { report } from '../session/failures.js';
+import type { Session } from '../session/session.js';
+import type { State, Store } from '../state/state.js';
+import { find } from './markup.js';
+
+export function mountClasses(root: ParentNode, store: Store, session: Session): void {
+  const list = find(root, '#objects', HTMLOListElement);
+  const offered = find(root, '#class-names', HTMLDataListElement);
+  const dialog = find(root, '#class-list', HTMLDialogElement);
+  const text = find(dialog, 'textarea', HTMLTextAreaElement);
+  const file = find(dialog, 'input', HTMLInputElement);
+  keepClasses(store);
+
+  const connected = new WeakSet<HTMLInputElement>();
+  const render = ({ tracked, look, classList }: State, before: State | null): void => {
+    if (classList !== before?.classList) {
+      offered.replaceChildren(...classList.map((name) => new Option(name)));
+      text.value = classList.join('\n');
+    }
+    for (const row of list.querySelectorAll<HTMLElement>(':scope > li')) {
+      const id = Number(row.dataset.mask);
+      const field = find(row, '.class', HTMLInputElement);
+      if (!connected.has(field)) onClass(field, (name) => session.objects.setClass([id], name));
+      connected.add(field);
+      field.setAttribute('aria-label', panels.classOf(nameOf(look, id)));
+      if (document.activeElement !== field) field.value = tracked?.classes[keyOf('objects', id)] ?? '';
+    }
+  };
+  store.subscribe((now, before) => {
+    if (now.tracked !== before.tracked || now.look !== before.look || now.classList !== before.classList) render(now, before);
+  });
+  render(store.get(), null);
+
+  find(root, '#open-classes', HTMLButtonElement).addEventListener('click', () => dialog.showModal());
+  const take = (): void => store.set({ classList: namesIn(text.value) });
+  text.addEventListener('change', take);
+  file.addEventListener('change', async () => {
+    const files = [...(file.files ?? [])];
+    file.value = ''; // so that choosing the same file again is a change
+    try {
+      await importClasses(files, store, true);
+    } catch (error) {
+      report(store, error);
+    }
+  });
+  find(dialog, 'button', HTMLButtonElement).addEventListener('click', () => dialog.close());
+  dialog.addEventListener('click', (event) => {
+    if (event.target === dialog) dialog.close(); // a click on the backdrop
+  });
+  dialog.addEventListener('close', take);
+}
+
+/** Takes what is typed or chosen in a field for a class. */
+export function onClass(field: HTMLInputElement, take: (name: string) => void): void {
+  let before = '';
+  field.addEventListener('focus', () => (before = field.value));
+  field.addEventListener('change', () => take(field.value.trim()));
+  field.addEventListener('keydown', (event) => {
+    if (event.key === 'Escape') field.value = before;
+    if (event.key === 'Enter' || event.key === 'Escape') field.blur();
+    if (event.key === 'Escape') event.stopPropagation();
+  });
+}
