@@ -1,5 +1,6 @@
 //! Wires the page together: one store, one session, and the views mounted on their markup.
 
+import { strings } from './common/strings.js';
 import { settingsFromHash } from './export/link.js';
 import { SAMPLES } from './frames/samples.js';
 import { keepForOffline } from './offline/register.js';
@@ -7,7 +8,6 @@ import { sessionOf } from './session/session.js';
 import { Store } from './state/state.js';
 import { mountArrows } from './views/arrows.js';
 import { mountBlink } from './views/blink.js';
-import { Brush } from './views/brush.js';
 import { mountClipRun } from './views/clip-run.js';
 import { mountCompare } from './views/compare.js';
 import { mountDrop } from './views/drop.js';
@@ -15,6 +15,7 @@ import { mountFolders } from './views/folders.js';
 import { mountGestures } from './views/gestures.js';
 import { mountKeys } from './views/keys.js';
 import { mountLanes } from './views/lanes.js';
+import { LateBrush } from './views/late-brush.js';
 import { mountLeaving } from './views/leaving.js';
 import { mountLook } from './views/look.js';
 import { find } from './views/markup.js';
@@ -46,8 +47,7 @@ mountResidual(stage, store);
 mountArrows(stage, store);
 mountCompare(stage, store);
 const zoom = mountZoom(stage, store);
-const brush = new Brush(stage, store, session);
-mountGestures(find(stage, '.layers', HTMLElement), store, session, zoom, brush);
+mountGestures(find(stage, '.layers', HTMLElement), store, session, zoom, new LateBrush(stage, store, session));
 mountLook(find(document, '#look', HTMLFormElement), store, session);
 mountBlink(document, store);
 mountTools(find(document, '#tools', HTMLFormElement), store, session);
@@ -68,6 +68,11 @@ mountToast(find(document, '#notice', HTMLElement), store);
 mountLeaving(window, store);
 mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/panel.js')).mountPanel(panel, store, session));
 mountOnOpening(find(document, '#inspect', HTMLElement), session, async (panel) => (await import('./views/inspect.js')).mountInspect(panel, store, session));
+const leaveOnion = store.subscribe(({ look }) => {
+  if (!look.onion) return;
+  leaveOnion();
+  import('./views/onion.js').then(({ mountOnion }) => mountOnion(find(stage, '#onion', SVGSVGElement), store), () => store.say(strings.errors.notLoaded, 'not-loaded'));
+});
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, session, keysFor(store, session, zoom));
 
 keepForOffline(store);

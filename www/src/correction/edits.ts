@@ -4,6 +4,7 @@
 import type { Segmentation } from 'veronese';
 import type { Colour } from '../drawing/palette.js';
 import { UNLABELLED, type Kind, maskOf, masksOf, regrouped } from '../result/masks.js';
+import type { Exact } from './exact.js';
 import { type Part, continuation, labellingOf, labelsIn } from './parts.js';
 import type { Runs } from './runs.js';
 import type { Stroke } from './strokes.js';
@@ -15,7 +16,7 @@ export interface Grouping {
 }
 
 /** One step of undo and redo. */
-export type Action = { readonly stroke: Stroke } | { readonly grouping: Grouping };
+export type Action = { readonly stroke: Stroke } | { readonly exact: Exact } | { readonly grouping: Grouping };
 
 /** A name or colour that the user gave to a mask. */
 export interface Appearance {

@@ -112,6 +112,7 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
         ...clip,
         painted: new Map(clip.painted),
         spread: new Map(clip.spread),
+        exact: new Map(clip.exact),
         became: new Map(clip.became),
         locks: new Map(clip.locks),
         accepted: new Set(clip.accepted?.flatMap((index) => clip.frames[index] ?? [])),

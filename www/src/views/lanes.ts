@@ -7,7 +7,7 @@ import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, livesOf } from '../state/tracked.js';
+import { type Life, type Tracked, drawnIn, livesOf } from '../state/tracked.js';
 import { contextOf, element, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
@@ -59,7 +59,8 @@ function nameButton(id: number, session: Session): HTMLElement {
   return item;
 }
 
-function draw(canvas: HTMLCanvasElement, { frames, painted }: Tracked, lives: readonly Life[], look: Look): void {
+function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[], look: Look): void {
+  const { frames } = tracked;
   const dense = Math.min(2, devicePixelRatio);
   canvas.width = Math.max(1, Math.round(canvas.clientWidth * dense));
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * dense));
@@ -76,7 +77,7 @@ function draw(canvas: HTMLCanvasElement, { frames, painted }: Tracked, lives: re
     }
   });
   context.globalAlpha = 1;
-  for (const [index, { labels }] of painted) {
+  for (const [index, { labels }] of drawnIn(tracked)) {
     for (const [id, place] of places) if (labels.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
   }
 }

@@ -63,13 +63,14 @@ export class Carrying {
     if (this.#corrections === corrections) this.#corrections = null;
   }
 
-  /** Notes what changes no masks: a step of undo and redo. */
-  note(said: Noted, cause: 'locked' | 'unlocked' | 'accepted'): void {
+  /** Notes what is not carried to other pixels: a step of undo and redo. */
+  note(said: Noted, cause: 'locked' | 'unlocked' | 'accepted' | 'corrected'): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
     if (this.#corrections !== null) return void this.correct(said);
+    const after = withSaid(tracked, said);
     this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
-    this.#shown.version(withSaid(tracked, said), tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
+    this.#shown.version(after, tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: changedIn(after, tracked) });
   }
 
   undo(): void {
@@ -132,7 +133,7 @@ export class Carrying {
 
   /** The masks of all frames after what is said. */
   async #carried(before: Version, said: Exclude<Said, { readonly pointed: unknown }>, corrections: Corrections, signal: AbortSignal): Promise<Version> {
-    if ('locks' in said || 'accepted' in said) return corrections.now;
+    if ('locks' in said || 'accepted' in said || ('painted' in said && said.spread === 'exact')) return corrections.now;
     const changes = this.#shows(corrections);
     if ('edits' in said) {
       let after = corrections.now;
@@ -147,7 +148,7 @@ export class Carrying {
       else spread.set(index, said.spread);
       painted.set(index, paintedOver(before.painted.get(index), labels, before.frames[index]!.runs));
     }
-    let after: Version = { ...before, painted, spread };
+    let after: Version = { ...before, painted, spread, exact: corrections.now.exact };
     for (const span of before.spans) {
       const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
       if (own.length > 0) after = await this.#spans.corrected(after, span, own, signal, changes);
