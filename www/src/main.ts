@@ -1,6 +1,5 @@
 //! Wires the page together: one store, one session, and the views mounted on their markup.
 
-import { strings } from './common/strings.js';
 import { settingsFromHash } from './export/link.js';
 import { SAMPLES } from './frames/samples.js';
 import { keepForOffline } from './offline/register.js';
@@ -21,7 +20,7 @@ import { mountLook } from './views/look.js';
 import { find } from './views/markup.js';
 import { mountMotions } from './views/motions.js';
 import { mountObjects } from './views/objects.js';
-import { mountOnOpening } from './views/opening.js';
+import { mountOnOpening, mountWhenOn } from './views/opening.js';
 import { mountOptions } from './views/options.js';
 import { mountOverlay } from './views/overlay.js';
 import { mountPicker } from './views/picker.js';
@@ -68,11 +67,7 @@ mountToast(find(document, '#notice', HTMLElement), store);
 mountLeaving(window, store);
 mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) => (await import('./views/panel.js')).mountPanel(panel, store, session));
 mountOnOpening(find(document, '#inspect', HTMLElement), session, async (panel) => (await import('./views/inspect.js')).mountInspect(panel, store, session));
-const leaveOnion = store.subscribe(({ look }) => {
-  if (!look.onion) return;
-  leaveOnion();
-  import('./views/onion.js').then(({ mountOnion }) => mountOnion(find(stage, '#onion', SVGSVGElement), store), () => store.say(strings.errors.notLoaded, 'not-loaded'));
-});
+mountWhenOn('onion', store, async () => (await import('./views/onion.js')).mountOnion(find(stage, '#onion', SVGSVGElement), store));
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, session, keysFor(store, session, zoom));
 
 keepForOffline(store);

@@ -119,6 +119,22 @@ test('what is drawn exactly is what is kept, exported and left alone by what is 
   await page.keyboard.press('Control+y');
   expect(differences(await labelsOnCanvas(page), erased)).toBe(0);
 
+  // So is a mask that is copied to another frame, or made of a box there.
+  await page.keyboard.press('Shift+>');
+  await expect(page.locator('#caption')).toHaveText('Frame 5');
+  await done(page);
+  expect(differences((await labelsOnCanvas(page)).map((label) => Number(label === disc)), erased.map((label) => Number(label === disc)))).toBe(0);
+  await page.keyboard.press('Control+z');
+  expect(differences(await labelsOnCanvas(page), before[5]!)).toBe(0);
+  await page.keyboard.press('x');
+  await drag(page, [0.21, 0.2], [0.47, 0.62]);
+  await expect(status(page)).toHaveText('Corrected: the masks of one frame have changed.', { timeout: 45_000 });
+  expect(await labelsOnCanvas(page)).toContain(3);
+  await page.keyboard.press('Control+z');
+  await expect(status(page)).toHaveText('Undone in one frame.');
+  await goTo(page, 4);
+  expect(differences(await labelsOnCanvas(page), erased)).toBe(0);
+
   // It is there after a reload, and what spreads from another frame goes around it.
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);

@@ -4,7 +4,6 @@
 import type { Segmentation } from 'veronese';
 import type { Colour } from '../drawing/palette.js';
 import { UNLABELLED, type Kind, maskOf, masksOf, regrouped } from '../result/masks.js';
-import type { Exact } from './exact.js';
 import { type Part, continuation, labellingOf, labelsIn } from './parts.js';
 import type { Runs } from './runs.js';
 import type { Stroke } from './strokes.js';
@@ -13,6 +12,12 @@ import type { Stroke } from './strokes.js';
 export interface Grouping {
   readonly of: Runs;
   readonly groups: readonly number[];
+}
+
+/** What is drawn exactly: labels of single pixels, 255 where nothing is said, and the labelling whose numbers they are. */
+export interface Exact {
+  readonly of: Runs;
+  readonly labels: Runs;
 }
 
 /** One step of undo and redo. */

@@ -2,16 +2,10 @@
 
 import type { Segmentation } from 'veronese';
 import { UNLABELLED } from '../result/masks.js';
-import { type Edits, grouped } from './edits.js';
+import { type Edits, type Exact, grouped } from './edits.js';
 import { continuation, labellingOf } from './parts.js';
 import { type Runs, extentsOf, packed, resized, unpacked } from './runs.js';
 import { type Path, type Stroke, allowedLabels, eachPixel } from './strokes.js';
-
-/** Labels of single pixels, 255 where nothing is said, and the labelling whose numbers they are. */
-export interface Exact {
-  readonly of: Runs;
-  readonly labels: Runs;
-}
 
 /** What a path says over these labels: the mask's pixels stay as they are, others get its first label; erased ones get the first of all others. */
 export function drawnExactly(path: Path, { tool, mask }: Pick<Stroke, 'tool' | 'mask'>, labels: Uint8Array, found: Segmentation): Exact {

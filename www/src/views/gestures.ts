@@ -55,9 +55,10 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
       return;
     }
     dragged = false;
-    const at = pixelAt(store.get(), inView(event));
-    if (paints()) brush.do((brush) => brush.begin(at));
-    else holding = window.setTimeout(() => peek.press(), TAP);
+    if (paints()) {
+      const at = pixelAt(store.get(), inView(event));
+      brush.do((brush) => brush.begin(at));
+    } else holding = window.setTimeout(() => peek.press(), TAP);
   });
 
   layers.addEventListener('pointermove', (event) => {
