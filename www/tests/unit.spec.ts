@@ -6,10 +6,12 @@ import type { Segmentation } from 'veronese';
 import type { Clip } from '../src/clips/clip.js';
 import { codecName } from '../src/clips/codecs.js';
 import { NO_EDITS, asSaved, grouped, isUnsaved, scaled, strokesOf, withAction } from '../src/correction/edits.js';
+import { drawnExactly, withEdits } from '../src/correction/exact.js';
 import { labellingOf, labelsIn } from '../src/correction/parts.js';
 import { type Runs, packed, unpacked } from '../src/correction/runs.js';
-import { type Stroke, allowedLabels, constraintsFrom, evidenceOf } from '../src/correction/strokes.js';
+import { type Stroke, allowedLabels, constraintsFrom, eachPixel, evidenceOf } from '../src/correction/strokes.js';
 import { arrowsOf } from '../src/drawing/arrows.js';
+import { contoursOf } from '../src/drawing/contours.js';
 import { residualOf } from '../src/drawing/residual.js';
 import { atSize } from '../src/export/full-size.js';
 import { linkFor, settingsFromHash } from '../src/export/link.js';
@@ -19,10 +21,13 @@ import { suggestionsOf } from '../src/result/junctions.js';
 import { labelSet, masksOf, merged, separated, ungrouped } from '../src/result/masks.js';
 import { NOTATIONS } from '../src/result/matrices.js';
 import { Numbering } from '../src/session/camera/numbering.js';
-import { becameAfter, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan } from '../src/state/spans.js';
+import { exactly } from '../src/state/exact.js';
+import { withSaid } from '../src/state/said.js';
+import { becameAfter, editsIn, fromSpan, lockedIn, numbersOf, spanAt, toSpan, withRun } from '../src/state/spans.js';
 import { DEFAULT_SETTINGS } from '../src/state/settings.js';
 import { INITIAL, type Result } from '../src/state/state.js';
-import { type TrackedFrame, untracked } from '../src/state/tracked.js';
+import { type TrackedFrame, type Version, untracked } from '../src/state/tracked.js';
+import { cornersOf, setCorner, takeBack } from '../src/views/polygon.js';
 import { differences } from './support.js';
 
 const MATRIX: Matrix = [0.01, -0.02, 4, 0.03, 0.015, -2.5];
@@ -368,4 +373,80 @@ test('merged and deleted objects are so in every run', () => {
 test('masks are of the span that was segmented last', () => {
   const [whole, part] = [{ first: 0, last: 8 }, { first: 3, last: 5 }].map((range) => ({ range, state: new Blob(), numbers: new Map() }));
   expect([2, 3, 5, 6, 9].map((index) => spanAt([whole!, part!], index))).toEqual([whole, part, part, whole, null]);
+});
+
+test('what is drawn exactly stays where other things are said, and follows its object when that is merged or deleted', () => {
+  const row = (...labels: number[]): Uint8Array => Uint8Array.from(labels);
+  const shown = ({ frames }: Version, index = 0): number[] => [...unpacked(frames[index]!.runs)];
+  const start: Version = { ...untracked({ count: 2 } as Clip), frames: [masks(1, 1, 0, 2, 2, 0), masks(1, 1, 0, 2, 2, 0)], largest: 2 };
+  const drawn = withSaid(start, { painted: new Map([[0, row(255, 3, 3, 255, 0, 255)]]), spread: 'exact' });
+  expect(shown(drawn)).toEqual([1, 3, 3, 2, 0, 0]);
+  expect(drawn.frames[0]!.objects.map(({ id, pixels, bbox }) => [id, pixels, ...bbox])).toEqual([[1, 1, 0, 0, 1, 1], [2, 1, 3, 0, 1, 1], [3, 2, 1, 0, 2, 1]]);
+  expect(drawn.frames[1]).toBe(start.frames[1]);
+  expect([drawn.largest, drawn.painted.size]).toEqual([3, 0]);
+  // Whatever comes for the frame, and unchanged if it agrees.
+  expect(shown(exactly({ ...drawn, frames: [masks(4, 4, 4, 4, 4, 4), null] }))).toEqual([4, 3, 3, 4, 0, 4]);
+  expect(exactly(drawn).frames[0]).toBe(drawn.frames[0]);
+  // A person says otherwise: that counts, and is exact as well where something was.
+  const over = withSaid(drawn, { painted: new Map([[0, row(255, 255, 2, 2, 2, 2)]]), spread: 'both' });
+  expect(shown(over)).toEqual([1, 3, 2, 2, 2, 2]);
+  expect([...unpacked(over.exact.get(0)!)]).toEqual([255, 3, 2, 255, 2, 255]);
+  expect(shown(withSaid(over, { edits: { merge: [[1, 3]] } }))).toEqual([1, 1, 2, 2, 2, 2]);
+  expect(shown(withSaid(over, { edits: { delete: [3] } }))).toEqual([1, 0, 2, 2, 2, 2]);
+  // A run with frames of another size.
+  const larger = { runs: packed(new Uint8Array(24), 12, 2), objects: [], background: null };
+  const again = withRun(over, [larger], { range: { first: 0, last: 0 }, state: new Blob(), numbers: new Map() }, 12);
+  expect(shown(again)).toEqual([0, 0, 3, 3, 2, 2, 0, 0, 2, 2, 0, 0, 0, 0, 3, 3, 2, 2, 0, 0, 2, 2, 0, 0]);
+});
+
+test('what is drawn exactly on a pair lies over any solution, until a stroke says otherwise', () => {
+  const found = scene();
+  const mask = { of: labellingOf(found), labels: 0b0110 };
+  const corner = { points: [-0.5, -0.5, 4.5, -0.5, 4.5, 1.5, -0.5, 1.5], radius: 0, filled: true };
+  const labels = (result: Segmentation): number[] => [...result.labels.subarray(0, 8)];
+  const brushed = withAction(NO_EDITS, { exact: drawnExactly(corner, { tool: 'brush', mask }, found.labels, found) });
+  const result = withEdits(found, brushed, found);
+  // The mask has two motions: its pixels keep theirs, others get the first.
+  expect(labels(result)).toEqual([1, 1, 1, 1, 2, 2, 3, 3]);
+  expect(result.labels.subarray(16)).toEqual(found.labels.subarray(16));
+  expect(result.motions.map(({ pixels, bbox }) => [pixels, ...bbox])).toEqual([[4, 0, 2, 2, 2], [12, 0, 0, 4, 4], [8, 4, 0, 2, 4], [8, 6, 0, 2, 4]]);
+  expect(labels(withEdits({ ...found, labels: found.labels.map(() => 3) }, brushed, found))).toEqual([1, 1, 1, 1, 2, 3, 3, 3]);
+  const erased = withAction(brushed, { exact: drawnExactly({ points: [1, 0, 3, 0], radius: 0.4 }, { tool: 'eraser', mask }, result.labels, found) });
+  expect(labels(withEdits(found, erased, found))).toEqual([1, 0, 0, 0, 2, 2, 3, 3]);
+  expect(labels(withEdits(found, { ...erased, done: 1 }, found))).toEqual(labels(result));
+  const stroke: Stroke = { points: [0, 0, 1, 0], radius: 0.4, tool: 'brush', mask: { ...mask, labels: 0b1000 } };
+  expect(labels(withEdits(found, withAction(erased, { stroke }), found))).toEqual([0, 0, 0, 0, 2, 2, 3, 3]);
+  // Another result numbers the motions differently, and may have frames of another size.
+  const table = [2, 3, 0, 1];
+  const other = { ...found, labels: found.labels.map((label) => table[label]!), motions: found.motions.map((motion) => ({ ...motion, group: motion.label })) };
+  expect(labels(withEdits(other, brushed, other))).toEqual([3, 3, 3, 3, 0, 0, 1, 1]);
+});
+
+test('a polygon has the pixels whose centres it encloses, and its contour leads around them', () => {
+  const [width, height] = [7, 6];
+  const labels = new Uint8Array(width * height);
+  const corners = [0.5, 0.5, 5.5, 0.5, 5.5, 4.5, 3.5, 4.5, 3.5, 2.5, 0.5, 2.5];
+  eachPixel({ points: corners, radius: 9, filled: true }, width, height, (p) => (labels[p]! += 1));
+  expect(Array.from({ length: height }, (_, y) => labels.subarray(y * width, (y + 1) * width).join(''))).toEqual(['0000000', '0111110', '0111110', '0000110', '0000110', '0000000']);
+  expect(contoursOf(labels, width, height, (label) => label > 0)).toEqual(new Map([[1, 'M1 1L6 1L6 5L4 5L4 3L1 3Z']]));
+  // Beyond the frame there is nothing. A hole has a contour of its own.
+  const whole = new Uint8Array(9);
+  eachPixel({ points: [-9, -9, 9, -9, 9, 9, -9, 9], radius: 0, filled: true }, 3, 3, (p) => (whole[p]! += 1));
+  expect([...whole]).toEqual([1, 1, 1, 1, 1, 1, 1, 1, 1]);
+  expect(contoursOf(whole.with(4, 0), 3, 3, (label) => label > 0).get(1)).toBe('M0 0L3 0L3 3L0 3ZM2 1L1 1L1 2L2 2Z');
+});
+
+test('a corner of a polygon is set, closes it or is taken back', () => {
+  const points = [10, 10];
+  const setAt = (x: number, y: number): boolean => {
+    points.splice(-2, 2, x, y);
+    return setCorner(points, 6);
+  };
+  expect([setAt(10, 10), setAt(12, 12), setAt(40, 10), setAt(40, 12), setAt(40, 13)]).toEqual([false, false, false, false, false]);
+  // Neither the first corner nor the last is set twice.
+  expect(cornersOf(points)).toEqual([10, 10, 40, 10, 40, 13]);
+  expect([setAt(40, 14), setAt(13, 14), setAt(20, 14)]).toEqual([true, true, false]);
+  expect(cornersOf(points)).toEqual([10, 10, 40, 10, 40, 13, 20, 14]);
+  expect([takeBack(points), takeBack(points), setAt(13, 14)]).toEqual([true, true, false]); // two corners are no polygon
+  expect([takeBack(points), takeBack(points)]).toEqual([true, false]);
 });

@@ -83,6 +83,13 @@ const duration = (ms: number): string => (ms < 1000 ? `${whole.format(ms)}${NBSP
 const motions = (count: number): string => (count === 1 ? 'One motion' : `${count} motions`);
 export const objects = (count: number): string => (count === 0 ? 'No objects' : count === 1 ? 'One object' : `${count} objects`);
 
+const TOOLS = {
+  brush: (thing: string) => `Paint what belongs to the selected ${thing}.`,
+  eraser: (thing: string) => `Paint what does not belong to the selected ${thing}.`,
+  polygon: (thing: string) => `Press corners around what belongs to the selected ${thing}, then the first again; with Shift it is removed.`,
+  box: () => 'Drag a box around something, or press on it: it becomes a new object.',
+};
+
 export const strings = {
   slot: { first: 'First frame', second: 'Second frame' },
   split: 'First | second',
@@ -192,21 +199,13 @@ export const strings = {
     about: (button: string, sentence: string): string => `${button}: ${sentence}`,
   },
 
-  toolHelp: {
-    look: 'Press on a mask to select it.',
-    brush: 'Paint what belongs to the selected mask. The pixels around it follow.',
-    eraser: 'Paint what does not belong to the selected mask. The pixels around it follow.',
-    box: '',
+  toolHelp: (tool: 'look' | keyof typeof TOOLS, isClip: boolean, isExact: boolean): string => {
+    const thing = isClip ? 'object' : 'mask';
+    if (tool === 'look') return `Press on ${isClip ? 'an object' : 'a mask'} to select it.`;
+    return `${TOOLS[tool](thing)} ${isExact ? 'Nothing else changes.' : `The ${isClip ? 'other frames' : 'pixels around it'} follow.`}`;
   },
 
   accepted: (count: number, of: number): string => `${whole.format(count)} of ${whole.format(of)} accepted`,
-
-  clipToolHelp: {
-    look: 'Press on an object to select it.',
-    brush: 'Paint what belongs to the selected object, in any frame. The other frames follow.',
-    eraser: 'Paint what does not belong to the selected object. The other frames follow.',
-    box: 'Drag a box around something, or press on it: it becomes a new object. The other frames follow.',
-  },
 
   status: {
     idle: 'Open two frames or a video to begin.',
@@ -230,6 +229,7 @@ export const strings = {
       return `${applied} of your ${all} strokes ${applied > 1 ? 'are' : 'is'} applied: the ${others} not in this result.`;
     },
     solved: (strokes: number, waited: number): string => `Masks updated with your ${strokes === 1 ? 'stroke' : 'strokes'} in ${duration(waited)}.`,
+    drawn: 'Kept as drawn.',
     undone: 'Undone.',
     redone: 'Redone.',
     merged: 'Merged.',

@@ -14,8 +14,14 @@ export interface Grouping {
   readonly groups: readonly number[];
 }
 
+/** What is drawn exactly: labels of single pixels, 255 where nothing is said, and the labelling whose numbers they are. */
+export interface Exact {
+  readonly of: Runs;
+  readonly labels: Runs;
+}
+
 /** One step of undo and redo. */
-export type Action = { readonly stroke: Stroke } | { readonly grouping: Grouping };
+export type Action = { readonly stroke: Stroke } | { readonly exact: Exact } | { readonly grouping: Grouping };
 
 /** A name or colour that the user gave to a mask. */
 export interface Appearance {

@@ -28,6 +28,36 @@ export function unpacked({ width, height, ends, labels }: Runs): Uint8Array<Arra
   return pixels;
 }
 
+/** Labels with others over them, where these are not 255. The same if none changes. */
+export function over(under: Runs, above: Runs): Runs {
+  let changes = false;
+  for (const [is, was] of together(above, under)) changes ||= is !== UNLABELLED && is !== was;
+  if (!changes) return under;
+  const below = unpacked(under);
+  return packed(unpacked(above).map((label, p) => (label === UNLABELLED ? below[p]! : label)), under.width, under.height);
+}
+
+/** How many pixels a label has, and the box around them: x, y, width, height. */
+export interface Extent {
+  readonly pixels: number;
+  readonly bbox: [number, number, number, number];
+}
+
+export function extentsOf({ width, ends, labels }: Runs): Map<number, Extent> {
+  const extents = new Map<number, Extent>();
+  for (let k = 0, from = 0; k < ends.length; from = ends[k++]!) {
+    const last = ends[k]! - 1;
+    const [top, bottom] = [Math.floor(from / width), Math.floor(last / width)];
+    // A run that goes on in the next row touches both sides.
+    const [left, right] = top === bottom ? [from % width, last % width] : [0, width - 1];
+    const { pixels, bbox: [x, y, across, down] } = extents.get(labels[k]!) ?? { pixels: 0, bbox: [left, top, 0, 0] };
+    const x0 = Math.min(x, left);
+    const bbox: Extent['bbox'] = [x0, y, Math.max(x + across, right + 1) - x0, Math.max(y + down, bottom + 1) - y];
+    extents.set(labels[k]!, { pixels: pixels + last + 1 - from, bbox });
+  }
+  return extents;
+}
+
 /** Size of the runs in memory, bytes. */
 export function sizeOf({ ends, labels }: Runs): number {
   return ends.byteLength + labels.byteLength;

@@ -9,6 +9,8 @@ export interface Path {
   readonly points: readonly number[];
   /** Pixels. */
   readonly radius: number;
+  /** Of a polygon: what the path encloses is meant, and the radius is not. */
+  readonly filled?: boolean;
 }
 
 /** A stroke as drawn: "this mask" (`brush`) or "not this mask" (`eraser`). Never changed: strokes are compared by identity. */
@@ -33,7 +35,7 @@ export function allowedLabels({ tool, mask }: Pick<Stroke, 'tool' | 'mask'>, fou
 
 /** The constraints of the strokes on this result, without those that have no effect. */
 export function constraintsFrom(strokes: readonly Stroke[], found: Segmentation): Constraint[] {
-  return strokes.map((stroke) => ({ points: stroke.points, radius: stroke.radius, labels: allowedLabels(stroke, found) })).filter(({ labels }) => labels !== 0);
+  return strokes.map((stroke) => ({ ...stroke, labels: allowedLabels(stroke, found) })).filter(({ labels }) => labels !== 0);
 }
 
 /** All constraints as `relabel` expects them: the allowed labels of each pixel, one bit each, 0 for no constraint. */
@@ -49,13 +51,29 @@ export function evidenceOf(strokes: readonly Constraint[], width: number, height
 }
 
 /** Calls `visit` for each pixel whose centre lies under the stroke, for some more than once. */
-export function eachPixel({ points, radius }: Path, width: number, height: number, visit: (pixel: number) => void): void {
+export function eachPixel({ points, radius, filled }: Path, width: number, height: number, visit: (pixel: number) => void): void {
+  if (filled) return eachInside(points, width, height, visit);
   for (let i = 0; i < points.length; i += 2) {
     const [x0, y0] = [points[Math.max(0, i - 2)]!, points[Math.max(1, i - 1)]!];
     const [x1, y1] = [points[i]!, points[i + 1]!];
     const steps = Math.max(1, Math.ceil(Math.hypot(x1 - x0, y1 - y0) / Math.max(1, radius / 2)));
     for (let s = i === 0 ? steps : 1; s <= steps; s++) {
       disc(x0 + ((x1 - x0) * s) / steps, y0 + ((y1 - y0) * s) / steps, radius, width, height, visit);
+    }
+  }
+}
+
+/** Pixels inside a polygon by the even-odd rule. Of two polygons with a common side one has a centre that lies on it. */
+function eachInside(points: readonly number[], width: number, height: number, visit: (pixel: number) => void): void {
+  for (let y = 0; y < height; y++) {
+    const crossed: number[] = [];
+    for (let i = 0; i < points.length; i += 2) {
+      const [x0, y0, x1, y1] = [points[i]!, points[i + 1]!, points[(i + 2) % points.length]!, points[(i + 3) % points.length]!];
+      if (y0 <= y !== y1 <= y) crossed.push(x0 + ((y - y0) * (x1 - x0)) / (y1 - y0));
+    }
+    crossed.sort((one, other) => one - other);
+    for (let k = 0; k < crossed.length; k += 2) {
+      for (let x = Math.max(0, Math.ceil(crossed[k]!)); x < Math.min(width, crossed[k + 1]!); x++) visit(y * width + x);
     }
   }
 }

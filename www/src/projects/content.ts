@@ -14,9 +14,10 @@ type Entries<K, V> = readonly (readonly [K, V])[];
 /** A project with lists of entries in place of maps. */
 export interface Content extends Pick<Project, 'settings'>, Partial<Pick<Project, 'classList'>> {
   readonly clip:
-    | (Omit<ProjectClip, 'painted' | 'spread' | 'became' | 'locks' | 'accepted' | 'classes' | 'spans' | 'solved'> & {
+    | (Omit<ProjectClip, 'painted' | 'spread' | 'exact' | 'became' | 'locks' | 'accepted' | 'classes' | 'spans' | 'solved'> & {
         readonly painted: Entries<number, Runs>;
         readonly spread?: Entries<number, ClipPropagation>;
+        readonly exact?: Entries<number, Runs>;
         readonly became: Entries<number, number>;
         readonly locks?: Entries<number, boolean>;
         readonly accepted?: readonly number[];
@@ -34,7 +35,7 @@ export function isContent(value: unknown, frames: number): value is Content {
   const { clip, pairs } = value as Content;
   if (pairs.some(([, { edits, found }]) => edits.done > edits.actions.length || !(found === null || fits(found.packed)))) return false;
   if (clip === null) return true;
-  const masks = [...clip.frames.map((frame) => frame?.runs ?? null), ...clip.found, ...clip.painted.map(([, runs]) => runs)];
+  const masks = [...clip.frames.map((frame) => frame?.runs ?? null), ...clip.found, ...[...clip.painted, ...(clip.exact ?? [])].map(([, runs]) => runs)];
   const images = masks.filter((image) => image !== null);
   const inside = [clip.range, ...clip.spans.map(({ range }) => range)].every(({ first, last }) => first <= last && last < frames);
   return clip.frames.length === frames && clip.found.length === frames && clip.at < frames && inside && images.every((image) => sameSize(image, images[0]!));
@@ -77,26 +78,27 @@ const isColour = listOf(isFrom(0, 255), 3);
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
 const isRange = objectOf({ first: isIndex, last: isIndex });
-/** Files of earlier versions have none of these. */
-const isLocks: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isFrom(1, 254), isFlag))(value);
-const isSpread: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))(value);
-const isAccepted: Check<unknown> = (value): value is unknown => value === undefined || listOf(isIndex)(value);
-const isClasses: Check<unknown> = (value): value is unknown => value === undefined || mapOf(isText)(value);
-const isClassList: Check<unknown> = (value): value is unknown => value === undefined || listOf(isText)(value);
+/** What files of earlier versions do not have. */
+function optional(check: Check<unknown>): Check<unknown> {
+  return (value): value is unknown => value === undefined || check(value);
+}
+
+const isPainted = listOf(entryOf(isIndex, isRuns));
 const isClip = objectOf({
   range: isRange,
   longestSide: isSide,
   largest: isFrom(0, 254),
   names: mapOf(isText),
-  classes: isClasses,
+  classes: optional(mapOf(isText)),
   colours: mapOf(isColour),
   frames: listOf(orNull(isFrame)),
   found: listOf(orNull(isRuns)),
-  painted: listOf(entryOf(isIndex, isRuns)),
-  spread: isSpread,
+  painted: isPainted,
+  spread: optional(listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))),
+  exact: optional(isPainted),
   became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
-  locks: isLocks,
-  accepted: isAccepted,
+  locks: optional(listOf(entryOf(isFrom(1, 254), isFlag))),
+  accepted: optional(listOf(isIndex)),
   spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))) })),
   at: isIndex,
   hidden: listOf(isFrom(1, 254)),
@@ -104,23 +106,22 @@ const isClip = objectOf({
 });
 
 const isPart = objectOf({ of: isRuns, labels: isFrom(0, 0xffff) });
-const isStroke = objectOf({ points: listOf(isNumber), radius: isNumber, tool: isOne('brush', 'eraser'), mask: isPart });
+const isStroke = objectOf({ points: listOf(isNumber), radius: isNumber, filled: optional(isFlag), tool: isOne('brush', 'eraser'), mask: isPart });
+const isExact = objectOf({ of: isRuns, labels: isRuns });
 const isGrouping = objectOf({ of: isRuns, groups: listOf(isFrom(0, 255)) });
 const isAppearance = objectOf({ kind: isOne('groups', 'motions'), id: isFrom(0, 255), mask: isPart });
 const isNamed = either(objectOf({ name: isText }), objectOf({ colour: isColour }));
 const isEdits = objectOf({
-  actions: listOf(either(objectOf({ stroke: isStroke }), objectOf({ grouping: isGrouping }))),
+  actions: listOf(either(either(objectOf({ stroke: isStroke }), objectOf({ exact: isExact })), objectOf({ grouping: isGrouping }))),
   done: isIndex,
   appearances: listOf((value): value is unknown => isAppearance(value) && isNamed(value)),
 });
 const isJunction = objectOf({ labels: listOf(isFrom(0, 15), 2), likelihood: isNumber, border: isIndex });
-/** Files of earlier versions have none. */
-const isJunctions: Check<unknown> = (value): value is unknown => value === undefined || listOf(isJunction)(value);
 const isReport = objectOf({
   width: isSide,
   height: isSide,
   motions: listOf(objectOf({ label: isFrom(0, 15), matrix: isMatrix, pixels: isIndex, share: isNumber, residual: isNumber, bbox: isBox, group: isFrom(0, 255) })),
-  junctions: isJunctions,
+  junctions: optional(listOf(isJunction)),
   evidence: objectOf({ candidates: listOf(objectOf({ motions: isSide, score: isNumber })) }),
   unlabelled: isIndex,
   milliseconds: mapOf(isNumber),
@@ -129,7 +130,7 @@ const isReport = objectOf({
 const isFound = objectOf({ packed: objectOf({ report: isReport, runs: isRuns }), waited: isNumber });
 const isPair = objectOf({ edits: isEdits, found: orNull(isFound), ownMotions: orNull(isMotions), width: isSide, height: isSide });
 
-const isProject = objectOf({ settings: isSettings, classList: isClassList, clip: orNull(isClip), pairs: listOf(entryOf(isText, isPair)) });
+const isProject = objectOf({ settings: isSettings, classList: optional(listOf(isText)), clip: orNull(isClip), pairs: listOf(entryOf(isText, isPair)) });
 
 /** What {@link upgraded} reads of a file of version 1. */
 const isOld = objectOf<{ readonly clip: { readonly state: Blob | null; readonly frames: readonly (TrackedFrame | null)[]; readonly largest: number } | null }>({

@@ -113,6 +113,7 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
         ...clip,
         painted: new Map(clip.painted),
         spread: new Map(clip.spread),
+        exact: new Map(clip.exact),
         became: new Map(clip.became),
         locks: new Map(clip.locks),
         classes: clip.classes ?? {},

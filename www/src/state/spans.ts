@@ -4,6 +4,7 @@
 import type { ClipOptions } from 'veronese';
 import { type Runs, overlapsOf, resized, together, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
+import { exactly } from './exact.js';
 import type { Range, Span, TrackedFrame, Version } from './tracked.js';
 
 /** The largest number of an object. */
@@ -135,8 +136,9 @@ export function withRun(version: Version, run: readonly TrackedFrame[], span: Sp
   const named = run.map((frame) => fromSpan(frame, numbers, version.largest));
   const frames = version.frames.map((frame, index) => named[index - first] ?? frame);
   const found = version.found.map((runs, index) => named[index - first]?.runs ?? runs);
-  const painted = new Map([...version.painted].map(([index, runs]) => [index, resized(runs, frames[index]?.runs ?? runs)]));
+  const atSize = (said: Version['painted']): Version['painted'] => new Map([...said].map(([index, runs]) => [index, resized(runs, frames[index]?.runs ?? runs)]));
+  const [painted, exact] = [atSize(version.painted), atSize(version.exact)];
   const spans = [...version.spans.filter(({ range }) => range.first < first || range.last > last), { ...span, numbers }];
-  return { ...version, frames, found, painted, spans, longestSide, largest: Math.max(version.largest, ...numbers.values()) };
+  return exactly({ ...version, frames, found, painted, exact, spans, longestSide, largest: Math.max(version.largest, ...numbers.values()) });
 }
 

@@ -12,7 +12,7 @@ import { DEFAULT_SETTINGS, type Settings } from './settings.js';
 import type { Tracked } from './tracked.js';
 
 /** What led to the masks on screen. */
-export type Cause = 'found' | 'solved' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'separated' | 'restored' | 'tracked';
+export type Cause = 'found' | 'solved' | 'drawn' | 'undone' | 'redone' | 'merged' | 'ungrouped' | 'separated' | 'restored' | 'tracked';
 
 /** What is running. `index` counts stages from 0; `of` is 0 until the number of stages is known. */
 export type Run =
@@ -42,6 +42,8 @@ export interface Look extends Painting {
   /** Opacity of the masks, 0…1. */
   readonly opacity: number;
   readonly outlines: boolean;
+  /** The outlines of a clip's objects in the frames before and after. */
+  readonly onion: boolean;
   readonly arrows: boolean;
   readonly residual: boolean;
   /** The selected mask, to which brush and eraser refer. */
@@ -57,13 +59,15 @@ export interface Look extends Painting {
   readonly classes: Readonly<Record<string, string>>;
 }
 
-export type ToolName = 'look' | 'brush' | 'eraser' | 'box';
+export type ToolName = 'look' | 'brush' | 'eraser' | 'polygon' | 'box';
 
 export interface Tool {
   readonly name: ToolName;
   /** Of the brush, pixels of the frame. */
   readonly radius: number;
-  /** Where what is said of a frame of a clip spreads. */
+  /** Whether what is drawn is kept pixel for pixel, and nothing follows. */
+  readonly exact: boolean;
+  /** Where what is said of a frame of a clip spreads otherwise. */
   readonly spread: ClipPropagation;
 }
 
@@ -172,9 +176,9 @@ export const INITIAL: State = {
   found: null,
   edits: NO_EDITS,
   kept: new Map(),
-  look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, arrows: false, residual: false, ...FRESH },
+  look: { view: 'first', divide: 0.5, kind: 'groups', opacity: 0.35, outlines: true, onion: false, arrows: false, residual: false, ...FRESH },
   viewport: WHOLE,
-  tool: { name: 'look', radius: 8, spread: 'both' },
+  tool: { name: 'look', radius: 8, exact: false, spread: 'both' },
   notice: null,
   question: null,
   keeping: 'nothing',

@@ -65,6 +65,8 @@ export interface Version {
   readonly painted: ReadonlyMap<number, Runs>;
   /** Where that spreads, for frames from which it does not spread both ways. */
   readonly spread: ReadonlyMap<number, ClipPropagation>;
+  /** What was drawn exactly in frames, by index, as {@link painted}: their masks have these labels, whatever else is said. */
+  readonly exact: ReadonlyMap<number, Runs>;
   /** What became of objects that were merged or deleted: the number of another object, or 0. */
   readonly became: ReadonlyMap<number, number>;
   /** Whether a person wants an object locked or not, by its number. */
@@ -119,6 +121,7 @@ export function untracked(clip: Clip): Tracked {
     found: frames,
     painted: new Map(),
     spread: new Map(),
+    exact: new Map(),
     became: new Map(),
     ...NO_NOTES,
     largest: 0,
@@ -129,8 +132,8 @@ export function untracked(clip: Clip): Tracked {
   };
 }
 
-export function versionOf({ frames, spans, longestSide, found, painted, spread, became, largest, ...others }: Version): Version {
-  return { frames, spans, longestSide, found, painted, spread, became, largest, ...notesOf(others) };
+export function versionOf({ frames, spans, longestSide, found, painted, spread, exact, became, largest, ...others }: Version): Version {
+  return { frames, spans, longestSide, found, painted, spread, exact, became, largest, ...notesOf(others) };
 }
 
 export function notesOf({ locks, accepted, names, classes, colours }: Notes): Notes {
@@ -145,6 +148,11 @@ export function isLocked({ locks, names }: Pick<Notes, 'locks' | 'names'>, id: n
 /** What is saved when the clip is kept or exported as it is. */
 export function savedOf({ frames, ...others }: Saved): Saved {
   return { frames, ...notesOf(others) };
+}
+
+/** What a person drew in frames, by index. A frame may be there twice. */
+export function drawnIn({ painted, exact }: Pick<Version, 'painted' | 'exact'>): (readonly [number, Runs])[] {
+  return [...painted, ...exact];
 }
 
 /** Whether leaving would lose what a person did. */

@@ -1,4 +1,4 @@
-//! Brush, eraser and box: the circle under the pointer, the stroke or the box being drawn, and earlier strokes.
+//! Brush, eraser, polygon and box: the circle under the pointer, what is being drawn, and earlier strokes.
 
 import { maskWith, strokesOf } from '../correction/edits.js';
 import { labellingOf, labelsIn } from '../correction/parts.js';
@@ -6,8 +6,9 @@ import { type Path, allowedLabels } from '../correction/strokes.js';
 import { colourOfMask } from '../drawing/paint.js';
 import { type Colour, cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
-import type { State, Store } from '../state/state.js';
+import type { State, Store, ToolName } from '../state/state.js';
 import { drawn, find } from './markup.js';
+import { cornersOf, dotsOf, isPolygon, setCorner, takeBack } from './polygon.js';
 
 type Point = readonly [number, number];
 
@@ -17,7 +18,7 @@ const STEPS: Readonly<Record<string, Point>> = { ArrowLeft: [-1, 0], ArrowRight:
 /** The colour of the eraser, and of strokes whose mask is not in the result. */
 const COLOURLESS: Colour = [20, 20, 20];
 
-/** Radius of the circle where a box begins, pixels. */
+/** Radius of the circle for the corners of a box or a polygon, pixels of the picture before it is enlarged. */
 const CORNER = 3;
 
 /** A point is recorded at this distance from the last, share of the radius. */
@@ -29,9 +30,12 @@ export class Brush {
   readonly #picture: SVGSVGElement;
   readonly #circle = drawn('circle', { class: 'brush', r: 0 });
   readonly #path = drawn('path', { class: 'stroke now' });
+  readonly #corners = drawn('path', { class: 'corners' });
   readonly #strokes = drawn('g', {});
-  /** The stroke being drawn, and what takes it: it belongs to the tool and the mask that were selected when it began. */
-  #now: { readonly points: number[]; readonly take: (path: Path) => void } | null = null;
+  /** What is being drawn, and what takes it: it belongs to the tool and the mask that were selected when it began. */
+  #now: { readonly tool: ToolName; readonly points: number[]; readonly take: (path: Path) => void } | null = null;
+  /** Whether the pointer was pressed for what is being drawn. A polygon goes on when it is lifted. */
+  #pressed = false;
   /** The last position of the brush. */
   #at: Point | null = null;
 
@@ -39,17 +43,18 @@ export class Brush {
     this.#store = store;
     this.#session = session;
     this.#picture = find(stage, '#strokes', SVGSVGElement);
-    this.#picture.append(this.#strokes, this.#path, this.#circle);
-    session.masks.finishStroke = () => this.end();
+    this.#picture.append(this.#strokes, this.#path, this.#corners, this.#circle);
+    session.masks.finishStroke = () => this.#finish();
+    this.#fit(store.get());
+    this.#dress(store.get());
+    this.#draw(store.get());
     store.subscribe((now, before) => {
       if (now.pair !== before.pair) {
         this.abandon();
         this.#at = null;
-        // Strokes are in pixels of the frame, whatever its masks are, and whether there are any.
-        const frame = now.pair.first ?? now.pair.second;
-        if (frame !== null) this.#picture.setAttribute('viewBox', `-0.5 -0.5 ${frame.width} ${frame.height}`);
+        this.#fit(now);
       }
-      if (now.tool.name !== before.tool.name) this.end();
+      if (now.tool.name !== before.tool.name) this.#finish();
       if (now.tool !== before.tool || now.look.selected !== before.look.selected) this.#dress(now);
       const same = now.edits === before.edits && now.tool.name === before.tool.name && now.result === before.result && now.look === before.look;
       if (!same) this.#draw(now);
@@ -57,8 +62,8 @@ export class Brush {
   }
 
   /**
-   * Handles keys while the picture has focus: arrow keys move the brush, Space starts and ends a stroke or a box, Escape discards it. Returns
-   * whether the key was handled.
+   * Handles keys while the picture has focus: arrow keys move the brush, Space starts and ends a stroke or a box and sets a corner of a
+   * polygon, Enter closes that and Backspace takes a corner back, Escape discards what is being drawn. Returns whether the key was handled.
    */
   key({ key, shiftKey }: KeyboardEvent): boolean {
     const { tool, result } = this.#store.get();
@@ -67,10 +72,17 @@ export class Brush {
     const [x, y] = this.#at ?? [width / 2, height / 2];
     const step = shiftKey ? 1 : Math.max(2, tool.radius);
     const [right, down] = STEPS[key] ?? [0, 0];
+    const polygon = this.#polygon;
     if (key === ' ') {
-      if (this.painting) this.end();
-      else this.begin([x, y]);
+      const ends = this.painting;
+      if (!ends || polygon) this.begin([x, y]);
+      if (ends || tool.name === 'polygon') this.end(0, shiftKey);
     } else if (key === 'Escape' && this.painting) this.abandon();
+    else if (key === 'Enter' && polygon) this.#close(shiftKey);
+    else if (key === 'Backspace' && polygon) {
+      if (takeBack(polygon)) this.#trace();
+      else this.abandon();
+    }
     else if (right !== 0 || down !== 0) {
       const clamped: Point = [Math.min(Math.max(x + right * step, 0), width - 1), Math.min(Math.max(y + down * step, 0), height - 1)];
       this.move(clamped);
@@ -86,7 +98,10 @@ export class Brush {
     this.#at = [x, y];
     this.#circle.setAttribute('cx', String(x));
     this.#circle.setAttribute('cy', String(y));
-    this.#circle.setAttribute('r', String(radiusOf(this.#store.get().tool)));
+    this.#circle.setAttribute('r', String(radiusOf(this.#store.get())));
+    if (!this.#polygon) return;
+    this.#polygon.splice(-2, 2, x, y);
+    this.#trace();
   }
 
   /** Hides the circle when the pointer leaves. */
@@ -97,49 +112,96 @@ export class Brush {
   begin(point: Point): void {
     const { tool } = this.#store.get();
     if (tool.name === 'look') return;
-    const take = tool.name === 'box' ? this.#session.objects.beginBox() : this.#session.edited().beginStroke(tool.name);
-    if (take !== null) this.#now = { points: [...point], take };
+    this.#pressed = true;
+    if (!this.#polygon) {
+      const take = tool.name === 'box' ? this.#session.objects.beginBox() : this.#session.edited().beginStroke(tool.name === 'eraser' ? 'eraser' : 'brush');
+      if (take !== null) this.#now = { tool: tool.name, points: [...point], take };
+    }
     this.hover(point);
     this.#trace();
   }
 
   move([x, y]: Point): void {
     this.hover([x, y]);
-    if (this.#now === null) return;
-    const { points } = this.#now;
+    if (this.#now === null || this.#polygon) return;
+    const { points, tool } = this.#now;
     const [lastX, lastY] = [points.at(-2) ?? 0, points.at(-1) ?? 0];
-    if (this.#store.get().tool.name === 'box') points.splice(2, 2, x, y);
+    if (tool === 'box') points.splice(2, 2, x, y);
     else if (Math.hypot(x - lastX, y - lastY) < NEXT_POINT * this.#store.get().tool.radius) return;
     else points.push(x, y);
     this.#trace();
   }
 
-  end(): void {
+  /**
+   * The pointer is lifted: that ends a stroke or a box, and sets a corner of a polygon or closes it. `reach`: how near the first corner is
+   * enough for that, pixels of the screen; `erases`: a polygon is then removed from the mask.
+   */
+  end(reach = 0, erases = false): void {
     const now = this.#now;
-    this.#now = null;
-    this.#trace();
-    now?.take({ points: now.points, radius: this.#store.get().tool.radius });
+    if (now === null || !this.#pressed) return;
+    this.#pressed = false;
+    if (this.#polygon) return setCorner(now.points, reach / (this.#picture.getScreenCTM()?.a ?? 1)) ? this.#close(erases) : this.#trace();
+    this.#clear();
+    now.take({ points: now.points, radius: this.#store.get().tool.radius });
+  }
+
+  /** A second finger or the browser takes over: a stroke that has moved stays, and so do the corners of a polygon. Half a box is none. */
+  interrupt(moved: boolean): void {
+    if (moved && this.#now?.tool !== 'box' && !this.#polygon) this.end();
+    else if ((this.#polygon?.length ?? 0) <= 2) this.abandon();
+    this.#pressed = false;
   }
 
   abandon(): void {
-    this.#now = null;
-    this.#trace();
+    this.#clear();
     this.leave();
   }
 
+  #clear(): void {
+    this.#now = null;
+    this.#trace();
+  }
+
+  /** The points of the polygon that is being drawn. */
+  get #polygon(): number[] | null {
+    return this.#now?.tool === 'polygon' ? this.#now.points : null;
+  }
+
+  /** Another tool is chosen, or the frames are left. */
+  #finish(): void {
+    if (this.#polygon) this.abandon();
+    else this.end();
+  }
+
+  #close(erases: boolean): void {
+    const points = cornersOf(this.#polygon ?? []);
+    const take = erases ? this.#session.edited().beginStroke('eraser') : this.#now?.take;
+    if (!take || !isPolygon(points)) return;
+    this.#clear();
+    take({ points, radius: 0, filled: true });
+  }
+
   #trace(): void {
-    const { tool } = this.#store.get();
-    const path = tool.name === 'box' ? boxOf : pathOf;
-    this.#path.setAttribute('d', this.#now === null ? '' : path(this.#now.points));
-    this.#path.setAttribute('stroke-width', String(2 * tool.radius));
+    const { tool, points } = this.#now ?? { tool: '', points: [] };
+    const path = tool === 'box' ? boxOf : pathOf;
+    this.#path.setAttribute('d', points.length === 0 ? '' : path(points, tool === 'polygon'));
+    this.#path.setAttribute('stroke-width', String(2 * this.#store.get().tool.radius));
+    this.#corners.setAttribute('d', tool === 'polygon' ? dotsOf(cornersOf(points)) : '');
+  }
+
+  /** Strokes are in pixels of the frame, whatever its masks are, and whether there are any. */
+  #fit({ pair }: State): void {
+    const frame = pair.first ?? pair.second;
+    if (frame !== null) this.#picture.setAttribute('viewBox', `-0.5 -0.5 ${frame.width} ${frame.height}`);
   }
 
   /** The circle has the colour of the selected mask; the style sheet dashes the eraser's. */
-  #dress({ tool, look }: State): void {
+  #dress(now: State): void {
+    const { tool, look } = now;
     this.#picture.dataset.tool = tool.name;
     this.#picture.style.setProperty('--colour', look.selected === null ? 'white' : cssColour(colourOfMask(look.selected, look)));
     if (tool.name === 'look') this.#circle.setAttribute('r', '0');
-    else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(radiusOf(tool)));
+    else if (this.#circle.getAttribute('r') !== '0') this.#circle.setAttribute('r', String(radiusOf(now)));
   }
 
   #draw({ edits, tool, result, found, look }: State): void {
@@ -150,14 +212,16 @@ export class Brush {
         const mask = stroke.tool === 'brush' ? maskWith(labelsIn(stroke.mask, labellingOf(found)), segmentation, look.kind) : null;
         const colour = mask === null ? COLOURLESS : colourOfMask(mask, look);
         const className = allowedLabels(stroke, found) === 0 ? 'stroke ineffective' : 'stroke';
-        return drawn('path', { class: className, d: pathOf(stroke.points), 'stroke-width': 2 * stroke.radius, stroke: cssColour(colour) });
+        const { points, radius, filled = false } = stroke;
+        const [line, fill] = [cssColour(colour), filled ? cssColour(colour) : 'none'];
+        return drawn('path', { class: className, d: pathOf(points, filled), 'stroke-width': 2 * radius, stroke: line, fill });
       }),
     );
   }
 }
 
-function radiusOf({ name, radius }: State['tool']): number {
-  return name === 'box' ? CORNER : radius;
+function radiusOf({ tool: { name, radius }, viewport }: State): number {
+  return name === 'box' || name === 'polygon' ? CORNER / viewport.zoom : radius;
 }
 
 /** The rectangle with two corners. */
@@ -165,7 +229,7 @@ function boxOf([x = 0, y = 0, right = x, bottom = y]: readonly number[]): string
   return `M${x.toFixed(1)} ${y.toFixed(1)}H${right.toFixed(1)}V${bottom.toFixed(1)}H${x.toFixed(1)}Z`;
 }
 
-function pathOf(points: readonly number[]): string {
+function pathOf(points: readonly number[], isClosed: boolean): string {
   const pairs = Array.from({ length: points.length / 2 }, (_, i) => `${points[2 * i]!.toFixed(1)} ${points[2 * i + 1]!.toFixed(1)}`);
-  return `M${pairs.join('L')}${pairs.length === 1 ? 'h0.01' : ''}`;
+  return `M${pairs.join('L')}${pairs.length === 1 ? 'h0.01' : isClosed ? 'Z' : ''}`;
 }

@@ -1,13 +1,14 @@
 //! Pointers on the picture. View tool: a tap selects a mask, holding shows the other frame, dragging pans the enlarged picture. Brush and
-//! eraser: dragging paints. Box: dragging draws one, a tap points. With Shift the wheel changes
-//! the size of the brush. All tools: the wheel and two fingers zoom.
+//! eraser: dragging paints. Polygon: each press sets a corner where it ends. Box: dragging draws one, a tap points. With Shift the wheel
+//! changes the size of the brush. All tools: the wheel and two fingers zoom.
 
 import { inPicture } from '../drawing/viewport.js';
 import { maskOf } from '../result/masks.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { Peek } from './blink.js';
-import type { Brush } from './brush.js';
+import type { LateBrush } from './late-brush.js';
+import { takesText } from './markup.js';
 import { changeRadius } from './tools.js';
 import type { Zoom } from './zoom.js';
 
@@ -15,6 +16,8 @@ import type { Zoom } from './zoom.js';
 const STILL = 5;
 /** A press that lasts longer is not a tap, milliseconds. */
 const TAP = 220;
+/** A press as near to the first corner of a polygon closes it, screen pixels. */
+const REACH = { mouse: 9, finger: 24 };
 /** Zoom per pixel of the wheel, and what a notch makes of the brush. */
 const WHEEL = 0.0025;
 const NOTCH = 1.15;
@@ -27,7 +30,7 @@ interface Press {
   moved: boolean;
 }
 
-export function mountGestures(layers: HTMLElement, store: Store, session: Session, zoom: Zoom, brush: Brush): void {
+export function mountGestures(layers: HTMLElement, store: Store, session: Session, zoom: Zoom, brush: LateBrush): void {
   const presses = new Map<number, Press>();
   const peek = new Peek(store);
   let holding = 0;
@@ -38,10 +41,6 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     return [(clientX - box.left) / box.width, (clientY - box.top) / box.height];
   };
   const paints = (): boolean => store.get().tool.name !== 'look';
-  /** Half a box is none. */
-  const keeps = (): boolean => store.get().tool.name !== 'box';
-  /** A second finger or the browser takes over: a stroke drawn so far stays, one that has not moved is discarded. */
-  const leaveOff = (drawn: boolean): void => (drawn ? brush.end() : brush.abandon());
 
   layers.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || event.target instanceof HTMLInputElement) return;
@@ -51,18 +50,21 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     if (presses.size > 1) {
       dragged = true;
       peek.release();
-      leaveOff(keeps() && [...presses.values()].some(({ moved }) => moved));
+      const drawn = [...presses.values()].some(({ moved }) => moved);
+      brush.do((brush) => brush.interrupt(drawn));
       return;
     }
     dragged = false;
-    if (paints()) brush.begin(pixelAt(store.get(), inView(event)));
-    else holding = window.setTimeout(() => peek.press(), TAP);
+    if (paints()) {
+      const at = pixelAt(store.get(), inView(event));
+      brush.do((brush) => brush.begin(at));
+    } else holding = window.setTimeout(() => peek.press(), TAP);
   });
 
   layers.addEventListener('pointermove', (event) => {
     const press = presses.get(event.pointerId);
     if (press === undefined) {
-      if (paints()) brush.hover(pixelAt(store.get(), inView(event)));
+      if (paints()) brush.now?.hover(pixelAt(store.get(), inView(event)));
       return;
     }
     const [dx, dy] = [event.clientX - press.x, event.clientY - press.y];
@@ -78,7 +80,8 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
         if (distance(press) > 0) zoom.by(distance(now) / distance(press), inView(middle));
       }
     } else if (paints()) {
-      if (!dragged || brush.painting) for (const point of coalesced(event)) brush.move(pixelAt(store.get(), inView(point)));
+      const path = coalesced(event).map((point) => pixelAt(store.get(), inView(point)));
+      if (!dragged || brush.now?.painting) brush.do((brush) => path.forEach((point) => brush.move(point)));
     } else if (dragged || press.moved) {
       if (!dragged && store.get().viewport.zoom > 1) clearTimeout(holding);
       dragged = true;
@@ -94,8 +97,8 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
     presses.delete(event.pointerId);
     clearTimeout(holding);
     if (paints()) {
-      leaveOff(event.type === 'pointerup' || (keeps() && press.moved));
-      return;
+      const reach = event.pointerType === 'mouse' ? REACH.mouse : REACH.finger;
+      return brush.do((brush) => (event.type === 'pointerup' ? brush.end(reach, event.shiftKey) : brush.interrupt(press.moved)));
     }
     const tapped = !dragged && event.type === 'pointerup' && !peek.held;
     peek.release();
@@ -103,11 +106,14 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   };
   layers.addEventListener('pointerup', end);
   layers.addEventListener('pointercancel', end);
-  layers.addEventListener('pointerleave', () => brush.leave());
+  layers.addEventListener('pointerleave', () => brush.now?.leave());
   window.addEventListener('blur', () => peek.release());
-  layers.addEventListener('keydown', (event) => {
-    const plain = event.target === layers && !event.ctrlKey && !event.metaKey && !event.altKey;
-    if (plain && brush.key(event)) event.preventDefault();
+  document.addEventListener('keydown', (event) => {
+    const { key, target } = event;
+    // Wherever the focus is, these are first about what is being drawn.
+    const takesBack = brush.now?.painting && (key === 'Escape' || key === 'Backspace') && !takesText(target);
+    const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
+    if (plain && (target === layers || takesBack) && brush.now?.key(event)) event.preventDefault();
   });
   // A long press on a touch screen opens a menu otherwise.
   layers.addEventListener('contextmenu', (event) => {

@@ -7,7 +7,7 @@ import { colourOfMask } from '../drawing/paint.js';
 import { cssColour } from '../drawing/palette.js';
 import type { Session } from '../session/session.js';
 import type { Look, State, Store } from '../state/state.js';
-import { type Life, type Tracked, isTracked, livesOf, shownFrames } from '../state/tracked.js';
+import { type Life, type Tracked, drawnIn, isTracked, livesOf, shownFrames } from '../state/tracked.js';
 import { contextOf, element, find } from './markup.js';
 
 /** Confidence is drawn between this, nearly transparent, and 1, opaque. A half is as likely background as not. */
@@ -86,7 +86,7 @@ function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[
     }
   });
   context.globalAlpha = 1;
-  for (const [index, { labels }] of tracked.painted) {
+  for (const [index, { labels }] of drawnIn(tracked)) {
     for (const [id, place] of places) if (labels.includes(id)) mark(context, (index + 0.5) * column, (place + 0.5) * row, (row * THICKNESS) / 2);
   }
 }

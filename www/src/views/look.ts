@@ -1,4 +1,4 @@
-//! The display controls under the picture: frame, masks, opacity, outlines, arrows, residual.
+//! The display controls under the picture: frame, masks, opacity, outlines, onion skin, arrows, residual.
 
 import { strings } from '../common/strings.js';
 import type { Kind } from '../result/masks.js';
@@ -8,13 +8,14 @@ import { isSeen } from '../state/tracked.js';
 import { find } from './markup.js';
 
 const VIEWS = ['first', 'split', 'second'] as const;
-const SWITCHES = ['outlines', 'arrows', 'residual'] as const;
+const SWITCHES = ['outlines', 'onion', 'arrows', 'residual'] as const;
 
 export function mountLook(form: HTMLFormElement, store: Store, session: Session): void {
   const radio = (name: string, value: string): HTMLInputElement => find(form, `[name=${name}][value=${value}]`, HTMLInputElement);
   const views = VIEWS.map((view) => radio('frame', view));
   const kinds = { motions: radio('colouring', 'motions'), groups: radio('colouring', 'groups'), objects: radio('colouring', 'objects') };
   const clipOnly = find(form, '#kind-objects', HTMLElement);
+  const onionOnly = find(form, '#onion-skin', HTMLElement);
   const kindsBox = find(form, '#kinds', HTMLFieldSetElement);
   const opacity = find(form, '[name=opacity]', HTMLInputElement);
   const opacityValue = find(form, '#opacity-value', HTMLOutputElement);
@@ -32,6 +33,7 @@ export function mountLook(form: HTMLFormElement, store: Store, session: Session)
     if (live !== before.live) kindsBox.hidden = live !== null;
     if (tracked !== before.tracked) clipOnly.hidden = !isSeen(tracked);
     if (look === before.look && pair === before.pair) return;
+    onionOnly.hidden = look.kind !== 'objects';
     const both = pair.first !== null && pair.second !== null;
     for (const view of views) {
       view.checked = view.value === look.view;

@@ -35,13 +35,14 @@ const NUMBERS = ['1', '2', '3', '4', '5', '6', '7', '8', '9'];
 const PAN = 0.1;
 
 export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Key[] {
-  const toggle = (name: 'outlines' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
+  const toggle = (name: 'outlines' | 'onion' | 'arrows' | 'residual') => () => store.look({ [name]: !store.get().look[name] });
   const pan = (right: number, down: number) => () => zoom.pan(right * PAN, down * PAN);
   return [
     { keys: ['n'], shown: 'N', does: 'blink', run: () => toggleBlinking(store) },
     { keys: ['s'], shown: 'S', does: 'split', run: () => store.look({ view: store.get().look.view === 'split' ? 'first' : 'split', blinking: false }) },
     { keys: ['g'], shown: 'G', does: 'kind', run: () => session.shown.kind(store.get().look.kind === 'groups' ? 'motions' : 'groups') },
     { keys: ['l'], shown: 'L', does: 'outlines', run: toggle('outlines'), shift: false },
+    { keys: ['u'], shown: 'U', does: 'onion', run: toggle('onion') },
     { keys: ['a'], shown: 'A', does: 'arrows', run: toggle('arrows') },
     { keys: ['r'], shown: 'R', does: 'residual', run: toggle('residual') },
     { keys: ['+', '='], shown: '+', does: 'zoomIn', run: () => zoom.by(ZOOM_STEP) },
@@ -74,6 +75,8 @@ export function keysFor(store: Store, session: Session, zoom: Zoom): readonly Ke
     { keys: ['v'], shown: 'V', does: 'look', run: () => chooseTool(store, 'look') },
     { keys: ['p'], shown: 'P', does: 'brush', run: () => chooseTool(store, 'brush') },
     { keys: ['e'], shown: 'E', does: 'eraser', run: () => chooseTool(store, 'eraser') },
+    { keys: ['w'], shown: 'W', does: 'polygon', run: () => chooseTool(store, 'polygon') },
+    { keys: ['q'], shown: 'Q', does: 'exact', run: () => store.set({ tool: { ...store.get().tool, exact: !store.get().tool.exact } }) },
     { keys: ['x'], shown: 'X', does: 'box', run: () => chooseTool(store, 'box') },
     { keys: [], shown: 'Space', does: 'stroke', run: () => undefined },
     { keys: ['['], shown: '[', does: 'thinner', run: () => changeRadius(store, 0.75) },

@@ -1,4 +1,4 @@
-//! The tools: view, brush, eraser, box; the size of the brush; undo and redo.
+//! The tools: view, brush, eraser, polygon, box; the size of the brush, what follows, whether drawing is exact; undo and redo.
 
 import type { ClipPropagation } from 'veronese';
 import { strings } from '../common/strings.js';
@@ -9,11 +9,12 @@ import { find } from './markup.js';
 export const RADII = { least: 2, most: 60 } as const;
 
 export function mountTools(form: HTMLFormElement, store: Store, session: Session): void {
-  const names = ['look', 'brush', 'eraser', 'box'] as const;
+  const names = ['look', 'brush', 'eraser', 'polygon', 'box'] as const;
   const radios = names.map((name) => find(form, `[name=tool][value=${name}]`, HTMLInputElement));
   const size = find(form, '[name=radius]', HTMLInputElement);
   const helps = names.map((name) => ({ name, help: find(document, `#tool-help [data-help=${name}]`, HTMLElement) }));
   const spread = find(form, '[name=spread]', HTMLSelectElement);
+  const exact = find(form, '[name=exact]', HTMLInputElement);
   const undo = find(form, '#undo', HTMLButtonElement);
   const redo = find(form, '#redo', HTMLButtonElement);
 
@@ -21,6 +22,7 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
   for (const radio of radios) radio.addEventListener('change', () => chooseTool(store, radio.value as ToolName));
   size.addEventListener('input', () => store.set({ tool: { ...store.get().tool, radius: size.valueAsNumber } }));
   spread.addEventListener('change', () => store.set({ tool: { ...store.get().tool, spread: spread.value as ClipPropagation } }));
+  exact.addEventListener('change', () => store.set({ tool: { ...store.get().tool, exact: exact.checked } }));
   undo.addEventListener('click', () => session.edited().undo());
   redo.addEventListener('click', () => session.edited().redo());
 
@@ -38,8 +40,9 @@ export function mountTools(form: HTMLFormElement, store: Store, session: Session
     size.value = String(tool.radius);
     spread.value = tool.spread;
     spread.parentElement!.hidden = clip === null;
+    spread.disabled = exact.checked = tool.exact;
     for (const { name, help } of helps) {
-      help.textContent = (clip === null ? strings.toolHelp : strings.clipToolHelp)[name];
+      help.textContent = strings.toolHelp(name, clip !== null, tool.exact);
       help.classList.toggle('away', tool.name !== name);
     }
     undo.disabled = clip === null ? edits.done === 0 : clip.past.length === 0 && !(clip.run.phase === 'working' && clip.run.stage === 'corrections');

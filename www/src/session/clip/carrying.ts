@@ -1,7 +1,7 @@
 //! Carries what a person says of one frame through the clip, one correction after another, because each starts from the masks of the one
 //! before; and goes back and forth between the versions that this makes. It owns the corrections that are waiting.
 
-import { type Said, paintedOver, withSaid } from '../../state/said.js';
+import { type Drawn, type Noted, type Said, paintedOver, withSaid } from '../../state/said.js';
 import { spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type ClipRun, type Notes, type TrackedFrame, type Version, versionOf } from '../../state/tracked.js';
@@ -25,6 +25,9 @@ interface Corrections {
   now: Version;
   readonly waiting: Said[];
 }
+
+/** Why a run on the clip is done. */
+type DoneCause = Extract<ClipRun, { readonly phase: 'done' }>['cause'];
 
 export class Carrying {
   readonly #store: Store;
@@ -64,12 +67,22 @@ export class Carrying {
   }
 
   /** Notes what changes no masks: a step of undo and redo, or, if it `goesOn`, part of the last one. The first masks are complete before there are steps. */
-  note(notes: Partial<Notes>, cause: Extract<ClipRun, { readonly phase: 'done' }>['cause'], goesOn = false): void {
+  note(notes: Partial<Notes>, cause: DoneCause, goesOn = false): void {
+    this.#note({ notes }, cause, goesOn);
+  }
+
+  /** Takes what is drawn exactly in frames, by index: it is not carried to other pixels. */
+  draw(said: Drawn): void {
+    this.#note(said, 'corrected', false);
+  }
+
+  #note(said: Noted | Drawn, cause: DoneCause, goesOn: boolean): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
-    if (this.#corrections !== null) return void this.correct({ notes });
+    if (this.#corrections !== null) return void this.correct(said);
+    const after = withSaid(tracked, said);
     if (!goesOn && tracked.spans.length > 0) this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
-    this.#shown.version({ ...tracked, ...notes }, tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: 0 });
+    this.#shown.version(after, tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: changedIn(after, tracked) });
   }
 
   undo(): void {
@@ -132,7 +145,7 @@ export class Carrying {
 
   /** The masks of all frames after what is said. */
   async #carried(before: Version, said: Exclude<Said, { readonly pointed: unknown }>, corrections: Corrections, signal: AbortSignal): Promise<Version> {
-    if (!('edits' in said || 'painted' in said)) return corrections.now;
+    if (!('edits' in said) && (!('painted' in said) || said.spread === 'exact')) return corrections.now;
     const changes = this.#shows(corrections);
     if ('edits' in said) {
       let after = corrections.now;
@@ -147,7 +160,7 @@ export class Carrying {
       else spread.set(index, said.spread);
       painted.set(index, paintedOver(before.painted.get(index), labels, before.frames[index]!.runs));
     }
-    let after: Version = { ...before, ...said.notes, painted, spread };
+    let after: Version = { ...before, ...said.notes, painted, spread, exact: corrections.now.exact };
     for (const span of before.spans) {
       const own = [...said.painted.keys()].filter((index) => spanAt(before.spans, index) === span);
       if (own.length > 0) after = await this.#spans.corrected(after, span, own, signal, changes);

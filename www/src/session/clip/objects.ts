@@ -1,7 +1,7 @@
 //! What a person does to the objects of a clip: strokes, boxes and clicks, merging, splitting and deleting, locks, names, classes and colours.
 //! Each becomes something that is said of frames or objects, in pixels of the masks, which is then carried through the clip.
 
-import type { ClipOptions, ClipPropagation } from 'veronese';
+import type { ClipOptions } from 'veronese';
 import { strings } from '../../common/strings.js';
 import { smallerPieces } from '../../correction/pieces.js';
 import { unpacked } from '../../correction/runs.js';
@@ -9,6 +9,7 @@ import { type Path, type Stroke, eachPixel } from '../../correction/strokes.js';
 import type { Colour } from '../../drawing/palette.js';
 import { UNLABELLED, keyOf } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
+import type { Spread } from '../../state/said.js';
 import { MOST_OBJECTS, spanAt } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type Notes, isLocked, toReview } from '../../state/tracked.js';
@@ -38,19 +39,19 @@ export class Objects {
     if (own === UNLABELLED) return this.#refuse(strings.notices.notPainted);
     if (own === 0 && tool === 'eraser') return this.#refuse(strings.notices.nothingElse);
     const { index, frame } = at;
-    return ({ points, radius }) => {
+    return (drawn) => {
       const { tracked: now } = this.#store.get();
       const masks = now?.frames[index]?.runs;
       if (!now || masks === undefined) return;
       const scale = masks.width / frame.width;
-      const path = { points: points.map((value) => (value + 0.5) * scale - 0.5), radius: radius * scale };
+      const path = { ...drawn, points: drawn.points.map((value) => (value + 0.5) * scale - 0.5), radius: drawn.radius * scale };
       const [labels, said] = [unpacked(masks), new Uint8Array(masks.width * masks.height).fill(UNLABELLED)];
       eachPixel(path, masks.width, masks.height, (p) => {
         const there = labels[p]!;
         if (tool === 'eraser' ? there === own : there === own || !isLocked(now, there)) said[p] = tool === 'eraser' ? 0 : own;
       });
       if (tool === 'brush' && said.every((label) => label === UNLABELLED)) return void this.#refuse(strings.notices.locked);
-      this.paint(new Map([[index, said]]), this.#store.get().tool.spread);
+      this.paint(new Map([[index, said]]), this.#spread());
     };
   }
 
@@ -69,14 +70,15 @@ export class Objects {
       const [width, height] = [Math.max(...columns) + 1 - left, Math.max(...rows) + 1 - top];
       const isClick = Math.max(width, height) <= Math.max(STILL * masks.width, 1);
       this.#store.look({ selected: id });
-      const { spread } = this.#store.get().tool;
-      void this.#carrying.correct({ pointed: { frame: index, id, spread, at: isClick ? [place(x, masks.width), place(y, masks.height)] : [left, top, width, height] } });
+      void this.#carrying.correct({ pointed: { frame: index, id, spread: this.#spread(), at: isClick ? [place(x, masks.width), place(y, masks.height)] : [left, top, width, height] } });
     };
   }
 
   /** Takes what is painted in frames, by index: numbers of objects, and 255 where nothing is said. `classes`: of the objects, by number. */
-  paint(painted: ReadonlyMap<number, Uint8Array>, spread: ClipPropagation = 'both', classes?: ReadonlyMap<number, string>): void {
-    void this.#carrying.correct({ painted, spread, ...(classes && { notes: this.#withClasses(classes) }) });
+  paint(painted: ReadonlyMap<number, Uint8Array>, spread: Spread = 'both', classes?: ReadonlyMap<number, string>): void {
+    const notes = classes && { notes: this.#withClasses(classes) };
+    if (spread === 'exact') this.#carrying.draw({ painted, spread, ...notes });
+    else void this.#carrying.correct({ painted, spread, ...notes });
   }
 
   /** Gives the selected object the mask of the frame on screen in the next frame, or the one before. Returns the index of that frame. */
@@ -91,7 +93,7 @@ export class Objects {
     if (here === undefined || there === undefined || spanAt(tracked.spans, to) === null) return this.#refuse(strings.notices.noFrameThere);
     const [mask, before] = [unpacked(here), unpacked(there)];
     const said = before.map((label, p) => (mask[p] === own ? (label === own || !isLocked(tracked, label) ? own : UNLABELLED) : label === own ? 0 : UNLABELLED));
-    this.paint(new Map([[to, said]]), this.#store.get().tool.spread);
+    this.paint(new Map([[to, said]]), this.#spread());
     return to;
   }
 
@@ -121,7 +123,7 @@ export class Objects {
     if (number === null) return;
     const labels = new Uint8Array(masks.width * masks.height).fill(UNLABELLED);
     for (const p of pieces) labels[p] = number;
-    this.paint(new Map([[frame, labels]]), this.#store.get().tool.spread);
+    this.paint(new Map([[frame, labels]]), this.#spread());
   }
 
   /** Selects the number of a new object, to be painted. Returns whether there can be one. */
@@ -170,6 +172,11 @@ export class Objects {
     if ('colour' in what) return this.#carrying.note({ colours: { ...tracked.colours, [key]: what.colour } }, 'described', goesOn);
     const { [key]: given = '', ...others } = tracked.names;
     if (what.name !== given) this.#carrying.note({ names: what.name === '' ? others : { ...others, [key]: what.name } }, 'described');
+  }
+
+  #spread(): Spread {
+    const { exact, spread } = this.#store.get().tool;
+    return exact ? 'exact' : spread;
   }
 
   /** Gives objects a class, which is in the list from then on; an empty text takes it away. */

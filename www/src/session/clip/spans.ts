@@ -4,10 +4,11 @@
 import type { ClipFrame, Segmenter } from 'veronese';
 import { codeOf } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
-import { packed } from '../../correction/runs.js';
+import { packed, unpacked } from '../../correction/runs.js';
 import { UNLABELLED } from '../../result/masks.js';
 import type { LoadedFrame } from '../../state/pair.js';
 import type { Pointed } from '../../state/said.js';
+import { exactly, overlaid } from '../../state/exact.js';
 import { editsIn, fromSpan, lockedIn, spanAt, theirNumber, toSpan } from '../../state/spans.js';
 import type { State, Store } from '../../state/state.js';
 import { type Span, type Tracked, type TrackedFrame, type Version, isLocked } from '../../state/tracked.js';
@@ -70,9 +71,11 @@ export class Spans {
       return new Map();
     }
     const { width } = version.frames[frame]!.runs;
+    const exact = version.exact.get(frame);
+    const drawn = exact && unpacked(exact);
     const [left, top, columns = width, rows = labels.length] = at.length === 2 ? [0, 0] : at;
     const isWithin = (p: number): boolean => p % width >= left && p % width < left + columns && p / width >= top && p / width < top + rows;
-    return new Map([[frame, labels.map((own, p) => (own === label && isWithin(p) ? id : own === 0 ? 0 : UNLABELLED))]]);
+    return new Map([[frame, labels.map((own, p) => ((drawn?.[p] ?? UNLABELLED) !== UNLABELLED ? UNLABELLED : own === label && isWithin(p) ? id : own === 0 ? 0 : UNLABELLED))]]);
   }
 
   /**
@@ -98,7 +101,7 @@ export class Spans {
     }));
     let { largest } = version;
     const named = (frame: ClipFrame): TrackedFrame => {
-      const masks = fromSpan(masksOf(frame, frames.size), numbers, largest);
+      const masks = overlaid(fromSpan(masksOf(frame, frames.size), numbers, largest), version.exact.get(first + frame.index));
       largest = Math.max(largest, ...masks.objects.map(({ id }) => id));
       return masks;
     };
@@ -128,7 +131,7 @@ export class Spans {
     const state = await found.state();
     if (state === undefined) return version;
     const spans = version.spans.map((other) => (other === span ? { ...span, state: blobOf(state), numbers } : other));
-    return { ...version, frames: masks, spans, largest };
+    return exactly({ ...version, frames: masks, spans, largest });
   }
 }
 

@@ -3,7 +3,8 @@
 
 import type { Segmentation } from 'veronese';
 import { strings } from '../../common/strings.js';
-import { NO_EDITS, grouped, lastStroke, maskIdOf, maskWith, scaled, withAction } from '../../correction/edits.js';
+import { type Action, NO_EDITS, lastStroke, maskIdOf, maskWith, scaled, withAction } from '../../correction/edits.js';
+import { drawnExactly, withEdits } from '../../correction/exact.js';
 import { labellingOf, withLabelling } from '../../correction/parts.js';
 import { unpackedResult } from '../../correction/solutions.js';
 import { type Path, type Stroke, allowedLabels } from '../../correction/strokes.js';
@@ -50,7 +51,7 @@ export class Masks {
 
   /** Begins a stroke with the selected mask. Returns what takes its path, or `null`, and tells why, if it would have no effect. */
   beginStroke(tool: Stroke['tool']): ((path: Path) => void) | null {
-    const { result, found, look, live } = this.#store.get();
+    const { result, found, look, live, tool: { exact: isExact } } = this.#store.get();
     if (live !== null) return null;
     const { noMasks, chooseMask, nothingElse, notPainted } = strings.notices;
     const refuse = (sentence: string): null => (this.#store.say(sentence), null);
@@ -59,8 +60,9 @@ export class Masks {
     const mask = { of: labellingOf(found), labels: labelSet(result.segmentation, look.kind, look.selected) };
     if (allowedLabels({ tool, mask }, found) === 0) return refuse(tool === 'eraser' ? nothingElse : notPainted);
     return (path) => {
-      this.#store.set({ edits: withAction(this.#store.get().edits, { stroke: { ...path, tool, mask } }) });
-      this.#solving.settle('solved');
+      const { result: shown, found: now } = this.#store.get();
+      if (!isExact) this.#act({ stroke: { ...path, tool, mask } }, 'solved');
+      else if (shown !== null && now !== null) this.#act({ exact: drawnExactly(path, { tool, mask }, shown.segmentation.labels, now) }, 'drawn');
     };
   }
 
@@ -128,7 +130,7 @@ export class Masks {
     const found = withLabelling(unpackedResult(known.packed), known.packed.runs);
     const last = lastStroke(edits);
     const solved = this.#solving.known(last, found);
-    const segmentation = grouped(solved ?? found, edits, found);
+    const segmentation = withEdits(solved ?? found, edits, found);
     return { found, edits, result: { segmentation, pair, waited: known.waited, under: solved === undefined ? null : last } };
   }
 
@@ -141,10 +143,12 @@ export class Masks {
   }
 
   #regroup({ motions }: Segmentation, cause: Cause): void {
-    const { edits, found } = this.#store.get();
-    if (found === null) return;
-    const grouping = { of: labellingOf(found), groups: motions.map(({ group }) => group) };
-    this.#store.set({ edits: withAction(edits, { grouping }) });
+    const { found } = this.#store.get();
+    if (found !== null) this.#act({ grouping: { of: labellingOf(found), groups: motions.map(({ group }) => group) } }, cause);
+  }
+
+  #act(action: Action, cause: Cause): void {
+    this.#store.set({ edits: withAction(this.#store.get().edits, action) });
     this.#solving.settle(cause);
   }
 }

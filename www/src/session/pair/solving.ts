@@ -4,6 +4,7 @@
 
 import type { Segmentation } from 'veronese';
 import { grouped, lastStroke, strokesOf } from '../../correction/edits.js';
+import { withEdits } from '../../correction/exact.js';
 import { Solutions } from '../../correction/solutions.js';
 import { type Stroke, constraintsFrom, evidenceOf } from '../../correction/strokes.js';
 import { type Cause, type Result, type State, type Store, isPending } from '../../state/state.js';
@@ -32,7 +33,7 @@ export class Solving {
     if (solved === null) return;
     if (under !== null) this.#solutions.add(under, found, solved);
     const before = this.#store.get();
-    const segmentation = grouped(solved, before.edits, found);
+    const segmentation = withEdits(solved, before.edits, found);
     this.#store.set({
       found,
       result: { segmentation, pair, waited: performance.now() - began, under },
@@ -48,12 +49,12 @@ export class Solving {
     if (result === null || found === null) return;
     this.#cause = cause;
     const last = lastStroke(edits);
-    const known = last === result.under ? result.segmentation : this.known(last, found);
+    const known = this.known(last, found);
     if (known !== undefined) this.#show(known, last, cause);
     else {
       const { motions } = grouped(result.segmentation, edits, found);
       const regrouped = motions.some(({ group }, k) => group !== result.segmentation.motions[k]!.group);
-      if (regrouped) this.#show(result.segmentation, result.under, null);
+      if (regrouped || cause === 'drawn') this.#show(result.segmentation, result.under, null);
       // A segmentation under way will be solved with all strokes.
       if (!isSegmenting(run)) void this.#solve();
     }
@@ -106,7 +107,7 @@ export class Solving {
     const before = this.#store.get();
     const { result, found, edits, run, look } = before;
     if (result === null || found === null) return;
-    const segmentation = grouped(solved, edits, found);
+    const segmentation = withEdits(solved, edits, found);
     this.#store.set({
       result: { ...result, segmentation, under, waited: waited ?? result.waited },
       run: cause === null || isSegmenting(run) ? run : { phase: 'done', cause },

@@ -1,0 +1,23 @@
+//! What is drawn exactly in frames of a clip lies over all that is found there. The package is told nothing of it, so that nothing follows.
+
+import { type Runs, extentsOf, over } from '../correction/runs.js';
+import { UNLABELLED } from '../result/masks.js';
+import type { TrackedFrame, Version } from './tracked.js';
+
+/** The masks of a frame with labels over them, and its objects as they are then; the same masks if that changes none. */
+export function overlaid(frame: TrackedFrame, said: Runs | undefined): TrackedFrame {
+  const runs = said === undefined ? frame.runs : over(frame.runs, said);
+  if (runs === frame.runs) return frame;
+  const known = new Map(frame.objects.map((object) => [object.id, object]));
+  const objects = [...extentsOf(runs)]
+    .filter(([id]) => id !== 0 && id !== UNLABELLED)
+    .map(([id, extent]) => ({ confidence: 1, matrix: null, ...known.get(id), ...extent, id }))
+    .sort((one, other) => one.id - other.id);
+  return { ...frame, runs, objects };
+}
+
+/** The masks with what was drawn exactly over them. */
+export function exactly<V extends Version>(version: V): V {
+  const { frames, exact } = version;
+  return exact.size === 0 ? version : { ...version, frames: frames.map((frame, index) => frame && overlaid(frame, exact.get(index))) };
+}

@@ -1,0 +1,33 @@
+//! The brush is loaded when a tool that draws is first chosen. What a pointer does until then waits for it.
+
+import { strings } from '../common/strings.js';
+import type { Session } from '../session/session.js';
+import type { Store } from '../state/state.js';
+import type { Brush } from './brush.js';
+
+export class LateBrush {
+  /** `null` until it is loaded. */
+  now: Brush | null = null;
+  readonly #load: () => Promise<Brush>;
+  #loading: Promise<Brush> | null = null;
+
+  constructor(stage: HTMLElement, store: Store, session: Session) {
+    this.#load = async () => {
+      const { Brush } = await import('./brush.js');
+      return (this.now = new Brush(stage, store, session));
+    };
+    store.subscribe(({ tool }) => {
+      if (tool.name === 'look' || this.#loading !== null) return;
+      this.#loading = this.#load();
+      this.#loading.catch(() => {
+        this.#loading = null;
+        session.say(strings.errors.notLoaded, 'not-loaded');
+      });
+    });
+  }
+
+  do(what: (brush: Brush) => void): void {
+    if (this.now !== null) what(this.now);
+    else this.#loading?.then(what, () => undefined);
+  }
+}
