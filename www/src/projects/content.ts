@@ -7,7 +7,7 @@ import { UNLABELLED } from '../result/masks.js';
 import type { Kept } from '../state/kept.js';
 import { type SolvedPairs, type Span, type TrackedFrame, rangeOf } from '../state/tracked.js';
 import type { Project, ProjectClip } from './project.js';
-import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, mapOf, objectOf, orNull } from './schema.js';
+import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, mapOf, objectOf, optional, orNull } from './schema.js';
 
 type Entries<K, V> = readonly (readonly [K, V])[];
 
@@ -76,10 +76,6 @@ const isColour = listOf(isFrom(0, 255), 3);
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
 const isRange = objectOf({ first: isIndex, last: isIndex });
-/** Files of earlier versions have none of these. */
-const isLocks: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isFrom(1, 254), isFlag))(value);
-const isSpread: Check<unknown> = (value): value is unknown => value === undefined || listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))(value);
-const isAccepted: Check<unknown> = (value): value is unknown => value === undefined || listOf(isIndex)(value);
 const isClip = objectOf({
   range: isRange,
   longestSide: isSide,
@@ -89,10 +85,10 @@ const isClip = objectOf({
   frames: listOf(orNull(isFrame)),
   found: listOf(orNull(isRuns)),
   painted: listOf(entryOf(isIndex, isRuns)),
-  spread: isSpread,
+  spread: optional(listOf(entryOf(isIndex, isOne('forward', 'backward', 'none')))),
   became: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))),
-  locks: isLocks,
-  accepted: isAccepted,
+  locks: optional(listOf(entryOf(isFrom(1, 254), isFlag))),
+  accepted: optional(listOf(isIndex)),
   spans: listOf(objectOf({ range: isRange, state: isBlob, numbers: listOf(entryOf(isFrom(1, 254), isFrom(0, 254))) })),
   at: isIndex,
   hidden: listOf(isFrom(1, 254)),
@@ -110,13 +106,11 @@ const isEdits = objectOf({
   appearances: listOf((value): value is unknown => isAppearance(value) && isNamed(value)),
 });
 const isJunction = objectOf({ labels: listOf(isFrom(0, 15), 2), likelihood: isNumber, border: isIndex });
-/** Files of earlier versions have none. */
-const isJunctions: Check<unknown> = (value): value is unknown => value === undefined || listOf(isJunction)(value);
 const isReport = objectOf({
   width: isSide,
   height: isSide,
   motions: listOf(objectOf({ label: isFrom(0, 15), matrix: isMatrix, pixels: isIndex, share: isNumber, residual: isNumber, bbox: isBox, group: isFrom(0, 255) })),
-  junctions: isJunctions,
+  junctions: optional(listOf(isJunction)),
   evidence: objectOf({ candidates: listOf(objectOf({ motions: isSide, score: isNumber })) }),
   unlabelled: isIndex,
   milliseconds: mapOf(isNumber),

@@ -18,6 +18,8 @@ export interface ProjectClip extends Version, Pick<Tracked, 'range' | 'names' | 
 }
 
 export interface Project extends Subject {
+  /** A small picture of the frame on screen and its masks, as a `data:` address. */
+  readonly thumbnail?: string | undefined;
   readonly settings: Settings;
   /** `null` if the subject is no clip, or is not segmented. */
   readonly clip: ProjectClip | null;
