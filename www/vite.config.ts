@@ -31,7 +31,7 @@ function withoutMeasurements(): Plugin {
   };
 }
 
-/** Preloads the WebAssembly module while the page is parsed, not when the first frames are decoded. */
+/** Preloads, while the page is parsed, the WebAssembly module, and the typeface of the name so that it is there when the page is first drawn. */
 function preload(): Plugin {
   return {
     name: 'preload',
@@ -45,7 +45,7 @@ function preload(): Plugin {
           attrs: { rel: 'preload', as, href: `./${name}`, crossorigin: true },
           injectTo: 'head',
         });
-        return names.filter((name) => name.endsWith('.wasm')).map((name) => link(name, 'fetch'));
+        return names.flatMap((name) => (name.endsWith('.wasm') ? [link(name, 'fetch')] : name.endsWith('.woff2') ? [link(name, 'font')] : []));
       },
     },
   };

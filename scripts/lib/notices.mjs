@@ -20,6 +20,7 @@ const LICENCES = {
   'BSD-3-Clause': /Redistribution and use in source and binary forms/,
   'Apache-2.0': /Apache License\s+Version 2\.0/,
   'Unicode-3.0': /UNICODE LICENSE V3/,
+  'OFL-1.1': /SIL OPEN FONT LICENSE Version 1\.1/,
   'MPL-2.0': /Mozilla Public License Version 2\.0/,
 };
 
@@ -34,11 +35,16 @@ const STANDARD_LIBRARY = {
   ],
 };
 
+/** The letters of the page's name; README.md there says how they were made. */
+const WORDMARK = () =>
+  component('Cormorant Garamond', '4.001 (Bold, six letters)', 'OFL-1.1', 'https://github.com/CatharsisFonts/Cormorant', join(root, 'www/src/styles/wordmark'));
+
 /** The text of the file. */
 export async function notices() {
   const parts = [
     ['In the WebAssembly modules', [STANDARD_LIBRARY, ...(await crates())]],
     ["In the page's scripts", packages()],
+    ['In the name at the top of the page', [WORDMARK()]],
   ];
   const components = parts.flatMap(([, all]) => all);
   const byText = new Map();

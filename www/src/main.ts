@@ -3,6 +3,7 @@
 import { settingsFromHash } from './export/link.js';
 import { SAMPLES } from './frames/samples.js';
 import { keepForOffline } from './offline/register.js';
+import { isNothingKept } from './projects/projects.js';
 import { sessionOf } from './session/session.js';
 import { Store } from './state/state.js';
 import { mountArrows } from './views/arrows.js';
@@ -29,6 +30,7 @@ import { mountRange } from './views/range.js';
 import { mountResidual } from './views/residual.js';
 import { keysFor } from './views/shortcuts.js';
 import { mountReview } from './views/review.js';
+import { mountSamples } from './views/samples.js';
 import { mountStage } from './views/stage.js';
 import { mountSuggestions } from './views/suggestions.js';
 import { mountTimeline } from './views/timeline.js';
@@ -51,6 +53,7 @@ mountLook(find(document, '#look', HTMLFormElement), store, session);
 mountBlink(document, store);
 mountTools(find(document, '#tools', HTMLFormElement), store, session);
 mountPicker(document, store, session);
+mountSamples(find(document, '#samples', HTMLElement), store, session);
 mountTimeline(find(document, '#timeline', HTMLElement), store, session);
 mountRange(find(document, '#timeline', HTMLElement), store, session);
 mountClipRun(find(document, '#clip-run', HTMLElement), store, session);
@@ -69,6 +72,17 @@ mountOnOpening(find(document, '#export', HTMLElement), session, async (panel) =>
 mountOnOpening(find(document, '#inspect', HTMLElement), session, async (panel) => (await import('./views/inspect.js')).mountInspect(panel, store, session));
 mountWhenOn('onion', store, async () => (await import('./views/onion.js')).mountOnion(find(stage, '#onion', SVGSVGElement), store));
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, session, keysFor(store, session, zoom));
+
+const mountWhenKept = (): void => {
+  leave();
+  void import('./views/kept.js').then(({ mountKept }) => mountKept(document, store, session), () => undefined);
+};
+const leave = store.subscribe(({ keeping }) => {
+  if (keeping.is !== 'nothing') mountWhenKept();
+});
+void isNothingKept().then((nothing) => {
+  if (!nothing) mountWhenKept();
+});
 
 keepForOffline(store);
 

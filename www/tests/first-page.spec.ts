@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, done, expect, labelsOnCanvas, openExport, openSampleClip, test } from './support.js';
+import { axe, clipDone, done, expect, labelsOnCanvas, open, openExport, openSampleClip, square, test, upload } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -113,4 +113,78 @@ test('a link to a pair opens no clip, and one to the clip is the page itself', a
   await openExport(page);
   await page.getByRole('button', { name: 'Copy link' }).click();
   await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/\/#quality=fast$/);
+});
+
+test('the samples are moving pictures, still where nothing should move and out of view', async ({ page }) => {
+  const states = (): Promise<string[]> =>
+    page.evaluate(() => [...document.querySelectorAll('#samples img')].map((image) => image.getAnimations()[0]?.playState ?? 'none'));
+  await page.goto('./#sample=parallax&quality=fast');
+  await done(page);
+  const [cars, , parallax] = await page.locator('#samples button').all();
+  await expect(parallax!).toHaveAttribute('aria-current', 'true');
+  await expect(cars!).toHaveAttribute('aria-current', 'false');
+  await expect.poll(states).toEqual(['running', 'running', 'running']);
+  await page.locator('#welcome summary').first().click();
+  await expect.poll(states).not.toContain('running');
+  await page.locator('#welcome summary').first().click();
+  await expect.poll(states).toEqual(['running', 'running', 'running']);
+  // Beside other frames they rest until they are pointed at.
+  await upload(page, [await square('one.png', 96, 64, 0, 0), await square('two.png', 96, 64, 4, 1)]);
+  await done(page);
+  await expect(parallax!).toHaveAttribute('aria-current', 'false');
+  await expect.poll(states).toEqual(['paused', 'paused', 'paused']);
+  await cars!.hover();
+  await expect.poll(states).toEqual(['running', 'paused', 'paused']);
+  // One picture after another is in the window, and each lies in it as a whole.
+  const seen = await cars!.locator('img').evaluate(async (image: HTMLImageElement) => {
+    await image.decode();
+    const [animation] = image.getAnimations();
+    animation!.pause();
+    const { left, width } = image.parentElement!.getBoundingClientRect();
+    const count = Number(animation!.effect!.getComputedTiming().duration) / 140;
+    const places = Array.from({ length: Math.round(count) }, (_, k) => {
+      animation!.currentTime = 140 * k + 70;
+      return (left - image.getBoundingClientRect().left) / width;
+    });
+    return { places, shape: image.naturalWidth / image.naturalHeight };
+  });
+  expect(seen.places).toHaveLength(14);
+  for (const [k, place] of seen.places.entries()) expect(place).toBeCloseTo(k, 3);
+  expect(seen.shape).toBeCloseTo(14 * 1.5, 5);
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await expect.poll(states).toEqual(['none', 'none', 'none']);
+});
+
+test('the name has its typeface at once, and is as wide in any other', async ({ page }) => {
+  await open(page, 'groups');
+  const { loaded, asked, left } = await page.evaluate(async () => {
+    await document.fonts.ready;
+    const before = document.querySelector('#status')!.getBoundingClientRect().left;
+    const name = document.querySelector('h1')!;
+    name.style.fontFamily = 'monospace';
+    const asked = document.querySelector('link[as=font]')?.getAttribute('href') ?? '';
+    return { loaded: document.fonts.check('700 26px Wordmark', 'Veronese'), asked, left: [before, document.querySelector('#status')!.getBoundingClientRect().left] };
+  });
+  expect(loaded).toBe(true);
+  expect(asked).toMatch(/cormorant-garamond-.*\.woff2$/);
+  expect(left[1]).toBe(left[0]);
+});
+
+test('text has three sizes, and figures one width', async ({ page }) => {
+  await open(page, 'groups');
+  await page.locator('#settings details').evaluate((details) => void ((details as HTMLDetailsElement).open = true));
+  await page.locator('#motions details').nth(1).evaluate((details) => void ((details as HTMLDetailsElement).open = true));
+  await openExport(page);
+  await expect(page.getByRole('button', { name: 'Save project' })).toBeEnabled();
+  const odd = await page.evaluate(() => {
+    const said = [...document.body.querySelectorAll<HTMLElement>('*')].filter(
+      (part) => part.matches('input[type=text], input[type=number], select') || [...part.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.textContent!.trim() !== ''),
+    );
+    return said
+      .filter((part) => part.localName !== 'h1' && part.checkVisibility())
+      .map((part) => ({ part, style: getComputedStyle(part) }))
+      .filter(({ style }) => !['12px', '13px', '16px'].includes(style.fontSize) || (style.fontVariantNumeric !== 'tabular-nums' && !style.fontFamily.includes('monospace')))
+      .map(({ part, style }) => `${part.localName}#${part.id}.${part.className} ${style.fontSize} ${style.fontVariantNumeric}`);
+  });
+  expect(odd).toEqual([]);
 });

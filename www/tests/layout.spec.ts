@@ -41,6 +41,21 @@ test.describe('on a phone', () => {
     await expect(page.locator('#frame')).toBeInViewport({ ratio: 1 });
     await expect(page.locator('#open-export')).toBeInViewport({ ratio: 1 });
   });
+
+  test('where a correction spreads is chosen under the thumb, while a tool that corrects is', async ({ page }) => {
+    await openSegmentedClip(page);
+    const spread = page.getByLabel('Frames that follow a correction');
+    await expect(spread).toBeHidden();
+    await page.locator('#tools [value=brush]').check({ force: true });
+    const box = (await spread.boundingBox())!;
+    expect(box.height).toBeGreaterThanOrEqual(44);
+    expect(box.y).toBeGreaterThan(844 / 2);
+    await expect(spread).toBeInViewport({ ratio: 1 });
+    await spread.selectOption('none');
+    await expect(spread).toHaveValue('none');
+    await page.locator('#tools [value=look]').check({ force: true });
+    await expect(spread).toBeHidden();
+  });
 });
 
 for (const [width, height] of [[1280, 720], [1280, 860], [390, 844]] as const) {
@@ -58,3 +73,23 @@ for (const [width, height] of [[1280, 720], [1280, 860], [390, 844]] as const) {
     }
   });
 }
+
+test('the whole name of a clip can be read at 1280 × 720', async ({ page }) => {
+  await page.setViewportSize({ width: 1280, height: 720 });
+  await open(page, 'groups');
+  const name = 'crossing at the market, camera 3';
+  const frames = await clipFrames(4);
+  await upload(page, frames.map((frame, k) => ({ ...frame, name: `${name} ${k}.png` })));
+  await done(page);
+  await page.locator('#clip-segment').click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  const label = page.locator('#clip-name > span').first();
+  await expect(label).toHaveText(`${name} 0-${name} 3.png`);
+  await expect(page.locator('#clip-name')).toHaveAttribute('title', /camera 3 3\.png, 4 frames, 200\s×\s140$/);
+  const [told, row] = await page.evaluate(() => ['#clip-name', '#clip-run'].map((part) => document.querySelector(part)!.getBoundingClientRect().height));
+  expect(told).toBeLessThanOrEqual(32);
+  expect(row).toBeLessThanOrEqual(32);
+  await upload(page, frames.map((frame, k) => ({ ...frame, name: `market ${k}.png` })));
+  await expect(label).toHaveText('market 0-market 3.png');
+  expect(await label.evaluate((part) => part.scrollWidth <= part.clientWidth)).toBe(true);
+});

@@ -426,6 +426,7 @@ test('damaged and foreign projects are refused with a reason, and change nothing
     [flipped, 'damaged-project'],
     [remade(([header, ...rest]) => [header!.replace('"version":2', '"version":3'), ...rest]), 'newer-project'],
     [remade(([header, ...rest]) => [header!.replace('"frames":5', '"frames":4'), ...rest]), 'damaged-project'],
+    [remade(([header, ...rest]) => [header!.replace('data:image/jpeg;', 'data:text/html;'), ...rest]), 'damaged-project'],
     [remade(([header, content, ...rest]) => [header!, content!.replace('"confidence"', '"confident"'), ...rest]), 'damaged-project'],
     [remade(([header, content, lists, ...rest]) => [header!, content!, lists!.replace('[200,140,', '[200,141,'), ...rest]), 'damaged-project'],
     [remade(([header, content, ...rest]) => [header!, content!.replace(/\{"image":\d+\}/, '{"image":999}'), ...rest]), 'damaged-project'],

@@ -3,6 +3,13 @@
 import { NBSP, frames, objects, tenths, whole } from './strings.js';
 
 const date = new Intl.DateTimeFormat('en-GB', { dateStyle: 'medium', timeStyle: 'short' });
+const day = new Intl.DateTimeFormat('en-GB', { day: 'numeric', month: 'short' });
+const time = new Intl.DateTimeFormat('en-GB', { timeStyle: 'short' });
+
+/** "10:31" of today, "26 Nov" of another day. */
+function when(at: Date): string {
+  return at.toDateString() === new Date().toDateString() ? time.format(at) : day.format(at).replaceAll(' ', NBSP);
+}
 
 function fileSize(bytes: number): string {
   if (bytes < 1000) return `${bytes}${NBSP}B`;
@@ -13,14 +20,26 @@ const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest desc
 
 export const panels = {
   projects: {
-    nothing: 'What you do is kept in this browser. The frames stay where they are.',
-    kept: 'Your work is kept in this browser. Open the same frames again to continue.',
+    nothing: 'What you do is kept in this browser, with a copy of the frames if there is room.',
+    kept: 'Your work is kept in this browser, with its frames.',
+    without: 'Your work is kept in this browser. Open the same frames again to continue.',
     notKept: 'Your work is not kept in this browser. Save the project before you leave.',
     nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
     correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
     saved: (name: string): string => `Saved as ${name}.`,
     damaged: (name: string): string => `The project “${name}” is damaged and cannot be opened.`,
     newer: (name: string): string => `The project “${name}” was made by a newer version of this page.`,
+    savedHere: (at: number, without: boolean): readonly string[] => ['Saved', without ? ' without its frames' : ' in this browser', `, ${time.format(at)}`],
+    notSaved: {
+      'storage-full': ['Not saved', ': no room is left', ''],
+      'storage-refused': ['Not saved', ': the browser refused', ''],
+      'open-elsewhere': ['Not saved', ': open in another tab', ''],
+    },
+    firstSaved: 'Your work is saved in this browser.',
+    welcome: 'Find everything that moves.',
+    continue: 'Continue your work',
+    left: (count: number, saved: Date, hasFrames: boolean): string => `${frames(count)}, ${when(saved)}${hasFrames ? '' : ': choose the frames'}`,
+    more: (count: number): string => `${count} more`,
     summary: (count: number): string => (count === 1 ? 'One project in this browser' : `${count} projects in this browser`),
     facts: (count: number, bytes: number, saved: Date): string => `${frames(count)}, ${fileSize(bytes)}, ${date.format(saved).replaceAll(' ', NBSP)}`,
     damagedFile: 'Damaged project',

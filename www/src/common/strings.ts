@@ -109,7 +109,7 @@ export const strings = {
   frameOf: (name: string, width: number, height: number): string => `${name}, ${size(width, height)}`,
   stabilised: (name: string): string => `, stabilised on ${name}`,
 
-  clip: (name: string, count: number, width: number, height: number): string => `${name}, ${frames(count)}, ${size(width, height)}`,
+  clipFacts: (count: number, width: number, height: number): string => `${frames(count)}, ${size(width, height)}`,
   anotherFile: 'another file',
   imagesIn: (folder: string, count: number): string => `${folder === '' ? 'No folder' : folder}, ${images(count)}`,
   allImages: (count: number): string => `All ${images(count)}, folder by folder`,

@@ -25,7 +25,7 @@ export function colourOfMask(mask: number, { kind, colours }: Pick<Painting, 'ki
 }
 
 /** The RGBA word of each label; 0 (transparent) for the background and for what is hidden. */
-function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Array {
+export function wordsByLabel(segmentation: Segmentation, painting: Painting): Uint32Array {
   const masks = maskTable(segmentation, painting.kind);
   const words = new Uint32Array(256);
   for (const label of [...segmentation.motions.map((motion) => motion.label), UNLABELLED]) {

@@ -7,7 +7,7 @@ import { UNLABELLED } from '../result/masks.js';
 import type { Kept } from '../state/kept.js';
 import { type SolvedPairs, type Span, type TrackedFrame, rangeOf } from '../state/tracked.js';
 import type { Project, ProjectClip } from './project.js';
-import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, mapOf, objectOf, orNull } from './schema.js';
+import { type Check, either, isFlag, isFrom, isNumber, isOne, isText, listOf, mapOf, objectOf, optional, orNull } from './schema.js';
 
 type Entries<K, V> = readonly (readonly [K, V])[];
 
@@ -78,11 +78,6 @@ const isColour = listOf(isFrom(0, 255), 3);
 const isObject = objectOf({ id: isFrom(1, 254), pixels: isIndex, bbox: isBox, confidence: isNumber, matrix: orNull(isMatrix) });
 const isFrame = objectOf({ runs: isRuns, objects: listOf(isObject), background: orNull(isMatrix) });
 const isRange = objectOf({ first: isIndex, last: isIndex });
-/** What files of earlier versions do not have. */
-function optional(check: Check<unknown>): Check<unknown> {
-  return (value): value is unknown => value === undefined || check(value);
-}
-
 const isPainted = listOf(entryOf(isIndex, isRuns));
 const isClip = objectOf({
   range: isRange,

@@ -24,7 +24,7 @@ interface BytesPlace {
 }
 
 /** The first line: what a list of projects shows. */
-export interface Header extends Subject {
+export interface Header extends Subject, Pick<Project, 'thumbnail'> {
   readonly format: typeof FORMAT;
   readonly version: 1 | typeof VERSION;
   /** When it was written, as an ISO 8601 date. */
@@ -32,7 +32,7 @@ export interface Header extends Subject {
 }
 
 /** The bytes of the project's file. */
-export function streamOf({ of, name, frames, settings, classList, clip, pairs }: Project, now: Date): ReadableStream<Uint8Array<ArrayBuffer>> {
+export function streamOf({ of, name, frames, sample, thumbnail, settings, classList, clip, pairs }: Project, now: Date): ReadableStream<Uint8Array<ArrayBuffer>> {
   const [images, blobs] = [new Map<Runs, number>(), new Map<Blob, number>()];
   const place = <T>(map: Map<T, number>, value: T): number => {
     const at = map.get(value) ?? map.size;
@@ -48,7 +48,7 @@ export function streamOf({ of, name, frames, settings, classList, clip, pairs }:
   const part = clip && { ...clip, accepted: acceptedIn(clip) };
   const content = JSON.stringify({ settings, classList, clip: part, pairs: [...pairs].map(([key, kept]) => [key, withoutSaved(kept)]) }, referring);
   const lists = JSON.stringify({ images: [...images.keys()].map(({ width, height, ends }) => [width, height, ends.length]), bytes: [...blobs.keys()].map(({ size }) => size) });
-  const header: Header = { format: FORMAT, version: VERSION, of, name, frames, saved: now.toISOString() };
+  const header: Header = { format: FORMAT, version: VERSION, of, name, frames, ...(sample && { sample }), saved: now.toISOString(), thumbnail };
   const lines = [header, content, lists].map((line) => `${typeof line === 'string' ? line : JSON.stringify(line)}\n`);
   const runs = [...images.keys()].flatMap(({ ends, labels }) => [ends, labels] as BlobPart[]);
   return new Blob([...lines, ...runs, ...blobs.keys()]).stream().pipeThrough(new CompressionStream('gzip'));
@@ -100,13 +100,14 @@ export async function projectFromFile(file: Blob, name: string): Promise<Project
       if (isImagePlace(value)) return images[value.image];
       return isBytesPlace(value) ? blobs[value.bytes] : value;
     });
-    const { of, name: called, frames, version } = header;
+    const { of, name: called, frames, sample, thumbnail, version } = header;
     const value = version === 1 ? upgraded(parsed) : parsed;
     assert(isContent(value, frames));
     const { settings, classList = [], clip, pairs } = value;
-    const subject = { of, name: called, frames };
+    const subject = { of, name: called, frames, ...(sample && { sample }) };
     return {
       ...subject,
+      thumbnail,
       settings,
       classList,
       clip: clip && {
@@ -139,6 +140,7 @@ function assert(condition: boolean): asserts condition {
   if (!condition) throw new Error('not as the format says');
 }
 
+const isPicture: check.Check<string> = (value): value is string => check.isText(value) && /^data:image\/jpeg;base64,[\w+/=]*$/.test(value);
 const isHeader = check.objectOf<Header>({
   format: check.isOne(FORMAT),
   version: check.isOne(1, VERSION),
@@ -146,6 +148,8 @@ const isHeader = check.objectOf<Header>({
   name: check.isText,
   frames: check.isFrom(1),
   saved: check.isText,
+  sample: check.optional(check.objectOf({ id: check.isText, swapped: check.isFlag })),
+  thumbnail: check.optional(isPicture),
 });
 const isLists = check.objectOf({ images: check.listOf(check.listOf(check.isFrom(0, 2 ** 32), 3)), bytes: check.listOf(check.isFrom(0)) });
 const isImagePlace = check.objectOf<ImagePlace>({ image: check.isFrom(0) });

@@ -2,38 +2,46 @@
 
 /** Files by name. A file is replaced as a whole, or stays as it was. */
 export interface Place {
-  list(): Promise<ReadonlyMap<string, Blob>>;
+  /** A larger file should not be written, bytes. */
+  readonly largest: number;
+  /** The names of all files. */
+  list(): Promise<readonly string[]>;
   /** `null` if there is no such file. */
   read(name: string): Promise<Blob | null>;
   write(name: string, content: ReadableStream<Uint8Array<ArrayBuffer>>): Promise<void>;
   remove(name: string): Promise<void>;
 }
 
-/** The folder, and the name of the database. */
-const PROJECTS = 'projects';
-
-/** Throws if the browser keeps nothing for the page. */
-export async function placeOfProjects(): Promise<Place> {
-  const folder = await privateFolder().catch(() => null);
-  return folder === null ? new Database(await opened(indexedDB.open(PROJECTS, 1))) : new Folder(folder);
+/** Opens the folder or the database of that name once. It throws if the browser keeps nothing for the page, and tries again when asked again. */
+export function placeOf(name: string): () => Promise<Place> {
+  let place: Promise<Place> | null = null;
+  return () =>
+    (place ??= openedPlace(name).catch((error: unknown) => {
+      place = null;
+      throw error;
+    }));
 }
 
-async function privateFolder(): Promise<FileSystemDirectoryHandle | null> {
+async function openedPlace(name: string): Promise<Place> {
+  const folder = await privateFolder(name).catch(() => null);
+  return folder === null ? new Database(await opened(indexedDB.open(name, 1))) : new Folder(folder);
+}
+
+async function privateFolder(name: string): Promise<FileSystemDirectoryHandle | null> {
   // Some browsers have the file system, but cannot write it outside a worker.
   if (!('createWritable' in FileSystemFileHandle.prototype)) return null;
-  return (await navigator.storage.getDirectory()).getDirectoryHandle(PROJECTS, { create: true });
+  return (await navigator.storage.getDirectory()).getDirectoryHandle(name, { create: true });
 }
 
 class Folder implements Place {
+  readonly largest = 500e6;
+
   constructor(readonly folder: FileSystemDirectoryHandle) {}
 
-  async list(): Promise<ReadonlyMap<string, Blob>> {
-    const files = new Map<string, Blob>();
-    for await (const name of this.folder.keys()) {
-      const file = await this.read(name);
-      if (file !== null) files.set(name, file);
-    }
-    return files;
+  async list(): Promise<readonly string[]> {
+    const names: string[] = [];
+    for await (const name of this.folder.keys()) names.push(name);
+    return names;
   }
 
   async read(name: string): Promise<Blob | null> {
@@ -60,12 +68,13 @@ class Folder implements Place {
 const FILES = 'files';
 
 class Database implements Place {
+  /** What it writes and reads is in memory. */
+  readonly largest = 50e6;
+
   constructor(readonly database: IDBDatabase) {}
 
-  async list(): Promise<ReadonlyMap<string, Blob>> {
-    const names = (await settled(this.#files('readonly').getAllKeys())) as string[];
-    const files: ArrayBuffer[] = await settled(this.#files('readonly').getAll());
-    return new Map(names.map((name, k) => [name, new Blob([files[k]!])]));
+  async list(): Promise<readonly string[]> {
+    return (await settled(this.#files('readonly').getAllKeys())) as string[];
   }
 
   async read(name: string): Promise<Blob | null> {

@@ -17,6 +17,8 @@ export interface ProjectClip extends Version, Pick<Tracked, 'range'> {
 }
 
 export interface Project extends Subject, Pick<State, 'settings' | 'classList'> {
+  /** A small picture of the frame on screen and its masks, as a `data:` address. */
+  readonly thumbnail?: string | undefined;
   /** `null` if the subject is no clip, or is not segmented. */
   readonly clip: ProjectClip | null;
   /** The edited pairs, by their key. */

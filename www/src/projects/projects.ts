@@ -6,7 +6,7 @@ import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS, hasEdits } from '../correction/edits.js';
 import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
-import type { State, Store } from '../state/state.js';
+import type { Keeping, Refusal, State, Store } from '../state/state.js';
 import { type SolvedPairs, isCorrecting, isUnsavedClip } from '../state/tracked.js';
 import type { Project } from './project.js';
 
@@ -29,6 +29,12 @@ export class Projects {
   readonly #opened = new Map<string, Project>();
   /** What need not be looked for again. */
   readonly #known = new Set<string>();
+  /** The files that the frames of each were opened from. */
+  readonly #files = new Map<string, readonly File[]>();
+  /** Those whose frames could not be copied. */
+  readonly #without = new Set<string>();
+  /** What each looked like last. */
+  readonly #thumbnails = new Map<string, string>();
   /** When the project of each was looked for, as an ISO 8601 date. What is saved later is another tab's. */
   readonly #lookedFor = new Map<string, string>();
   /** Loaded when it is needed. */
@@ -52,6 +58,12 @@ export class Projects {
     const project = await projectFromFile(file, file.name);
     this.#opened.set(project.of, project);
     return project;
+  }
+
+  /** Both frames of the pair, or its clip, were opened from these files. */
+  comeFrom(files: readonly File[]): void {
+    const subject = subjectOf(this.#store.get().pair);
+    if (subject !== null) this.#files.set(subject.of, files);
   }
 
   /** The project of these frames, if it is not in the state already. */
@@ -80,23 +92,35 @@ export class Projects {
     if (project === null || this.#shelf === null) return;
     const { withProject } = this.#shelf;
     this.#opened.delete(project.of);
+    if (project.thumbnail !== undefined) this.#thumbnails.set(project.of, project.thumbnail);
     if (project.clip?.solved) this.#pairs.set(project.of, project.clip.solved);
     const now = this.#store.get();
     // The edits on screen are replaced too.
     const own = keyOfPair(now.pair) === keyOfPair(pair) ? { edits: NO_EDITS, found: null, result: null } : {};
-    this.#store.set({ ...withProject(now, project, pair), ...own, keeping: 'kept' });
+    this.#store.set({ ...withProject(now, project, pair), ...own, keeping: this.#kept(project.of) });
     this.#touch(project.of, SOON);
   }
 
   /** The work on what is open, as a file; `null` if there is none. */
   async file(): Promise<{ readonly name: string; readonly content: Blob } | null> {
-    const { fileOf, projectFrom, withSaved } = await this.#load();
-    const state = this.#store.get();
-    const project = projectFrom(state, subjectOf(state.pair)?.of ?? '', this.#pairs);
+    const shelf = await this.#load();
+    const { fileOf, withSaved } = shelf;
+    const project = await this.#projectOf(subjectOf(this.#store.get().pair)?.of ?? '', shelf);
     if (project === null) return null;
     const content = await fileOf(project, new Date());
     this.#store.set(withSaved(this.#store.get(), project));
     return { name: `${project.name.replace(/\.[^./]*$/, '').replace(/[\\/:*?"<>|#]/g, '_')}.veronese`, content };
+  }
+
+  /** What the state has of this subject, as it looks now if it is on screen. */
+  async #projectOf(of: string, { projectFrom, thumbnailOf }: Shelf): Promise<Project | null> {
+    const state = this.#store.get();
+    const project = projectFrom(state, of, this.#pairs);
+    if (project === null) return null;
+    const seen = subjectOf(state.pair)?.of === of ? await thumbnailOf(state).catch(() => null) : null;
+    const thumbnail = seen ?? this.#thumbnails.get(of);
+    if (thumbnail !== undefined) this.#thumbnails.set(of, thumbnail);
+    return { ...project, thumbnail };
   }
 
   async #load(): Promise<Shelf> {
@@ -138,17 +162,19 @@ export class Projects {
     if (this.#writing || this.#ready().length === 0) return;
     this.#writing = true;
     try {
-      const { owns, projectFrom, put, savedAt, withSaved } = await this.#load();
+      const shelf = await this.#load();
+      const { owns, put, savedAt, withSaved } = shelf;
       for (const of of this.#ready()) {
         this.#changed.delete(of);
-        const project = projectFrom(this.#store.get(), of, this.#pairs);
+        const project = await this.#projectOf(of, shelf);
         if (project === null) continue;
         if (!(await owns(of, async () => (await savedAt(of)) <= (this.#lookedFor.get(of) ?? '')))) {
           this.#refuse(strings.projects.elsewhere(project.name), 'open-elsewhere');
           continue;
         }
         await put(project);
-        this.#store.set({ ...withSaved(this.#store.get(), project), keeping: 'kept' });
+        this.#store.set({ ...withSaved(this.#store.get(), project), keeping: this.#kept(of) });
+        void this.#keepFrames(project, shelf);
       }
     } catch (error) {
       const full = error instanceof Error && error.name === 'QuotaExceededError';
@@ -160,16 +186,31 @@ export class Projects {
     if (next !== undefined) this.#touch(next, SOON);
   }
 
+  #kept(of: string): Keeping {
+    return { is: 'kept', at: Date.now(), without: this.#without.has(of) };
+  }
+
+  /** Keeps a copy of the frames. A sample needs none. */
+  async #keepFrames({ of, sample }: Project, { putFrames }: Shelf): Promise<void> {
+    const files = this.#files.get(of);
+    const kept = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
+    if (kept === !this.#without.has(of)) return;
+    if (kept) this.#without.delete(of);
+    else this.#without.add(of);
+    const { keeping } = this.#store.get();
+    if (keeping.is === 'kept') this.#store.set({ keeping: { ...keeping, without: !kept } });
+  }
+
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
-  #refuse(sentence: string, code: string): void {
-    if (this.#store.get().keeping === 'refused') return;
-    this.#store.set({ keeping: 'refused' });
+  #refuse(sentence: string, code: Refusal): void {
+    if (this.#store.get().keeping.is === 'refused') return;
+    this.#store.set({ keeping: { is: 'refused', code } });
     this.#store.say(sentence, code);
   }
 }
 
 /** Whether nothing can be found, so that a first visit need not look. */
-async function isNothingKept(): Promise<boolean> {
+export async function isNothingKept(): Promise<boolean> {
   try {
     if (!('createWritable' in FileSystemFileHandle.prototype)) return false; // what is kept is in a database
     await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');

@@ -23,6 +23,11 @@ export function orNull<T>(check: Check<T>): Check<T | null> {
   return either(check, isOne(null));
 }
 
+/** What files of earlier versions may not have. */
+export function optional<T>(check: Check<T>): Check<T | undefined> {
+  return (value): value is T | undefined => value === undefined || check(value);
+}
+
 /** A list; with a length, of this length. */
 export function listOf<T>(check: Check<T>, length?: number): Check<readonly T[]> {
   return (value): value is readonly T[] => Array.isArray(value) && (length === undefined || value.length === length) && value.every(check);

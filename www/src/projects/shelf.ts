@@ -1,29 +1,36 @@
 //! The projects that this browser keeps, each as the file that a person could save. Loaded when there is one to keep or to look for.
 
 import { fingerprintOfText } from '../frames/fingerprints.js';
+import { copies, keepFrames, removeAllFrames, removeFrames } from './copies.js';
 import { type Header, headerOf, projectFromFile, streamOf } from './file.js';
-import { type Place, placeOfProjects } from './places.js';
+import { placeOf } from './places.js';
 import type { Project } from './project.js';
 
+export { framesOf } from './copies.js';
 export { fileOf, projectFromFile } from './file.js';
 export { owns } from './owner.js';
 export { projectFrom, withProject, withSaved } from './project.js';
+export { thumbnailOf } from './thumbnail.js';
 
 /** A project in the list. `header` is `null` if the file is damaged. */
 export interface Listed {
   readonly file: string;
   readonly header: Header | null;
   readonly bytes: number;
+  /** Whether there is a copy of its frames. */
+  readonly hasFrames: boolean;
 }
 
-let place: Promise<Place> | null = null;
+const projects = placeOf('projects');
+const watching: (() => void)[] = [];
 
-function projects(): Promise<Place> {
-  place ??= placeOfProjects().catch((error: unknown) => {
-    place = null;
-    throw error;
-  });
-  return place;
+/** Calls `listener` when the list has changed. */
+export function watch(listener: () => void): void {
+  watching.push(listener);
+}
+
+function changed(): void {
+  for (const listener of watching) listener();
 }
 
 /** Fingerprints may be too long for names of files. */
@@ -32,7 +39,21 @@ function fileNameOf(of: string): string {
 }
 
 export async function put(project: Project): Promise<void> {
-  await (await projects()).write(fileNameOf(project.of), streamOf(project, new Date()));
+  const write = async (): Promise<void> => (await projects()).write(fileNameOf(project.of), streamOf(project, new Date()));
+  try {
+    await write();
+  } catch (error) {
+    if (!(await removeAllFrames().catch(() => false))) throw error;
+    await write();
+  }
+  changed();
+}
+
+/** Keeps a copy of the frames of this clip or pair. Returns whether there is one. */
+export async function putFrames(of: string, files: readonly File[]): Promise<boolean> {
+  const kept = await keepFrames(fileNameOf(of), files);
+  changed();
+  return kept;
 }
 
 /** The project of this clip or pair; `null` if none is kept. */
@@ -51,11 +72,17 @@ export async function savedAt(of: string): Promise<string> {
 
 /** The latest first. */
 export async function list(): Promise<Listed[]> {
-  const files = [...(await (await projects()).list())];
-  const listed = files.map(async ([file, blob]) => ({ file, header: await headerOf(blob, file).catch(() => null), bytes: blob.size }));
-  return (await Promise.all(listed)).sort((one, other) => (other.header?.saved ?? '').localeCompare(one.header?.saved ?? ''));
+  const folder = await projects();
+  const copied = await copies().catch(() => new Set());
+  const listed = (await folder.list()).map(async (file): Promise<Listed[]> => {
+    const content = await folder.read(file);
+    return content === null ? [] : [{ file, header: await headerOf(content, file).catch(() => null), bytes: content.size, hasFrames: copied.has(file) }];
+  });
+  return (await Promise.all(listed)).flat().sort((one, other) => (other.header?.saved ?? '').localeCompare(one.header?.saved ?? ''));
 }
 
 export async function remove(file: string): Promise<void> {
   await (await projects()).remove(file);
+  await removeFrames(file);
+  changed();
 }

@@ -88,16 +88,21 @@ export class Open {
     let opened: Project | null = null;
     let leftOut = '';
     let folder: Clip | null = null;
+    let source: readonly File[] = [];
     return this.#parts.frames.open(
       async (signal) => {
         const { project, video, images: all } = selectOpenable(files);
         if (project !== null) opened = await this.#parts.projects.open(project);
-        if (video !== null) return this.#startOf(await openClip(video));
+        if (video !== null) {
+          source = [video];
+          return this.#startOf(await openClip(video));
+        }
         const folders = foldersOf(all);
         const [likely, ...others] = likelyFrames(folders);
         const images = others.length > 0 ? await this.#chosen(folders, all, signal) : (likely?.images ?? []);
         if (images === null) return [];
         if (others.length === 0 && images.length < all.length) leftOut = strings.notices.leftOut(likely!.path, all.length - images.length);
+        if (images.length > 1) source = images;
         if (images.length > 2) {
           const { openFolder } = await loaded(import('../clips/folder.js'));
           return this.#startOf((folder = await openFolder(images)));
@@ -120,6 +125,7 @@ export class Open {
       (found) => {
         if (opened !== null && found !== opened) this.#store.say(strings.projects.waiting(opened.name));
         else if (leftOut !== '') this.#store.say(leftOut);
+        if (source.length > 0) this.#parts.projects.comeFrom(source);
         if (folder !== null) void this.#checkSizes(folder);
       },
     );

@@ -29,6 +29,13 @@ export interface Subject {
   readonly name: string;
   /** Number of frames. */
   readonly frames: number;
+  /** The sample that it is, if it is one. */
+  readonly sample?: OfSample;
+}
+
+export interface OfSample {
+  readonly id: string;
+  readonly swapped: boolean;
 }
 
 /** What the work on this pair belongs to; `null` if a frame is missing. */
@@ -36,11 +43,14 @@ export function subjectOf(pair: FramePair): Subject | null {
   const clip = timelineOf(pair)?.clip;
   if (clip !== undefined) return subjectOfClip(clip);
   const of = keyOfPair(pair);
-  return of === null ? null : { of, name: `${pair.first!.name}, ${pair.second!.name}`, frames: 2 };
+  if (of === null) return null;
+  const shown = sampleOf(pair);
+  const sample = shown && { sample: { id: shown.sample.id, swapped: shown.swapped } };
+  return { of, name: `${pair.first!.name}, ${pair.second!.name}`, frames: 2, ...sample };
 }
 
-export function subjectOfClip({ fingerprint, name, count }: Clip): Subject {
-  return { of: fingerprint, name, frames: count };
+export function subjectOfClip({ fingerprint, name, count, sample }: Clip): Subject {
+  return { of: fingerprint, name, frames: count, ...(sample && { sample: { id: sample.id, swapped: false } }) };
 }
 
 /** The sample pair that is shown; `null` if either frame is anything else. */

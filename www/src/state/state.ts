@@ -86,6 +86,17 @@ export interface Question {
   readonly answer: (images: readonly File[] | null) => void;
 }
 
+/** Whether the browser keeps the work. */
+export type Keeping =
+  /** It has not had to. */
+  | { readonly is: 'nothing' }
+  /** `at`: since when, milliseconds since 1970. `without`: a copy of the frames was too large, so a person opens them again. */
+  | { readonly is: 'kept'; readonly at: number; readonly without: boolean }
+  /** It did not the last time. `code`: why. */
+  | { readonly is: 'refused'; readonly code: Refusal };
+
+export type Refusal = 'storage-full' | 'storage-refused' | 'open-elsewhere';
+
 /** A message to the user; an error if `code` is set. */
 export interface Notice {
   readonly sentence: string;
@@ -126,8 +137,7 @@ export interface State {
   readonly tool: Tool;
   readonly notice: Notice | null;
   readonly question: Question | null;
-  /** Whether the browser keeps the work: it has not had to, does, or did not the last time. */
-  readonly keeping: 'nothing' | 'kept' | 'refused';
+  readonly keeping: Keeping;
 }
 
 /** Whether the first result of a new pair is pending. Views keep showing the last one until then, so that the layout does not jump. */
@@ -181,7 +191,7 @@ export const INITIAL: State = {
   tool: { name: 'look', radius: 8, exact: false, spread: 'both' },
   notice: null,
   question: null,
-  keeping: 'nothing',
+  keeping: { is: 'nothing' },
 };
 
 export type Listener = (now: State, before: State) => void;

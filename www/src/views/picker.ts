@@ -1,11 +1,10 @@
-//! Opening files, a folder, a sample or the camera; replacing and swapping frames; the two thumbnails.
+//! Opening files, a folder or the camera; replacing and swapping frames; the two thumbnails.
 
 import { strings } from '../common/strings.js';
-import { SAMPLES } from '../frames/samples.js';
 import type { Session } from '../session/session.js';
 import type { LoadedFrame, Slot } from '../state/pair.js';
 import type { Store } from '../state/state.js';
-import { contextOf, element, find } from './markup.js';
+import { contextOf, find } from './markup.js';
 
 export function mountPicker(root: ParentNode, store: Store, session: Session): void {
   const listen = (input: HTMLInputElement, slot: Slot | null): void => {
@@ -22,7 +21,6 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
   camera.hidden = navigator.mediaDevices === undefined;
   const swap = find(root, '#swap', HTMLButtonElement);
   swap.addEventListener('click', () => session.frames.swap());
-  find(root, '#samples', HTMLElement).append(...SAMPLES.map((sample) => sampleButton(sample, () => void session.open.sample(sample))));
 
   const slots = (['first', 'second'] as const).map((slot) => {
     const box = find(root, `[data-slot=${slot}]`, HTMLElement);
@@ -46,19 +44,6 @@ export function mountPicker(root: ParentNode, store: Store, session: Session): v
     slots[1]?.(pair.second);
     swap.disabled = live !== null || (pair.first === null && pair.second === null);
   });
-}
-
-function sampleButton(sample: (typeof SAMPLES)[number], open: () => void): HTMLElement {
-  const button = element('button', '', 'sample');
-  button.type = 'button';
-  const picture = element('img');
-  picture.src = sample.thumbnail;
-  picture.alt = '';
-  picture.loading = 'lazy';
-  picture.decoding = 'async';
-  button.append(picture, element('span', sample.title));
-  button.addEventListener('click', open);
-  return button;
 }
 
 /** Draws the whole frame, as large as fits, centred. */

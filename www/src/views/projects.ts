@@ -2,12 +2,11 @@
 
 import { panels } from '../common/strings-of-panels.js';
 import { codeOf, sentenceOf } from '../common/errors.js';
-import { save } from '../export/save.js';
-import { type Listed, list, remove } from '../projects/shelf.js';
+import { type Listed, list, remove, watch } from '../projects/shelf.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
-import { isCorrecting } from '../state/tracked.js';
 import { element, find } from './markup.js';
+import { saveProject } from './save-project.js';
 
 export function mountProjects(panel: HTMLElement, store: Store, session: Session): void {
   const root = find(panel, '#project', HTMLElement);
@@ -16,9 +15,12 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   const summary = find(all, 'summary', HTMLElement);
   const rows = find(all, '#projects', HTMLUListElement);
 
-  const show = ({ keeping }: State): void => void (status.textContent = keeping === 'refused' ? panels.projects.notKept : panels.projects[keeping]);
+  const show = ({ keeping }: State): void => void (status.textContent = sentenceFor(keeping));
 
-  const refresh = async (): Promise<void> => {
+  let refreshed: Promise<void> = Promise.resolve();
+  const refresh = (): Promise<void> => (refreshed = refreshed.then(update));
+
+  const update = async (): Promise<void> => {
     const listed = await list().catch((): Listed[] => []);
     all.hidden = listed.length === 0;
     summary.textContent = panels.projects.summary(listed.length);
@@ -37,28 +39,21 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   };
 
   const button = find(root, '#save-project', HTMLButtonElement);
-  button.addEventListener('click', async () => {
-    const { tracked } = store.get();
-    if (tracked !== null && isCorrecting(tracked.run)) return session.say(panels.projects.correcting);
-    try {
-      const file = await session.projects.file();
-      if (file === null) return session.say(panels.projects.nothingYet);
-      save(file.content, file.content.type, file.name);
-      session.say(panels.projects.saved(file.name));
-    } catch (error) {
-      session.say(sentenceOf(error), codeOf(error));
-    }
-  });
+  button.addEventListener('click', () => void saveProject(store, session));
 
   panel.addEventListener('toggle', () => void refresh());
+  watch(() => void (panel.matches(':popover-open') && refresh()));
   store.subscribe((now, before) => {
-    if (now.keeping === before.keeping) return;
-    show(now);
-    if (panel.matches(':popover-open')) void refresh();
+    if (now.keeping !== before.keeping) show(now);
   });
   show(store.get());
   button.disabled = false;
   void refresh();
+}
+
+function sentenceFor(keeping: State['keeping']): string {
+  if (keeping.is === 'refused') return panels.projects.notKept;
+  return keeping.is === 'kept' && keeping.without ? panels.projects.without : panels.projects[keeping.is];
 }
 
 function rowOf({ file, header, bytes }: Listed, forget: () => void): HTMLElement {

@@ -4,7 +4,7 @@ import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Slot, Timeline } from '../state/pair.js';
 import type { Store } from '../state/state.js';
-import { contextOf, find } from './markup.js';
+import { contextOf, element, find } from './markup.js';
 
 /** Smallest width of a thumbnail, screen pixels. */
 const THUMB = 72;
@@ -50,7 +50,8 @@ export function mountTimeline(root: HTMLElement, store: Store, session: Session)
     if (timeline === null) return;
     const { clip } = timeline;
     if (clip !== before.timeline?.clip) {
-      label.textContent = strings.clip(clip.name, clip.count, clip.width, clip.height);
+      label.replaceChildren(element('span', clip.name), element('span', ', ', 'visually-hidden'), element('small', strings.clipFacts(clip.count, clip.width, clip.height)));
+      label.title = label.textContent;
       note.hidden = clip.exact;
       track.setAttribute('aria-valuemax', String(clip.count - 1));
       void drawStrip(strip, timeline, () => store.get().timeline?.clip === clip);

@@ -1,0 +1,68 @@
+//! Work that the browser keeps, to go on with: the newest in the place of the first words, the others behind it.
+
+import { panels } from '../common/strings-of-panels.js';
+import { sampleCalled } from '../frames/samples.js';
+import { type Listed, framesOf, list, watch } from '../projects/shelf.js';
+import type { Session } from '../session/session.js';
+import { subjectOf } from '../state/pair.js';
+import type { Store } from '../state/state.js';
+import { element, find } from './markup.js';
+
+type Whole = Listed & { readonly header: NonNullable<Listed['header']> };
+
+export function mountContinuing(root: HTMLElement, store: Store, session: Session): void {
+  const title = find(root, 'summary', HTMLElement);
+  const words = find(root, '.beginning > p', HTMLElement);
+  const section = find(root, '#continue', HTMLElement);
+  const [newest, others] = section.querySelectorAll('ul');
+  const more = find(section, 'details', HTMLDetailsElement);
+  const open = (): string | undefined => subjectOf(store.get().pair)?.of;
+
+  const update = async (): Promise<void> => {
+    const listed = await list().catch((): Listed[] => []);
+    const rows = listed.filter((one): one is Whole => one.header !== null && one.header.of !== open()).map((one) => rowOf(one, session));
+    const nothing = rows.length === 0;
+    title.textContent = nothing ? panels.projects.welcome : panels.projects.continue;
+    words.hidden = !nothing;
+    section.hidden = nothing;
+    more.hidden = rows.length < 2;
+    find(more, 'summary', HTMLElement).textContent = panels.projects.more(rows.length - 1);
+    newest!.replaceChildren(...rows.slice(0, 1));
+    others!.replaceChildren(...rows.slice(1));
+  };
+  let updated: Promise<void> = Promise.resolve();
+  const refresh = (): void => void (updated = updated.then(update));
+
+  watch(refresh);
+  let of = open();
+  store.subscribe((now, before) => {
+    if (now.pair === before.pair || open() === of) return;
+    of = open();
+    refresh();
+  });
+  refresh();
+}
+
+function rowOf({ file, header: { name, frames, saved, sample, thumbnail }, hasFrames }: Whole, session: Session): HTMLElement {
+  const known = sample && sampleCalled(sample.id);
+  const facts = panels.projects.left(frames, new Date(saved), Boolean(known) || hasFrames);
+  const button = element('button', '', 'work');
+  button.type = 'button';
+  button.title = name;
+  const picture = element('img');
+  picture.alt = '';
+  picture.hidden = thumbnail === undefined;
+  if (thumbnail !== undefined) picture.src = thumbnail;
+  const text = element('span');
+  text.append(element('strong', name), element('span', facts, 'faint'));
+  button.append(picture, text);
+  button.addEventListener('click', () => {
+    if (known) void session.open.sample(known, sample.swapped);
+    else if (hasFrames) void session.open.files(framesOf(file));
+    // Their project is found when they are opened.
+    else find(document, '#open-pair', HTMLInputElement).click();
+  });
+  const row = element('li');
+  row.append(button);
+  return row;
+}

@@ -1,0 +1,36 @@
+//! The samples: small moving pictures over their names. They move while they can be seen, and rest beside other frames.
+
+import { SAMPLES, type Sample } from '../frames/samples.js';
+import type { Session } from '../session/session.js';
+import { sampleOf, timelineOf } from '../state/pair.js';
+import type { Store } from '../state/state.js';
+import { element } from './markup.js';
+
+export function mountSamples(root: HTMLElement, store: Store, session: Session): void {
+  const buttons = SAMPLES.map((sample) => ({ sample, button: buttonOf(sample, () => void session.open.sample(sample)) }));
+  root.append(...buttons.map(({ button }) => button));
+  new IntersectionObserver((changes) => root.classList.toggle('seen', changes.at(-1)!.isIntersecting)).observe(root);
+
+  store.subscribe(({ pair }, before) => {
+    if (pair === before.pair) return;
+    const open = timelineOf(pair)?.clip.sample ?? sampleOf(pair)?.sample;
+    for (const { sample, button } of buttons) button.setAttribute('aria-current', String(sample === open));
+  });
+}
+
+function buttonOf({ title, thumbnail }: Sample, open: () => void): HTMLElement {
+  const button = element('button', '', 'sample');
+  button.type = 'button';
+  const window = element('span', '', 'window');
+  const strip = element('img');
+  strip.alt = '';
+  strip.loading = 'lazy';
+  strip.decoding = 'async';
+  strip.style.setProperty('--count', String(thumbnail.count));
+  strip.style.setProperty('--each', `${thumbnail.each}s`);
+  strip.src = thumbnail.path;
+  window.append(strip);
+  button.append(window, element('span', title));
+  button.addEventListener('click', open);
+  return button;
+}

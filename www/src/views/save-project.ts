@@ -1,0 +1,21 @@
+//! Saves the work on what is open as a file. Loaded with what has a button for it.
+
+import { codeOf, sentenceOf } from '../common/errors.js';
+import { panels } from '../common/strings-of-panels.js';
+import { save } from '../export/save.js';
+import type { Session } from '../session/session.js';
+import type { Store } from '../state/state.js';
+import { isCorrecting } from '../state/tracked.js';
+
+export async function saveProject(store: Store, session: Session): Promise<void> {
+  const { tracked } = store.get();
+  if (tracked !== null && isCorrecting(tracked.run)) return session.say(panels.projects.correcting);
+  try {
+    const file = await session.projects.file();
+    if (file === null) return session.say(panels.projects.nothingYet);
+    save(file.content, file.content.type, file.name);
+    session.say(panels.projects.saved(file.name));
+  } catch (error) {
+    session.say(sentenceOf(error), codeOf(error));
+  }
+}

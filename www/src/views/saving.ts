@@ -1,0 +1,29 @@
+//! Whether the work on screen is saved, since when, or why not, with a button that saves it as a file. Screen readers are told once; what
+//! is refused is a notice, which they are told as well.
+
+import { panels } from '../common/strings-of-panels.js';
+import type { Session } from '../session/session.js';
+import type { State, Store } from '../state/state.js';
+import { element, find } from './markup.js';
+import { saveProject } from './save-project.js';
+
+export function mountSaving(root: HTMLElement, store: Store, session: Session): void {
+  const button = find(root, 'button', HTMLButtonElement);
+  const sentence = find(button, 'span', HTMLElement);
+  const told = find(root, '[role=status]', HTMLElement);
+  button.addEventListener('click', () => void saveProject(store, session));
+
+  const show = ({ keeping }: State): void => {
+    button.hidden = keeping.is === 'nothing';
+    button.classList.toggle('refused', keeping.is === 'refused');
+    if (keeping.is === 'nothing') return;
+    const [what, where, more] = keeping.is === 'kept' ? panels.projects.savedHere(keeping.at, keeping.without) : panels.projects.notSaved[keeping.code];
+    sentence.replaceChildren(what!, element('span', where, 'in-full'), more!);
+    button.title = keeping.is === 'kept' ? (keeping.without ? panels.projects.without : panels.projects.kept) : panels.projects.notKept;
+    if (keeping.is === 'kept' && told.textContent === '') told.textContent = panels.projects.firstSaved;
+  };
+  store.subscribe((now, before) => {
+    if (now.keeping !== before.keeping) show(now);
+  });
+  show(store.get());
+}

@@ -1,0 +1,198 @@
+//! The first minute of a later visit: work that the browser keeps is seen, and one click goes on with it; and what the page tells of it.
+
+import { readFile } from 'node:fs/promises';
+import { gunzipSync } from 'node:zlib';
+
+import { type Page } from '@playwright/test';
+
+import { axe, clipFrames, done, expect, open, openExport, openSegmented, test, upload, withoutStorage } from './support.js';
+
+const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
+
+async function rename(page: Page, list: '#objects' | '#motions', row: number, name: string): Promise<void> {
+  const input = page.locator(`${list} .motion-name`).nth(row);
+  await input.fill(name);
+  await input.press('Enter');
+}
+
+/** Waits until the work is written, and so is the copy of its frames. */
+async function written(page: Page, name: string): Promise<void> {
+  await expect.poll(() => headers(page)).toContainEqual(expect.stringContaining(`"name":"${name}"`));
+  await expect(page.locator('#saving button')).toBeVisible();
+  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+}
+
+/** The first lines of all projects in the browser. */
+function headers(page: Page): Promise<string[]> {
+  return page.evaluate(async () => {
+    const found: string[] = [];
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('projects').catch(() => null);
+    if (folder === null) return found;
+    for await (const name of folder.keys()) {
+      const file = await folder.getFileHandle(name).then((handle) => handle.getFile()).catch(() => null);
+      const text = file && new Response(file.stream().pipeThrough(new DecompressionStream('gzip'))).text();
+      found.push(((await text?.catch(() => '')) ?? '').split('\n')[0]!);
+    }
+    return found;
+  });
+}
+
+/** How many copies of frames the browser has. */
+function copies(page: Page): Promise<number> {
+  return page.evaluate(async () => {
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('frames').catch(() => null);
+    let count = 0;
+    if (folder !== null) for await (const _ of folder.keys()) count += 1;
+    return count;
+  });
+}
+
+/** Where the parts of the panel and of the bar are, from the top and from the left. */
+function places(page: Page): Promise<number[]> {
+  return page.evaluate(() =>
+    ['#samples', '#motions-title', '#status', '.masthead-actions'].flatMap((part) => {
+      const { left, top } = document.querySelector(part)!.getBoundingClientRect();
+      return [left, top];
+    }),
+  );
+}
+
+test('the next visit shows the work, and one click opens it with its frames', async ({ page }) => {
+  const files = await clipFrames(5);
+  await open(page, 'groups');
+  const before = await places(page);
+  await expect(page.locator('#continue')).toBeHidden();
+  await openSegmented(page, files);
+  await rename(page, '#objects', 1, 'Disc');
+  await written(page, 'f00-f04.png');
+  await expect.poll(() => copies(page)).toBe(1);
+
+  await page.reload();
+  await open(page, 'groups');
+  const work = page.getByRole('region', { name: 'Continue your work' }).getByRole('button');
+  await expect(work).toHaveText(/^f00-f04\.png5 frames, \d\d:\d\d$/);
+  expect(await places(page)).toEqual(before);
+  await expect(page.locator('#continue details')).toBeHidden();
+  expect(await axe(page)).toEqual([]);
+  // The picture has the frame with its masks: what is orange and blue is not so in the frame.
+  const strong = await work.locator('img').evaluate(async (image: HTMLImageElement) => {
+    await image.decode();
+    const context = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d')!;
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.naturalWidth, image.naturalHeight);
+    const at = (x: number, y: number): number[] => [...data.subarray(4 * (y * image.naturalWidth + x), 4 * (y * image.naturalWidth + x) + 3)];
+    return { size: [image.naturalWidth, image.naturalHeight], disc: at(24, 36), ground: at(100, 20) };
+  });
+  expect(strong.size).toEqual([144, 96]);
+  expect(strong.disc[0]! - strong.disc[2]!).toBeGreaterThan(60); // orange
+
+  await work.click();
+  await expect(page.locator('#clip-name')).toHaveText('f00-f04.png, 5 frames, 200 × 140');
+  await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+  // What is open is not offered.
+  await expect(page.locator('#continue')).toBeHidden();
+
+  await openExport(page);
+  await page.getByText('One project in this browser').click();
+  await page.getByRole('button', { name: 'Forget the project of f00-f04.png' }).click();
+  await expect(page.locator('#projects')).toBeHidden();
+  expect(await copies(page)).toBe(0);
+  await page.reload();
+  await open(page, 'groups');
+  await expect(page.locator('#continue')).toBeHidden();
+});
+
+test('of several the newest comes first, and a sample needs no copy, also with its frames swapped', async ({ page }) => {
+  await openSegmented(page, await clipFrames(4));
+  await rename(page, '#objects', 1, 'Disc');
+  await written(page, 'f00-f03.png');
+  await page.goto('about:blank');
+  await page.goto(`${PARALLAX}&swapped=true`);
+  await done(page);
+  await rename(page, '#motions', 1, 'Window');
+  await written(page, 'second.png, first.png');
+  await expect.poll(() => copies(page)).toBe(1);
+
+  await page.goto('about:blank');
+  await open(page, 'groups');
+  const work = page.locator('#continue .work');
+  await expect(work.first()).toHaveAccessibleName(/^second\.png, first\.png 2 frames, \d\d:\d\d$/);
+  await page.getByText('1 more').click();
+  await expect(work.nth(1)).toHaveAccessibleName(/^f00-f03\.png/);
+  await work.first().click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('second.png, 400 × 300');
+  await expect(page.locator('#motions .motion-name').nth(1)).toHaveValue('Window');
+  await expect(page.getByRole('button', { name: 'Parallax' })).toHaveAttribute('aria-current', 'true');
+  // Now the clip is the newest that is not open.
+  await expect(work.first()).toHaveAccessibleName(/^f00-f03\.png/);
+});
+
+test('frames that are too large to copy are asked for', async ({ page }) => {
+  await page.addInitScript(() => (StorageManager.prototype.estimate = () => Promise.resolve({ quota: 1000, usage: 0 })));
+  const files = await clipFrames(4);
+  await openSegmented(page, files);
+  await rename(page, '#objects', 1, 'Disc');
+  await written(page, 'f00-f03.png');
+  await expect(page.locator('#saving button')).toHaveText(/^Saved without its frames, \d\d:\d\d/);
+  await openExport(page);
+  await expect(page.locator('#project-status')).toHaveText('Your work is kept in this browser. Open the same frames again to continue.');
+  await page.reload();
+  await open(page, 'groups');
+  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
+  await chooser.setFiles(files);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+});
+
+test('copies of frames give way to work when the disk is full', async ({ page, context, baseURL }) => {
+  await openSegmented(page, await clipFrames(4));
+  await rename(page, '#objects', 1, 'Disc');
+  await written(page, 'f00-f03.png');
+  await expect.poll(() => copies(page)).toBe(1);
+  const usage = await page.evaluate(async () => (await navigator.storage.estimate()).usage ?? 0);
+  const session = await context.newCDPSession(page);
+  await session.send('Storage.overrideQuotaForOrigin', { origin: new URL(baseURL!).origin, quotaSize: usage });
+  await rename(page, '#objects', 2, 'Box');
+  await expect.poll(() => copies(page)).toBe(0);
+  await written(page, 'f00-f03.png');
+  await expect(page.locator('#notice-code')).toHaveText('');
+  await expect(page.locator('#saving button')).toHaveText(/^Saved without its frames/);
+});
+
+test('the page tells when work is saved, says so once, and saves it as a file', async ({ page }) => {
+  await open(page, 'groups');
+  const before = await places(page);
+  await expect(page.locator('#saving button')).toBeHidden();
+  const told = page.locator('#saving [role=status]');
+  await told.evaluate((status) => {
+    const said: (string | null)[] = [];
+    Object.assign(window, { said });
+    new MutationObserver(() => said.push(status.textContent)).observe(status, { childList: true, characterData: true, subtree: true });
+  });
+  await upload(page, await clipFrames(4));
+  await done(page);
+  await page.getByRole('button', { name: 'Segment the clip' }).click();
+  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  const saving = page.locator('#saving').getByRole('button', { name: /^Saved in this browser, \d\d:\d\d Save as a file$/ });
+  await expect(saving).toBeVisible();
+  await rename(page, '#objects', 1, 'Disc');
+  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+  await expect(saving).toBeVisible();
+  expect(await page.evaluate(() => (window as unknown as { said: string[] }).said)).toEqual(['Your work is saved in this browser.']);
+  expect((await places(page)).slice(4)).toEqual(before.slice(4));
+  const [download] = await Promise.all([page.waitForEvent('download'), saving.click()]);
+  expect(gunzipSync(await readFile(await download.path())).toString('latin1')).toContain('"Disc"');
+});
+
+test('work that the browser refuses to keep is said to be not saved', async ({ page }) => {
+  await withoutStorage(page);
+  await openSegmented(page, await clipFrames(4));
+  await rename(page, '#objects', 1, 'Disc');
+  const saving = page.locator('#saving button');
+  await expect(saving).toHaveText(/^Not saved: the browser refused/);
+  await expect(page.getByRole('alert')).toContainText('save the project before you leave');
+  await expect(page.locator('#saving [role=status]')).toHaveText('');
+  const [download] = await Promise.all([page.waitForEvent('download'), saving.click()]);
+  expect(download.suggestedFilename()).toBe('f00-f03.veronese');
+  expect(await page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+});
