@@ -1,5 +1,5 @@
 // npm run bench:annotator: scores what an annotator gets for what he says of a clip; `-- --help` lists the options, `-- fit`
-// fits the constants.
+// fits the constants, `-- --page` has an expert annotate clips in the page.
 // First OpenCV's baseline runs on the real clips, then the program measures them and generated clips, and writes the page.
 
 import { rmSync } from 'node:fs';
@@ -13,6 +13,7 @@ import { command, run } from './lib/run.mjs';
 const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'annotator', '--'];
 
 await command(async (args) => {
+  if (args.includes('--page')) return (await run(process.execPath, [join(root, 'scripts/bench-annotator-page.mjs'), ...args])).code;
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
   await checkRust();
   if (args.includes('fit')) return (await run('cargo', [...CARGO, ...args])).code;

@@ -3,11 +3,14 @@ import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { join, relative, sep } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
-import { type HtmlTagDescriptor, type Plugin, defineConfig } from 'vite';
+import { type HtmlTagDescriptor, type Plugin, defineConfig, normalizePath } from 'vite';
 // @ts-expect-error: plain JavaScript, shared with the demonstration server
 import { CONTENT_SECURITY_POLICY, HEADERS } from '../scripts/lib/policy.mjs';
 
 const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+
+/** There is no such file: see {@link hostPage}. */
+const HOST_PAGE = here('embed.html');
 
 /** Adds the content security policy to the built pages. The development server needs more than it allows. */
 function policy(): Plugin {
@@ -17,6 +20,24 @@ function policy(): Plugin {
     configResolved: ({ command }) => void (building = command === 'build'),
     transformIndexHtml: (html) =>
       building ? html.replace('%POLICY%', CONTENT_SECURITY_POLICY) : html.replace(/\s*<meta http-equiv="Content-Security-Policy"[^>]*>/, ''),
+  };
+}
+
+/** Builds and serves the example of a host page as if it were here: Vite takes pages from its root alone. */
+function hostPage(): Plugin {
+  const example = here('../examples/embed/');
+  const page = normalizePath(HOST_PAGE);
+  const html = (): string => readFileSync(join(example, 'embed.html'), 'utf8');
+  return {
+    name: 'host-page',
+    enforce: 'pre',
+    resolveId: (id) => (normalizePath(id) === page ? page : /^\.?\/embed\.(ts|css)(\?|$)/.test(id) ? join(example, id) : null),
+    load: (id) => (id === page ? html() : null),
+    configureServer: (server) => {
+      server.middlewares.use('/embed.html', (_request, response, next) => {
+        server.transformIndexHtml('/embed.html', html()).then((text) => response.setHeader('Content-Type', 'text/html').end(text), next);
+      });
+    },
   };
 }
 
@@ -100,14 +121,14 @@ function serviceWorker(): Plugin {
 export default defineConfig({
   // Relative URLs, so that the built page works in any folder of any host.
   base: './',
-  plugins: [policy(), withoutMeasurements(), preload(), licences(), serviceWorker()],
+  plugins: [hostPage(), policy(), withoutMeasurements(), preload(), licences(), serviceWorker()],
   worker: { format: 'es' },
   build: {
     target: 'es2023',
     // No data: URLs, because the content security policy allows scripts and WebAssembly from files only.
     assetsInlineLimit: 0,
     modulePreload: { polyfill: false },
-    rolldownOptions: { input: [here('index.html'), here('embed.html')] },
+    rolldownOptions: { input: [here('index.html'), HOST_PAGE] },
   },
   // Not pre-bundled, because the package finds its worker and module by import.meta.url.
   optimizeDeps: { exclude: ['veronese'] },

@@ -63,6 +63,8 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --without A,B      parts that automatic leaves out by turns: both-directions, carrying, colours, second-round, grouping
   --generated        automatic measures the generated clips of npm run bench:clips
   --write-docs       also write docs/annotating.md
+
+npm run bench:annotator -- --page has an expert annotate clips in the page; -- --page --help lists its options
 ";
 
 pub(crate) type Failure = Box<dyn Error + Send + Sync>;
@@ -181,7 +183,8 @@ fn write_page(options: &Options) -> Result<(), Failure> {
     let (real, generated) = (rows::<measure::Row>(options, "measure")?, rows::<objects::Row>(options, "objects")?);
     let strokes = rows::<pairs::Row>(options, "pairs")?;
     let fit = fs::read_to_string(options.out.join("fit.md")).ok();
-    let text = sealed::sealed(&page::text(&real, &generated, &strokes, fit.as_deref()));
+    let before = fs::read_to_string(docs()).unwrap_or_default();
+    let text = sealed::sealed(&page::text(&real, &generated, &strokes, fit.as_deref(), &before));
     fs::write(options.out.join("annotating.md"), &text)?;
     if options.write_docs {
         if real.is_empty() || generated.len() < objects::cases().len() {

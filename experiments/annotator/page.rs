@@ -8,7 +8,8 @@ use crate::{measure, objects, pairs};
 const HEAD: &str = "\
 # Annotating
 
-This page measures what an annotator gets for what he says of a clip: a mask of one frame, a click, strokes. All of it is written by
+This page measures what an annotator gets for what he says of a clip: a mask of one frame, a click, strokes. All of it but the figures of
+[the page](#in-the-page) is written by
 
 ```sh
 npm run bench:annotator -- --write-docs
@@ -88,6 +89,35 @@ true mask are the object; the robot draws its strokes for it in the first frame,
 
 ";
 
+/// Around the figures that the benchmark of the page writes.
+const BY_PAGE: [&str; 2] =
+    ["<!-- begin page: written by npm run bench:annotator with --page -->\n", "<!-- end page -->\n"];
+
+const PAGE: &str = "\
+## In the page
+
+An expert annotates clips in the page, from their frames to a file for CVAT, in headless Chromium. The figures are written by
+
+```sh
+npm run bench:annotator -- --page --write-docs
+```
+
+It is a program that knows the truth, but has only the mouse, the keyboard and what is on screen (scripts/lib/annotator). An action is
+a press of a key, a click, a box, a stroke, or the choice of files or of an entry in a menu. Opening the frames, starting the
+segmentation, accepting all frames, opening the panel of exports and saving are actions too; looking is none, at whichever frame.
+
+The expert looks for the largest region that the object misses or has wrongly in a frame, and rather far from the frames that he has
+corrected, because their neighbours follow them. He goes there and paints it in one stroke, as far as the brush fits into it. Where the object
+was not found he draws a box around it, and pieces of it he merges. He stops when J on screen is 0.805, or when the next correction would
+leave too few of 20 actions to save.
+
+- **found**: J of the object before corrections;
+- **actions**: how many from opening the frames to the saved file;
+- **seconds**: time of these actions and of what the page computes after each, on a machine in use;
+- **J**: that of the object's track in the file, with polygons as CVAT gets them.
+
+";
+
 const PARTS: &str = "\
 ## What parts are worth
 
@@ -117,8 +147,14 @@ not seen. Scores are those of the constants used and of the fitted ones.
 
 ";
 
-/// The page; sections without figures are left out.
-pub(crate) fn text(real: &[Row], generated: &[objects::Row], strokes: &[pairs::Row], fit: Option<&str>) -> String {
+/// The page; sections without figures are left out. `before` is what it was: the figures of the page stay.
+pub(crate) fn text(
+    real: &[Row],
+    generated: &[objects::Row],
+    strokes: &[pairs::Row],
+    fit: Option<&str>,
+    before: &str,
+) -> String {
     let mut text = String::from(HEAD);
     let quality = real.first().map(|row| &row.quality).or(generated.first().map(|row| &row.quality));
     if let Some(quality) = quality {
@@ -139,6 +175,9 @@ pub(crate) fn text(real: &[Row], generated: &[objects::Row], strokes: &[pairs::R
     if !strokes.is_empty() {
         let _ = write!(text, "\n{PAIRS}{}", pairs::table(strokes));
     }
+    let [begins, ends] = BY_PAGE;
+    let by_page = before.split_once(begins).and_then(|(_, rest)| rest.split_once(ends)).map_or("", |(part, _)| part);
+    let _ = write!(text, "\n{PAGE}{begins}{by_page}{ends}");
     if !real.is_empty() && !generated.is_empty() {
         let _ = write!(text, "\n{PARTS}");
     }

@@ -61,7 +61,7 @@ export const buildPackage = once(async () => {
 export const buildPage = once(async () => {
   const built = ['pkg/dist', 'pkg/types', 'pkg/package.json', 'pkg/wasm/veronese_bg.wasm'];
   const licences = ['LICENSE-APACHE', 'LICENSE-MIT', 'THIRD-PARTY-NOTICES'];
-  const inputs = ['www', 'scripts/lib/policy.mjs', ...built, ...licences, 'package-lock.json'];
+  const inputs = ['www', 'examples/embed', 'scripts/lib/policy.mjs', ...built, ...licences, 'package-lock.json'];
   await step('the page', 'www/dist', ['www/dist/index.html'], inputs, [], () =>
     must('The page could not be built.', 'npm', ['run', '--silent', 'build', '--workspace', 'www']),
   );
