@@ -7,7 +7,7 @@ import { unzipSync } from 'fflate';
 import { decodeImage } from 'veronese/codecs';
 import { davisPalette } from 'veronese';
 
-import { clipDone, clipFrames, clipInNode, differences, done, dropOn, expect, open, openExport, openSegmented, test, upload } from './support.js';
+import { axe, clipDone, clipFrames, clipInNode, differences, done, dropOn, expect, open, openExport, openSegmented, test, upload } from './support.js';
 
 async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
   await openExport(page);
@@ -101,6 +101,7 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
   // What is no list of classes says so, and adds nothing.
   const list = page.locator('#class-list');
   await page.getByRole('button', { name: 'Classes…' }).click();
+  expect(await axe(page)).toEqual([]);
   await list.locator('input').setInputFiles([file('label.txt', '0 0.25 0.5 0.75 0.5\n')]);
   await expect(notice).toHaveText(/^“label\.txt” is no list of classes/);
   await list.locator('input').setInputFiles([file('names.txt', '\ufeffperson\r\ntree\r\n')]);

@@ -1,6 +1,6 @@
 //! A clip is corrected by keyboard: its objects, its corrected frames, the size of the brush.
 
-import { clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, openSegmented, test } from './support.js';
+import { axe, clipDone, clipFrames, differences, done, drag, expect, goTo, labelsOnCanvas, openSegmented, test } from './support.js';
 
 test('objects are selected, locked and deleted, and corrected frames are found', async ({ page }) => {
   await openSegmented(page, await clipFrames(8));
@@ -58,6 +58,8 @@ test('several objects are selected by mouse and keyboard, and what is done with 
   await expect(page.getByRole('checkbox', { name: 'Select Object 1' })).toBeChecked();
   await expect(page.getByRole('checkbox', { name: 'Select Object 2' })).toBeChecked();
   await expect(page.locator('#select-several')).toHaveAttribute('aria-pressed', 'true');
+
+  expect(await axe(page)).toEqual([]);
 
   // Locks and classes of all, each in one step.
   const lock = bar.getByRole('button', { name: 'Lock' });

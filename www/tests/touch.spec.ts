@@ -156,7 +156,7 @@ test('a finger finds the buttons and both handles of the timeline, and drags the
   await expect(page.locator('#clip-name')).toContainText('12 frames');
   await done(page);
   await page.locator('#track').evaluate((track) => track.scrollIntoView({ block: 'center' }));
-  for (const name of ['Step both back', 'Play', 'Step both forward']) {
+  for (const name of ['Step both back', 'Play', 'Step both forward', 'Speed 1×']) {
     const { width, height } = (await page.getByRole('button', { name, exact: true }).boundingBox())!;
     expect(Math.min(width, height)).toBeGreaterThanOrEqual(44);
   }

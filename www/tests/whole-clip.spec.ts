@@ -320,6 +320,8 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
   await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Box');
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
   await page.getByRole('button', { name: 'Undo' }).click();
+  await expect(rows.nth(1).locator('.motion-name')).toHaveValue('Object 2');
+  await page.getByRole('button', { name: 'Undo' }).click();
   await expect(rows).toHaveCount(3);
 });
 
