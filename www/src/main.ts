@@ -3,7 +3,6 @@
 import { settingsFromHash } from './export/link.js';
 import { SAMPLES } from './frames/samples.js';
 import { keepForOffline } from './offline/register.js';
-import { isNothingKept } from './projects/projects.js';
 import { sessionOf } from './session/session.js';
 import { Store } from './state/state.js';
 import { mountArrows } from './views/arrows.js';
@@ -73,16 +72,17 @@ mountOnOpening(find(document, '#inspect', HTMLElement), session, async (panel) =
 mountWhenOn('onion', store, async () => (await import('./views/onion.js')).mountOnion(find(stage, '#onion', SVGSVGElement), store));
 mountKeys(find(document, '#keys', HTMLDialogElement), find(document, '#open-keys', HTMLElement), store, session, keysFor(store, session, zoom));
 
+// Once there is work, whichever says so first.
+let waiting = true;
 const mountWhenKept = (): void => {
-  leave();
+  if (!waiting) return;
+  waiting = false;
   void import('./views/kept.js').then(({ mountKept }) => mountKept(document, store, session), () => undefined);
 };
-const leave = store.subscribe(({ keeping }) => {
+store.subscribe(({ keeping }) => {
   if (keeping.is !== 'nothing') mountWhenKept();
 });
-void isNothingKept().then((nothing) => {
-  if (!nothing) mountWhenKept();
-});
+void session.projects.mayBeKept().then((may) => may && mountWhenKept());
 
 keepForOffline(store);
 

@@ -52,6 +52,11 @@ export class Projects {
     });
   }
 
+  /** Whether there may be work to continue. */
+  async mayBeKept(): Promise<boolean> {
+    return !(await isNothingKept());
+  }
+
   /** Opens a project's file. Throws a `PageError`. */
   async open(file: File): Promise<Project> {
     const { projectFromFile } = await this.#load();
@@ -210,7 +215,7 @@ export class Projects {
 }
 
 /** Whether nothing can be found, so that a first visit need not look. */
-export async function isNothingKept(): Promise<boolean> {
+async function isNothingKept(): Promise<boolean> {
   try {
     if (!('createWritable' in FileSystemFileHandle.prototype)) return false; // what is kept is in a database
     await (await navigator.storage.getDirectory()).getDirectoryHandle('projects');

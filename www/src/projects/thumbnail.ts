@@ -11,7 +11,7 @@ const OPACITY = 0.55;
 export async function thumbnailOf({ pair, result, look }: State): Promise<string | null> {
   const frame = result?.pair.first ?? pair.first;
   const canvas = new OffscreenCanvas(WIDTH, HEIGHT);
-  const context = canvas.getContext('2d');
+  const context = canvas.getContext('2d', { willReadFrequently: true });
   if (frame === null || context === null) return null;
   // The frame covers the picture and is cropped at two sides.
   const scale = Math.min(frame.width / WIDTH, frame.height / HEIGHT);
