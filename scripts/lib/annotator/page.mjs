@@ -146,7 +146,9 @@ function labelsOnScreen() {
     copy.fillRect(0, 0, 1, 1);
     return new Uint32Array(copy.getImageData(0, 0, 1, 1).data.buffer)[0];
   };
-  const numbers = new Map([...document.querySelectorAll('#objects > li')].map((row) => [wordOf(row.style.getPropertyValue('--colour')), Number(row.dataset.mask)]));
+  const rows = [...document.querySelectorAll('#objects > li')];
+  const numbers = new Map(rows.map((row) => [wordOf(row.style.getPropertyValue('--colour')), Number(row.dataset.mask)]));
+  if (numbers.size < rows.length) throw new Error('Two objects have the same colour.');
   copy.clearRect(0, 0, 1, 1);
   copy.drawImage(fill, 0, 0);
   const words = new Uint32Array(copy.getImageData(0, 0, fill.width, fill.height).data.buffer);
