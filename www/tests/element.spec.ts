@@ -16,7 +16,8 @@ import { BIT, BITS, video } from './video.js';
 
 /** Opens the host page without its own masks, and gives the page `clip(count)`, frames of a moving square as pixels. */
 async function openEmpty(page: Page): Promise<void> {
-  await page.goto('./embed.html');
+  await page.route('**/samples/**', () => undefined); // its own frames never arrive
+  await page.goto('./embed.html', { waitUntil: 'domcontentloaded' });
   await page.evaluate(() => {
     document.querySelector('veronese-segmenter')?.remove();
     const picture = (shift: number): ImageData => {

@@ -6,11 +6,12 @@ import { type Page } from '@playwright/test';
 import { davisPalette, groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { sampleClip, axe, clipFrames, clipInNode, differences, expect, sample, segmentedInNode, test } from './support.js';
+import { axe, clipFrames, clipInNode, differences, expect, sample, segmentedInNode, smallSampleClip, test, withSmallSampleClip } from './support.js';
 import { video } from './video.js';
 
 /** Opens the host page with its clip or, by name, another of its sources. */
 async function openHost(page: Page, source = 'Passing cars, clip'): Promise<void> {
+  await withSmallSampleClip(page);
   await page.goto('./embed.html');
   if (source !== 'Passing cars, clip') await page.getByLabel('Source').selectOption(source);
   await expect(page.locator('#host-status')).toHaveText(source.endsWith('clip') ? /objects? in 33 frames\.$/ : /objects? in two frames\.$/, { timeout: 40_000 });
@@ -41,7 +42,7 @@ test('the host receives the masks of the package', async ({ page }) => {
 
 test('a clip is stepped, named and saved', async ({ page }) => {
   await openHost(page);
-  const expected = await clipInNode((await sampleClip()).slice(16, 49));
+  const expected = await clipInNode((await smallSampleClip()).slice(16, 49));
   expect(differences(await labels(page), expected[0]!)).toBe(0);
   await page.getByRole('button', { name: 'Next frame' }).click();
   await expect(page.locator('#position')).toHaveText('Frame 2 of 33');
@@ -77,6 +78,7 @@ test('a clip is stepped, named and saved', async ({ page }) => {
 });
 
 test('nothing is saved before the masks are there, and a clip can be cancelled', async ({ page }) => {
+  await withSmallSampleClip(page);
   await page.goto('./embed.html');
   const cancel = page.getByRole('button', { name: 'Cancel' });
   await cancel.waitFor();
@@ -173,6 +175,7 @@ test('attributes, events, methods and colours', async ({ page }) => {
 });
 
 test('frames are copied, and invalid ones rejected', async ({ page }) => {
+  await withSmallSampleClip(page);
   await page.goto('./embed.html');
   const told = await page.evaluate(async () => {
     type Frames = HTMLElement & { setFrames(first: unknown, second: unknown): Promise<{ labels: Uint8Array }>; segment(): Promise<{ labels: Uint8Array }> };

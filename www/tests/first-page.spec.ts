@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, done, expect, labelsOnCanvas, openExport, openSampleClip, test } from './support.js';
+import { axe, clipDone, done, expect, labelsOnCanvas, openExport, openSampleClip, test, withSmallSampleClip } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -50,7 +50,7 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
 });
 
 test('whoever touches the page first is not shown the clip', async ({ page }) => {
-  test.setTimeout(180_000);
+  await withSmallSampleClip(page);
   await page.goto('./');
   await page.locator('#clip-progress').waitFor();
   await page.keyboard.press('v');
@@ -61,6 +61,7 @@ test('whoever touches the page first is not shown the clip', async ({ page }) =>
 });
 
 test('work on the clip is kept, and the next visit continues with it', async ({ page }) => {
+  await withSmallSampleClip(page);
   await openSampleClip(page);
   const name = page.locator('#objects .motion-name').first();
   await name.fill('White car');
@@ -73,6 +74,7 @@ test('work on the clip is kept, and the next visit continues with it', async ({ 
 });
 
 test('a cancelled clip can be continued', async ({ page }) => {
+  await withSmallSampleClip(page);
   await page.goto('./#quality=fast');
   await page.locator('#clip-cancel').click();
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'cancelled');
@@ -82,6 +84,7 @@ test('a cancelled clip can be continued', async ({ page }) => {
 });
 
 test('another sample replaces the clip while it is segmented, and the clip comes back', async ({ page }) => {
+  await withSmallSampleClip(page);
   await page.goto('./#quality=fast');
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   await page.getByRole('button', { name: 'Two cars' }).click();
@@ -96,11 +99,12 @@ test('another sample replaces the clip while it is segmented, and the clip comes
 
 test('a link to a pair opens no clip, and one to the clip is the page itself', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
-  await page.goto('./#sample=intel-two-cars&quality=fast');
+  await withSmallSampleClip(page);
+  await page.goto('./#sample=parallax&quality=fast');
   await done(page);
   await expect(page.locator('#timeline')).toBeHidden();
   await page.evaluate(() => (location.hash = '#sample=passing-cars&quality=fast'));
-  await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 512 × 288');
+  await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 128 × 72');
   await clipDone(page);
   await page.locator('#look [value=groups]').check();
   await done(page);

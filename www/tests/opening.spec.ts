@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, done, expect, open, square, test, upload } from './support.js';
+import { PAIR, type Upload, done, expect, open, openEmpty, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -28,14 +28,14 @@ test('the worker starts and warms up while the first frames are on their way', a
     await route.continue();
   });
   const worker = page.waitForEvent('worker');
-  await page.goto('./');
+  await page.goto(`${PAIR}&quality=fast`);
   await worker;
   release();
   await done(page);
 });
 
 test('one image instead of a clip hides the timeline', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await openClip(page, 4);
   await upload(page, [await square('alone.png', 96, 64, 0, 0)]);
   await expect(page.locator('#status')).toHaveText('Now add the second frame.');
@@ -45,7 +45,7 @@ test('one image instead of a clip hides the timeline', async ({ page }) => {
 });
 
 test('a replaced frame is not listed as a frame of the clip', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await openClip(page, 8);
   await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
@@ -75,7 +75,7 @@ test('a replaced frame is not listed as a frame of the clip', async ({ page }) =
 });
 
 test('an unreadable frame leaves the timeline where it was', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
   await expect(page.locator('#clip-name')).toHaveText('f0-f2.png, 3 frames, 96 × 64');
   await done(page);
@@ -87,8 +87,9 @@ test('an unreadable frame leaves the timeline where it was', async ({ page }) =>
 });
 
 test('an unreadable sample leaves the clip open', async ({ page, context }) => {
-  await open(page);
+  await openEmpty(page);
   await openClip(page, 4);
+  await withSamples(page);
   await context.route('**/samples/parallax/second.png', (route) => route.fulfill({ status: 200, body: 'nothing' }));
   await page.getByRole('button', { name: 'Parallax' }).click();
   await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
@@ -98,7 +99,7 @@ test('an unreadable sample leaves the clip open', async ({ page, context }) => {
 
 test('a broken file does not switch the camera off', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
-  await open(page);
+  await openEmpty(page);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live: /, { timeout: 20_000 });
   await upload(page, [BROKEN]);
@@ -114,7 +115,7 @@ test('a broken file does not switch the camera off', async ({ page, context }) =
 
 test('the camera replaces a clip once it is on', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
-  await open(page);
+  await openEmpty(page);
   await openClip(page, 4);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live: /, { timeout: 20_000 });
@@ -146,7 +147,7 @@ test('a broken file does not lose strokes that are being applied', async ({ page
 });
 
 test('cancelling a step returns the timeline to the frames on screen', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await openClip(page, 8);
   // In one task, so that no frame can be loaded between the two keys.
   await page.evaluate(() => {
@@ -160,7 +161,7 @@ test('cancelling a step returns the timeline to the frames on screen', async ({ 
 });
 
 test('a stroke drawn during a step belongs to the frames on screen', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await openClip(page, 8);
   await page.locator('#tools [value=brush]').check();
   // The stroke begins before the step and ends before the new frames are loaded.

@@ -1,6 +1,6 @@
 //! The review of a clip: frames are accepted one by one, the least certain first, or all at once.
 
-import { axe, clipDone, clipFrames, done, drag, expect, goTo, openExport, openSegmented, test } from './support.js';
+import { axe, clipDone, clipFrames, done, drag, expect, goTo, openExport, openSampleClip, openSegmented, test, withSmallSampleClip } from './support.js';
 
 test('frames are accepted, the least certain next, and a correction takes back what it changes', async ({ page }) => {
   await openSegmented(page, await clipFrames(8));
@@ -36,8 +36,8 @@ test('frames are accepted, the least certain next, and a correction takes back w
 });
 
 test('all frames are accepted at once, and are after a reload', async ({ page }) => {
-  await page.goto('./#quality=fast');
-  await clipDone(page);
+  await withSmallSampleClip(page);
+  await openSampleClip(page);
   await page.getByRole('button', { name: 'Accept all' }).click();
   await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
   await openExport(page);

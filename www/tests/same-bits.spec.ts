@@ -6,7 +6,7 @@ import { fileURLToPath } from 'node:url';
 import { type MotionFit, fitMotions } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { PAIR, clipInNode, differences, expect, labelsOnCanvas, openSampleClip, pixelsOf, sampleClip, test } from './support.js';
+import { clipInNode, differences, expect, labelsOnCanvas, openEmpty, openSampleClip, pixelsOf, sampleClip, test } from './support.js';
 
 const PROBLEMS = 200;
 const PACKAGE = fileURLToPath(new URL('../../pkg/', import.meta.url));
@@ -51,7 +51,7 @@ test('fits in the browser equal those in Node', async ({ page, baseURL }) => {
     const contentType = TYPES[path.split('.').pop() ?? ''];
     await route.fulfill({ body: await readFile(PACKAGE + path), ...(contentType === undefined ? {} : { contentType }) });
   });
-  await page.goto(PAIR);
+  await openEmpty(page);
   const problems = Array.from({ length: PROBLEMS }, (_, index) => problem(index));
   const inBrowser = await page.evaluate(
     async ([url, list]) => {
