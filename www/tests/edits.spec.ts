@@ -65,11 +65,11 @@ async function step(page: Page, by: 1 | -1, second: string): Promise<void> {
 /** Whether the page asks before it is left. */
 async function warns(page: Page): Promise<boolean> {
   const asked = new Promise<Dialog | null>((resolve) => {
-    const answer = (event: unknown): void => {
-      page.off('dialog', answer).off('framenavigated', answer);
-      resolve(event !== page.mainFrame() ? (event as Dialog) : null);
+    const answer = (event: Dialog | Page): void => {
+      page.off('dialog', answer).off('load', answer);
+      resolve(event === page ? null : (event as Dialog));
     };
-    page.on('dialog', answer).on('framenavigated', answer);
+    page.on('dialog', answer).on('load', answer);
   });
   // A navigation by Playwright would wait for a new page that never comes.
   await page.evaluate(() => setTimeout(() => location.reload()));

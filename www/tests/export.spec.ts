@@ -170,6 +170,7 @@ test('a copied link opens with the same settings and the current sample', async 
   await expect(other.locator('#motions > li')).toHaveCount(2);
   await expect(other.locator('#look [value=motions]')).toBeChecked();
 
+  await page.keyboard.press('Escape');
   const copied = async (): Promise<string> => {
     await page.evaluate(() => navigator.clipboard.writeText(''));
     await openExport(page);
