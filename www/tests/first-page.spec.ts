@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, done, expect, labelsOnCanvas, openExport, openSampleClip, test, withSmallSampleClip } from './support.js';
+import { axe, clipDone, clipPhase, done, expect, labelsOnCanvas, openExport, openSampleClip, test, withSmallSampleClip } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -49,15 +49,18 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
   expect(await isAnythingKept(page)).toBe(false);
 });
 
-test('whoever touches the page first is not shown the clip', async ({ page }) => {
+test('whoever touches the page first is not shown the clip; nothing of projects is loaded', async ({ page }) => {
+  const asked: string[] = [];
+  page.on('request', (request) => asked.push(request.url()));
   await withSmallSampleClip(page);
   await page.goto('./');
   await page.locator('#clip-progress').waitFor();
   await page.keyboard.press('v');
   await clipDone(page);
-  await page.waitForTimeout(500);
+  await page.waitForTimeout(1000); // what is kept is written soon
   await expect(page.locator('#caption')).toHaveText(`Frame ${START}`);
   await expect(page.locator('#play')).toHaveAccessibleName('Play');
+  expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
 });
 
 test('work on the clip is kept, and the next visit continues with it', async ({ page }) => {
@@ -66,24 +69,17 @@ test('work on the clip is kept, and the next visit continues with it', async ({ 
   const name = page.locator('#objects .motion-name').first();
   await name.fill('White car');
   await name.press('Enter');
+  await page.getByRole('button', { name: 'Accept all' }).click();
+  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
   await page.reload();
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 51 frames.');
   await expect(name).toHaveValue('White car');
+  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
 });
 
-test('a cancelled clip can be continued', async ({ page }) => {
-  await withSmallSampleClip(page);
-  await page.goto('./#quality=fast');
-  await page.locator('#clip-cancel').click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'cancelled');
-  await page.locator('#clip-segment').click();
-  await clipDone(page);
-  await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
-});
-
-test('another sample replaces the clip while it is segmented, and the clip comes back', async ({ page }) => {
+test('another sample replaces the clip while it is segmented, and the clip comes back; cancelled, it is continued', async ({ page }) => {
   await withSmallSampleClip(page);
   await page.goto('./#quality=fast');
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
@@ -93,7 +89,11 @@ test('another sample replaces the clip while it is segmented, and the clip comes
   await expect(page.locator('#timeline')).toBeHidden();
   await page.getByRole('button', { name: 'Passing cars' }).click();
   await expect(page.locator('#clip-first-at')).toHaveText(`#${START}`);
+  await page.locator('#clip-cancel').click();
+  await clipPhase(page, 'cancelled');
+  await page.locator('#clip-segment').click();
   await clipDone(page);
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
   await expect(page.locator('#objects > li')).toHaveCount(3); // and the background
 });
 

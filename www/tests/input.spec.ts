@@ -58,7 +58,7 @@ async function withFolder(files: Record<string, Buffer>, use: (path: string) => 
   }
 }
 
-test('a dropped folder is a clip in the order of its names', async ({ page }) => {
+test('folders are clips in the order of their names, of subfolders one after another if that is chosen, dropped or picked', async ({ page }) => {
   await openEmpty(page);
   // More files than browsers return in one batch. Files that are hidden or not images are skipped.
   const files: Record<string, Buffer> = { 'clip/notes.txt': Buffer.from('notes'), 'clip/.thumb.png': Buffer.from('hidden') };
@@ -74,10 +74,7 @@ test('a dropped folder is a clip in the order of its names', async ({ page }) =>
     await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f129.png, 96 × 64');
     await done(page);
   });
-});
 
-test('subfolders of a folder follow each other if that is chosen, dropped or picked', async ({ page }) => {
-  await openEmpty(page);
   const { buffer } = await square('', 96, 64, 0, 0);
   const names = ['b/1.png', 'a10/1.png', 'a2/2.png', 'a2/1.png', '10.png', '9.png'];
   await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
@@ -104,7 +101,7 @@ test('subfolders of a folder follow each other if that is chosen, dropped or pic
   });
 });
 
-test('of a folder with frames and masks the frames are opened', async ({ page }) => {
+test('of a folder with frames and masks the frames are opened, and a folder may hold a video, a pair or nothing to open', async ({ page }) => {
   await openEmpty(page);
   const { buffer } = await square('', 96, 64, 0, 0);
   const names = ['frames', 'masks', 'meta/Ground Truth'].flatMap((folder) => [0, 1, 2].map((k) => `set/${folder}/${k}.png`));
@@ -119,6 +116,25 @@ test('of a folder with frames and masks the frames are opened', async ({ page })
     await expect(page.locator('#clip-name')).toHaveText('masks, 3 frames, 96 × 64');
     await expect(page.locator('#notice')).toBeHidden();
     await done(page);
+  });
+
+  // A video, a pair or nothing to open.
+  const { buffer: clip } = await video(page, 4, 'webm', 'vp8');
+  const pair = { 'pair/.hidden': Buffer.from(''), 'pair/b.png': (await square('', 80, 60, 2, 1)).buffer, 'pair/a.png': (await square('', 80, 60, 0, 0)).buffer };
+  await withFolder({ 'video/clip.webm': clip, 'video/read.me': Buffer.from(''), 'empty/notes.txt': Buffer.from(''), ...pair }, async (root) => {
+    await dropPaths(page, [join(root, 'video')]);
+    await expect(page.locator('#clip-name')).toHaveText('clip.webm, 4 frames, 192 × 128');
+    await done(page);
+    await dropPaths(page, [join(root, 'empty')]);
+    await expect(page.getByRole('alert')).toContainText('There is no image or video among these files.');
+    await expect(page.locator('#timeline')).toBeVisible();
+    await dropPaths(page, [join(root, 'pair')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 80 × 60');
+    await done(page);
+    // A file can still be dropped by itself.
+    await dropPaths(page, [join(root, 'pair', 'b.png')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('b.png, 80 × 60');
   });
 });
 
@@ -150,27 +166,6 @@ test('of several folders of images one is chosen, or none', async ({ page }) => 
     await expect(dialog).toBeHidden();
     await expect(page.locator('#clip-name')).toHaveText('day, 3 frames, 96 × 64');
     await done(page);
-  });
-});
-
-test('a dropped folder may hold a video, a pair or nothing to open', async ({ page }) => {
-  await openEmpty(page);
-  const { buffer } = await video(page, 4, 'webm', 'vp8');
-  const pair = { 'pair/.hidden': Buffer.from(''), 'pair/b.png': (await square('', 80, 60, 2, 1)).buffer, 'pair/a.png': (await square('', 80, 60, 0, 0)).buffer };
-  await withFolder({ 'video/clip.webm': buffer, 'video/read.me': Buffer.from(''), 'empty/notes.txt': Buffer.from(''), ...pair }, async (root) => {
-    await dropPaths(page, [join(root, 'video')]);
-    await expect(page.locator('#clip-name')).toHaveText('clip.webm, 4 frames, 192 × 128');
-    await done(page);
-    await dropPaths(page, [join(root, 'empty')]);
-    await expect(page.getByRole('alert')).toContainText('There is no image or video among these files.');
-    await expect(page.locator('#timeline')).toBeVisible();
-    await dropPaths(page, [join(root, 'pair')]);
-    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
-    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 80 × 60');
-    await done(page);
-    // A file can still be dropped by itself.
-    await dropPaths(page, [join(root, 'pair', 'b.png')]);
-    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('b.png, 80 × 60');
   });
 });
 

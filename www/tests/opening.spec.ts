@@ -34,16 +34,6 @@ test('the worker starts and warms up while the first frames are on their way', a
   await done(page);
 });
 
-test('one image instead of a clip hides the timeline', async ({ page }) => {
-  await openEmpty(page);
-  await openClip(page, 4);
-  await upload(page, [await square('alone.png', 96, 64, 0, 0)]);
-  await expect(page.locator('#status')).toHaveText('Now add the second frame.');
-  await expect(page.locator('#timeline')).toBeHidden();
-  await page.keyboard.press('.'); // there is no clip to step through
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('alone.png, 96 × 64');
-});
-
 test('a replaced frame is not listed as a frame of the clip', async ({ page }) => {
   await openEmpty(page);
   await openClip(page, 8);
@@ -86,18 +76,7 @@ test('an unreadable frame leaves the timeline where it was', async ({ page }) =>
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
 });
 
-test('an unreadable sample leaves the clip open', async ({ page, context }) => {
-  await openEmpty(page);
-  await openClip(page, 4);
-  await withSamples(page);
-  await context.route('**/samples/parallax/second.png', (route) => route.fulfill({ status: 200, body: 'nothing' }));
-  await page.getByRole('button', { name: 'Parallax' }).click();
-  await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
-  await expect(page.locator('#timeline')).toBeVisible();
-  await expectToStep(page, 1);
-});
-
-test('a broken file does not switch the camera off', async ({ page, context }) => {
+test('a broken file does not switch the camera off, and the camera replaces a clip once it is on', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
   await openEmpty(page);
   await page.getByRole('button', { name: 'Camera' }).click();
@@ -111,11 +90,8 @@ test('a broken file does not switch the camera off', async ({ page, context }) =
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 96 × 64');
   await done(page);
   await expect(page.getByRole('button', { name: 'Camera', exact: true })).toBeVisible();
-});
 
-test('the camera replaces a clip once it is on', async ({ page, context }) => {
-  await context.grantPermissions(['camera']);
-  await openEmpty(page);
+  // The camera replaces a clip once it is on.
   await openClip(page, 4);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live: /, { timeout: 20_000 });
@@ -146,7 +122,7 @@ test('a broken file does not lose strokes that are being applied', async ({ page
   await expect(page.locator('#strokes .stroke:not(.now)')).toHaveCount(1);
 });
 
-test('cancelling a step returns the timeline to the frames on screen', async ({ page }) => {
+test('a step can be cancelled, and a stroke drawn meanwhile; a sample that cannot be read leaves the clip open, one image does not', async ({ page, context }) => {
   await openEmpty(page);
   await openClip(page, 8);
   // In one task, so that no frame can be loaded between the two keys.
@@ -158,11 +134,11 @@ test('cancelling a step returns the timeline to the frames on screen', async ({ 
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
   await expectToStep(page, 1);
   await expect(page.locator('#clip-first-at')).toHaveText('#1, 0.033 s');
-});
+  await page.getByRole('button', { name: 'Step both back' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#0,');
+  await done(page);
 
-test('a stroke drawn during a step belongs to the frames on screen', async ({ page }) => {
-  await openEmpty(page);
-  await openClip(page, 8);
+  // A stroke drawn during a step belongs to the frames on screen.
   await page.locator('#tools [value=brush]').check();
   // The stroke begins before the step and ends before the new frames are loaded.
   await page.locator('.layers').evaluate((layers) => {
@@ -186,4 +162,19 @@ test('a stroke drawn during a step belongs to the frames on screen', async ({ pa
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#0,');
   await done(page);
   await expect(strokes).toHaveCount(1);
+
+  // An unreadable sample leaves the clip open.
+  await withSamples(page);
+  await context.route('**/samples/parallax/second.png', (route) => route.fulfill({ status: 200, body: 'nothing' }));
+  await page.getByRole('button', { name: 'Parallax' }).click();
+  await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
+  await expect(page.locator('#timeline')).toBeVisible();
+  await expectToStep(page, 1);
+
+  // One image instead of a clip hides the timeline.
+  await upload(page, [await square('alone.png', 96, 64, 0, 0)]);
+  await expect(page.locator('#status')).toHaveText('Now add the second frame.');
+  await expect(page.locator('#timeline')).toBeHidden();
+  await page.keyboard.press('.'); // there is no clip to step through
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('alone.png, 96 × 64');
 });

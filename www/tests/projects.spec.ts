@@ -6,7 +6,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipFrames, clipInNode, clipPhase, differences, done, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, openSampleClip, segmentClip, square, test, upload, withSmallSampleClip, withoutStorage } from './support.js';
+import { type Upload, clipFrames, clipInNode, clipPhase, differences, done, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, segmentClip, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
@@ -386,15 +386,6 @@ test('damaged and foreign projects are refused with a reason, and change nothing
     await page.locator('#notice-close').click();
   }
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
-});
-
-test('a first visit loads nothing of projects', async ({ page }) => {
-  const asked: string[] = [];
-  page.on('request', (request) => asked.push(request.url()));
-  await withSmallSampleClip(page);
-  await openSampleClip(page);
-  await page.waitForTimeout(1000); // what is kept is written soon
-  expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
 });
 
 test('a project of the first version is opened, and takes corrections', async ({ page }) => {
