@@ -411,9 +411,8 @@ test('segmenting a part again changes nothing outside it, and both take correcti
   }
   // All of it is there after a reload.
   const last = await labelsOnCanvas(page);
-  await page.waitForTimeout(1500);
+  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true); // kept
   await page.reload();
-  await done(page);
   await upload(page, files);
   await expect(status).toHaveText(/^Continued/);
   await goTo(page, 8);
