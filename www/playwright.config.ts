@@ -7,7 +7,8 @@ export default defineConfig({
   outputDir: 'test-results',
   fullyParallel: true,
   workers: 2,
-  timeout: 60_000,
+  timeout: 120_000,
+  expect: { timeout: 15_000 },
   forbidOnly: process.env.CI !== undefined,
   reporter: [['list']],
   use: {
@@ -30,6 +31,8 @@ export default defineConfig({
         '--disable-sync',
         '--no-first-run',
         '--no-pings',
+        // Nothing is drawn of the browser's own windows, of which each test has a new one.
+        '--disable-features=PreloadTopChromeWebUI',
       ],
     },
   },

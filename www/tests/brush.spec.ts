@@ -2,19 +2,14 @@
 
 import { type Page } from '@playwright/test';
 
-import { clipFrames, done, expect, open, test, upload } from './support.js';
+import { clipFrames, expect, openSegmented, test } from './support.js';
 
 /** Differences that rounding to whole pixels of the screen explains. */
 const NEAR = 1.5;
 
 /** Opens and segments a clip before any pair was painted, and takes the brush. */
 async function clipWithBrush(page: Page): Promise<void> {
-  await open(page, 'groups');
-  await upload(page, await clipFrames(4));
-  await expect(page.locator('#clip-name')).toContainText('4 frames');
-  await done(page);
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await openSegmented(page, await clipFrames(4));
   await page.locator('#tools [value=brush]').locator('..').click();
   await expect(page.locator('#tools [value=brush]')).toBeChecked();
   await page.locator('.layers').scrollIntoViewIfNeeded();

@@ -7,7 +7,7 @@ import { unzipSync } from 'fflate';
 import { decodeImage } from 'veronese/codecs';
 import { davisPalette } from 'veronese';
 
-import { axe, clipDone, clipFrames, clipInNode, differences, done, dropOn, expect, open, openExport, openSegmented, test, upload } from './support.js';
+import { axe, clipDone, clipFrames, clipInNode, differences, dropOn, expect, openExport, openSegmented, pixelsOfPicture, test } from './support.js';
 
 async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
   await openExport(page);
@@ -24,19 +24,15 @@ async function labelsIn(bytes: Uint8Array): Promise<Uint8Array> {
 }
 
 function labelsFromColours(data: Uint8Array | Uint8ClampedArray): Uint8Array {
-  const byColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
-  return Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get([...data.subarray(4 * p, 4 * p + 3)].join()) ?? -1);
+  const number = (colours: ArrayLike<number>, at: number): number => (colours[at]! << 16) | (colours[at + 1]! << 8) | colours[at + 2]!;
+  const byColour = new Map(davisPalette().map((colour, label) => [number(colour, 0), label]));
+  return Uint8Array.from({ length: data.length / 4 }, (_, p) => byColour.get(number(data, 4 * p)) ?? -1);
 }
 
 test('a clip is exported in the formats of annotation tools, with the objects that are ticked', async ({ page }) => {
   const files = await clipFrames(6);
   const found = await clipInNode(files);
-  await open(page, 'groups');
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText('6 frames');
-  await done(page);
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await openSegmented(page, files);
   const name = page.locator('#objects .motion-name').nth(1);
   await name.fill('Ball');
   await name.press('Enter');
@@ -182,12 +178,7 @@ test('objects have classes of a list: given by keyboard, undone, exported with t
 test('the preview lists the files that are written, and shows one frame as they have it', async ({ page }) => {
   const files = await clipFrames(5);
   const found = await clipInNode(files);
-  await open(page, 'groups');
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText('5 frames');
-  await done(page);
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await openSegmented(page, files);
   await page.getByRole('slider', { name: 'Current frame' }).press('End');
   await expect(page.locator('#caption')).toHaveText('Frame 4');
 
@@ -202,13 +193,7 @@ test('the preview lists the files that are written, and shows one frame as they 
   const own = davis['davis/Annotations/480p/f00-f04/f04.png']!;
   await expect(caption).toHaveText(`f04.png: ${(own.length / 1000).toFixed(1)} kB`);
   const shown = async (): Promise<Uint8Array> => {
-    const pixels = await preview.locator('img').evaluate(async (image: HTMLImageElement) => {
-      await image.decode();
-      const context = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d')!;
-      context.drawImage(image, 0, 0);
-      return [...context.getImageData(0, 0, image.naturalWidth, image.naturalHeight).data];
-    });
-    return labelsFromColours(Uint8Array.from(pixels));
+    return labelsFromColours(await pixelsOfPicture(preview.locator('img')));
   };
   expect(differences(await shown(), found[4]!)).toBe(0);
 

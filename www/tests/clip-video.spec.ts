@@ -6,20 +6,11 @@ import { type Page } from '@playwright/test';
 import { ALL_FORMATS, BufferSource, EncodedPacketSink, Input } from 'mediabunny';
 import { decodeImage } from 'veronese/codecs';
 
-import { type Upload, clipFrames, clipInNode, done, expect, open, openExport, test, upload } from './support.js';
+import { clipDone, clipFrames, clipInNode, done, expect, openEmpty, openExport, openSegmented, pixelsOfPicture, test, upload } from './support.js';
 import { video } from './video.js';
 
 /** Odd, which H.264 cannot be. */
 const [WIDTH, HEIGHT] = [201, 141];
-
-async function segmentedClip(page: Page, files: Upload[]): Promise<void> {
-  await open(page, 'groups');
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
-  await done(page);
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
-}
 
 async function savedVideo(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
   await openExport(page);
@@ -80,7 +71,7 @@ function share(pixels: Uint8Array, width: number, labels: Uint8Array, shown: (rg
 test('a clip is saved as a video with transparency, a green screen and a matte, of the objects that are ticked', async ({ page }) => {
   const files = await clipFrames(6, WIDTH, HEIGHT);
   const found = await clipInNode(files);
-  await segmentedClip(page, files);
+  await openSegmented(page, files);
   await page.getByLabel('Show Object 2').uncheck();
   const wanted = (label: number): boolean => label === 1;
   const at = [0, 3, 5];
@@ -128,7 +119,7 @@ async function timesIn(bytes: Buffer): Promise<{ starts: number[]; durations: nu
 }
 
 test('a video of the frames between the in point and the out point has their times', async ({ page }) => {
-  await open(page, 'groups');
+  await openEmpty(page, 'groups');
   // No two frames are shown equally long, so that their times tell which they are.
   const durations = [0.04, 0.1, 0.07, 0.13, 0.05, 0.11, 0.06, 0.08];
   const file = await video(page, durations.length, 'webm', 'vp8', durations);
@@ -139,7 +130,7 @@ test('a video of the frames between the in point and the out point has their tim
   for (let k = 0; k < 2; k++) await from.press('ArrowRight');
   await to.press('ArrowLeft');
   await page.getByRole('button', { name: 'Segment frames 2–6' }).click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await clipDone(page);
 
   const { starts } = await timesIn(file.buffer);
   const wanted = starts.slice(2, 7).map((start) => start - starts[2]!);
@@ -158,24 +149,18 @@ test('a video of the frames between the in point and the out point has their tim
 test('the preview of a video shows the frame as the video does', async ({ page }) => {
   const files = await clipFrames(5, WIDTH, HEIGHT);
   const found = await clipInNode(files);
-  await segmentedClip(page, files);
+  await openSegmented(page, files);
   await openExport(page);
   const preview = page.locator('#clip-preview');
   await page.getByLabel('Format of the clip').selectOption({ label: 'Video, transparent' });
   await expect(preview.locator('li')).toHaveText(['f00-f04-transparent.webm']);
   await expect(preview.locator('figcaption')).toHaveText('Frame 0');
-  const pixels = await preview.locator('img').evaluate(async (image: HTMLImageElement) => {
-    await image.decode();
-    const context = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d')!;
-    context.drawImage(image, 0, 0);
-    return [...context.getImageData(0, 0, image.naturalWidth, image.naturalHeight).data];
-  });
-  expect(share(Uint8Array.from(pixels), WIDTH, found[0]!, (rgba) => rgba[3] === 255, (label) => label > 0)).toBe(0);
+  expect(share(await pixelsOfPicture(preview.locator('img')), WIDTH, found[0]!, (rgba) => rgba[3] === 255, (label) => label > 0)).toBe(0);
 });
 
 test('a browser without encoders does not offer videos', async ({ page }) => {
   await page.addInitScript(() => delete (window as { VideoEncoder?: unknown }).VideoEncoder);
-  await segmentedClip(page, await clipFrames(5, WIDTH, HEIGHT));
+  await openSegmented(page, await clipFrames(3, WIDTH, HEIGHT));
   await openExport(page);
   const formats = page.getByLabel('Format of the clip').locator('option');
   await expect(formats.last()).toHaveText('Label Studio, video');

@@ -17,9 +17,27 @@ async function stroke(page: Page, from: readonly [number, number], to: readonly 
   await done(page);
 }
 
-test('a brush stroke adds pixels to a mask, and undo removes them', async ({ page }) => {
+test('strokes of brush and eraser, with the pointer or the keyboard, change a mask, and undo removes them', async ({ page }) => {
   await open(page, 'groups');
   const found = await labelsOnCanvas(page);
+  // With the keyboard, from the centre.
+  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
+  await page.keyboard.press('p');
+  await page.locator('.layers').focus();
+  for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Space');
+  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('Space');
+  await expect(page.locator('#status')).toHaveText(/^Masks updated/);
+  const drawn = await labelsOnCanvas(page);
+  // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
+  for (let x = 384 + 160; x <= 384 + 208; x++) expect(drawn[216 * 768 + x]).toBe(1);
+  expect(differences(drawn, found)).toBeGreaterThan(0);
+  await page.locator('#undo').click();
+  await expect(page.locator('#undo')).toBeDisabled();
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
+
+  // With the pointer.
   const at = (x: number, y: number): number => Math.floor(y * 432) * 768 + Math.floor(x * 768);
   const ground = at(0.75, 0.5);
   expect(found[ground]).toBe(0);
@@ -40,11 +58,8 @@ test('a brush stroke adds pixels to a mask, and undo removes them', async ({ pag
   await page.keyboard.press('Control+z');
   expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   await expect(page.locator('#undo')).toBeDisabled();
-});
 
-test('an eraser stroke removes pixels from a mask', async ({ page }) => {
-  await open(page, 'groups');
-  const found = await labelsOnCanvas(page);
+  // The eraser removes pixels.
   const inside = Math.floor(0.35 * 432) * 768 + Math.floor(0.22 * 768);
   const mask = found[inside]!;
   expect(mask).toBeGreaterThan(0);
@@ -53,9 +68,11 @@ test('an eraser stroke removes pixels from a mask', async ({ page }) => {
   await stroke(page, [0.2, 0.35], [0.25, 0.35]);
   const erased = await labelsOnCanvas(page);
   for (let x = 0.2; x <= 0.25; x += 0.01) expect(erased[Math.floor(0.35 * 432) * 768 + Math.floor(x * 768)]).not.toBe(mask);
+  await page.locator('#undo').click();
+  expect(differences(await labelsOnCanvas(page), found)).toBe(0);
 });
 
-test('masks are merged and ungrouped', async ({ page }) => {
+test('masks are merged and ungrouped, and a stroke with a merged mask allows all of its motions', async ({ page }) => {
   await open(page, 'groups');
   const found = await labelsOnCanvas(page);
   const rows = page.locator('#motions > li');
@@ -71,13 +88,9 @@ test('masks are merged and ungrouped', async ({ page }) => {
   await rows.nth(1).getByText('More', { exact: true }).click();
   await rows.nth(1).getByRole('button', { name: 'Ungroup' }).click();
   expect(await rows.count()).toBeGreaterThan(count - 1);
-});
 
-test('a stroke with a merged mask allows all of its motions', async ({ page }) => {
-  await open(page, 'groups');
-  const rows = page.locator('#motions > li');
-  await rows.nth(1).getByText('More', { exact: true }).click();
-  await mergeWith(rows.nth(1), 2);
+  await page.locator('#undo').click();
+  await expect(rows).toHaveCount(count - 1);
   const merged = await labelsOnCanvas(page);
   await page.keyboard.press('p');
   await rows.nth(1).locator('.motion-words').click();
@@ -85,23 +98,6 @@ test('a stroke with a merged mask allows all of its motions', async ({ page }) =
   await stroke(page, [0.2, 0.4], [0.24, 0.4]);
   const painted = await labelsOnCanvas(page);
   expect(differences(painted, merged) / painted.length).toBeLessThan(0.03);
-});
-
-test('a stroke is drawn with the keyboard', async ({ page }) => {
-  await open(page, 'groups');
-  const found = await labelsOnCanvas(page);
-  await page.locator('#motions > li').nth(1).locator('.motion-words').click();
-  await page.keyboard.press('p');
-  await page.locator('.layers').focus();
-  for (let k = 0; k < 20; k++) await page.keyboard.press('ArrowRight');
-  await page.keyboard.press('Space');
-  for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
-  await page.keyboard.press('Space');
-  await expect(page.locator('#status')).toHaveText(/^Masks updated/);
-  const painted = await labelsOnCanvas(page);
-  // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
-  for (let x = 384 + 160; x <= 384 + 208; x++) expect(painted[216 * 768 + x]).toBe(1);
-  expect(differences(painted, found)).toBeGreaterThan(0);
 });
 
 test('choosing a mask to merge with does not merge, and a merged mask is selected', async ({ page }) => {

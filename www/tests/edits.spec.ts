@@ -2,12 +2,12 @@
 
 import { readFile } from 'node:fs/promises';
 
-import { type Page } from '@playwright/test';
+import type { Dialog, Page } from '@playwright/test';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { PALETTE } from '../src/drawing/palette.js';
-import { PAIR, type Place, type Upload, chooseMotions, differences, done, drag, expect, labelsOnCanvas, mergeWith, motionsChosen, open, openAdvanced, openExport, sample, square, test, upload, withoutStorage } from './support.js';
+import { PAIR, type Place, type Upload, chooseMotions, differences, done, drag, expect, labelsOnCanvas, mergeWith, motionsChosen, open, openAdvanced, openClip, openEmpty, openExport, square, test, upload, withSamples, withoutStorage } from './support.js';
 
 /** Clicks `first`, draws strokes and clicks `last` in one task, so that no result can arrive in between. */
 async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[], { first = '', last = '' } = {}): Promise<void> {
@@ -55,14 +55,6 @@ function frames(count: number, width = 160, height = 96): Promise<Upload[]> {
   return Promise.all(Array.from({ length: count }, (_, k) => square(`f${k}.png`, width, height, 3 * k, k)));
 }
 
-/** Opens frames as a clip, with quality `fast` and one mask per motion. */
-async function openClip(page: Page, files: Upload[]): Promise<void> {
-  await open(page);
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
-  await done(page);
-}
-
 /** Steps both frames of a clip and waits for the masks of the new pair. */
 async function step(page: Page, by: 1 | -1, second: string): Promise<void> {
   await page.getByRole('button', { name: by > 0 ? 'Step both forward' : 'Step both back' }).click();
@@ -72,20 +64,23 @@ async function step(page: Page, by: 1 | -1, second: string): Promise<void> {
 
 /** Whether the page asks before it is left. */
 async function warns(page: Page): Promise<boolean> {
-  const asked = page.waitForEvent('dialog', { timeout: 3000 }).then(
-    async (dialog) => {
-      expect(dialog.type()).toBe('beforeunload');
-      await dialog.dismiss();
-      return true;
-    },
-    () => false,
-  );
+  const asked = new Promise<Dialog | null>((resolve) => {
+    const answer = (event: Dialog | Page): void => {
+      page.off('dialog', answer).off('load', answer);
+      resolve(event === page ? null : (event as Dialog));
+    };
+    page.on('dialog', answer).on('load', answer);
+  });
   // A navigation by Playwright would wait for a new page that never comes.
   await page.evaluate(() => setTimeout(() => location.reload()));
-  return asked;
+  const dialog = await asked;
+  if (dialog === null) return false;
+  expect(dialog.type()).toBe('beforeunload');
+  await dialog.dismiss();
+  return true;
 }
 
-test('strokes drawn while others are being applied are all kept', async ({ page }) => {
+test('strokes drawn, undone or cancelled while they are being applied are kept, undone or kept', async ({ page }) => {
   await open(page);
   const found = await labelsOnCanvas(page);
   await brush(page, 1);
@@ -106,12 +101,9 @@ test('strokes drawn while others are being applied are all kept', async ({ page 
   for (let k = 0; k < 4; k++) await page.locator('#redo').click();
   await done(page);
   expect(differences(await labelsOnCanvas(page), painted)).toBe(0);
-});
+  for (let k = 0; k < 4; k++) await page.locator('#undo').click();
 
-test('a stroke that is undone while it is being applied stays undone', async ({ page }) => {
-  await open(page);
-  const found = await labelsOnCanvas(page);
-  await brush(page, 1);
+  // Undone while it is being applied, a stroke stays undone.
   await drag(page, [0.7, 0.2], [0.8, 0.2]);
   await page.keyboard.press('Control+z');
   await done(page);
@@ -120,6 +112,16 @@ test('a stroke that is undone while it is being applied stays undone', async ({ 
   await expect(page.locator('#status')).toHaveText('Undone.');
   expect(differences(await labelsOnCanvas(page), found)).toBe(0);
   await page.keyboard.press('Control+Shift+z');
+  await done(page);
+  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
+  await page.locator('#undo').click();
+  await expect(page.locator('#undo')).toBeDisabled();
+
+  // Cancelling keeps them.
+  await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#cancel' });
+  await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are applied yet.');
+  await expect(strokes(page)).toHaveCount(1);
+  await page.locator('#again').click();
   await done(page);
   expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
 });
@@ -145,19 +147,8 @@ test('a stroke drawn during segmentation is applied afterwards', async ({ page }
   await expect(page.locator('#motions > li.selected')).toHaveAttribute('data-mask', String(same));
 });
 
-test('cancelling keeps the strokes', async ({ page }) => {
-  await open(page);
-  await brush(page, 1);
-  await drawAtOnce(page, [[[0.7, 0.2], [0.8, 0.2]]], { last: '#cancel' });
-  await expect(page.locator('#status')).toHaveText('Cancelled. Your strokes are kept, but not all are applied yet.');
-  await expect(strokes(page)).toHaveCount(1);
-  await page.locator('#again').click();
-  await done(page);
-  expect([...along(await labelsOnCanvas(page), 768, 432, [0.7, 0.2], [0.8, 0.2])]).toEqual([1]);
-});
-
 test('strokes, names, colours and undo are restored with their frames', async ({ page }) => {
-  await openClip(page, await frames(4));
+  await openClip(page, await frames(4), { kind: 'motions' });
   const rows = page.locator('#motions > li');
   await rows.nth(1).locator('.motion-name').fill('Square');
   await rows.nth(1).locator('.motion-name').press('Enter');
@@ -190,8 +181,8 @@ test('strokes, names, colours and undo are restored with their frames', async ({
   await expect(page.locator('#undo')).toBeDisabled();
 });
 
-test('a stroke drawn just before a step is kept', async ({ page }) => {
-  await openClip(page, await frames(4));
+test('a stroke drawn just before a step, or in progress then, is kept', async ({ page }) => {
+  await openClip(page, await frames(4), { kind: 'motions' });
   await brush(page, 1);
   await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await page.keyboard.press('.'); // while it is being applied
@@ -201,10 +192,10 @@ test('a stroke drawn just before a step is kept', async ({ page }) => {
   await step(page, -1, 'f1.png');
   await expect(strokes(page)).toHaveCount(1);
   expect([...along(await labelsOnCanvas(page), 160, 96, [0.8, 0.2], [0.9, 0.2])]).toEqual([1]);
-});
+  await page.locator('#undo').click();
+  await expect(strokes(page)).toHaveCount(0);
 
-test('a stroke in progress when the frames change belongs to the old ones', async ({ page }) => {
-  await openClip(page, await frames(4));
+  // In progress when the frames change, it belongs to the old ones.
   await brush(page, 1);
   const box = (await page.locator('.layers').boundingBox())!;
   await page.mouse.move(box.x + 0.8 * box.width, box.y + 0.2 * box.height);
@@ -220,7 +211,7 @@ test('a stroke in progress when the frames change belongs to the old ones', asyn
 });
 
 test('corrections are restored when frames are opened again in any way', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   const files = await frames(4);
   const pair = async (): Promise<void> => {
     await upload(page, files.slice(0, 2));
@@ -253,6 +244,7 @@ test('corrections are restored when frames are opened again in any way', async (
   await expect(strokes(page)).toHaveCount(1);
 
   // Replaced by a sample and opened again.
+  await withSamples(page);
   await page.getByRole('button', { name: 'Parallax' }).click();
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('400 × 300');
   await done(page);
@@ -287,7 +279,7 @@ test('corrections survive the camera', async ({ page, context }) => {
 });
 
 test('corrections are scaled to another working size', async ({ page }) => {
-  await openClip(page, await frames(3, 800, 480));
+  await openClip(page, await frames(3, 700, 420), { kind: 'motions' });
   await brush(page, 1);
   await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
@@ -336,15 +328,15 @@ test('strokes and names follow their masks to a result with other settings', asy
 
 test('leaving the page asks first only with unsaved corrections', async ({ page }) => {
   await withoutStorage(page);
-  await openClip(page, await frames(3));
+  await openClip(page, await frames(3), { kind: 'motions' });
   await page.locator('#look [name=outlines]').uncheck();
   await page.locator('#zoom-in').click();
   await page.keyboard.press('0');
   await brush(page, 1);
   expect(await warns(page)).toBe(false);
-  await done(page);
+  await expect(page.locator('#timeline')).toBeHidden();
 
-  await openClip(page, await frames(3));
+  await openClip(page, await frames(3), { kind: 'motions' });
   await brush(page, 1);
   await drag(page, [0.8, 0.2], [0.9, 0.2]);
   await done(page);
@@ -361,7 +353,7 @@ test('leaving the page asks first only with unsaved corrections', async ({ page 
   expect(await warns(page)).toBe(false);
 });
 
-test('an exported file includes strokes that are still being applied', async ({ page }) => {
+test('an exported file includes strokes that are still being applied, and a name that is being typed survives', async ({ page }) => {
   await open(page);
   await openExport(page);
   await expect(page.locator('.export-buttons button').first()).toBeEnabled();
@@ -371,12 +363,9 @@ test('an exported file includes strokes that are still being applied', async ({ 
   const { data } = await decodeImage(await readFile(await download.path()));
   const p = Math.floor(0.2 * 432) * 768 + Math.floor(0.75 * 768);
   expect([...data.subarray(4 * p, 4 * p + 3)]).toEqual([...davisPalette()[1]!]);
-});
 
-test('a name that is being typed survives a new result', async ({ page }) => {
-  await open(page);
-  await brush(page, 1);
-  await drag(page, [0.7, 0.2], [0.8, 0.2]);
+  // A name that is being typed survives a new result.
+  await drag(page, [0.7, 0.3], [0.8, 0.3]);
   const name = page.locator('#motions > li').nth(1).locator('.motion-name');
   await name.focus();
   await page.keyboard.press('Control+a');
@@ -386,6 +375,17 @@ test('a name that is being typed survives a new result', async ({ page }) => {
   await page.keyboard.press('Enter');
   await expect(name).toHaveValue('Van 2');
   await expect(page.locator('#motions > li').nth(1).getByRole('checkbox')).toHaveAccessibleName('Show Van 2');
+  await page.locator('#undo').click();
+  await page.locator('#undo').click();
+
+  // A stroke without effect is rejected with a message.
+  await chooseMotions(page, 1);
+  await done(page);
+  await page.locator('#tools [value=eraser]').check();
+  await page.locator('#motions > li').first().locator('.motion-words').click();
+  await drag(page, [0.7, 0.2], [0.8, 0.2]);
+  await expect(page.locator('#notice')).toContainText('There is no other mask that these pixels could belong to.');
+  await expect(strokes(page)).toHaveCount(0);
 });
 
 test('a stroke has the colour of its mask, also of a merged one', async ({ page }) => {
@@ -404,17 +404,6 @@ test('a stroke has the colour of its mask, also of a merged one', async ({ page 
   await done(page);
   await expect(strokes(page).last()).toHaveAttribute('stroke', 'rgb(20 20 20)');
   await expect(strokes(page).first()).toHaveAttribute('stroke', colour);
-});
-
-test('a stroke without effect is rejected with a message', async ({ page }) => {
-  await open(page);
-  await chooseMotions(page, 1);
-  await done(page);
-  await page.locator('#tools [value=eraser]').check();
-  await page.locator('#motions > li').first().locator('.motion-words').click();
-  await drag(page, [0.7, 0.2], [0.8, 0.2]);
-  await expect(page.locator('#notice')).toContainText('There is no other mask that these pixels could belong to.');
-  await expect(strokes(page)).toHaveCount(0);
 });
 
 test('the status describes the last action', async ({ page }) => {
@@ -446,7 +435,7 @@ test('the status describes the last action', async ({ page }) => {
 });
 
 test('the status mentions fewer motions than requested', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await upload(page, (await frames(2)));
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('f1.png');
   await done(page);
@@ -461,7 +450,7 @@ test('the status mentions fewer motions than requested', async ({ page }) => {
 });
 
 test('a number of motions chosen for a pair applies to that pair', async ({ page }) => {
-  await openClip(page, await frames(3));
+  await openClip(page, await frames(3), { kind: 'motions' });
   await chooseMotions(page, 1);
   await done(page);
   await motionsChosen(page, 1);
@@ -475,11 +464,11 @@ test('a number of motions chosen for a pair applies to that pair', async ({ page
 });
 
 test('the list of masks reports a failure', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
   await expect(page.locator('#motions-empty')).toHaveText('No masks: the segmentation failed.');
-  await upload(page, [await sample('first'), await sample('second')]);
+  await upload(page, await frames(2));
   await done(page);
   await expect(page.locator('#motions-empty')).toBeHidden();
 });

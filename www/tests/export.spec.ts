@@ -12,7 +12,7 @@ import { groupLabels } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
 import { video } from './video.js';
-import { differences, done, expect, open, openExport, sample, segmentedInNode, test, upload, square, chooseMotions, motionsChosen, openAdvanced } from './support.js';
+import { differences, done, expect, open, openEmpty, openExport, pixelsOf, sample, segmentedInNode, test, upload, square, chooseMotions, motionsChosen, openAdvanced } from './support.js';
 
 /** Clicks a button that saves a file. */
 async function saved(page: Page, name: string): Promise<{ name: string; bytes: Buffer }> {
@@ -33,7 +33,7 @@ async function reds(bytes: Uint8Array): Promise<Uint8Array> {
   return Uint8Array.from({ length: data.length / 4 }, (_, p) => data[4 * p]!);
 }
 
-test('all masks are exported as one archive', async ({ page }) => {
+test('all masks are exported as one archive, the selected mask and the overlay as PNG', async ({ page }) => {
   await open(page, 'groups');
   const expected = await segmentedInNode(await sample('first'), await sample('second'));
   const groups = groupLabels(expected);
@@ -46,11 +46,8 @@ test('all masks are exported as one archive', async ({ page }) => {
     expect(differences(await reds(files[`mask-${k}.png`]!), groups.map((group) => (group === k ? 255 : 0)))).toBe(0);
   }
   expect(JSON.parse(new TextDecoder().decode(files['result.json']))).toMatchObject({ count: expected.count, width: 768 });
-});
 
-test('the selected mask and the overlay are exported as PNG', async ({ page }) => {
-  await open(page, 'groups');
-  const groups = groupLabels(await segmentedInNode(await sample('first'), await sample('second')));
+  await page.keyboard.press('Escape');
   await page.locator('#motions > li').nth(2).locator('.motion-words').click();
   const mask = await savedAs(page, 'Selected mask');
   expect(mask.name).toBe('mask.png');
@@ -62,15 +59,16 @@ test('the selected mask and the overlay are exported as PNG', async ({ page }) =
   expect(differences(overlay.data, (await decodeImage((await sample('first')).buffer)).data)).toBe(0);
 });
 
-test('masks of frames that were scaled down are exported at full size', async ({ page }) => {
-  await open(page);
+test('frames larger than the working size are scaled down, and their masks exported at full size', async ({ page }) => {
+  await openEmpty(page);
   await openAdvanced(page);
   await page.getByLabel('Working size').selectOption('640');
-  await upload(page, [await square('a.png', 960, 540, 0, 0), await square('b.png', 960, 540, 6, 3)]);
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 960 × 540');
+  await upload(page, [await square('a.png', 720, 405, 0, 0), await square('b.png', 720, 405, 6, 3)]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 720 × 405');
   await done(page);
+  expect((await pixelsOf(page, '#frame')).width).toBe(640);
   const { width, height } = await decodeImage((await saved(page, 'Labels PNG')).bytes);
-  expect([width, height]).toEqual([960, 540]);
+  expect([width, height]).toEqual([720, 405]);
   const report = JSON.parse((await saved(page, 'Result JSON')).bytes.toString()) as { motions: { matrix: number[]; bbox: number[] }[] };
   const [u, v] = [report.motions[1]!.matrix, report.motions[1]!.bbox].map(([a, b, c]) => [a, b, c]);
   expect(u && v).toBeTruthy();
@@ -117,7 +115,7 @@ test('the copied command and script give the same masks', async ({ page, context
   }
 });
 
-test('the picture is copied', async ({ page, context }) => {
+test('the picture is copied, and a notice confirms a copy in view, on all screens', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
   await openExport(page);
@@ -132,9 +130,29 @@ test('the picture is copied', async ({ page, context }) => {
     });
     expect(size).toEqual([768, 432]);
   }).toPass();
+
+  const notice = page.locator('#notice');
+  await page.getByRole('button', { name: 'Dismiss' }).click();
+  for (const [width, height] of [[1280, 860], [390, 780]] as const) {
+    await page.setViewportSize({ width, height });
+    for (const name of ['Copy picture', 'Copy command', 'Copy JavaScript', 'Copy link']) {
+      await openExport(page);
+      await page.getByRole('button', { name }).click();
+      await expect(notice).toContainText('to the clipboard.');
+      await expect(notice).toBeInViewport({ ratio: 1 });
+      await page.getByRole('button', { name: 'Dismiss' }).click();
+      await expect(notice).toBeHidden();
+    }
+  }
+  // A notice that is not an error disappears by itself.
+  await openExport(page);
+  await page.getByRole('button', { name: 'Copy link' }).click();
+  await expect(notice).toBeInViewport({ ratio: 1 });
+  await page.mouse.move(1, 1); // it stays while the pointer is over it
+  await expect(notice).toBeHidden({ timeout: 10_000 });
 });
 
-test('a copied link opens with the same settings', async ({ page, context }) => {
+test('a copied link opens with the same settings and the current sample', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page);
   await chooseMotions(page, 2);
@@ -142,20 +160,17 @@ test('a copied link opens with the same settings', async ({ page, context }) => 
   await openExport(page);
   await page.getByRole('button', { name: 'Copy link' }).click();
   await expect(page.locator('#notice')).toContainText('Copied the link with the settings to the clipboard.');
-  const link = await page.evaluate(() => navigator.clipboard.readText());
-  expect(new URL(link).hash).toBe('#sample=intel-two-cars&motions=2&quality=fast&masks=motions');
+  const first = await page.evaluate(() => navigator.clipboard.readText());
+  expect(new URL(first).hash).toBe('#sample=intel-two-cars&motions=2&quality=fast&masks=motions');
   const other = await context.newPage();
-  await other.goto(link);
+  await other.goto(first);
   await done(other);
   await motionsChosen(other, 2);
   await expect(other.getByLabel('Fast')).toBeChecked();
   await expect(other.locator('#motions > li')).toHaveCount(2);
   await expect(other.locator('#look [value=motions]')).toBeChecked();
-});
 
-test('a copied link opens the current sample', async ({ page, context }) => {
-  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
-  await open(page);
+  await page.keyboard.press('Escape');
   const copied = async (): Promise<string> => {
     await page.evaluate(() => navigator.clipboard.writeText(''));
     await openExport(page);
@@ -170,7 +185,7 @@ test('a copied link opens the current sample', async ({ page, context }) => {
   await done(page);
   const link = await copied();
   expect(new URL(link).hash).toBe('#sample=parallax&swapped=true&quality=fast&masks=motions');
-  const other = await context.newPage();
+  await other.goto('about:blank');
   await other.goto(link);
   await done(other);
   await expect(other.locator('.slot-name')).toHaveText(['second.png, 400 × 300', 'first.png, 400 × 300']);
@@ -190,7 +205,7 @@ test('a copied link opens the current sample', async ({ page, context }) => {
 
 test('the command names the frames of the result, also a replaced one', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
-  await open(page);
+  await openEmpty(page);
   await upload(page, [await video(page, 8, 'webm', 'vp8')]);
   await expect(page.locator('#clip-name')).toContainText('clip.webm');
   await done(page);
@@ -208,29 +223,6 @@ test('the command names the frames of the result, also a replaced one', async ({
     'veronese pair frame-1.png other.png --quality fast --out masks --overlay',
   ]);
 });
-
-for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 780]] as const) {
-  test(`a notice confirms a copy in view, ${screen}`, async ({ page, context }) => {
-    await context.grantPermissions(['clipboard-read', 'clipboard-write']);
-    await page.setViewportSize({ width, height });
-    await open(page);
-    const notice = page.locator('#notice');
-    for (const name of ['Copy picture', 'Copy command', 'Copy JavaScript', 'Copy link']) {
-      await openExport(page);
-      await page.getByRole('button', { name }).click();
-      await expect(notice).toContainText('to the clipboard.');
-      await expect(notice).toBeInViewport({ ratio: 1 });
-      await page.getByRole('button', { name: 'Dismiss' }).click();
-      await expect(notice).toBeHidden();
-    }
-    // A notice that is not an error disappears by itself.
-    await openExport(page);
-    await page.getByRole('button', { name: 'Copy link' }).click();
-    await expect(notice).toBeInViewport({ ratio: 1 });
-    await page.mouse.move(1, 1); // it stays while the pointer is over it
-    await expect(notice).toBeHidden({ timeout: 10_000 });
-  });
-}
 
 /** Decodes compressed COCO run lengths, after the description of the format. */
 function countsOf(text: string): number[] {

@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { PAIR, done, expect, labelsOnCanvas, open, sample, square, test, upload } from './support.js';
+import { PAIR, done, expect, labelsOnCanvas, open, openEmpty, sample, square, test, upload } from './support.js';
 
 /** The page still segments. */
 async function expectToWork(page: Page): Promise<void> {
@@ -25,17 +25,15 @@ test('a broken file is reported, and the open pair stays', async ({ page }) => {
   await expectToWork(page);
 });
 
-test('frames that differ in size are rejected with the message of the package', async ({ page }) => {
-  await open(page);
+test('frames that differ in size, or are too small, are rejected with the message of the package', async ({ page }) => {
+  await openEmpty(page);
+  await expectToWork(page);
+  await expect(page.locator('#motions > li')).not.toHaveCount(0);
   await upload(page, [await square('a.png', 96, 64, 0, 0), await square('b.png', 64, 96, 0, 0)]);
   await expect(page.getByRole('alert')).toContainText('The frames differ in size: 96×64 and 64×96 pixels.');
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
   await expect(page.locator('#motions > li')).toHaveCount(0);
   await expectToWork(page);
-});
-
-test('a frame that is too small is rejected', async ({ page }) => {
-  await open(page);
   const dot = await square('dot.png', 1, 1, 0, 0);
   await upload(page, [dot, { ...dot, name: 'dot2.png' }]);
   await expect(page.locator('#notice-code')).toHaveText('frame-size-unsupported');

@@ -2,7 +2,7 @@
 
 import type { Page } from '@playwright/test';
 
-import { axe, clipDone, done, expect, labelsOnCanvas, open, openExport, openSampleClip, square, test, upload } from './support.js';
+import { axe, clipDone, clipPhase, done, expect, labelsOnCanvas, open, openExport, openSampleClip, square, test, upload, withSmallSampleClip } from './support.js';
 
 /** The frame that is shown first. */
 const START = 32;
@@ -55,39 +55,38 @@ test('the page opens with a clip and finds its two cars', async ({ page }) => {
   expect(await isAnythingKept(page)).toBe(false);
 });
 
-test('whoever touches the page first is not shown the clip', async ({ page }) => {
-  test.setTimeout(180_000);
+test('whoever touches the page first is not shown the clip; nothing of projects is loaded', async ({ page }) => {
+  const asked: string[] = [];
+  page.on('request', (request) => asked.push(request.url()));
+  await withSmallSampleClip(page);
   await page.goto('./');
   await page.locator('#clip-progress').waitFor();
   await page.keyboard.press('v');
   await clipDone(page);
-  await page.waitForTimeout(500);
+  await page.waitForTimeout(1000); // what is kept is written soon
   await expect(page.locator('#caption')).toHaveText(`Frame ${START}`);
   await expect(page.locator('#play')).toHaveAccessibleName('Play');
+  expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
 });
 
 test('work on the clip is kept, and the next visit continues with it', async ({ page }) => {
+  await withSmallSampleClip(page);
   await openSampleClip(page);
   const name = page.locator('#objects .motion-name').first();
   await name.fill('White car');
   await name.press('Enter');
+  await page.getByRole('button', { name: 'Accept all' }).click();
+  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
   await openExport(page);
   await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
   await page.reload();
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 51 frames.');
   await expect(name).toHaveValue('White car');
+  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
 });
 
-test('a cancelled clip can be continued', async ({ page }) => {
-  await page.goto('./#quality=fast');
-  await page.locator('#clip-cancel').click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'cancelled');
-  await page.locator('#clip-segment').click();
-  await clipDone(page);
-  await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
-});
-
-test('another sample replaces the clip while it is segmented, and the clip comes back', async ({ page }) => {
+test('another sample replaces the clip while it is segmented, and the clip comes back; cancelled, it is continued', async ({ page }) => {
+  await withSmallSampleClip(page);
   await page.goto('./#quality=fast');
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   await page.getByRole('button', { name: 'Two cars' }).click();
@@ -96,17 +95,22 @@ test('another sample replaces the clip while it is segmented, and the clip comes
   await expect(page.locator('#timeline')).toBeHidden();
   await page.getByRole('button', { name: 'Passing cars' }).click();
   await expect(page.locator('#clip-first-at')).toHaveText(`#${START}`);
+  await page.locator('#clip-cancel').click();
+  await clipPhase(page, 'cancelled');
+  await page.locator('#clip-segment').click();
   await clipDone(page);
+  await expect(page.locator('#clip-status')).toHaveText('2 objects in 51 frames.');
   await expect(page.locator('#objects > li')).toHaveCount(3); // and the background
 });
 
 test('a link to a pair opens no clip, and one to the clip is the page itself', async ({ page, context }) => {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
-  await page.goto('./#sample=intel-two-cars&quality=fast');
+  await withSmallSampleClip(page);
+  await page.goto('./#sample=parallax&quality=fast');
   await done(page);
   await expect(page.locator('#timeline')).toBeHidden();
   await page.evaluate(() => (location.hash = '#sample=passing-cars&quality=fast'));
-  await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 512 × 288');
+  await expect(page.locator('#clip-name')).toHaveText('passing-cars, 51 frames, 128 × 72');
   await clipDone(page);
   await page.locator('#look [value=groups]').check();
   await done(page);

@@ -7,7 +7,7 @@ import { dirname, join } from 'node:path';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, axe, done, expect, labelsOnCanvas, open, sample, segmentedInNode, differences, square, test, motionsChosen } from './support.js';
+import { type Upload, axe, done, expect, labelsOnCanvas, open, openEmpty, segmentedInNode, differences, square, test, motionsChosen } from './support.js';
 
 /** Drops or pastes files. */
 async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise<void> {
@@ -29,7 +29,7 @@ async function give(page: Page, how: 'drop' | 'paste', files: Upload[]): Promise
 }
 
 test('two files are dropped together', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   const [a, b] = [await square('a.png', 80, 60, 0, 0), await square('b.png', 80, 60, 2, 1)];
   await give(page, 'drop', [b, a]);
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
@@ -58,8 +58,8 @@ async function withFolder(files: Record<string, Buffer>, use: (path: string) => 
   }
 }
 
-test('a dropped folder is a clip in the order of its names', async ({ page }) => {
-  await open(page);
+test('folders are clips in the order of their names, of subfolders one after another if that is chosen, dropped or picked', async ({ page }) => {
+  await openEmpty(page);
   // More files than browsers return in one batch. Files that are hidden or not images are skipped.
   const files: Record<string, Buffer> = { 'clip/notes.txt': Buffer.from('notes'), 'clip/.thumb.png': Buffer.from('hidden') };
   const [still, moved] = [await square('', 96, 64, 0, 0), await square('', 96, 64, 2, 0)];
@@ -74,10 +74,7 @@ test('a dropped folder is a clip in the order of its names', async ({ page }) =>
     await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('f129.png, 96 × 64');
     await done(page);
   });
-});
 
-test('subfolders of a dropped folder follow each other if that is chosen', async ({ page }) => {
-  await open(page);
   const { buffer } = await square('', 96, 64, 0, 0);
   const names = ['b/1.png', 'a10/1.png', 'a2/2.png', 'a2/1.png', '10.png', '9.png'];
   await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
@@ -94,13 +91,8 @@ test('subfolders of a dropped folder follow each other if that is chosen', async
     }
     expect(seen).toEqual(['9.png', '10.png', 'a2/1.png', 'a2/2.png', 'a10/1.png', 'b/1.png']);
   });
-});
-
-test('a folder from the picker has the same order and names', async ({ page }) => {
-  await open(page);
-  const { buffer } = await square('', 96, 64, 0, 0);
-  const names = ['b/1.png', 'a/2.png', 'a/1.png', '.hidden.png'];
-  await withFolder(Object.fromEntries(names.map((name) => [`clip/${name}`, buffer])), async (root) => {
+  const picked = ['b/1.png', 'a/2.png', 'a/1.png', '.hidden.png'];
+  await withFolder(Object.fromEntries(picked.map((name) => [`clip/${name}`, buffer])), async (root) => {
     await page.locator('#open-folder').setInputFiles(join(root, 'clip'));
     await page.getByRole('button', { name: 'All 3 images' }).click();
     await expect(page.locator('#clip-name')).toHaveText('clip, 3 frames, 96 × 64');
@@ -109,8 +101,8 @@ test('a folder from the picker has the same order and names', async ({ page }) =
   });
 });
 
-test('of a folder with frames and masks the frames are opened', async ({ page }) => {
-  await open(page);
+test('of a folder with frames and masks the frames are opened, and a folder may hold a video, a pair or nothing to open', async ({ page }) => {
+  await openEmpty(page);
   const { buffer } = await square('', 96, 64, 0, 0);
   const names = ['frames', 'masks', 'meta/Ground Truth'].flatMap((folder) => [0, 1, 2].map((k) => `set/${folder}/${k}.png`));
   await withFolder(Object.fromEntries(names.map((name) => [name, buffer])), async (root) => {
@@ -124,6 +116,25 @@ test('of a folder with frames and masks the frames are opened', async ({ page })
     await expect(page.locator('#clip-name')).toHaveText('masks, 3 frames, 96 × 64');
     await expect(page.locator('#notice')).toBeHidden();
     await done(page);
+  });
+
+  // A video, a pair or nothing to open.
+  const { buffer: clip } = await video(page, 4, 'webm', 'vp8');
+  const pair = { 'pair/.hidden': Buffer.from(''), 'pair/b.png': (await square('', 80, 60, 2, 1)).buffer, 'pair/a.png': (await square('', 80, 60, 0, 0)).buffer };
+  await withFolder({ 'video/clip.webm': clip, 'video/read.me': Buffer.from(''), 'empty/notes.txt': Buffer.from(''), ...pair }, async (root) => {
+    await dropPaths(page, [join(root, 'video')]);
+    await expect(page.locator('#clip-name')).toHaveText('clip.webm, 4 frames, 192 × 128');
+    await done(page);
+    await dropPaths(page, [join(root, 'empty')]);
+    await expect(page.getByRole('alert')).toContainText('There is no image or video among these files.');
+    await expect(page.locator('#timeline')).toBeVisible();
+    await dropPaths(page, [join(root, 'pair')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
+    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 80 × 60');
+    await done(page);
+    // A file can still be dropped by itself.
+    await dropPaths(page, [join(root, 'pair', 'b.png')]);
+    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('b.png, 80 × 60');
   });
 });
 
@@ -158,28 +169,7 @@ test('of several folders of images one is chosen, or none', async ({ page }) => 
   });
 });
 
-test('a dropped folder may hold a video, a pair or nothing to open', async ({ page }) => {
-  await open(page);
-  const { buffer } = await video(page, 4, 'webm', 'vp8');
-  const pair = { 'pair/.hidden': Buffer.from(''), 'pair/b.png': (await square('', 80, 60, 2, 1)).buffer, 'pair/a.png': (await square('', 80, 60, 0, 0)).buffer };
-  await withFolder({ 'video/clip.webm': buffer, 'video/read.me': Buffer.from(''), 'empty/notes.txt': Buffer.from(''), ...pair }, async (root) => {
-    await dropPaths(page, [join(root, 'video')]);
-    await expect(page.locator('#clip-name')).toHaveText('clip.webm, 4 frames, 192 × 128');
-    await done(page);
-    await dropPaths(page, [join(root, 'empty')]);
-    await expect(page.getByRole('alert')).toContainText('There is no image or video among these files.');
-    await expect(page.locator('#timeline')).toBeVisible();
-    await dropPaths(page, [join(root, 'pair')]);
-    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 80 × 60');
-    await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('b.png, 80 × 60');
-    await done(page);
-    // A file can still be dropped by itself.
-    await dropPaths(page, [join(root, 'pair', 'b.png')]);
-    await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('b.png, 80 × 60');
-  });
-});
-
-test('two files are pasted one after the other', async ({ page }) => {
+test('two files are pasted one after the other, and one is replaced', async ({ page }) => {
   await open(page);
   await give(page, 'paste', [await square('z.png', 80, 60, 0, 0)]);
   await expect(page.locator('#status')).toHaveText('Now add the second frame.');
@@ -187,13 +177,9 @@ test('two files are pasted one after the other', async ({ page }) => {
   await give(page, 'paste', [await square('a.png', 80, 60, 2, 1)]);
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('a.png, 80 × 60');
   await done(page);
-});
-
-test('one frame of the pair is replaced', async ({ page }) => {
-  await open(page);
-  const other = await sample('first', 'other.png');
-  await page.getByLabel('Replace the second frame').setInputFiles(other);
-  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 768 × 432');
+  await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 80, 60, 1, 0));
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('z.png, 80 × 60');
+  await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 80 × 60');
   await done(page);
 });
 
@@ -245,7 +231,7 @@ test('the page works in any folder', async ({ page, context, baseURL }) => {
   });
   const asked: string[] = [];
   page.on('request', (request) => asked.push(new URL(request.url()).pathname));
-  await page.goto(`${baseURL}some/folder/`);
+  await page.goto(`${baseURL}some/folder/#quality=fast`);
   await done(page);
   expect(asked.filter((path) => !path.startsWith('/some/folder/'))).toEqual([]);
 });

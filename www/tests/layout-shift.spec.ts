@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { PAIR, done, expect, open, test, upload } from './support.js';
+import { done, expect, openEmpty, test, upload } from './support.js';
 
 /** Sums layout shifts from now on, including those after user input, which browsers exclude from their score. */
 async function watchShifts(page: Page): Promise<() => Promise<number>> {
@@ -26,10 +26,9 @@ async function watchShifts(page: Page): Promise<() => Promise<number>> {
 }
 
 for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 780]] as const) {
-  test(`three steps through a clip shift nothing, ${screen}`, async ({ page }) => {
+  test(`three steps through a clip and choosing a tool shift nothing, ${screen}`, async ({ page }) => {
     await page.setViewportSize({ width, height });
-    await page.goto(PAIR); // with the default quality: a preview, then the result
-    await done(page);
+    await openEmpty(page, 'groups', 'best'); // a preview, then the result
     await upload(page, [await video(page, 8, 'webm', 'vp8')]);
     await expect(page.locator('#clip-name')).toContainText('clip.webm');
     await done(page);
@@ -42,11 +41,7 @@ for (const [screen, width, height] of [['desktop', 1280, 860], ['phone', 390, 78
       await done(page);
     }
     expect(await shift()).toBeLessThanOrEqual(0.01);
-  });
-
-  test(`choosing a tool moves nothing, ${screen}`, async ({ page }) => {
-    await page.setViewportSize({ width, height });
-    await open(page, 'groups');
+    await page.evaluate(() => scrollTo(0, 0));
     const places = (): Promise<number[]> =>
       page.evaluate(() => [...document.querySelectorAll('.layers, #tools label, #tools button, #run, #look, .pair')].map((part) => part.getBoundingClientRect().top + part.getBoundingClientRect().left));
     const before = await places();

@@ -2,15 +2,10 @@
 
 import { type Page } from '@playwright/test';
 
-import { clipFrames, done, expect, open, test, upload } from './support.js';
+import { clipFrames, done, expect, open, openSegmented, test, withSmallSampleClip, upload } from './support.js';
 
 async function openSegmentedClip(page: Page): Promise<void> {
-  await open(page, 'groups');
-  await upload(page, await clipFrames(5));
-  await expect(page.locator('#clip-name')).toContainText('5 frames');
-  await done(page);
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await openSegmented(page, await clipFrames(5));
   await page.evaluate(() => scrollTo(0, 0));
 }
 
@@ -58,11 +53,12 @@ test.describe('on a phone', () => {
   });
 });
 
-for (const [width, height] of [[1280, 720], [1280, 860], [390, 844]] as const) {
-  test(`a sample that is clicked is in view, ${width} × ${height}`, async ({ page }) => {
+test('a sample that is clicked is in view, on all screens', async ({ page }) => {
+  await withSmallSampleClip(page);
+  await open(page, 'groups');
+  const samples = page.locator('#samples button');
+  for (const [width, height] of [[1280, 720], [1280, 860], [390, 844]] as const) {
     await page.setViewportSize({ width, height });
-    await open(page, 'groups');
-    const samples = page.locator('#samples button');
     for (const sample of [samples.last(), samples.first()]) {
       await sample.scrollIntoViewIfNeeded();
       await sample.click();
@@ -71,8 +67,8 @@ for (const [width, height] of [[1280, 720], [1280, 860], [390, 844]] as const) {
       expect(picture!.top).toBeGreaterThanOrEqual(header!.bottom);
       expect(picture!.bottom).toBeLessThanOrEqual(height);
     }
-  });
-}
+  }
+});
 
 test('the whole name of a clip can be read at 1280 × 720', async ({ page }) => {
   await page.setViewportSize({ width: 1280, height: 720 });

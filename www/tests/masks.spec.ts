@@ -5,7 +5,7 @@ import { readFile } from 'node:fs/promises';
 import { davisPalette } from 'veronese';
 import { decodeImage } from 'veronese/codecs';
 
-import { PAIR, MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, openExport, pixelsOf, sample, segmentedInNode, square, test, upload, chooseMotions } from './support.js';
+import { PAIR, MOTIONS_IN_SAMPLE, differences, done, expect, labelsOnCanvas, open, openEmpty, openExport, pixelsOf, sample, segmentedInNode, square, test, upload, chooseMotions } from './support.js';
 
 test('the sample pair is segmented', async ({ page }) => {
   await page.goto(PAIR);
@@ -22,64 +22,14 @@ test('the sample pair is segmented', async ({ page }) => {
   expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
 });
 
-test('a file is decoded to the same bytes as in Node', async ({ page }) => {
+test('frames, masks and their files are those of Node, and are shown as is asked', async ({ page }) => {
   await open(page);
   const first = await decodeImage((await sample('first')).buffer);
   const shown = await pixelsOf(page, '#frame');
   expect([shown.width, shown.height]).toEqual([first.width, first.height]);
   expect(differences(shown.data, first.data)).toBe(0);
-});
 
-test('two uploaded files give the same masks as in Node', async ({ page }) => {
-  await open(page);
-  // Numbers in names are compared by value. The odd size catches a wrong row length.
-  const [second, first] = [await square('frame10.png', 161, 97, 3, 1), await square('frame9.png', 161, 97, 0, 0)];
-  await upload(page, [second, first]);
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('frame9.png, 161 × 97');
-  await done(page);
-  const expected = await segmentedInNode(first, second);
-  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
-});
-
-test('swapping the frames segments them in the other order', async ({ page }) => {
-  await open(page);
-  await page.locator('#swap').click();
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('second.png, 768 × 432');
-  await done(page);
-  const expected = await segmentedInNode(await sample('second'), await sample('first'));
-  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
-});
-
-test('settings reach the package, and the latest request wins', async ({ page }) => {
-  await open(page);
-  await chooseMotions(page, 2);
-  await page.getByLabel('Best').check();
-  await done(page);
-  await openExport(page);
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
-  const report: unknown = JSON.parse(await readFile(await download.path(), 'utf8'));
-  expect(report).toMatchObject({ version: 1, width: 768, height: 432, settings: { motions: 2, quality: 'best', markUnknown: false } });
-  expect(report).not.toHaveProperty('labels');
-  const expected = await segmentedInNode(await sample('first'), await sample('second'), { motions: 2, quality: 'best' });
-  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
-});
-
-test('the labels PNG holds the labels', async ({ page }) => {
-  await open(page);
-  await openExport(page);
-  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
-  expect(download.suggestedFilename()).toBe('labels.png');
-  const file = await readFile(await download.path());
-  expect([...file.subarray(24, 26)]).toEqual([8, 3]); // 8 bits, indexed
-  const { data } = await decodeImage(file);
-  const labelByColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
-  const labels = Array.from({ length: data.length / 4 }, (_, i) => labelByColour.get(data.subarray(4 * i, 4 * i + 3).join()) ?? -1);
-  const expected = await segmentedInNode(await sample('first'), await sample('second'));
-  expect(differences(labels, expected.labels)).toBe(0);
-});
-
-test('visibility, solo, opacity and outlines change the picture', async ({ page }) => {
-  await open(page);
+  // Visibility, solo, opacity and outlines change the picture.
   const all = await labelsOnCanvas(page);
   const rows = page.locator('#motions > li');
   const row = rows.nth(1);
@@ -103,11 +53,20 @@ test('visibility, solo, opacity and outlines change the picture', async ({ page 
   await expect(page.locator('#fill')).toHaveCSS('opacity', '0');
   await page.getByLabel('Outlines').uncheck();
   await expect(page.locator('#outlines')).toBeHidden();
-});
 
-test('the second frame is shown by a switch and while a key is held', async ({ page }) => {
-  await open(page);
-  const first = await decodeImage((await sample('first')).buffer);
+  // The labels PNG holds the labels.
+  await openExport(page);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Labels PNG' }).click()]);
+  expect(download.suggestedFilename()).toBe('labels.png');
+  const file = await readFile(await download.path());
+  expect([...file.subarray(24, 26)]).toEqual([8, 3]); // 8 bits, indexed
+  const { data } = await decodeImage(file);
+  const labelByColour = new Map(davisPalette().map((colour, label) => [colour.join(), label]));
+  const labels = Array.from({ length: data.length / 4 }, (_, i) => labelByColour.get(data.subarray(4 * i, 4 * i + 3).join()) ?? -1);
+  expect(differences(labels, (await segmentedInNode(await sample('first'), await sample('second'))).labels)).toBe(0);
+  await page.keyboard.press('Escape');
+
+  // The second frame is shown by a switch and while a key is held.
   const second = await decodeImage((await sample('second')).buffer);
   const shows = async (frame: typeof first): Promise<number> => differences((await pixelsOf(page, '#frame')).data, frame.data);
 
@@ -122,4 +81,36 @@ test('the second frame is shown by a switch and while a key is held', async ({ p
   await page.getByRole('button', { name: 'Stabilise on Background' }).click();
   await expect(page.locator('#caption')).toHaveText(/frame, stabilised on Background$/);
   await expect(page.getByRole('button', { name: 'Blink' })).toHaveAttribute('aria-pressed', 'true');
+
+  // Swapping the frames segments them in the other order.
+  await page.locator('#swap').click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('second.png, 768 × 432');
+  await done(page);
+  const expected = await segmentedInNode(await sample('second'), await sample('first'));
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+});
+
+test('two uploaded files give the same masks as in Node', async ({ page }) => {
+  await openEmpty(page);
+  // Numbers in names are compared by value. The odd size catches a wrong row length.
+  const [second, first] = [await square('frame10.png', 161, 97, 3, 1), await square('frame9.png', 161, 97, 0, 0)];
+  await upload(page, [second, first]);
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('frame9.png, 161 × 97');
+  await done(page);
+  const expected = await segmentedInNode(first, second);
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
+});
+
+test('settings reach the package, and the latest request wins', async ({ page }) => {
+  await open(page);
+  await chooseMotions(page, 2);
+  await page.getByLabel('Best').check();
+  await done(page);
+  await openExport(page);
+  const [download] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Result JSON' }).click()]);
+  const report: unknown = JSON.parse(await readFile(await download.path(), 'utf8'));
+  expect(report).toMatchObject({ version: 1, width: 768, height: 432, settings: { motions: 2, quality: 'best', markUnknown: false } });
+  expect(report).not.toHaveProperty('labels');
+  const expected = await segmentedInNode(await sample('first'), await sample('second'), { motions: 2, quality: 'best' });
+  expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
 });

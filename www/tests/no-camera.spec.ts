@@ -2,14 +2,14 @@
 
 import config from '../playwright.config.js';
 import { video } from './video.js';
-import { done, expect, open, test, upload } from './support.js';
+import { done, expect, openEmpty, test, upload } from './support.js';
 
 const { launchOptions } = config.use!;
 test.use({ launchOptions: { ...launchOptions, args: launchOptions!.args!.filter((arg) => !arg.startsWith('--use-fake')) } });
 
 test('a clip stays open if there is no camera', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
-  await open(page);
+  await openEmpty(page);
   await upload(page, [await video(page, 4, 'webm', 'vp8')]);
   await expect(page.locator('#clip-name')).toHaveText('clip.webm, 4 frames, 192 × 128');
   await done(page);

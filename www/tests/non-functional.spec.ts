@@ -7,32 +7,47 @@ import { gzipSync } from 'node:zlib';
 
 import { type Page, test as unwatched } from '@playwright/test';
 
-import { square, axe, chooseMotions, clipFrames, done, expect, labelsOnCanvas, open, openExport, test, upload } from './support.js';
+import { PAIR, square, axe, chooseMotions, clipFrames, done, expect, labelsOnCanvas, open, openClip, openEmpty, openExport, test, upload } from './support.js';
 
 const DIST = fileURLToPath(new URL('../dist/', import.meta.url));
 
-for (const scheme of ['light', 'dark'] as const) {
-  test(`axe finds nothing serious, ${scheme}`, async ({ page }) => {
-    await page.emulateMedia({ colorScheme: scheme, reducedMotion: 'reduce' });
-    await open(page, 'groups');
-    await page.locator('.more summary').nth(1).click();
-    await page.keyboard.press('p');
-    expect(await axe(page)).toEqual([]);
-    await openExport(page);
-    await expect(page.getByRole('button', { name: 'Save project' })).toBeEnabled();
-    expect(await axe(page)).toEqual([]);
-    await page.keyboard.press('Escape');
-    await page.keyboard.press('?');
-    await expect(page.getByRole('dialog')).toBeVisible();
-    expect(await axe(page)).toEqual([]);
-    await page.keyboard.press('Escape');
-    await page.setViewportSize({ width: 360, height: 740 });
-    expect(await axe(page)).toEqual([]);
-  });
-}
+test('axe finds nothing serious, light and dark, and single-key shortcuts can be disabled', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
+  await open(page, 'groups');
+  const check = async (): Promise<void> => {
+    for (const colorScheme of ['light', 'dark'] as const) {
+      await page.emulateMedia({ colorScheme });
+      expect(await axe(page), colorScheme).toEqual([]);
+    }
+  };
+  await page.locator('.more summary').nth(1).click();
+  await page.keyboard.press('p');
+  await check();
+  await openExport(page);
+  await expect(page.getByRole('button', { name: 'Save project' })).toBeEnabled();
+  await check();
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('?');
+  await expect(page.getByRole('dialog')).toBeVisible();
+  await check();
+  await page.keyboard.press('Escape');
+  await page.setViewportSize({ width: 360, height: 740 });
+  await check();
+
+  // ? lists the shortcuts, which can be disabled.
+  await page.keyboard.press('?');
+  const dialog = page.getByRole('dialog', { name: 'Keyboard shortcuts' });
+  await expect(dialog).toContainText('Alternate between the frames');
+  await dialog.getByLabel('Enable single-key shortcuts').uncheck();
+  await dialog.getByRole('button', { name: 'Close' }).click();
+  await page.keyboard.press('s');
+  await expect(page.locator('#look [value=first]')).toBeChecked();
+  await page.keyboard.press('?');
+  await expect(dialog).toBeHidden();
+});
 
 test('the content security policy has no exceptions', async ({ page }) => {
-  const response = await page.goto('./');
+  const response = await page.goto(`${PAIR}&quality=fast`);
   const meta = await page.locator('meta[http-equiv=Content-Security-Policy]').getAttribute('content');
   expect(response?.headers()['content-security-policy']).toBe(meta);
   expect(meta).not.toContain('unsafe-inline');
@@ -44,7 +59,7 @@ test('the content security policy has no exceptions', async ({ page }) => {
 });
 
 unwatched('inline scripts are blocked', async ({ page }) => {
-  await page.goto('./');
+  await page.goto(PAIR);
   const refused = await page.evaluate(
     () =>
       new Promise<string>((resolve) => {
@@ -58,15 +73,13 @@ unwatched('inline scripts are blocked', async ({ page }) => {
   expect(await page.evaluate(() => 'reached' in window)).toBe(false);
 });
 
-test('the page works without cross-origin isolation', async ({ page }) => {
-  await open(page);
-  expect(await page.evaluate(() => crossOriginIsolated)).toBe(false);
-});
-
-test('the scripts stay within their size budgets', async ({ page }) => {
+test('the page loads what it needs: scripts within their size budgets, none for videos, and the core module', async ({ page }) => {
   const asked = new Set<string>();
   page.on('request', (request) => asked.add(request.url().replace(/^.*\//, '')));
   await open(page);
+  expect(await page.evaluate(() => crossOriginIsolated)).toBe(false); // it needs no isolation
+  expect([...asked].filter((name) => /^(exact|approximate|reader|video-file|browser)-/.test(name))).toEqual([]);
+  expect([...asked].flatMap((name) => /^([a-z_]+_bg).*\.wasm$/.exec(name)?.[1] ?? [])).toEqual(['veronese_bg']);
   // Tests unfold what a visitor does not.
   for (const name of asked) if (name.startsWith('inspect-')) asked.delete(name);
   // The host page has scripts of its own. Mediabunny is `reader` and, with what writes videos, `video-file`.
@@ -105,36 +118,6 @@ test('a first visit loads at most 500 KB, compressed, until it shows masks', asy
   expect(total).toBeLessThanOrEqual(500 * 1024);
   // Other workers may still be loading their scripts.
   await page.unrouteAll({ behavior: 'ignoreErrors' });
-});
-
-test('scripts for videos are loaded only when a video is opened', async ({ page }) => {
-  const asked: string[] = [];
-  page.on('request', (request) => asked.push(request.url()));
-  await open(page);
-  expect(asked.filter((url) => /exact-|approximate-|reader-|video-file-|browser-/.test(url))).toEqual([]);
-});
-
-test('? lists the shortcuts, and single-key shortcuts can be disabled', async ({ page }) => {
-  await open(page);
-  await page.keyboard.press('?');
-  const dialog = page.getByRole('dialog', { name: 'Keyboard shortcuts' });
-  await expect(dialog).toContainText('Alternate between the frames');
-  await dialog.getByLabel('Enable single-key shortcuts').uncheck();
-  await dialog.getByRole('button', { name: 'Close' }).click();
-  await page.keyboard.press('s');
-  await expect(page.locator('#look [value=first]')).toBeChecked();
-  await page.keyboard.press('?');
-  await expect(dialog).toBeHidden();
-});
-
-test('the page loads only the core module', async ({ page }) => {
-  const modules: string[] = [];
-  page.on('request', (request) => {
-    const name = /([a-z_]+_bg)[^/]*\.wasm$/.exec(request.url())?.[1];
-    if (name !== undefined) modules.push(name);
-  });
-  await open(page);
-  expect([...new Set(modules)]).toEqual(['veronese_bg']);
 });
 
 /** Watches the tasks of the main thread. Returns a function that gives the longest since its last call, milliseconds. */
@@ -184,10 +167,7 @@ test('the page stays responsive while it works', async ({ page }) => {
 
 test('the page stays responsive while a clip is stepped through and segmented', async ({ page }) => {
   const longest = await watchTasks(page);
-  await open(page, 'groups');
-  await upload(page, await clipFrames(8, 640, 400));
-  await expect(page.locator('#clip-name')).toContainText('8 frames');
-  await done(page);
+  await openClip(page, await clipFrames(5, 640, 400));
   const step = async (): Promise<void> => {
     await page.getByRole('button', { name: 'Step both forward' }).click();
     await done(page);
@@ -205,7 +185,7 @@ test('the page stays responsive while a clip is stepped through and segmented', 
 
 test('memory does not grow over 200 segmentations', async ({ page }) => {
   test.setTimeout(180_000);
-  await open(page);
+  await openEmpty(page);
   await upload(page, [await square('first.png', 200, 150, 0, 0), await square('second.png', 200, 150, 4, 2)]);
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('second.png');
   await done(page);

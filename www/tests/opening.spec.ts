@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, done, expect, open, square, test, upload } from './support.js';
+import { PAIR, type Upload, done, expect, open, openEmpty, square, test, upload, withSamples } from './support.js';
 
 const BROKEN: Upload = { name: 'broken.png', mimeType: 'image/png', buffer: Buffer.from('no image at all') };
 
@@ -28,24 +28,14 @@ test('the worker starts and warms up while the first frames are on their way', a
     await route.continue();
   });
   const worker = page.waitForEvent('worker');
-  await page.goto('./');
+  await page.goto(`${PAIR}&quality=fast`);
   await worker;
   release();
   await done(page);
 });
 
-test('one image instead of a clip hides the timeline', async ({ page }) => {
-  await open(page);
-  await openClip(page, 4);
-  await upload(page, [await square('alone.png', 96, 64, 0, 0)]);
-  await expect(page.locator('#status')).toHaveText('Now add the second frame.');
-  await expect(page.locator('#timeline')).toBeHidden();
-  await page.keyboard.press('.'); // there is no clip to step through
-  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('alone.png, 96 × 64');
-});
-
 test('a replaced frame is not listed as a frame of the clip', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await openClip(page, 8);
   await page.getByLabel('Replace the second frame').setInputFiles(await square('other.png', 192, 128, 0, 0));
   await expect(page.locator('[data-slot=second] .slot-name')).toHaveText('other.png, 192 × 128');
@@ -75,7 +65,7 @@ test('a replaced frame is not listed as a frame of the clip', async ({ page }) =
 });
 
 test('an unreadable frame leaves the timeline where it was', async ({ page }) => {
-  await open(page);
+  await openEmpty(page);
   await upload(page, [await square('f0.png', 96, 64, 0, 0), await square('f1.png', 96, 64, 2, 0), { ...BROKEN, name: 'f2.png' }]);
   await expect(page.locator('#clip-name')).toHaveText('f0-f2.png, 3 frames, 96 × 64');
   await done(page);
@@ -86,19 +76,9 @@ test('an unreadable frame leaves the timeline where it was', async ({ page }) =>
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
 });
 
-test('an unreadable sample leaves the clip open', async ({ page, context }) => {
-  await open(page);
-  await openClip(page, 4);
-  await context.route('**/samples/parallax/second.png', (route) => route.fulfill({ status: 200, body: 'nothing' }));
-  await page.getByRole('button', { name: 'Parallax' }).click();
-  await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
-  await expect(page.locator('#timeline')).toBeVisible();
-  await expectToStep(page, 1);
-});
-
-test('a broken file does not switch the camera off', async ({ page, context }) => {
+test('a broken file does not switch the camera off, and the camera replaces a clip once it is on', async ({ page, context }) => {
   await context.grantPermissions(['camera']);
-  await open(page);
+  await openEmpty(page);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live: /, { timeout: 20_000 });
   await upload(page, [BROKEN]);
@@ -110,11 +90,8 @@ test('a broken file does not switch the camera off', async ({ page, context }) =
   await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('a.png, 96 × 64');
   await done(page);
   await expect(page.getByRole('button', { name: 'Camera', exact: true })).toBeVisible();
-});
 
-test('the camera replaces a clip once it is on', async ({ page, context }) => {
-  await context.grantPermissions(['camera']);
-  await open(page);
+  // The camera replaces a clip once it is on.
   await openClip(page, 4);
   await page.getByRole('button', { name: 'Camera' }).click();
   await expect(page.locator('#status')).toHaveText(/^Live: /, { timeout: 20_000 });
@@ -145,8 +122,8 @@ test('a broken file does not lose strokes that are being applied', async ({ page
   await expect(page.locator('#strokes .stroke:not(.now)')).toHaveCount(1);
 });
 
-test('cancelling a step returns the timeline to the frames on screen', async ({ page }) => {
-  await open(page);
+test('a step can be cancelled, and a stroke drawn meanwhile; a sample that cannot be read leaves the clip open, one image does not', async ({ page, context }) => {
+  await openEmpty(page);
   await openClip(page, 8);
   // In one task, so that no frame can be loaded between the two keys.
   await page.evaluate(() => {
@@ -157,11 +134,11 @@ test('cancelling a step returns the timeline to the frames on screen', async ({ 
   await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done');
   await expectToStep(page, 1);
   await expect(page.locator('#clip-first-at')).toHaveText('#1, 0.033 s');
-});
+  await page.getByRole('button', { name: 'Step both back' }).click();
+  await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#0,');
+  await done(page);
 
-test('a stroke drawn during a step belongs to the frames on screen', async ({ page }) => {
-  await open(page);
-  await openClip(page, 8);
+  // A stroke drawn during a step belongs to the frames on screen.
   await page.locator('#tools [value=brush]').check();
   // The stroke begins before the step and ends before the new frames are loaded.
   await page.locator('.layers').evaluate((layers) => {
@@ -185,4 +162,19 @@ test('a stroke drawn during a step belongs to the frames on screen', async ({ pa
   await expect(page.locator('[data-slot=first] .slot-name')).toContainText('#0,');
   await done(page);
   await expect(strokes).toHaveCount(1);
+
+  // An unreadable sample leaves the clip open.
+  await withSamples(page);
+  await context.route('**/samples/parallax/second.png', (route) => route.fulfill({ status: 200, body: 'nothing' }));
+  await page.getByRole('button', { name: 'Parallax' }).click();
+  await expect(page.locator('#notice-code')).toHaveText('unreadable-image');
+  await expect(page.locator('#timeline')).toBeVisible();
+  await expectToStep(page, 1);
+
+  // One image instead of a clip hides the timeline.
+  await upload(page, [await square('alone.png', 96, 64, 0, 0)]);
+  await expect(page.locator('#status')).toHaveText('Now add the second frame.');
+  await expect(page.locator('#timeline')).toBeHidden();
+  await page.keyboard.press('.'); // there is no clip to step through
+  await expect(page.locator('[data-slot=first] .slot-name')).toHaveText('alone.png, 96 × 64');
 });

@@ -6,26 +6,10 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipFrames, clipInNode, differences, done, expect, goTo, labelsOnCanvas, open, openAdvanced, openExport, openSampleClip, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipFrames, clipInNode, clipPhase, differences, done, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, segmentClip, square, test, upload, withoutStorage } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
-}
-
-async function phase(page: Page, name: string): Promise<void> {
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', name, { timeout: 45_000 });
-}
-
-async function openClip(page: Page, files: Upload[], count = files.length): Promise<void> {
-  await open(page, 'groups');
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText(`${count} frames`);
-  await done(page);
-}
-
-async function segmentClip(page: Page): Promise<void> {
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await phase(page, 'done');
 }
 
 /** Whether the page can be left without a question. */
@@ -174,25 +158,23 @@ test('the settings are those of the project', async ({ page }) => {
 });
 
 test('a run that was cancelled continues after a reload', async ({ page }) => {
-  await open(page, 'groups');
+  await openEmpty(page, 'groups');
   const clip = await video(page, 12, 'webm', 'vp8');
-  await upload(page, [clip]);
-  await expect(page.locator('#clip-name')).toContainText('12 frames');
-  await done(page);
+  await openClip(page, [clip], { count: 12 });
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
   await page.locator('#clip-cancel').click();
-  await phase(page, 'cancelled');
+  await clipPhase(page, 'cancelled');
   const told = (await page.locator('#clip-status').textContent())!;
   await kept(page);
   await page.reload();
-  await openClip(page, [clip], 12);
-  await phase(page, 'cancelled');
+  await openClip(page, [clip], { count: 12 });
+  await clipPhase(page, 'cancelled');
   await expect(page.locator('#clip-status')).toHaveText(told);
   const before = Number(/(\d+) of 12/.exec(told)?.[1]);
   await page.getByRole('button', { name: 'Continue' }).click();
   expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(before);
-  await phase(page, 'done');
+  await clipPhase(page, 'done');
 });
 
 test('a project is saved as a file and opened in another browser, with its frames or before them', async ({ page, browser, baseURL }) => {
@@ -205,7 +187,7 @@ test('a project is saved as a file and opened in another browser, with its frame
 
   const elsewhere = await browser.newContext({ baseURL: baseURL! });
   const other = await elsewhere.newPage();
-  await open(other, 'groups');
+  await openEmpty(other, 'groups');
   await upload(other, [project, ...files]);
   await expect(other.locator('#clip-name')).toContainText('6 frames');
   await isContinued(other, files);
@@ -224,7 +206,7 @@ test('a project is saved as a file and opened in another browser, with its frame
   await upload(page, [project]);
   await isContinued(page, files);
   await page.reload();
-  await open(page, 'groups');
+  await openEmpty(page, 'groups');
   await upload(page, [project]);
   await expect(page.locator('#notice')).toContainText('The project of “f00-f05.png” is open. Now open its frames');
   await upload(page, files);
@@ -279,7 +261,7 @@ test('a project of an older version whose segmentation is cancelled keeps its ma
   await upload(page, [old]);
   await expect(page.locator('#clip-detail')).toContainText('of 24 frames');
   await page.locator('#clip-cancel').click();
-  await phase(page, 'cancelled');
+  await clipPhase(page, 'cancelled');
   expect(differences(await numbersOnCanvas(page), masks)).toBe(0);
   await page.locator('#objects > li').nth(1).locator('summary').click();
   await expect(page.getByRole('button', { name: 'Delete Box' })).toBeDisabled();
@@ -291,7 +273,7 @@ test('a project of an older version whose segmentation is cancelled keeps its ma
 
 test('strokes and names of a pair are there after a reload', async ({ page }) => {
   const pair = [await square('one.png', 200, 140, 0, 0), await square('two.png', 200, 140, 4, 1)];
-  await open(page, 'groups');
+  await openEmpty(page, 'groups');
   await upload(page, pair);
   await done(page);
   await page.locator('#motions .motion-name').nth(1).fill('Square');
@@ -306,7 +288,7 @@ test('strokes and names of a pair are there after a reload', async ({ page }) =>
   const painted = await labelsOnCanvas(page);
   await kept(page);
   await page.reload();
-  await open(page, 'groups');
+  await openEmpty(page, 'groups');
   await upload(page, pair);
   await expect(page.locator('#motions .motion-name').nth(1)).toHaveValue('Square');
   await done(page);
@@ -438,14 +420,6 @@ test('damaged and foreign projects are refused with a reason, and change nothing
     await page.locator('#notice-close').click();
   }
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
-});
-
-test('a first visit loads nothing of projects', async ({ page }) => {
-  const asked: string[] = [];
-  page.on('request', (request) => asked.push(request.url()));
-  await openSampleClip(page);
-  await page.waitForTimeout(1000); // what is kept is written soon
-  expect(asked.filter((url) => /shelf-|projects-/.test(url))).toEqual([]);
 });
 
 test('a project of the first version is opened, and takes corrections', async ({ page }) => {

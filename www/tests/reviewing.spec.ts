@@ -1,6 +1,6 @@
-//! The review of a clip: frames are accepted one by one, the least certain first, or all at once.
+//! The review of a clip: frames are accepted one by one, the least certain first.
 
-import { axe, clipDone, clipFrames, done, drag, expect, goTo, openExport, openSegmented, test } from './support.js';
+import { axe, clipDone, clipFrames, done, drag, expect, goTo, openSegmented, test } from './support.js';
 
 test('frames are accepted, the least certain next, and a correction takes back what it changes', async ({ page }) => {
   await openSegmented(page, await clipFrames(8));
@@ -33,16 +33,4 @@ test('frames are accepted, the least certain next, and a correction takes back w
   await expect(reviewed).toHaveText('8 of 8 accepted');
   await page.keyboard.press('Control+z'); // the last that was accepted
   await expect(reviewed).toHaveText('7 of 8 accepted');
-});
-
-test('all frames are accepted at once, and are after a reload', async ({ page }) => {
-  await page.goto('./#quality=fast');
-  await clipDone(page);
-  await page.getByRole('button', { name: 'Accept all' }).click();
-  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
-  await openExport(page);
-  await expect(page.locator('#project-status')).toHaveText(/^Your work is kept in this browser/);
-  await page.reload();
-  await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 51 frames.');
-  await expect(page.locator('#reviewed')).toHaveText('51 of 51 accepted');
 });

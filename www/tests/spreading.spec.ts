@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { axe, clipDone, clipFrames, clipInNode, differences, drag, expect, goTo, labelsOnCanvas, open, openSegmented, test, upload } from './support.js';
+import { axe, clipDone, clipFrames, clipInNode, differences, drag, expect, goTo, labelsOnCanvas, openEmpty, openSegmented, test, upload } from './support.js';
 
 /** The masks of a frame, shown. */
 async function masksOf(page: Page, index: number): Promise<Uint8Array> {
@@ -206,7 +206,7 @@ test('a lock is set with the keyboard, undone, and kept', async ({ page }) => {
   await expect(lock).toHaveAttribute('aria-pressed', 'true');
   await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
   await page.reload();
-  await open(page, 'groups');
+  await openEmpty(page, 'groups');
   await upload(page, files);
   await expect(page.locator('#clip-status')).toHaveText('Continued: 2 objects in 5 frames.');
   await expect(lock).toHaveAttribute('aria-pressed', 'true');

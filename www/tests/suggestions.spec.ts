@@ -3,7 +3,7 @@
 import { type Page } from '@playwright/test';
 
 import { encodeColourPng } from 'veronese/codecs';
-import { PAIR, type Upload, axe, differences, done, expect, labelsOnCanvas, mergeWith, screen, segmentedInNode, test, upload } from './support.js';
+import { type Upload, axe, differences, done, expect, labelsOnCanvas, mergeWith, openEmpty, screen, segmentedInNode, test, upload } from './support.js';
 
 const [WIDTH, HEIGHT] = [320, 240];
 
@@ -24,14 +24,18 @@ async function parts(name: string, t: number): Promise<Upload> {
 
 /** Opens the page with the thing of two parts. */
 async function openParts(page: Page): Promise<void> {
-  await page.goto(`${PAIR}&quality=fast`);
-  await done(page);
+  await openEmpty(page, 'groups');
   await upload(page, [await parts('first.png', 0), await parts('second.png', 1)]);
   await expect(page.locator('[data-slot=second] .slot-name')).toContainText('second.png');
   await done(page);
 }
 
-test('two parts of a thing are joined by a suggestion, with undo', async ({ page }) => {
+/** Where the list of masks ends: it stays where it is when a suggestion is dismissed. */
+async function placeOfList(page: Page): Promise<number> {
+  return page.evaluate(() => document.querySelector('#motions > :last-child')!.getBoundingClientRect().bottom + scrollY);
+}
+
+test('two parts of a thing are joined by a suggestion, with undo; it uses the names of masks, and is about groups', async ({ page }) => {
   const { motions, junctions } = await segmentedInNode(await parts('first.png', 0), await parts('second.png', 1));
   expect(motions.map(({ group }) => group)).toEqual([0, 1, 2]);
   expect(junctions.find(({ labels }) => labels.join() === '1,2')!.likelihood).toBeGreaterThan(0.35);
@@ -50,6 +54,16 @@ test('two parts of a thing are joined by a suggestion, with undo', async ({ page
   await expect(suggestions).toHaveCount(1);
   await page.locator('#redo').click();
   await expect(suggestions).toHaveCount(0);
+
+  await page.locator('#undo').click();
+  const name = page.locator('#motions > li').nth(1).locator('.motion-name');
+  await name.fill('Robot');
+  await name.press('Enter');
+  await expect(suggestions).toHaveText([/^Object 2 may belong to Robot/]);
+  await page.locator('#look [value=motions]').check({ force: true });
+  await expect(suggestions).toHaveCount(0);
+  await page.locator('#look [value=groups]').check({ force: true });
+  await expect(suggestions).toHaveCount(1);
 });
 
 test('a suggestion is answered with the keyboard, and read out', async ({ page }) => {
@@ -59,8 +73,10 @@ test('a suggestion is answered with the keyboard, and read out', async ({ page }
   await suggestions.getByRole('button', { name: 'Join' }).focus();
   await page.keyboard.press('Tab');
   await expect(suggestions.getByRole('button', { name: 'Dismiss: Object 2 may belong to Object 1' })).toBeFocused();
+  const before = await placeOfList(page);
   await page.keyboard.press('Enter');
   await expect(suggestions.locator('li')).toHaveCount(0);
+  expect(await placeOfList(page)).toBe(before);
   await expect(page.locator('#motions > li')).toHaveCount(3);
   // The focus is not lost with the button.
   await expect(page.locator('#motions-title')).toBeFocused();
@@ -73,36 +89,22 @@ test('a suggestion is answered with the keyboard, and read out', async ({ page }
   await expect(suggestions.locator('li')).toHaveCount(0);
 });
 
-test('suggestions use the names that masks were given, and are about groups', async ({ page }) => {
+test('a suggestion is a line that axe finds nothing wrong with, on all screens, light and dark', async ({ page }) => {
+  await page.emulateMedia({ reducedMotion: 'reduce' });
   await openParts(page);
-  const suggestions = page.locator('#suggestions > li');
-  const name = page.locator('#motions > li').nth(1).locator('.motion-name');
-  await name.fill('Robot');
-  await name.press('Enter');
-  await expect(suggestions).toHaveText([/^Object 2 may belong to Robot/]);
-  await page.locator('#look [value=motions]').check({ force: true });
-  await expect(suggestions).toHaveCount(0);
-  await page.locator('#look [value=groups]').check({ force: true });
-  await expect(suggestions).toHaveCount(1);
-});
-
-for (const colorScheme of ['light', 'dark'] as const) {
+  const suggestion = page.locator('#suggestions > li').first();
   for (const [width, height] of [[1280, 860], [390, 844]] as const) {
-    test(`a suggestion is a line that axe finds nothing wrong with, ${width}, ${colorScheme}`, async ({ page }) => {
-      await page.emulateMedia({ colorScheme, reducedMotion: 'reduce' });
-      await page.setViewportSize({ width, height });
-      await openParts(page);
-      const [suggestion] = await page.locator('#suggestions > li').all();
-      await suggestion!.scrollIntoViewIfNeeded();
+    await page.setViewportSize({ width, height });
+    for (const colorScheme of ['light', 'dark'] as const) {
+      await page.emulateMedia({ colorScheme });
+      await suggestion.scrollIntoViewIfNeeded();
       await page.screenshot({ path: screen(`suggestion-${width}-${colorScheme}`) });
       expect(await axe(page)).toEqual([]);
-      expect((await suggestion!.boundingBox())!.height).toBeLessThan(70);
+      expect((await suggestion.boundingBox())!.height).toBeLessThan(70);
       expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBeLessThanOrEqual(width);
-      // The lists above stay where they are when it is dismissed.
-      const place = async (): Promise<number> => page.evaluate(() => document.querySelector('#motions > :last-child')!.getBoundingClientRect().bottom + scrollY);
-      const before = await place();
-      await suggestion!.getByRole('button', { name: 'Dismiss' }).click();
-      expect(await place()).toBe(before);
-    });
+    }
   }
-}
+  const before = await placeOfList(page);
+  await suggestion.getByRole('button', { name: 'Dismiss' }).click();
+  expect(await placeOfList(page)).toBe(before);
+});

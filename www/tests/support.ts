@@ -1,11 +1,12 @@
 //! Shared by the tests: a page whose errors fail the test, files to upload, masks read back from the canvas.
 
+import { createHash } from 'node:crypto';
 import { readFileSync } from 'node:fs';
 import { readFile, readdir } from 'node:fs/promises';
 import { fileURLToPath } from 'node:url';
 
 import { type Locator, type Page, test as base, expect } from '@playwright/test';
-import { type ClipOptions, type Segmentation, type SegmentOptions, segmentClip, segmentPair } from 'veronese';
+import { type ClipOptions, type Segmentation, type SegmentOptions, segmentClip as segmentFrames, segmentPair } from 'veronese';
 import { decodeImage, encodeColourPng } from 'veronese/codecs';
 
 import { PALETTE, UNKNOWN_COLOUR } from '../src/drawing/palette.js';
@@ -62,14 +63,37 @@ export async function open(page: Page, kind: 'motions' | 'groups' = 'motions'): 
   await done(page);
 }
 
-/** Opens frames as a clip and segments it. */
-export async function openSegmented(page: Page, files: Upload[]): Promise<void> {
-  await open(page, 'groups');
+/** Opens the page without frames, for tests that bring their own: those of samples never arrive. */
+export async function openEmpty(page: Page, kind: 'motions' | 'groups' = 'motions', quality: 'fast' | 'best' = 'fast'): Promise<void> {
+  await page.route(FRAMES_OF_SAMPLES, () => undefined);
+  await page.goto(`${PAIR}&quality=${quality}&masks=${kind}`);
+}
+
+const FRAMES_OF_SAMPLES = /\/samples\/.*\/(first|second|\d\d)\.\w+$/;
+
+/** After {@link openEmpty}: samples can be opened again. */
+export async function withSamples(page: Page): Promise<void> {
+  await page.unroute(FRAMES_OF_SAMPLES);
+}
+
+/** Opens frames, or a video of `count` frames, as a clip. */
+export async function openClip(page: Page, files: Upload[], { count = files.length, kind = 'groups' }: { count?: number; kind?: 'motions' | 'groups' } = {}): Promise<void> {
+  await openEmpty(page, kind);
   await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
+  await expect(page.locator('#clip-name')).toContainText(`${count} frames`);
   await done(page);
+}
+
+/** Segments the open clip. */
+export async function segmentClip(page: Page): Promise<void> {
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await clipDone(page);
+}
+
+/** Opens frames, or a video of `count` frames, as a clip and segments it. */
+export async function openSegmented(page: Page, files: Upload[], count = files.length): Promise<void> {
+  await openClip(page, files, { count });
+  await segmentClip(page);
 }
 
 /** Goes to a frame of the clip by the track of its frames. */
@@ -95,11 +119,48 @@ export async function drag(page: Page, from: Place, to: Place): Promise<void> {
   await page.mouse.up();
 }
 
+/** A function whose results are kept, for all tests of a process, by what it is given. */
+function once<F extends (...given: never[]) => unknown>(make: F, keyOf: (...given: Parameters<F>) => string = (...given) => given.join()): F {
+  const made = new Map<string, unknown>();
+  return ((...given: Parameters<F>) => {
+    const key = keyOf(...given);
+    if (!made.has(key)) made.set(key, make(...given));
+    return made.get(key);
+  }) as F;
+}
+
 /** The frames of the clip that opens the page. */
-export async function sampleClip(): Promise<Upload[]> {
+export const sampleClip = once(async (): Promise<Upload[]> => {
   const folder = new URL('../public/samples/passing-cars/frames/', import.meta.url);
   const names = (await readdir(folder)).sort();
   return Promise.all(names.map(async (name) => ({ name, mimeType: 'image/webp', buffer: await readFile(new URL(name, folder)) })));
+});
+
+/** The same clip, a quarter as wide and as high. */
+export const smallSampleClip = once(async (): Promise<Upload[]> => {
+  const by = 4;
+  const frames: Upload[] = [];
+  for (const { name, buffer } of await sampleClip()) {
+    const { width, height, data } = await decodeImage(buffer);
+    const [w, h] = [width / by, height / by];
+    const means = Uint8Array.from({ length: w * h * 3 }, (_, i) => {
+      const [x, y, c] = [Math.floor(i / 3) % w, Math.floor(i / 3 / w), i % 3];
+      let sum = 0;
+      for (let k = 0; k < by * by; k++) sum += data[4 * ((by * y + Math.floor(k / by)) * width + by * x + (k % by)) + c]!;
+      return sum / (by * by);
+    });
+    frames.push({ name, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(w, h, means)) });
+  }
+  return frames;
+});
+
+/** Gives the page the small one, for tests that are not about the masks of the other. */
+export async function withSmallSampleClip(page: Page): Promise<void> {
+  const frames = await smallSampleClip();
+  await page.context().route('**/samples/passing-cars/frames/*', (route) => {
+    const { buffer, mimeType } = frames.find(({ name }) => route.request().url().endsWith(name))!;
+    return route.fulfill({ contentType: mimeType, body: buffer });
+  });
 }
 
 /** Opens the page as a first visitor does, with the sample clip, and waits until it is segmented. */
@@ -110,7 +171,34 @@ export async function openSampleClip(page: Page, settings = 'quality=fast'): Pro
 
 /** Waits until the clip is segmented. */
 export async function clipDone(page: Page): Promise<void> {
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'done', { timeout: 120_000 });
+  await clipPhase(page, 'done', 120_000);
+}
+
+/** Waits until the run on the clip has this phase. */
+export async function clipPhase(page: Page, name: string, timeout = 45_000): Promise<void> {
+  await phase(page, '#clip-run', name, timeout);
+}
+
+/** Waits until an element has this phase: the page tells at once, where `expect` asks twice a second. */
+async function phase(page: Page, selector: string, name: string, timeout: number): Promise<void> {
+  const reached = page.evaluate(
+    ([selector, name, timeout]) =>
+      new Promise<void>((resolve) => {
+        const element = document.querySelector<HTMLElement>(selector)!;
+        const observer = new MutationObserver(() => setTimeout(look));
+        const look = (): void => {
+          if (element.dataset.phase !== name) return;
+          observer.disconnect();
+          resolve();
+        };
+        observer.observe(element, { attributes: true, attributeFilter: ['data-phase'] });
+        look();
+        setTimeout(resolve, timeout);
+      }),
+    [selector, name, timeout] as const,
+  );
+  await reached.catch(() => undefined); // another page has taken its place
+  await expect(page.locator(selector)).toHaveAttribute('data-phase', name, { timeout });
 }
 
 /** Makes the browser one that keeps no projects. */
@@ -123,7 +211,7 @@ export async function withoutStorage(page: Page): Promise<void> {
 
 /** Waits for the last request. */
 export async function done(page: Page): Promise<void> {
-  await expect(page.locator('#run')).toHaveAttribute('data-phase', 'done', { timeout: 45_000 });
+  await phase(page, '#run', 'done', 45_000);
 }
 
 /** Chooses a number of motions for this pair, or `Automatic`. */
@@ -181,16 +269,23 @@ function texture(x: number, y: number, pitch: number): [number, number, number] 
 }
 
 /** The segmentation of two files in Node. */
-export async function segmentedInNode(first: Upload, second: Upload, options: SegmentOptions = FAST): Promise<Segmentation> {
-  return segmentPair(await decodeImage(first.buffer), await decodeImage(second.buffer), options);
-}
+export const segmentedInNode = once(
+  async (first: Upload, second: Upload, options: SegmentOptions = FAST): Promise<Segmentation> => segmentPair(await decodeImage(first.buffer), await decodeImage(second.buffer), options),
+  (first, second, options) => keyOf([first, second], options),
+);
 
 /** The labels of each frame of a clip, found in Node. */
-export async function clipInNode(files: readonly Upload[], options: ClipOptions = { quality: 'fast' }): Promise<Uint8Array[]> {
+export const clipInNode = once(async (files: readonly Upload[], options: ClipOptions = { quality: 'fast' }): Promise<Uint8Array[]> => {
   const labels: Uint8Array[] = [];
   const frames = { length: files.length, read: async (index: number) => decodeImage(files[index]!.buffer) };
-  for await (const frame of segmentClip(frames, options)) labels.push(frame.labels);
+  for await (const frame of segmentFrames(frames, options)) labels.push(frame.labels);
   return labels;
+}, keyOf);
+
+function keyOf(files: readonly Upload[], options: unknown): string {
+  const hash = createHash('sha256');
+  for (const { buffer } of files) hash.update(buffer);
+  return hash.digest('hex') + JSON.stringify(options);
 }
 
 /** Drops files on the page. */
@@ -226,11 +321,20 @@ export async function pixelsOf(page: Page, selector: string): Promise<CanvasPixe
     copy?.drawImage(canvas, 0, 0);
     const image = copy?.getImageData(0, 0, width, height);
     if (!image) throw new Error('no pixels');
-    let binary = '';
-    for (let i = 0; i < image.data.length; i += 0x8000) binary += String.fromCharCode(...image.data.subarray(i, i + 0x8000));
-    return { width, height, base64: btoa(binary) };
+    return { width, height, base64: (new Uint8Array(image.data.buffer) as Uint8Array & { toBase64(): string }).toBase64() };
   });
   return { width, height, data: new Uint8Array(Buffer.from(base64, 'base64')) };
+}
+
+/** The RGBA bytes of an `<img>`. */
+export async function pixelsOfPicture(picture: Locator): Promise<Uint8Array> {
+  const base64 = await picture.evaluate(async (image: HTMLImageElement) => {
+    await image.decode();
+    const context = new OffscreenCanvas(image.naturalWidth, image.naturalHeight).getContext('2d')!;
+    context.drawImage(image, 0, 0);
+    return (new Uint8Array(context.getImageData(0, 0, image.naturalWidth, image.naturalHeight).data.buffer) as Uint8Array & { toBase64(): string }).toBase64();
+  });
+  return new Uint8Array(Buffer.from(base64, 'base64'));
 }
 
 /** The number of each pixel's mask, read back from its colour; 0 where nothing is painted. */
@@ -240,16 +344,18 @@ export async function labelsOnCanvas(page: Page): Promise<Uint8Array> {
 
 /** The numbers of masks, of the RGBA bytes of their canvas. */
 export function labelsOfColours(data: Uint8Array): Uint8Array {
-  const labelByColour = new Map(PALETTE.map((colour, label): [string, number] => [colour.join(), label]).slice(1));
-  labelByColour.set(UNKNOWN_COLOUR.join(), 255);
-  return Uint8Array.from({ length: data.length / 4 }, (_, i) => {
-    const [r, g, b, alpha] = data.subarray(4 * i, 4 * i + 4);
-    if (alpha === 0) return 0;
-    const label = labelByColour.get([r, g, b].join());
-    if (label === undefined || alpha !== 255) throw new Error(`pixel ${i} has the colour ${r},${g},${b},${alpha} of no label`);
+  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+  return Uint8Array.from({ length: data.length / 4 }, (_, p) => {
+    const colour = view.getUint32(4 * p);
+    if ((colour & 255) === 0) return 0;
+    const label = LABEL_BY_COLOUR.get(colour);
+    if (label === undefined) throw new Error(`pixel ${p} has the colour ${data.subarray(4 * p, 4 * p + 4).join()} of no label`);
     return label;
   });
 }
+
+/** By red, green, blue and 255 as one number. */
+const LABEL_BY_COLOUR = new Map([...PALETTE.entries(), [255, UNKNOWN_COLOUR] as const].slice(1).map(([label, [r, g, b]]) => [((r << 24) | (g << 16) | (b << 8) | 255) >>> 0, label]));
 
 /** The number of elements that differ: more readable in a failure than two large arrays. */
 export function differences(a: ArrayLike<number>, b: ArrayLike<number>): number {
@@ -269,20 +375,20 @@ export function screen(name: string): string {
  * the disc to the right and the square to the left.
  */
 export async function clipFrames(count: number, width = 200, height = 140): Promise<Upload[]> {
-  return Promise.all(
-    Array.from({ length: count }, async (_, k) => {
-      const pixels = new Uint8Array(width * height * 3);
-      for (let y = 0, i = 0; y < height; y++) {
-        for (let x = 0; x < width; x++, i += 3) {
-          const disc = Math.hypot(x - 0.2 * width - 4 * k, y - 0.36 * height - k) < 0.16 * height;
-          const box = Math.abs(x - 0.75 * width + 3 * k) < 0.12 * height && Math.abs(y - 0.7 * height) < 0.12 * height;
-          pixels.set(disc ? texture(x - 4 * k + 500, y - k + 300, 0.7) : box ? texture(x + 3 * k + 900, y + 100, 0.9) : texture(x, y, 0.45), i);
-        }
-      }
-      return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
-    }),
-  );
+  return Promise.all(Array.from({ length: count }, (_, k) => clipFrame(k, width, height)));
 }
+
+const clipFrame = once(async (k: number, width: number, height: number): Promise<Upload> => {
+  const pixels = new Uint8Array(width * height * 3);
+  for (let y = 0, i = 0; y < height; y++) {
+    for (let x = 0; x < width; x++, i += 3) {
+      const disc = Math.hypot(x - 0.2 * width - 4 * k, y - 0.36 * height - k) < 0.16 * height;
+      const box = Math.abs(x - 0.75 * width + 3 * k) < 0.12 * height && Math.abs(y - 0.7 * height) < 0.12 * height;
+      pixels.set(disc ? texture(x - 4 * k + 500, y - k + 300, 0.7) : box ? texture(x + 3 * k + 900, y + 100, 0.9) : texture(x, y, 0.45), i);
+    }
+  }
+  return { name: `f${String(k).padStart(2, '0')}.png`, mimeType: 'image/png', buffer: Buffer.from(await encodeColourPng(width, height, pixels)) };
+});
 
 /** The serious and critical violations that axe finds. */
 export async function axe(page: Page): Promise<string[]> {

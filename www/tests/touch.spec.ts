@@ -2,7 +2,7 @@
 
 import { type Page } from '@playwright/test';
 
-import { clipFrames, done, expect, open, openSegmented, test, upload } from './support.js';
+import { clipFrames, done, expect, open, openClip, openSegmented, test } from './support.js';
 
 test.use({ viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true });
 
@@ -60,7 +60,13 @@ async function placeOf(page: Page): Promise<(u: number, v: number) => Point> {
   return (u, v) => [box.x + u * box.width, box.y + v * box.height];
 }
 
-test('two fingers zoom and pan the picture, not the page', async ({ page }) => {
+/** Shows the whole picture again, at the top of the page. */
+async function whole(page: Page): Promise<void> {
+  await page.locator('#zoom-fit').tap();
+  await page.evaluate(() => window.scrollTo(0, 0));
+}
+
+test('fingers zoom, pan, scroll and draw, and strokes stay whoever ends them', async ({ page }) => {
   await open(page);
   const at = await placeOf(page);
   await fingers(page, [at(0.45, 0.5), at(0.2, 0.5)], [at(0.55, 0.5), at(0.8, 0.5)]);
@@ -76,6 +82,64 @@ test('two fingers zoom and pan the picture, not the page', async ({ page }) => {
   expect(moved.zoom).toBeCloseTo(large.zoom, 1);
   expect(moved.left - large.left).toBeCloseTo(24, -1);
   expect(moved.top - large.top).toBeCloseTo(16, -1);
+
+  await test.step('one finger scrolls the page, and pans the picture once it is enlarged', async () => {
+    await whole(page);
+    const at = await placeOf(page);
+    const [x, y] = at(0.5, 0.8);
+    await fingers(page, [[x, y], [x, y - 120]]);
+    const scrolled = await seen(page);
+    expect(scrolled.scrolled).toBeGreaterThan(60);
+    expect(scrolled.zoom).toBe(1);
+
+    await page.evaluate(() => window.scrollTo(0, 0));
+    for (let k = 0; k < 3; k++) await page.locator('#zoom-in').tap();
+    const large = await seen(page);
+    await fingers(page, [at(0.5, 0.5), at(0.4, 0.4)]);
+    const moved = await seen(page);
+    expect(moved.scrolled).toBe(0);
+    expect(moved.left).toBeLessThan(large.left - 20);
+    expect(moved.top).toBeLessThan(large.top - 10);
+  });
+
+  await test.step('with the brush one finger draws and two zoom', async () => {
+    await whole(page);
+    await page.getByLabel('Brush', { exact: true }).check({ force: true });
+    const at = await placeOf(page);
+    await fingers(page, [at(0.45, 0.5), at(0.2, 0.5)], [at(0.55, 0.5), at(0.8, 0.5)]);
+    const large = await seen(page);
+    expect(large.page).toBe(1);
+    expect(large.zoom).toBeGreaterThan(3);
+    await expect(page.locator('#undo')).toBeDisabled(); // no stroke was drawn
+
+    await fingers(page, [at(0.4, 0.4), at(0.6, 0.6)]);
+    await expect(page.locator('#undo')).toBeEnabled();
+    await done(page);
+    const after = await seen(page);
+    expect([after.zoom, after.left, after.scrolled]).toEqual([large.zoom, large.left, 0]);
+  });
+
+  await test.step('a stroke stays when a second finger or the browser ends it', async () => {
+    await page.locator('#undo').tap();
+    await whole(page);
+    const at = await placeOf(page);
+    const strokes = page.locator('#strokes g path');
+    const second = await press(page, [at(0.4, 0.4), at(0.6, 0.6)]);
+    await second('touchStart', at(0.8, 0.4));
+    await second('touchEnd');
+    await expect(strokes).toHaveCount(1);
+
+    const cancelled = await press(page, [at(0.4, 0.6), at(0.6, 0.4)]);
+    await cancelled('touchCancel');
+    await expect(strokes).toHaveCount(2);
+    await done(page);
+
+    // A finger that has not moved has drawn nothing.
+    const still = await press(page, [at(0.5, 0.5), at(0.5, 0.5)]);
+    await still('touchCancel');
+    await expect(page.locator('#strokes .now')).toHaveAttribute('d', '');
+    await expect(strokes).toHaveCount(2);
+  });
 });
 
 test('two fingers beside the picture do not zoom the page', async ({ page }) => {
@@ -92,69 +156,8 @@ test('two fingers beside the picture do not zoom the page', async ({ page }) => 
   expect((await seen(page)).page).toBe(1);
 });
 
-test('one finger scrolls the page, and pans the picture once it is enlarged', async ({ page }) => {
-  await open(page);
-  const at = await placeOf(page);
-  const [x, y] = at(0.5, 0.8);
-  await fingers(page, [[x, y], [x, y - 120]]);
-  const scrolled = await seen(page);
-  expect(scrolled.scrolled).toBeGreaterThan(60);
-  expect(scrolled.zoom).toBe(1);
-
-  await page.evaluate(() => window.scrollTo(0, 0));
-  for (let k = 0; k < 3; k++) await page.locator('#zoom-in').tap();
-  const large = await seen(page);
-  await fingers(page, [at(0.5, 0.5), at(0.4, 0.4)]);
-  const moved = await seen(page);
-  expect(moved.scrolled).toBe(0);
-  expect(moved.left).toBeLessThan(large.left - 20);
-  expect(moved.top).toBeLessThan(large.top - 10);
-});
-
-test('with the brush one finger draws and two zoom', async ({ page }) => {
-  await open(page);
-  await page.getByLabel('Brush', { exact: true }).check({ force: true });
-  const at = await placeOf(page);
-  await fingers(page, [at(0.45, 0.5), at(0.2, 0.5)], [at(0.55, 0.5), at(0.8, 0.5)]);
-  const large = await seen(page);
-  expect(large.page).toBe(1);
-  expect(large.zoom).toBeGreaterThan(3);
-  await expect(page.locator('#undo')).toBeDisabled(); // no stroke was drawn
-
-  await fingers(page, [at(0.4, 0.4), at(0.6, 0.6)]);
-  await expect(page.locator('#undo')).toBeEnabled();
-  await done(page);
-  const after = await seen(page);
-  expect([after.zoom, after.left, after.scrolled]).toEqual([large.zoom, large.left, 0]);
-});
-
-test('a stroke stays when a second finger or the browser ends it', async ({ page }) => {
-  await open(page);
-  await page.getByLabel('Brush', { exact: true }).check({ force: true });
-  const at = await placeOf(page);
-  const strokes = page.locator('#strokes g path');
-  const second = await press(page, [at(0.4, 0.4), at(0.6, 0.6)]);
-  await second('touchStart', at(0.8, 0.4));
-  await second('touchEnd');
-  await expect(strokes).toHaveCount(1);
-
-  const cancelled = await press(page, [at(0.4, 0.6), at(0.6, 0.4)]);
-  await cancelled('touchCancel');
-  await expect(strokes).toHaveCount(2);
-  await done(page);
-
-  // A finger that has not moved has drawn nothing.
-  const still = await press(page, [at(0.5, 0.5), at(0.5, 0.5)]);
-  await still('touchCancel');
-  await expect(page.locator('#strokes .now')).toHaveAttribute('d', '');
-  await expect(strokes).toHaveCount(2);
-});
-
 test('a finger finds the buttons and both handles of the timeline, and drags these', async ({ page }) => {
-  await open(page, 'groups');
-  await upload(page, await clipFrames(12));
-  await expect(page.locator('#clip-name')).toContainText('12 frames');
-  await done(page);
+  await openClip(page, await clipFrames(12));
   await page.locator('#track').evaluate((track) => track.scrollIntoView({ block: 'center' }));
   for (const name of ['Step both back', 'Play', 'Step both forward', 'Speed 1×']) {
     const { width, height } = (await page.getByRole('button', { name, exact: true }).boundingBox())!;

@@ -19,6 +19,15 @@ export const BIT = 24;
  * frame, or of each, seconds.
  */
 export async function video(page: Page, count: number, kind: 'webm' | 'mp4', codec: string, duration: number | readonly number[] = FRAME): Promise<Upload> {
+  const key = JSON.stringify([count, kind, codec, duration]);
+  if (!made.has(key)) made.set(key, await encoded(page, count, kind, codec, duration));
+  return made.get(key)!;
+}
+
+/** Those that tests of this process have asked for. */
+const made = new Map<string, Upload>();
+
+async function encoded(page: Page, count: number, kind: 'webm' | 'mp4', codec: string, duration: number | readonly number[]): Promise<Upload> {
   const durations = typeof duration === 'number' ? Array<number>(count).fill(duration) : duration;
   const starts = durations.map((_, k) => durations.slice(0, k).reduce((sum, one) => sum + one, 0));
   const bundle = await readFile(new URL('../../node_modules/mediabunny/dist/bundles/mediabunny.mjs', import.meta.url));

@@ -8,7 +8,7 @@ async function zoomShown(page: Page): Promise<number> {
   return Number((await page.locator('#zoom-value').textContent())!.replace(/[^\d.]/g, ''));
 }
 
-test('wheel, buttons, keys and dragging zoom and pan the picture', async ({ page }) => {
+test('the picture is zoomed and panned, split, drawn over and blinked', async ({ page }) => {
   await open(page);
   const box = (await page.locator('.layers').boundingBox())!;
   const whole = await zoomShown(page);
@@ -42,20 +42,10 @@ test('wheel, buttons, keys and dragging zoom and pan the picture', async ({ page
   expect((await place()).x).toBeLessThan(before.x);
   await page.keyboard.press('-');
   expect((await place()).width).toBeLessThan(before.width);
-});
 
-test('the zoom button shows the picture at 100 %', async ({ page }) => {
-  await page.setViewportSize({ width: 600, height: 800 });
-  await open(page);
-  expect(await zoomShown(page)).toBeLessThan(100);
-  await page.locator('#zoom-value').click();
-  expect(await zoomShown(page)).toBe(100);
-  expect((await page.locator('#frame').boundingBox())!.width).toBeCloseTo(768, 0);
-});
-
-test('two fingers zoom', async ({ page }) => {
-  await open(page);
-  const whole = await zoomShown(page);
+  // Two fingers zoom.
+  await page.keyboard.press('0');
+  expect(await zoomShown(page)).toBe(whole);
   await page.locator('.layers').evaluate((layers) => {
     const box = layers.getBoundingClientRect();
     const send = (type: string, pointerId: number, x: number): void => {
@@ -73,10 +63,9 @@ test('two fingers zoom', async ({ page }) => {
     send('pointerup', 2, 0.65);
   });
   expect(await zoomShown(page)).toBeGreaterThan(2 * whole);
-});
+  await page.keyboard.press('0');
 
-test('the split view shows both frames, and its line moves', async ({ page }) => {
-  await open(page);
+  // The split view shows both frames, and its line moves.
   await page.locator('#look [value=split]').check();
   await expect(page.locator('#other')).toBeVisible();
   const line = page.getByRole('slider', { name: 'Position of the split' });
@@ -87,10 +76,30 @@ test('the split view shows both frames, and its line moves', async ({ page }) =>
   await expect(page.locator('#other')).toHaveCSS('clip-path', /25\.1%/);
   await page.keyboard.press('s');
   await expect(page.locator('#other')).toBeHidden();
-});
 
-test('blinking alternates between the frames, but not with reduced motion', async ({ page }) => {
-  await open(page);
+  // Arrows and the residual are drawn.
+  await page.getByLabel('Arrows').check();
+  await expect(page.locator('#arrows path.arrow')).not.toHaveCount(0);
+  expect(await page.locator('#arrows path.arrow').nth(1).getAttribute('d')).toMatch(/^M[\d.]+ [\d.]+L/);
+  await expect(page.locator('#magnified')).toHaveText(/^arrows ×\d/);
+  await page.getByLabel('Residual').check();
+  // The motions explain most pixels, which are painted dark.
+  const dark = async (): Promise<number> => {
+    const { data, width, height } = await pixelsOf(page, '#residual');
+    let count = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i]! < 128 && data[i + 3] === 255) count += 1;
+    return count / (width * height);
+  };
+  await expect.poll(dark).toBeGreaterThan(0.8);
+
+  // The zoom button shows the picture at 100 %.
+  await page.setViewportSize({ width: 600, height: 800 });
+  await expect.poll(() => zoomShown(page)).toBeLessThan(100);
+  await page.locator('#zoom-value').click();
+  expect(await zoomShown(page)).toBe(100);
+  expect((await page.locator('#frame').boundingBox())!.width).toBeCloseTo(768, 0);
+
+  // Blinking alternates between the frames, but not with reduced motion.
   const seen = new Set<string>();
   await page.getByRole('button', { name: 'Blink' }).click();
   await expect.poll(async () => seen.add((await page.locator('#caption').textContent())!).size, { intervals: [100] }).toBe(2);
@@ -104,7 +113,8 @@ test('blinking alternates between the frames, but not with reduced motion', asyn
   await expect(page.locator('#caption')).toHaveText('Second frame');
 });
 
-test('masks are groups by default, and single motions on request', async ({ page }) => {
+test('masks are groups by default, and single motions on request, and can be named, coloured and selected', async ({ page, context }) => {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
   await open(page, 'groups');
   const expected = await segmentedInNode(await sample('first'), await sample('second'));
   const groups = expected.labels.map((label) => expected.motions[label]!.group);
@@ -113,11 +123,19 @@ test('masks are groups by default, and single motions on request', async ({ page
   await page.keyboard.press('g');
   expect(differences(await labelsOnCanvas(page), expected.labels)).toBe(0);
   await expect(page.locator('#motions > li')).toHaveCount(expected.count);
-});
 
-test('masks can be named, coloured and selected', async ({ page }) => {
-  await open(page, 'groups');
+  // A motion is copied in three notations.
   const row = page.locator('#motions > li').nth(1);
+  await row.getByText('More', { exact: true }).click();
+  await row.getByRole('button', { name: 'JSON' }).click();
+  await expect(page.locator('#notice')).toContainText('clipboard');
+  expect(JSON.parse(await page.evaluate(() => navigator.clipboard.readText()))).toEqual(expected.motions[1]!.matrix);
+  await row.getByRole('button', { name: 'SVG / CSS' }).click();
+  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^matrix\((-?[\d.e-]+, ){5}-?[\d.e-]+\)$/);
+  await row.getByRole('button', { name: 'OpenCV' }).click();
+  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^\[\[/);
+  await page.keyboard.press('g');
+  await expect(page.locator('#motions > li')).toHaveCount(new Set(groups).size);
   await row.locator('.motion-name').fill('White car');
   await row.locator('.motion-name').press('Enter');
   await expect(row.getByRole('button', { name: 'Solo: show only White car' })).toBeVisible();
@@ -134,39 +152,7 @@ test('masks can be named, coloured and selected', async ({ page }) => {
   await expect(row).toHaveClass(/selected/);
 });
 
-test('arrows and the residual are drawn', async ({ page }) => {
-  await open(page);
-  await page.getByLabel('Arrows').check();
-  await expect(page.locator('#arrows path.arrow')).not.toHaveCount(0);
-  expect(await page.locator('#arrows path.arrow').nth(1).getAttribute('d')).toMatch(/^M[\d.]+ [\d.]+L/);
-  await expect(page.locator('#magnified')).toHaveText(/^arrows ×\d/);
-  await page.getByLabel('Residual').check();
-  // The motions explain most pixels, which are painted dark.
-  const dark = async (): Promise<number> => {
-    const { data, width, height } = await pixelsOf(page, '#residual');
-    let count = 0;
-    for (let i = 0; i < data.length; i += 4) if (data[i]! < 128 && data[i + 3] === 255) count += 1;
-    return count / (width * height);
-  };
-  await expect.poll(dark).toBeGreaterThan(0.8);
-});
-
-test('the motion is copied in three notations', async ({ page, context }) => {
-  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
-  await open(page);
-  const expected = await segmentedInNode(await sample('first'), await sample('second'));
-  const row = page.locator('#motions > li').nth(1);
-  await row.getByText('More', { exact: true }).click();
-  await row.getByRole('button', { name: 'JSON' }).click();
-  await expect(page.locator('#notice')).toContainText('clipboard');
-  expect(JSON.parse(await page.evaluate(() => navigator.clipboard.readText()))).toEqual(expected.motions[1]!.matrix);
-  await row.getByRole('button', { name: 'SVG / CSS' }).click();
-  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^matrix\((-?[\d.e-]+, ){5}-?[\d.e-]+\)$/);
-  await row.getByRole('button', { name: 'OpenCV' }).click();
-  await expect.poll(() => page.evaluate(() => navigator.clipboard.readText())).toMatch(/^\[\[/);
-});
-
-test('the number of motions can be forced in the evidence plot', async ({ page }) => {
+test('the number of motions can be forced in the evidence plot, which does not claim to decide', async ({ page }) => {
   await open(page);
   const { evidence } = await segmentedInNode(await sample('first'), await sample('second'));
   const scores = page.locator('#evidence .score');
@@ -179,10 +165,8 @@ test('the number of motions can be forced in the evidence plot', async ({ page }
   await page.getByRole('button', { name: 'Automatic' }).click();
   await done(page);
   await motionsChosen(page, 'Automatic');
-});
 
-test('the evidence plot does not claim to decide when the number found has not the shortest description', async ({ page }) => {
-  await open(page);
+  // Nor when the number found has not the shortest description.
   const files = [await sample('first'), await sample('second')] as const;
   for (const swapped of [false, true]) {
     if (swapped) await page.locator('#swap').click();

@@ -6,24 +6,7 @@ import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { clipFrames, clipInNode, differences, done, expect, labelsOnCanvas, mergeWith, open, openExport, square, test, upload } from './support.js';
-
-/** Opens frames as a clip. */
-async function openClip(page: Page, files: Awaited<ReturnType<typeof clipFrames>>): Promise<void> {
-  await open(page, 'groups');
-  await upload(page, files);
-  await expect(page.locator('#clip-name')).toContainText(`${files.length} frames`);
-  await done(page);
-}
-
-async function segmentClip(page: Page): Promise<void> {
-  await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await phase(page, 'done');
-}
-
-async function phase(page: Page, name: string): Promise<void> {
-  await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', name, { timeout: 45_000 });
-}
+import { clipFrames, clipInNode, clipPhase, differences, done, expect, labelsOnCanvas, mergeWith, openClip, openEmpty, openExport, segmentClip, square, test, upload, withSamples } from './support.js';
 
 /** Waits until a frame is on screen with its masks. */
 async function shows(page: Page, index: number): Promise<void> {
@@ -95,17 +78,15 @@ test('the objects of a clip keep number, name and colour in all frames', async (
 });
 
 test('a video is segmented as a whole, and gives exactly the requested frames meanwhile', async ({ page }) => {
-  await open(page, 'groups');
-  await upload(page, [await video(page, 10, 'webm', 'vp8')]);
-  await expect(page.locator('#clip-name')).toContainText('10 frames');
-  await done(page);
+  await openEmpty(page, 'groups');
+  await openClip(page, [await video(page, 10, 'webm', 'vp8')], { count: 10 });
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   const track = page.getByRole('slider', { name: 'Current frame' });
   for (const [key, index] of [['ArrowRight', 1], ['ArrowRight', 2], ['Home', 0]] as const) {
     await track.press(key);
     await expect(page.locator('[data-slot=first] .slot-name')).toContainText(`#${index},`);
   }
-  await phase(page, 'done');
+  await clipPhase(page, 'done');
   await expect(page.locator('#clip-status')).toHaveText(/in 10 frames\.$/);
   await track.press('End');
   await shows(page, 9);
@@ -119,7 +100,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
   await page.locator('#clip-cancel').click();
-  await phase(page, 'cancelled');
+  await clipPhase(page, 'cancelled');
   const kept = Number(/^Cancelled\. (\d+) of 10 frames have masks\.$/.exec((await page.locator('#clip-status').textContent()) ?? '')?.[1]);
   expect(kept).toBeGreaterThan(1);
   expect(kept).toBeLessThan(10);
@@ -138,7 +119,7 @@ test('a cancelled clip shows the masks of what is done, takes corrections, and c
   await page.getByRole('button', { name: 'Continue' }).click();
   const continued = /^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1];
   expect(Number(continued)).toBeGreaterThanOrEqual(kept);
-  await phase(page, 'done');
+  await clipPhase(page, 'done');
   await goTo(page, 0);
   expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
 });
@@ -150,10 +131,10 @@ test('a clip that is cancelled before its first frame can be segmented', async (
   await page.evaluate(() => {
     for (const id of ['clip-segment', 'clip-cancel']) document.getElementById(id)!.click();
   });
-  await phase(page, 'cancelled');
+  await clipPhase(page, 'cancelled');
   await expect(page.locator('#clip-status')).toHaveText('Cancelled. 0 of 4 frames have masks.');
   await page.getByRole('button', { name: 'Continue' }).click();
-  await phase(page, 'done');
+  await clipPhase(page, 'done');
   await shows(page, 0);
   expect(differences(await labelsOnCanvas(page), found[0]!)).toBe(0);
 });
@@ -183,7 +164,7 @@ test('only the frames from the in point to the out point are segmented and expor
   await to.press('ArrowRight');
   await to.press('ArrowLeft');
   await page.getByRole('button', { name: 'Segment frames 2–6' }).click();
-  await phase(page, 'done');
+  await clipPhase(page, 'done');
   await expect(page.locator('#clip-status')).toHaveText('2 objects in 5 frames.');
   for (const index of [2, 6]) {
     await goTo(page, index);
@@ -221,7 +202,7 @@ test('a frame of another size ends the clip, and the frames before it have masks
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
   await page.locator('#notice-close').click();
   await page.getByRole('button', { name: 'Segment the clip' }).click();
-  await phase(page, 'failed');
+  await clipPhase(page, 'failed');
   await expect(page.locator('#notice-code')).toHaveText('frame-size-mismatch');
   await shows(page, 0);
   await page.getByRole('slider', { name: 'Current frame' }).press('End');
@@ -309,6 +290,7 @@ test('objects are merged and deleted in the whole clip, and the corrections are 
   expect(new Set(await labelsOnCanvas(page))).toEqual(new Set([0, 2]));
 
   // Another pair, and the clip again.
+  await withSamples(page);
   await page.getByRole('button', { name: 'Parallax' }).click();
   await expect(page.locator('#timeline')).toBeHidden();
   await done(page);
@@ -352,7 +334,7 @@ test('corrections are applied again when the clip is segmented again', async ({ 
   await page.getByRole('button', { name: 'Segment the clip again' }).click();
   await expect(page.locator('#clip-run')).toHaveAttribute('data-phase', 'working');
   expect(differences(await labelsOnCanvas(page), corrected)).toBe(0); // the masks before stay until then
-  await phase(page, 'done');
+  await clipPhase(page, 'done');
   await expect(status).toHaveText('2 objects in 6 frames, corrected as before.');
   const best = await labelsOnCanvas(page);
   expect(new Set(best)).toEqual(new Set([0, 1, 3]));
@@ -431,9 +413,8 @@ test('segmenting a part again changes nothing outside it, and both take correcti
   }
   // All of it is there after a reload.
   const last = await labelsOnCanvas(page);
-  await page.waitForTimeout(1500);
+  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true); // kept
   await page.reload();
-  await done(page);
   await upload(page, files);
   await expect(status).toHaveText(/^Continued/);
   await goTo(page, 8);
@@ -453,7 +434,7 @@ test('a run that is cancelled early leaves the masks that there were', async ({ 
   await page.getByRole('button', { name: 'Segment the clip again' }).click();
   await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
   await page.locator('#clip-cancel').click();
-  await phase(page, 'cancelled');
+  await clipPhase(page, 'cancelled');
   await expect(page.locator('#clip-status')).toHaveText('Cancelled. 8 of 8 frames have masks.');
   for (const index of [0, 7]) {
     await goTo(page, index);
@@ -474,7 +455,7 @@ test('frames that are the same are given as the reason why nothing moves', async
 });
 
 test('a clip may have one frame', async ({ page }) => {
-  await open(page, 'groups');
+  await openEmpty(page, 'groups');
   await upload(page, [await video(page, 1, 'webm', 'vp8')]);
   await expect(page.locator('#clip-name')).toHaveText('clip.webm, one frame, 192 × 128');
   await done(page);
