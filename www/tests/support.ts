@@ -82,6 +82,7 @@ export async function openClip(page: Page, files: Upload[], { count = files.leng
   await upload(page, files);
   await expect(page.locator('#clip-name')).toContainText(`${count} frames`);
   await done(page);
+  await withSamples(page);
 }
 
 /** Segments the open clip. */
