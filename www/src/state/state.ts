@@ -103,15 +103,17 @@ export interface Notice {
   readonly code: string | null;
 }
 
-export interface State {
+/** Which frames are open: `session/frames.ts`, and `session/opening.ts` while they are loaded. */
+interface FramesState {
   readonly pair: FramePair;
   readonly timeline: Timeline | null;
-  /** The objects of the open clip. */
-  readonly tracked: Tracked | null;
-  /** Other clips that were segmented, by fingerprint. */
-  readonly keptClips: ReadonlyMap<string, Tracked>;
-  /** The classes that objects can have, in the order of their numbers in files. */
-  readonly classList: readonly string[];
+  /** Whether something is being opened. The current pair stays until it is ready. */
+  readonly opening: boolean;
+  readonly question: Question | null;
+}
+
+/** How frames are passed: `session/playing.ts`; and the camera: `session/camera`. */
+interface PassingState {
   /** Whether the clip is being played. */
   readonly playing: boolean;
   /** How many times as fast as it was taken. */
@@ -119,12 +121,15 @@ export interface State {
   /** Whether a pointer is being dragged through the clip. */
   readonly scrubbing: boolean;
   readonly live: Live | null;
-  /** Whether something is being opened. The current pair stays until it is ready. */
-  readonly opening: boolean;
+}
+
+/** The masks of the pair: `session/pair`. */
+interface PairState {
   readonly settings: Settings;
   /** The number of motions set for all other pairs, while this pair has its own; otherwise `null`. */
   readonly motionsElsewhere: Settings['motions'] | null;
   readonly run: Run;
+  /** The masks on screen, of the pair or of the clip: `session/shown.ts` puts one in the place of the other. */
   readonly result: Result | null;
   /** The segmentation before corrections. */
   readonly found: Segmentation | null;
@@ -132,13 +137,33 @@ export interface State {
   readonly edits: Edits;
   /** The edits of other pairs, by `keyOfPair`. */
   readonly kept: ReadonlyMap<string, Kept>;
+}
+
+/** The objects of clips: `session/clip`. */
+interface ClipState {
+  /** Those of the open clip. */
+  readonly tracked: Tracked | null;
+  /** Other clips that were segmented, by fingerprint. */
+  readonly keptClips: ReadonlyMap<string, Tracked>;
+  /** The classes that objects can have, in the order of their numbers in files. */
+  readonly classList: readonly string[];
+}
+
+/** What a person chose of the screen and the tools: the views. */
+interface ChosenState {
   readonly look: Look;
   readonly viewport: Viewport;
   readonly tool: Tool;
+}
+
+/** What the page tells: a message, until it is read, and whether work is kept: `projects/projects.ts`. */
+interface ToldState {
   readonly notice: Notice | null;
-  readonly question: Question | null;
   readonly keeping: Keeping;
 }
+
+/** Each part names who changes it. Projects that are opened are put into all of them. */
+export interface State extends FramesState, PassingState, PairState, ClipState, ChosenState, ToldState {}
 
 /** Whether the first result of a new pair is pending. Views keep showing the last one until then, so that the layout does not jump. */
 export function isAwaited({ result, run }: State): boolean {
