@@ -27,8 +27,8 @@ mod points;
 
 #[cfg(feature = "frames")]
 pub use clip::{
-    begin_clip, conclude_clip, correct_clip, end_clip, finish_clip, frame_of_clip, lock_clip, outline_clip, push_clip,
-    renumber_clip, reserve_clip, restore_clip, save_clip, take_correction,
+    begin_clip, conclude_clip, correct_clip, end_clip, finish_clip, frame_of_clip, lock_clip, outline_clip,
+    preview_clip, push_clip, renumber_clip, reserve_clip, restore_clip, save_clip, take_correction,
 };
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};

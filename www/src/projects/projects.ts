@@ -9,6 +9,7 @@ import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
 import type { Keeping, Refusal, State, Store } from '../state/state.js';
 import { type SolvedPairs, isCorrecting, isUnsavedClip } from '../state/tracked.js';
 import type { Project } from './project.js';
+import type { Listed } from './shelf.js';
 
 /** How long a change waits for others, milliseconds; and while a clip is segmented, which changes all the time. */
 const SOON = 500;
@@ -42,13 +43,15 @@ export class Projects {
   #timer = 0;
   #due = Infinity;
   #writing = false;
+  /** What is being written, with the copies of frames. */
+  #written: Promise<unknown> = Promise.resolve();
 
   constructor(store: Store, pairs: Map<string, SolvedPairs>) {
     this.#store = store;
     this.#pairs = pairs;
     store.subscribe((now, before) => this.#watch(now, before));
     document.addEventListener('visibilitychange', () => {
-      if (document.visibilityState === 'hidden') void this.#write();
+      if (document.visibilityState === 'hidden') this.#writeNow();
     });
   }
 
@@ -128,6 +131,13 @@ export class Projects {
     return { ...project, thumbnail };
   }
 
+  /** Removes a project that the browser keeps, also what is about to be written of it. */
+  async forget({ file, header }: Listed): Promise<void> {
+    if (header !== null) this.#changed.delete(header.of);
+    await this.#written;
+    await (await this.#load()).remove(file);
+  }
+
   async #load(): Promise<Shelf> {
     return (this.#shelf ??= await loaded(import('./shelf.js')));
   }
@@ -151,7 +161,11 @@ export class Projects {
     if (due >= this.#due) return;
     clearTimeout(this.#timer);
     this.#due = due;
-    this.#timer = window.setTimeout(() => void this.#write(), delay);
+    this.#timer = window.setTimeout(() => this.#writeNow(), delay);
+  }
+
+  #writeNow(): void {
+    this.#written = Promise.all([this.#written, this.#write()]);
   }
 
   /** What can be written: not a clip between two states, whose masks do not belong together. */
@@ -166,6 +180,7 @@ export class Projects {
     this.#due = Infinity;
     if (this.#writing || this.#ready().length === 0) return;
     this.#writing = true;
+    const copied: Promise<void>[] = [];
     try {
       const shelf = await this.#load();
       const { owns, put, savedAt, withSaved } = shelf;
@@ -179,7 +194,7 @@ export class Projects {
         }
         await put(project);
         this.#store.set({ ...withSaved(this.#store.get(), project), keeping: this.#kept(of) });
-        void this.#keepFrames(project, shelf);
+        copied.push(this.#keepFrames(project, shelf));
       }
     } catch (error) {
       const full = error instanceof Error && error.name === 'QuotaExceededError';
@@ -189,6 +204,7 @@ export class Projects {
     }
     const [next] = this.#ready();
     if (next !== undefined) this.#touch(next, SOON);
+    await Promise.all(copied);
   }
 
   #kept(of: string): Keeping {

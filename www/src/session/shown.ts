@@ -70,7 +70,7 @@ export class Shown {
     if (look.kind === 'objects' && !same) this.#store.look({ names, classes, colours });
     const now = version.became.get(selected ?? 0);
     if (now !== undefined) this.#store.look({ selected: now === 0 ? null : now });
-    if (!isTracked(tracked)) this.kind('objects');
+    if (tracked.spans.length === 0) this.kind('objects');
     this.objects(tracked);
   }
 
@@ -79,7 +79,7 @@ export class Shown {
     const { look, pair, tracked } = this.#store.get();
     if (tracked === null) return;
     const frames = [pair.first, pair.second].filter((frame) => frame !== null);
-    const came = !isTracked(before) && frames.some((frame) => frameOf(before, frame) === null && frameOf(tracked, frame) !== null);
+    const came = frames.some((frame) => frameOf(before, frame) === null && frameOf(tracked, frame) !== null);
     if (came) this.kind('objects');
     // Objects of previews have other numbers.
     if (look.selected !== null && isSeen(before) && isTracked(tracked) !== isTracked(before)) this.select(null);

@@ -2,7 +2,7 @@
 
 import { panels } from '../common/strings-of-panels.js';
 import { codeOf, sentenceOf } from '../common/errors.js';
-import { type Listed, list, remove, watch } from '../projects/shelf.js';
+import { type Listed, list, watch } from '../projects/shelf.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { element, find } from './markup.js';
@@ -27,10 +27,10 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
     rows.replaceChildren(...listed.map((one) => rowOf(one, () => void forget(one))));
   };
 
-  const forget = async ({ file, header }: Listed): Promise<void> => {
+  const forget = async (listed: Listed): Promise<void> => {
     try {
-      await remove(file);
-      session.say(panels.projects.forgotten(header?.name ?? file));
+      await session.projects.forget(listed);
+      session.say(panels.projects.forgotten(listed.header?.name ?? listed.file));
     } catch (error) {
       session.say(sentenceOf(error), codeOf(error));
     }
