@@ -126,9 +126,16 @@ test('what is drawn exactly is what is kept, exported and left alone by what is 
   await page.keyboard.press('x');
   await drag(page, [0.21, 0.2], [0.47, 0.62]);
   await expect(status(page)).toHaveText('Corrected: the masks of one frame have changed.', { timeout: 45_000 });
-  expect(await labelsOnCanvas(page)).toContain(3);
-  await page.keyboard.press('Control+z');
-  await expect(status(page)).toHaveText('Undone in one frame.');
+  const boxed = await labelsOnCanvas(page);
+  expect(boxed).toContain(3);
+  // What is around the box is not drawn: another box takes of it.
+  await drag(page, [0.05, 0.05], [0.15, 0.15]);
+  await expect.poll(() => page.locator('#objects > li').count()).toBe(5); // and the background
+  await done(page);
+  const both = await labelsOnCanvas(page);
+  expect(both.every((label, p) => label === boxed[p] || (label === 4 && boxed[p] === 0))).toBe(true);
+  for (let k = 0; k < 2; k++) await page.keyboard.press('Control+z');
+  await expect.poll(async () => (await labelsOnCanvas(page)).some((label) => label > 2)).toBe(false);
   await goTo(page, 4);
   expect(differences(await labelsOnCanvas(page), erased)).toBe(0);
 

@@ -393,6 +393,12 @@ test('what is drawn exactly stays where other things are said, and follows its o
   expect([...unpacked(over.exact.get(0)!)]).toEqual([255, 3, 2, 255, 2, 255]);
   expect(shown(withSaid(over, { edits: { merge: [[1, 3]] } }))).toEqual([1, 1, 2, 2, 2, 2]);
   expect(shown(withSaid(over, { edits: { delete: [3] } }))).toEqual([1, 0, 2, 2, 2, 2]);
+  // What the package has no number of goes along with an object that it has, in all frames.
+  const later = withSaid(drawn, { painted: new Map([[1, row(255, 255, 255, 255, 255, 5)]]), spread: 'both' });
+  const merged = withSaid(later, { edits: { merge: [[3, 5]] } });
+  expect([shown(merged), shown(merged, 1)]).toEqual([[1, 3, 3, 2, 0, 0], [1, 1, 0, 2, 2, 3]]);
+  expect(merged.frames[1]!.objects.map(({ id }) => id)).toEqual([1, 2, 3]);
+  expect(merged.frames[0]).toBe(later.frames[0]);
   // A run with frames of another size.
   const larger = { runs: packed(new Uint8Array(24), 12, 2), objects: [], background: null };
   const again = withRun(over, [larger], { range: { first: 0, last: 0 }, state: new Blob(), numbers: new Map() }, 12);

@@ -7,7 +7,16 @@ import type { TrackedFrame, Version } from './tracked.js';
 /** The masks of a frame with labels over them, and its objects as they are then; the same masks if that changes none. */
 export function overlaid(frame: TrackedFrame, said: Runs | undefined): TrackedFrame {
   const runs = said === undefined ? frame.runs : over(frame.runs, said);
-  if (runs === frame.runs) return frame;
+  return runs === frame.runs ? frame : withRuns(frame, runs);
+}
+
+/** The masks of a frame with what became of objects; the same masks if none of them is there. */
+export function relabelled(frame: TrackedFrame, became: Version['became']): TrackedFrame {
+  const { runs } = frame;
+  return runs.labels.some((label) => became.has(label)) ? withRuns(frame, { ...runs, labels: runs.labels.map((label) => became.get(label) ?? label) }) : frame;
+}
+
+function withRuns(frame: TrackedFrame, runs: Runs): TrackedFrame {
   const known = new Map(frame.objects.map((object) => [object.id, object]));
   const objects = [...extentsOf(runs)]
     .filter(([id]) => id !== 0 && id !== UNLABELLED)

@@ -3,7 +3,7 @@
 import type { ClipOptions, ClipPropagation } from 'veronese';
 import { type Runs, over, packed, unpacked } from '../correction/runs.js';
 import { UNLABELLED } from '../result/masks.js';
-import { exactly, overlaid } from './exact.js';
+import { exactly, overlaid, relabelled } from './exact.js';
 import { becameAfter } from './spans.js';
 import type { Notes, Version } from './tracked.js';
 
@@ -53,7 +53,9 @@ export function withSaid<V extends Version>(version: V, said: Said): V {
 function withEdits<V extends Version>(version: V, edits: NonNullable<ClipOptions['edits']>): V {
   const became = becameAfter(version.became, edits);
   const exact = new Map([...version.exact].map(([index, runs]) => [index, { ...runs, labels: runs.labels.map((label) => became.get(label) ?? label) }]));
-  return exactly({ ...version, became, exact });
+  // What nobody but the page knows of, as it was drawn exactly, is no part of the package's answer.
+  const frames = version.frames.map((frame) => frame && relabelled(frame, became));
+  return exactly({ ...version, frames, became, exact });
 }
 
 function withPainted<V extends Version>(version: V, index: number, labels: Uint8Array, isExact: boolean): V {

@@ -129,6 +129,11 @@ export function becameAfter(
   return now;
 }
 
+/** What was drawn in frames, at the size of their masks. */
+export function atSize(said: Version['painted'], frames: Version['frames']): Version['painted'] {
+  return new Map([...said].map(([index, runs]) => [index, resized(runs, frames[index]?.runs ?? runs)]));
+}
+
 /** The version with the frames of a new run, by whose numbers they are, and without what is no longer seen of spans before. */
 export function withRun(version: Version, run: readonly TrackedFrame[], span: Span, longestSide: number): Version {
   const { first, last } = span.range;
@@ -136,8 +141,7 @@ export function withRun(version: Version, run: readonly TrackedFrame[], span: Sp
   const named = run.map((frame) => fromSpan(frame, numbers, version.largest));
   const frames = version.frames.map((frame, index) => named[index - first] ?? frame);
   const found = version.found.map((runs, index) => named[index - first]?.runs ?? runs);
-  const atSize = (said: Version['painted']): Version['painted'] => new Map([...said].map(([index, runs]) => [index, resized(runs, frames[index]?.runs ?? runs)]));
-  const [painted, exact] = [atSize(version.painted), atSize(version.exact)];
+  const [painted, exact] = [version.painted, version.exact].map((said) => atSize(said, frames)) as [Version['painted'], Version['exact']];
   const spans = [...version.spans.filter(({ range }) => range.first < first || range.last > last), { ...span, numbers }];
   return exactly({ ...version, frames, found, painted, exact, spans, longestSide, largest: Math.max(version.largest, ...numbers.values()) });
 }

@@ -99,7 +99,7 @@ export class Objects {
 
   /** Objects become one, under the smallest of their numbers and with the class of the first that has one. */
   merge(...ids: readonly number[]): void {
-    const group = [...new Set(ids)].sort((one, other) => one - other);
+    const group = this.#known(ids).sort((one, other) => one - other);
     const { tracked } = this.#store.get();
     if (group.length < 2 || tracked === null) return;
     const [name] = group.flatMap((id) => tracked.classes[keyOf('objects', id)] ?? []);
@@ -108,7 +108,8 @@ export class Objects {
 
   /** The objects become background in the whole clip. */
   remove(...ids: readonly number[]): void {
-    if (ids.length > 0) this.#edit({ delete: [...ids] });
+    const known = this.#known(ids);
+    if (known.length > 0) this.#edit({ delete: known });
   }
 
   /** Makes a new object of all pieces of an object but the largest, in the frame on screen; the others follow. */
@@ -144,9 +145,10 @@ export class Objects {
   /** Locks the objects, or unlocks them if all are locked: whether corrections of others may change them. */
   toggleLock(...ids: readonly number[]): void {
     const { tracked } = this.#store.get();
-    if (tracked === null || ids.length === 0) return;
-    const locked = !ids.every((id) => isLocked(tracked, id));
-    this.#carrying.note({ locks: new Map([...tracked.locks, ...ids.map((id) => [id, locked] as const)]) }, locked ? 'locked' : 'unlocked');
+    const known = this.#known(ids);
+    if (tracked === null || known.length === 0 || !this.#takesCorrections()) return;
+    const locked = !known.every((id) => isLocked(tracked, id));
+    this.#carrying.note({ locks: new Map([...tracked.locks, ...known.map((id) => [id, locked] as const)]) }, locked ? 'locked' : 'unlocked');
   }
 
   /**
@@ -172,6 +174,12 @@ export class Objects {
     if ('colour' in what) return this.#carrying.note({ colours: { ...tracked.colours, [key]: what.colour } }, 'described', goesOn);
     const { [key]: given = '', ...others } = tracked.names;
     if (what.name !== given) this.#carrying.note({ names: what.name === '' ? others : { ...others, [key]: what.name } }, 'described');
+  }
+
+  /** Those that are objects: the unlabelled pixels are none, nor is what is about to be painted. */
+  #known(ids: readonly number[]): number[] {
+    const { largest = 0 } = this.#store.get().tracked ?? {};
+    return [...new Set(ids)].filter((id) => id > 0 && id <= largest);
   }
 
   #spread(): Spread {

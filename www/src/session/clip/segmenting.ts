@@ -4,7 +4,8 @@
 import type { ClipFrame } from 'veronese';
 import type { Clip } from '../../clips/clip.js';
 import type { Settings } from '../../state/settings.js';
-import { contains, numbersOf, withRun } from '../../state/spans.js';
+import { exactly } from '../../state/exact.js';
+import { atSize, contains, numbersOf, withRun } from '../../state/spans.js';
 import type { Store } from '../../state/state.js';
 import { type ClipRun, type Range, type SolvedPairs, type Tracked, type TrackedFrame, type Version, isTracked, notesOf, savedOf, untracked, versionOf } from '../../state/tracked.js';
 import type { Shown } from '../shown.js';
@@ -186,7 +187,7 @@ export class ClipSegmenting {
     signal: AbortSignal,
     set: Change,
   ): Promise<void> {
-    const { past, painted, became } = before;
+    const { painted, became } = before;
     const isFirst = before.found.every((runs) => runs === null);
     const numbers = isFirst ? new Map(masks.flatMap(({ objects }) => objects.map(({ id }) => [id, id] as const))) : numbersOf(masks, range, before);
     let version = withRun(versionOf(before), masks, { range, state: blobOf(state), numbers }, longestSide);
@@ -196,11 +197,12 @@ export class ClipSegmenting {
     const { tracked: now } = this.#store.get();
     if (signal.aborted || now === null) return;
     // What a person corrected can be brought back.
-    if (past.length > 0) set({ past: [...past, versionOf(before)] });
+    if (now.past.length > 0) set({ past: [...now.past, versionOf(now)] });
     else if (now.saved.frames === now.frames) set({ saved: { ...now.saved, frames: version.frames } });
     set({ future: [] });
-    // What was noted meanwhile stays.
-    this.#shown.version({ ...version, ...notesOf(now) }, corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
+    // What was noted and drawn exactly meanwhile stays.
+    const meanwhile = { ...version, ...notesOf(now), exact: atSize(now.exact, version.frames), largest: Math.max(version.largest, now.largest) };
+    this.#shown.version(exactly(meanwhile), corrected && run.phase === 'done' ? { ...run, cause: 'repeated' } : run);
   }
 
   /** What is known for these settings: other settings and another first frame begin anew. */

@@ -41,8 +41,8 @@ export class Spans {
     }
   }
 
-  /** What is painted when a box or a click points to an object. */
-  async outlined(version: Version, { frame, id, at }: Pointed, signal: AbortSignal): Promise<Map<number, Uint8Array>> {
+  /** What is painted when a box or a click points to an object. What is not the object is not, unless that is to be drawn exactly. */
+  async outlined(version: Version, { frame, id, spread, at }: Pointed, signal: AbortSignal): Promise<Map<number, Uint8Array>> {
     const { tracked, pair } = this.#store.get();
     const span = spanAt(version.spans, frame);
     if (tracked === null || span === null) return new Map();
@@ -70,12 +70,13 @@ export class Spans {
       this.#store.say(strings.notices.nothingThere);
       return new Map();
     }
+    const ground = spread === 'exact' ? UNLABELLED : 0;
     const { width } = version.frames[frame]!.runs;
     const exact = version.exact.get(frame);
     const drawn = exact && unpacked(exact);
     const [left, top, columns = width, rows = labels.length] = at.length === 2 ? [0, 0] : at;
     const isWithin = (p: number): boolean => p % width >= left && p % width < left + columns && p / width >= top && p / width < top + rows;
-    return new Map([[frame, labels.map((own, p) => ((drawn?.[p] ?? UNLABELLED) !== UNLABELLED ? UNLABELLED : own === label && isWithin(p) ? id : own === 0 ? 0 : UNLABELLED))]]);
+    return new Map([[frame, labels.map((own, p) => ((drawn?.[p] ?? UNLABELLED) !== UNLABELLED ? UNLABELLED : own === label && isWithin(p) ? id : own === 0 ? ground : UNLABELLED))]]);
   }
 
   /**
