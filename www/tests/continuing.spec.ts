@@ -5,7 +5,7 @@ import { gunzipSync } from 'node:zlib';
 
 import { type Page } from '@playwright/test';
 
-import { axe, clipFrames, done, expect, open, openExport, openSegmented, test, upload, withoutStorage } from './support.js';
+import { axe, clipFrames, done, expect, goTo, open, openExport, openSegmented, test, upload, withoutStorage } from './support.js';
 
 const PARALLAX = './#sample=parallax&quality=fast&masks=groups';
 
@@ -19,7 +19,7 @@ async function rename(page: Page, list: '#objects' | '#motions', row: number, na
 async function written(page: Page, name: string): Promise<void> {
   await expect.poll(() => headers(page)).toContainEqual(expect.stringContaining(`"name":"${name}"`));
   await expect(page.locator('#saving button')).toBeVisible();
-  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+  await expect.poll(() => leaves(page)).toBe(true);
 }
 
 /** The first lines of all projects in the browser. */
@@ -37,14 +37,24 @@ function headers(page: Page): Promise<string[]> {
   });
 }
 
+/** The sizes of the files in a folder of the browser, bytes; an empty one is none. */
+function sizes(page: Page, name: 'projects' | 'frames'): Promise<number[]> {
+  return page.evaluate(async (name) => {
+    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle(name).catch(() => null);
+    const found: number[] = [];
+    if (folder !== null) for await (const file of folder.keys()) found.push((await (await folder.getFileHandle(file)).getFile()).size);
+    return found.filter((size) => size > 0);
+  }, name);
+}
+
 /** How many copies of frames the browser has. */
-function copies(page: Page): Promise<number> {
-  return page.evaluate(async () => {
-    const folder = await (await navigator.storage.getDirectory()).getDirectoryHandle('frames').catch(() => null);
-    let count = 0;
-    if (folder !== null) for await (const _ of folder.keys()) count += 1;
-    return count;
-  });
+async function copies(page: Page): Promise<number> {
+  return (await sizes(page, 'frames')).length;
+}
+
+/** Whether the page can be left without a question. */
+function leaves(page: Page): Promise<boolean> {
+  return page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })));
 }
 
 /** Where the parts of the panel and of the bar are, from the top and from the left. */
@@ -93,14 +103,65 @@ test('the next visit shows the work, and one click opens it with its frames', as
   // What is open is not offered.
   await expect(page.locator('#continue')).toBeHidden();
 
+  // What is told of the clip is not told of a pair.
+  await expect(page.locator('#saving button')).toBeVisible();
+  await page.getByRole('button', { name: 'Parallax' }).click();
+  await expect(page.locator('#saving button')).toBeHidden();
+  await work.click();
+  await expect(page.locator('#saving button')).toBeVisible();
+  expect(await leaves(page)).toBe(true);
+
   await openExport(page);
   await page.getByText('One project in this browser').click();
-  await page.getByRole('button', { name: 'Forget the project of f00-f04.png' }).click();
+  const forget = page.getByRole('button', { name: 'Forget the project of f00-f04.png' });
+  // The list is of work that goes on: it tells the size with the copy, and the focus stays.
+  await forget.focus();
+  const [header] = await headers(page);
+  await page.getByLabel('Show Disc').evaluate((box: HTMLInputElement) => box.click());
+  await expect.poll(async () => [undefined, '', header].includes((await headers(page))[0])).toBe(false);
+  const size = [...(await sizes(page, 'projects')), ...(await sizes(page, 'frames'))].reduce((sum, one) => sum + one, 0);
+  await expect(page.locator('#projects li')).toContainText(`, ${Number((size / 1000).toFixed(1))}\u00A0kB,`);
+  await expect(forget).toBeFocused();
+
+  // Frames on screen are still read from the copy; it goes with them.
+  await forget.click();
   await expect(page.locator('#projects')).toBeHidden();
+  await expect(page.locator('#saving button')).toBeHidden();
+  expect(await leaves(page)).toBe(false);
+  await page.keyboard.press('Escape');
+  await goTo(page, 3);
+  await expect(page.locator('#notice-code')).toHaveText('');
+  page.on('dialog', (dialog) => void dialog.accept());
+  await page.reload();
+  await open(page, 'groups');
+  await expect.poll(() => copies(page)).toBe(0);
+  await expect(page.locator('#continue')).toBeHidden();
+});
+
+test('files that were not written before the page was closed count for nothing', async ({ page }) => {
+  const files = await clipFrames(4);
+  await openSegmented(page, files);
+  await rename(page, '#objects', 1, 'Disc');
+  await written(page, 'f00-f03.png');
+  await expect.poll(() => copies(page)).toBe(1);
+  await page.goto('about:blank');
+  await open(page, 'groups');
+  await page.evaluate(async () => {
+    const root = await navigator.storage.getDirectory();
+    const [projects, frames] = await Promise.all(['projects', 'frames'].map((name) => root.getDirectoryHandle(name)));
+    for await (const name of frames!.keys()) await (await (await frames!.getFileHandle(name)).createWritable()).close();
+    await projects!.getFileHandle('other.veronese', { create: true });
+  });
   expect(await copies(page)).toBe(0);
   await page.reload();
   await open(page, 'groups');
-  await expect(page.locator('#continue')).toBeHidden();
+  const [chooser] = await Promise.all([page.waitForEvent('filechooser'), page.getByRole('button', { name: /^f00-f03\.png 4 frames, .*: choose the frames$/ }).click()]);
+  await chooser.setFiles(files);
+  await expect(page.locator('#objects .motion-name').nth(1)).toHaveValue('Disc');
+  await expect.poll(() => copies(page)).toBe(1);
+  await openExport(page);
+  await expect(page.locator('#project summary')).toHaveText('One project in this browser');
+  await expect(page.locator('#projects li')).toHaveCount(1);
 });
 
 test('of several the newest comes first, and a sample needs no copy, also with its frames swapped', async ({ page }) => {
@@ -176,7 +237,7 @@ test('the page tells when work is saved, says so once, and saves it as a file', 
   const saving = page.locator('#saving').getByRole('button', { name: /^Saved in this browser, \d\d:\d\d Save as a file$/ });
   await expect(saving).toBeVisible();
   await rename(page, '#objects', 1, 'Disc');
-  await expect.poll(() => page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+  await expect.poll(() => leaves(page)).toBe(true);
   await expect(saving).toBeVisible();
   expect(await page.evaluate(() => (window as unknown as { said: string[] }).said)).toEqual(['Your work is saved in this browser.']);
   expect((await places(page)).slice(4)).toEqual(before.slice(4));
@@ -194,5 +255,5 @@ test('work that the browser refuses to keep is said to be not saved', async ({ p
   await expect(page.locator('#saving [role=status]')).toHaveText('');
   const [download] = await Promise.all([page.waitForEvent('download'), saving.click()]);
   expect(download.suggestedFilename()).toBe('f00-f03.veronese');
-  expect(await page.evaluate(() => window.dispatchEvent(new Event('beforeunload', { cancelable: true })))).toBe(true);
+  expect(await leaves(page)).toBe(true);
 });

@@ -174,6 +174,14 @@ test('a run that was cancelled continues after a reload', async ({ page }) => {
   const before = Number(/(\d+) of 12/.exec(told)?.[1]);
   await page.getByRole('button', { name: 'Continue' }).click();
   expect(Number(/^(\d+) of/.exec((await page.locator('#clip-detail').textContent()) ?? '')?.[1])).toBeGreaterThanOrEqual(before);
+  // What is named meanwhile is kept at once when the page is hidden.
+  await rename(page, 1, 'Early');
+  await page.evaluate(() => {
+    Object.defineProperty(document, 'visibilityState', { value: 'hidden' });
+    document.dispatchEvent(new Event('visibilitychange'));
+  });
+  await expect.poll(() => namesInBrowser(page)).toEqual({ 'objects-1': 'Early' });
+  expect(await page.locator('#clip-run').getAttribute('data-phase')).toBe('working');
   await clipPhase(page, 'done');
 });
 

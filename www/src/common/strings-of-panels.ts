@@ -20,10 +20,11 @@ const descriptionOf = (longer: number): string => (longer === 0 ? 'shortest desc
 
 export const panels = {
   projects: {
-    nothing: 'What you do is kept in this browser, with a copy of the frames if there is room.',
-    kept: 'Your work is kept in this browser, with its frames.',
-    without: 'Your work is kept in this browser. Open the same frames again to continue.',
-    notKept: 'Your work is not kept in this browser. Save the project before you leave.',
+    keeping: ({ is, without = false }: { readonly is: 'nothing' | 'kept' | 'refused'; readonly without?: boolean }): string => {
+      if (is === 'nothing') return 'What you do is kept in this browser, with a copy of the frames if there is room.';
+      if (is === 'refused') return 'Your work is not kept in this browser. Save the project before you leave.';
+      return without ? 'Your work is kept in this browser. Open the same frames again to continue.' : 'Your work is kept in this browser, with its frames.';
+    },
     nothingYet: 'There is nothing to save yet: segment the clip or correct the masks first.',
     correcting: 'Your correction is still being carried to other frames. Save the project when it is done.',
     saved: (name: string): string => `Saved as ${name}.`,

@@ -69,8 +69,6 @@ interface Size {
   readonly height: number;
 }
 
-
-/** "1.4 MB": of 1000 bytes each, as file managers count. */
 /** ", about 20 s left"; nothing if it is not known. */
 function remaining(seconds: number | null): string {
   if (seconds === null) return '';

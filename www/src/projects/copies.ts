@@ -26,7 +26,7 @@ export function keepFrames(name: string, files: readonly File[]): Promise<boolea
 
 async function copied(name: string, files: readonly File[]): Promise<boolean> {
   const folder = await place();
-  if ((await folder.read(name)) !== null) return true;
+  if ((await folder.sizes()).has(name)) return true;
   const size = files.reduce((sum, file) => sum + file.size, 0);
   const { quota = 0, usage = 0 } = await navigator.storage.estimate();
   if (size > Math.min(folder.largest, SHARE * (quota - usage))) return false;
@@ -37,13 +37,14 @@ async function copied(name: string, files: readonly File[]): Promise<boolean> {
   return true;
 }
 
-/** The names of all copies. */
-export async function copies(): Promise<ReadonlySet<string>> {
-  return new Set(await (await place()).list());
+/** The sizes of all copies by name, bytes. */
+export async function copies(): Promise<ReadonlyMap<string, number>> {
+  return (await place()).sizes();
 }
 
-/** The files of a copy; none if there is no such copy. */
+/** The files of a copy; none if there is no such copy. They are read while the clip is open, so the copy stays until this tab is closed. */
 export async function framesOf(name: string): Promise<File[]> {
+  await used(name);
   const copy = await (await place()).read(name);
   if (copy === null) return [];
   const length = new DataView(await copy.slice(0, 4).arrayBuffer()).getUint32(0, true);
@@ -54,14 +55,32 @@ export async function framesOf(name: string): Promise<File[]> {
   });
 }
 
-export async function removeFrames(name: string): Promise<void> {
-  if ((await copies()).has(name)) await (await place()).remove(name);
+/** Removes a copy, unless a tab reads frames from it, which would lose them, or writes it. Returns whether it did. */
+export async function removeFrames(name: string): Promise<boolean> {
+  const folder = await place();
+  const remove = (): Promise<boolean> => folder.remove(name).then(() => true, () => false);
+  if (!('locks' in navigator)) return remove();
+  return navigator.locks.request(lockOf(name), { ifAvailable: true }, (lock) => lock !== null && remove());
 }
 
-/** Makes room for work. Returns whether there was any copy. */
+/** Makes room for work. Returns whether any copy was removed. */
 export async function removeAllFrames(): Promise<boolean> {
-  const folder = await place();
-  const names = await folder.list();
-  for (const name of names) await folder.remove(name);
-  return names.length > 0;
+  const removed = await Promise.all([...(await copies()).keys()].map(removeFrames));
+  return removed.includes(true);
+}
+
+/** Holds a copy until this tab is closed. Browsers without locks have copies in a database, which are in memory once they are read. */
+async function used(name: string): Promise<void> {
+  if (!('locks' in navigator)) return;
+  await new Promise<void>((resolve, reject) => {
+    const hold = (): Promise<never> => {
+      resolve();
+      return new Promise(() => undefined);
+    };
+    navigator.locks.request(lockOf(name), { mode: 'shared' }, hold).catch(reject);
+  });
+}
+
+function lockOf(name: string): string {
+  return `veronese frames ${name}`;
 }

@@ -1,11 +1,11 @@
 //! Where a browser keeps files of a page: its origin private file system, else a database.
 
-/** Files by name. A file is replaced as a whole, or stays as it was. */
+/** Files by name. A file is replaced as a whole, or stays as it was. None is empty. */
 export interface Place {
   /** A larger file should not be written, bytes. */
   readonly largest: number;
-  /** The names of all files. */
-  list(): Promise<readonly string[]>;
+  /** The sizes of all files by name, bytes; 0 if it is not known. */
+  sizes(): Promise<ReadonlyMap<string, number>>;
   /** `null` if there is no such file. */
   read(name: string): Promise<Blob | null>;
   write(name: string, content: ReadableStream<Uint8Array<ArrayBuffer>>): Promise<void>;
@@ -38,15 +38,20 @@ class Folder implements Place {
 
   constructor(readonly folder: FileSystemDirectoryHandle) {}
 
-  async list(): Promise<readonly string[]> {
-    const names: string[] = [];
-    for await (const name of this.folder.keys()) names.push(name);
-    return names;
+  async sizes(): Promise<ReadonlyMap<string, number>> {
+    const sizes = new Map<string, number>();
+    for await (const name of this.folder.keys()) {
+      const file = await this.read(name);
+      if (file !== null) sizes.set(name, file.size);
+    }
+    return sizes;
   }
 
   async read(name: string): Promise<Blob | null> {
     const handle = await this.folder.getFileHandle(name).catch(() => null);
-    return handle === null ? null : handle.getFile();
+    const file = await handle?.getFile().catch(() => null);
+    // A file is empty until it is written for the first time, and stays so if the page is closed before.
+    return file && file.size > 0 ? file : null;
   }
 
   async write(name: string, content: ReadableStream<Uint8Array<ArrayBuffer>>): Promise<void> {
@@ -55,7 +60,7 @@ class Folder implements Place {
       // The file changes when the stream is closed; a stream that fails is aborted.
       await content.pipeTo(await handle.createWritable());
     } catch (error) {
-      if ((await handle.getFile()).size === 0) await this.remove(name);
+      if ((await this.read(name)) === null) await this.remove(name);
       throw error;
     }
   }
@@ -67,14 +72,20 @@ class Folder implements Place {
 
 const FILES = 'files';
 
+/** Files are under their names; the size of each is under a list of its name, to be read without the file. */
 class Database implements Place {
   /** What it writes and reads is in memory. */
   readonly largest = 50e6;
 
   constructor(readonly database: IDBDatabase) {}
 
-  async list(): Promise<readonly string[]> {
-    return (await settled(this.#files('readonly').getAllKeys())) as string[];
+  async sizes(): Promise<ReadonlyMap<string, number>> {
+    const files = this.#files('readonly');
+    const lists = IDBKeyRange.lowerBound([]); // all lists come after all texts
+    const [keys, sizes] = await Promise.all([settled(files.getAllKeys()), settled<number[]>(files.getAll(lists))]);
+    const names = keys.filter((key) => typeof key === 'string');
+    const sized = keys.filter((key) => Array.isArray(key)).map(([name]) => name);
+    return new Map(names.map((name) => [name, sizes[sized.indexOf(name)] ?? 0]));
   }
 
   async read(name: string): Promise<Blob | null> {
@@ -87,12 +98,14 @@ class Database implements Place {
     const bytes = await new Response(content).arrayBuffer();
     const files = this.#files('readwrite');
     files.put(bytes, name);
+    files.put(bytes.byteLength, [name]);
     await completed(files.transaction);
   }
 
   async remove(name: string): Promise<void> {
     const files = this.#files('readwrite');
     files.delete(name);
+    files.delete([name]);
     await completed(files.transaction);
   }
 

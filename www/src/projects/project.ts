@@ -1,7 +1,7 @@
 //! A project: the work on one clip, or on one pair of frames, without the frames. It is gathered from the state, and put back into it when
 //! the same frames are opened again. What was undone in a clip is not part of it.
 
-import { asSaved } from '../correction/edits.js';
+import { NO_EDITS, asSaved } from '../correction/edits.js';
 import { type Kept, keptFrom } from '../state/kept.js';
 import { type FramePair, type Subject, keyOfPair, subjectOf, subjectOfClip, timelineOf } from '../state/pair.js';
 import type { State } from '../state/state.js';
@@ -64,6 +64,26 @@ export function withSaved({ edits, pair, kept, tracked, keptClips }: State, { of
     kept: new Map([...kept].map(([key, one]) => [key, { ...one, edits: savedEdits(one.edits, key) }])),
     tracked: savedClip(tracked),
     keptClips: new Map([...keptClips].map(([fingerprint, one]) => [fingerprint, savedClip(one)])),
+  };
+}
+
+const NOTHING: Tracked['saved'] = { frames: [], locks: new Map(), accepted: new Set(), names: {}, classes: {}, colours: {} };
+
+/** Whether a person did anything with the clip. */
+function hasWork({ past, painted, exact, became, locks, accepted, names, classes, colours }: Tracked): boolean {
+  const counts = [past.length, ...[painted, exact, became, locks, accepted].map(({ size }) => size), ...[names, classes, colours].map((said) => Object.keys(said).length)];
+  return counts.some((count) => count > 0);
+}
+
+/** The state in which nothing that was done with this subject counts as saved. */
+export function withoutSaved({ edits, pair, kept, tracked, keptClips }: State, of: string): Partial<State> {
+  const { saved } = NO_EDITS;
+  const unsavedClip = <T extends Tracked | null>(now: T): T => (now?.clip.fingerprint === of && hasWork(now) ? { ...now, saved: NOTHING } : now);
+  return {
+    edits: subjectOf(pair)?.of === of ? { ...edits, saved } : edits,
+    kept: new Map([...kept].map(([key, one]) => [key, one.subject.of === of ? { ...one, edits: { ...one.edits, saved } } : one])),
+    tracked: unsavedClip(tracked),
+    keptClips: new Map([...keptClips].map(([fingerprint, one]) => [fingerprint, unsavedClip(one)])),
   };
 }
 

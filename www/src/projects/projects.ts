@@ -1,12 +1,12 @@
 //! Keeps the work in this browser while it goes on, and finds it when the same frames are opened again. Only what watches is loaded with
 //! the page.
 
-import { codeOf, sentenceOf } from '../common/errors.js';
+import { codeOf, isStorageFull, sentenceOf } from '../common/errors.js';
 import { loaded } from '../common/loaded.js';
 import { strings } from '../common/strings.js';
 import { NO_EDITS, hasEdits } from '../correction/edits.js';
 import { type FramePair, keyOfPair, subjectOf } from '../state/pair.js';
-import type { Keeping, Refusal, State, Store } from '../state/state.js';
+import { type Keeping, NOTHING_KEPT, type Refusal, type State, type Store } from '../state/state.js';
 import { type SolvedPairs, isCorrecting, isUnsavedClip } from '../state/tracked.js';
 import type { Project } from './project.js';
 import type { Listed } from './shelf.js';
@@ -16,7 +16,7 @@ const SOON = 500;
 const LATER = 10_000;
 
 const OF_EDITS = ['actions', 'done', 'appearances'] as const;
-const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locks', 'accepted', 'solved', 'run', 'range'] as const;
+const OF_CLIP = ['frames', 'spans', 'names', 'classes', 'colours', 'locks', 'accepted', 'exact', 'solved', 'run', 'range'] as const;
 
 type Shelf = typeof import('./shelf.js');
 
@@ -32,6 +32,8 @@ export class Projects {
   readonly #known = new Set<string>();
   /** The files that the frames of each were opened from. */
   readonly #files = new Map<string, readonly File[]>();
+  /** Whether the work on each is kept. That on what is open is in the state. */
+  readonly #keeping = new Map<string, Keeping>();
   /** Those whose frames could not be copied. */
   readonly #without = new Set<string>();
   /** What each looked like last. */
@@ -105,7 +107,8 @@ export class Projects {
     const now = this.#store.get();
     // The edits on screen are replaced too.
     const own = keyOfPair(now.pair) === keyOfPair(pair) ? { edits: NO_EDITS, found: null, result: null } : {};
-    this.#store.set({ ...withProject(now, project, pair), ...own, keeping: this.#kept(project.of) });
+    this.#store.set({ ...withProject(now, project, pair), ...own });
+    this.#keeps(project.of);
     this.#touch(project.of, SOON);
   }
 
@@ -131,11 +134,15 @@ export class Projects {
     return { ...project, thumbnail };
   }
 
-  /** Removes a project that the browser keeps, also what is about to be written of it. */
+  /** Removes a project that the browser keeps, also what is about to be written of it. The work itself stays until the page is left. */
   async forget({ file, header }: Listed): Promise<void> {
     if (header !== null) this.#changed.delete(header.of);
     await this.#written;
-    await (await this.#load()).remove(file);
+    const { remove, withoutSaved } = await this.#load();
+    await remove(file);
+    if (header === null) return;
+    this.#store.set(withoutSaved(this.#store.get(), header.of));
+    this.#tell(header.of, NOTHING_KEPT);
   }
 
   async #load(): Promise<Shelf> {
@@ -143,6 +150,8 @@ export class Projects {
   }
 
   #watch(now: State, before: State): void {
+    const keeping = now.pair === before.pair ? now.keeping : (this.#keeping.get(subjectOf(now.pair)?.of ?? '') ?? NOTHING_KEPT);
+    if (keeping !== now.keeping) this.#store.set({ keeping });
     const edited = now.found !== before.found || now.motionsElsewhere !== before.motionsElsewhere || OF_EDITS.some((part) => now.edits[part] !== before.edits[part]);
     const subject = now.pair === before.pair && edited ? subjectOf(now.pair) : null;
     if (subject !== null && (hasEdits(now.edits) || now.motionsElsewhere !== null)) this.#touch(subject.of, SOON);
@@ -171,7 +180,7 @@ export class Projects {
   /** What can be written: not a clip between two states, whose masks do not belong together. */
   #ready(): string[] {
     const { tracked } = this.#store.get();
-    const between = tracked !== null && (isCorrecting(tracked.run) || (tracked.run.phase === 'working' && tracked.past.length > 0));
+    const between = tracked !== null && (isCorrecting(tracked.run) || (tracked.run.phase === 'working' && tracked.past.length > 0 && tracked.spans.length === 0));
     return [...this.#changed].filter((of) => !between || of !== tracked.clip.fingerprint);
   }
 
@@ -180,53 +189,65 @@ export class Projects {
     this.#due = Infinity;
     if (this.#writing || this.#ready().length === 0) return;
     this.#writing = true;
-    const copied: Promise<void>[] = [];
-    try {
-      const shelf = await this.#load();
-      const { owns, put, savedAt, withSaved } = shelf;
-      for (const of of this.#ready()) {
-        this.#changed.delete(of);
-        const project = await this.#projectOf(of, shelf);
-        if (project === null) continue;
-        if (!(await owns(of, async () => (await savedAt(of)) <= (this.#lookedFor.get(of) ?? '')))) {
-          this.#refuse(strings.projects.elsewhere(project.name), 'open-elsewhere');
-          continue;
-        }
-        await put(project);
-        this.#store.set({ ...withSaved(this.#store.get(), project), keeping: this.#kept(of) });
-        copied.push(this.#keepFrames(project, shelf));
+    const written: Project[] = [];
+    for (const of of this.#ready()) {
+      this.#changed.delete(of);
+      try {
+        const project = await this.#put(of);
+        if (project !== null) written.push(project);
+      } catch (error) {
+        const full = isStorageFull(error);
+        this.#refuse(of, full ? strings.projects.full : strings.projects.refused, full ? 'storage-full' : 'storage-refused');
       }
-    } catch (error) {
-      const full = error instanceof Error && error.name === 'QuotaExceededError';
-      this.#refuse(full ? strings.projects.full : strings.projects.refused, full ? 'storage-full' : 'storage-refused');
-    } finally {
-      this.#writing = false;
     }
+    this.#writing = false;
     const [next] = this.#ready();
     if (next !== undefined) this.#touch(next, SOON);
-    await Promise.all(copied);
+    await Promise.all(written.map((project) => this.#keepFrames(project)));
   }
 
-  #kept(of: string): Keeping {
-    return { is: 'kept', at: Date.now(), without: this.#without.has(of) };
+  /** Writes the project of this subject and returns it; `null` if there is none, or another tab keeps it. */
+  async #put(of: string): Promise<Project | null> {
+    const shelf = await this.#load();
+    const { owns, put, savedAt, withSaved } = shelf;
+    const project = await this.#projectOf(of, shelf);
+    if (project === null) return null;
+    if (!(await owns(of, async () => (await savedAt(of)) <= (this.#lookedFor.get(of) ?? '')))) {
+      this.#refuse(of, strings.projects.elsewhere(project.name), 'open-elsewhere');
+      return null;
+    }
+    await put(project);
+    this.#store.set(withSaved(this.#store.get(), project));
+    this.#keeps(of);
+    return project;
   }
 
   /** Keeps a copy of the frames. A sample needs none. */
-  async #keepFrames({ of, sample }: Project, { putFrames }: Shelf): Promise<void> {
+  async #keepFrames({ of, sample }: Project): Promise<void> {
+    const { putFrames } = await this.#load();
     const files = this.#files.get(of);
     const kept = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
     if (kept === !this.#without.has(of)) return;
     if (kept) this.#without.delete(of);
     else this.#without.add(of);
-    const { keeping } = this.#store.get();
-    if (keeping.is === 'kept') this.#store.set({ keeping: { ...keeping, without: !kept } });
+    const keeping = this.#keeping.get(of);
+    if (keeping?.is === 'kept') this.#tell(of, { ...keeping, without: !kept });
+  }
+
+  #keeps(of: string): void {
+    this.#tell(of, { is: 'kept', at: Date.now(), without: this.#without.has(of) });
   }
 
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
-  #refuse(sentence: string, code: Refusal): void {
-    if (this.#store.get().keeping.is === 'refused') return;
-    this.#store.set({ keeping: { is: 'refused', code } });
+  #refuse(of: string, sentence: string, code: Refusal): void {
+    if (this.#keeping.get(of)?.is === 'refused') return;
+    this.#tell(of, { is: 'refused', code });
     this.#store.say(sentence, code);
+  }
+
+  #tell(of: string, keeping: Keeping): void {
+    this.#keeping.set(of, keeping);
+    if (subjectOf(this.#store.get().pair)?.of === of) this.#store.set({ keeping });
   }
 }
 

@@ -1,5 +1,6 @@
 //! The projects that this browser keeps, each as the file that a person could save. Loaded when there is one to keep or to look for.
 
+import { isStorageFull } from '../common/errors.js';
 import { fingerprintOfText } from '../frames/fingerprints.js';
 import { copies, keepFrames, removeAllFrames, removeFrames } from './copies.js';
 import { type Header, headerOf, projectFromFile, streamOf } from './file.js';
@@ -9,13 +10,14 @@ import type { Project } from './project.js';
 export { framesOf } from './copies.js';
 export { fileOf, projectFromFile } from './file.js';
 export { owns } from './owner.js';
-export { projectFrom, withProject, withSaved } from './project.js';
+export { projectFrom, withProject, withSaved, withoutSaved } from './project.js';
 export { thumbnailOf } from './thumbnail.js';
 
 /** A project in the list. `header` is `null` if the file is damaged. */
 export interface Listed {
   readonly file: string;
   readonly header: Header | null;
+  /** Of the project and the copy of its frames. */
   readonly bytes: number;
   /** Whether there is a copy of its frames. */
   readonly hasFrames: boolean;
@@ -43,7 +45,7 @@ export async function put(project: Project): Promise<void> {
   try {
     await write();
   } catch (error) {
-    if (!(await removeAllFrames().catch(() => false))) throw error;
+    if (!isStorageFull(error) || !(await removeAllFrames().catch(() => false))) throw error;
     await write();
   }
   changed();
@@ -73,16 +75,20 @@ export async function savedAt(of: string): Promise<string> {
 /** The latest first. */
 export async function list(): Promise<Listed[]> {
   const folder = await projects();
-  const copied = await copies().catch(() => new Set());
-  const listed = (await folder.list()).map(async (file): Promise<Listed[]> => {
+  const copied = await copies().catch((): Awaited<ReturnType<typeof copies>> => new Map());
+  const files = [...(await folder.sizes()).keys()];
+  // A copy that was in use when its project was forgotten goes now. Copies are made after projects, and so were looked for before them.
+  for (const name of copied.keys()) if (!files.includes(name)) await removeFrames(name);
+  const listed = files.map(async (file): Promise<Listed[]> => {
     const content = await folder.read(file);
-    return content === null ? [] : [{ file, header: await headerOf(content, file).catch(() => null), bytes: content.size, hasFrames: copied.has(file) }];
+    return content === null ? [] : [{ file, header: await headerOf(content, file).catch(() => null), bytes: content.size + (copied.get(file) ?? 0), hasFrames: copied.has(file) }];
   });
   return (await Promise.all(listed)).flat().sort((one, other) => (other.header?.saved ?? '').localeCompare(one.header?.saved ?? ''));
 }
 
 export async function remove(file: string): Promise<void> {
   await (await projects()).remove(file);
-  await removeFrames(file);
+  // Its frames may be on screen: `list` removes the copy later.
+  await removeFrames(file).catch(() => false);
   changed();
 }

@@ -86,7 +86,7 @@ export interface Question {
   readonly answer: (images: readonly File[] | null) => void;
 }
 
-/** Whether the browser keeps the work. */
+/** Whether the browser keeps the work on what is open. */
 export type Keeping =
   /** It has not had to. */
   | { readonly is: 'nothing' }
@@ -94,6 +94,8 @@ export type Keeping =
   | { readonly is: 'kept'; readonly at: number; readonly without: boolean }
   /** It did not the last time. `code`: why. */
   | { readonly is: 'refused'; readonly code: Refusal };
+
+export const NOTHING_KEPT: Keeping = { is: 'nothing' };
 
 export type Refusal = 'storage-full' | 'storage-refused' | 'open-elsewhere';
 
@@ -216,7 +218,7 @@ export const INITIAL: State = {
   tool: { name: 'look', radius: 8, exact: false, spread: 'both' },
   notice: null,
   question: null,
-  keeping: { is: 'nothing' },
+  keeping: NOTHING_KEPT,
 };
 
 export type Listener = (now: State, before: State) => void;

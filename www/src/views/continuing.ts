@@ -7,6 +7,7 @@ import type { Session } from '../session/session.js';
 import { subjectOf } from '../state/pair.js';
 import type { Store } from '../state/state.js';
 import { element, find } from './markup.js';
+import { showRows } from './rows.js';
 
 type Whole = Listed & { readonly header: NonNullable<Listed['header']> };
 
@@ -27,8 +28,7 @@ export function mountContinuing(root: HTMLElement, store: Store, session: Sessio
     section.hidden = nothing;
     more.hidden = rows.length < 2;
     find(more, 'summary', HTMLElement).textContent = panels.projects.more(rows.length - 1);
-    newest!.replaceChildren(...rows.slice(0, 1));
-    others!.replaceChildren(...rows.slice(1));
+    showRows([[newest!, rows.slice(0, 1)], [others!, rows.slice(1)]]);
   };
   let updated: Promise<void> = Promise.resolve();
   const refresh = (): void => void (updated = updated.then(update));
@@ -63,6 +63,7 @@ function rowOf({ file, header: { name, frames, saved, sample, thumbnail }, hasFr
     else find(document, '#open-pair', HTMLInputElement).click();
   });
   const row = element('li');
+  row.dataset['file'] = file;
   row.append(button);
   return row;
 }

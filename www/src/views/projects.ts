@@ -6,6 +6,7 @@ import { type Listed, list, watch } from '../projects/shelf.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { element, find } from './markup.js';
+import { showRows } from './rows.js';
 import { saveProject } from './save-project.js';
 
 export function mountProjects(panel: HTMLElement, store: Store, session: Session): void {
@@ -15,7 +16,7 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   const summary = find(all, 'summary', HTMLElement);
   const rows = find(all, '#projects', HTMLUListElement);
 
-  const show = ({ keeping }: State): void => void (status.textContent = sentenceFor(keeping));
+  const show = ({ keeping }: State): void => void (status.textContent = panels.projects.keeping(keeping));
 
   let refreshed: Promise<void> = Promise.resolve();
   const refresh = (): Promise<void> => (refreshed = refreshed.then(update));
@@ -24,7 +25,7 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
     const listed = await list().catch((): Listed[] => []);
     all.hidden = listed.length === 0;
     summary.textContent = panels.projects.summary(listed.length);
-    rows.replaceChildren(...listed.map((one) => rowOf(one, () => void forget(one))));
+    showRows([[rows, listed.map((one) => rowOf(one, () => void forget(one)))]]);
   };
 
   const forget = async (listed: Listed): Promise<void> => {
@@ -51,13 +52,9 @@ export function mountProjects(panel: HTMLElement, store: Store, session: Session
   void refresh();
 }
 
-function sentenceFor(keeping: State['keeping']): string {
-  if (keeping.is === 'refused') return panels.projects.notKept;
-  return keeping.is === 'kept' && keeping.without ? panels.projects.without : panels.projects[keeping.is];
-}
-
 function rowOf({ file, header, bytes }: Listed, forget: () => void): HTMLElement {
   const row = element('li');
+  row.dataset['file'] = file;
   const text = element('div');
   const name = header?.name ?? file;
   text.append(element('strong', header === null ? panels.projects.damagedFile : name));

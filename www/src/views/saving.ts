@@ -19,7 +19,7 @@ export function mountSaving(root: HTMLElement, store: Store, session: Session): 
     if (keeping.is === 'nothing') return;
     const [what, where, more] = keeping.is === 'kept' ? panels.projects.savedHere(keeping.at, keeping.without) : panels.projects.notSaved[keeping.code];
     sentence.replaceChildren(what!, element('span', where, 'in-full'), more!);
-    button.title = keeping.is === 'kept' ? (keeping.without ? panels.projects.without : panels.projects.kept) : panels.projects.notKept;
+    button.title = panels.projects.keeping(keeping);
     if (keeping.is === 'kept' && told.textContent === '') told.textContent = panels.projects.firstSaved;
   };
   store.subscribe((now, before) => {
