@@ -320,8 +320,17 @@ describe('frames one after another', () => {
     assert.deepEqual(formats.encodeMotChallenge(labels, known).names, mots.names);
     const archive = unzipSync(formats.encodeCvatMots(labels, known));
     assert.equal(new TextDecoder().decode(archive['default/instances/labels.txt']), 'person\ncar\nbus\n');
-    const many = Array.from({ length: 65 }, (_, k) => `class ${k}`);
-    assert.throws(() => formats.encodeMots(labels, { ...known, classes: many }), { code: 'invalid-input' });
+    // MOTS has numbers for 64: of more, those that objects have are numbered, in the order of the list.
+    const many = [...Array.from({ length: 62 }, (_, k) => `class ${k}`), 'bus', 'car'];
+    const numbers = (classes) => {
+      const { names, gt } = formats.encodeMots(labels, { ...known, classes });
+      const archive = unzipSync(formats.encodeCvatMots(labels, { ...known, classes }));
+      assert.equal(new TextDecoder().decode(archive['default/instances/labels.txt']), names.map((name) => `${name}\n`).join(''));
+      return [names, gt.match(/^1 \d+/gm)];
+    };
+    assert.deepEqual(numbers(many), [many, ['1 64001', '1 63002']]);
+    assert.deepEqual(numbers(['person', ...many]), [['bus', 'car'], ['1 2001', '1 1002']]);
+    assert.deepEqual(numbers(many.with(62, 'person')), [['car', 'bus'], ['1 1001', '1 2002']]);
     assert.throws(() => formats.encodeCoco(image, 4, 2, { classes: ['car', 'car'] }), { code: 'invalid-input' });
   });
 

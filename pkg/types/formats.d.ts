@@ -310,7 +310,7 @@ export function encodeCvatPoints(labels: Uint8Array, width: number, height: numb
  */
 export function encodeCvatMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, Uint8Array>;
 
-/** The text form of MOTS: masks as COCO run lengths, ids 1000 · class + label. At most 64 classes. */
+/** The text form of MOTS: masks as COCO run lengths, ids 1000 · class + label. At most 64 classes: of a longer list those that labels have. */
 export function encodeMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, MotFiles>;
 
 /** MOTChallenge boxes. Frames, ids and corners count from 1, as that benchmark has it. */

@@ -7,7 +7,7 @@ import { unzipSync } from 'fflate';
 import { decodeImage } from 'veronese/codecs';
 import { davisPalette } from 'veronese';
 
-import { axe, clipDone, clipFrames, clipInNode, differences, dropOn, expect, openExport, openSegmented, pixelsOfPicture, test } from './support.js';
+import { axe, clipDone, clipFrames, clipInNode, differences, dropOn, expect, openClip, openExport, openSegmented, pixelsOfPicture, segmentClip, test } from './support.js';
 
 async function savedAs(page: Page, format: string): Promise<{ name: string; bytes: Buffer }> {
   await openExport(page);
@@ -86,21 +86,31 @@ test('a clip is exported in the formats of annotation tools, with the objects th
 });
 
 test('objects have classes of a list: given by keyboard, undone, exported with the numbers of the list, and imported again', async ({ page }) => {
-  await openSegmented(page, await clipFrames(4));
+  await openClip(page, await clipFrames(4));
   const notice = page.locator('#notice-sentence');
   const file = (name: string, content: string) => ({ name, mimeType: 'text/plain', buffer: Buffer.from(content) });
   await dropOn(page, [file('labels.json', JSON.stringify([{ name: 'person', color: '#ff0000' }, { name: 'ball' }]))]);
   await expect(notice).toHaveText('2 classes added to the list.');
+  await segmentClip(page);
+  // It is kept for the next clip, though it was read before there was a list of objects.
+  await expect.poll(() => page.evaluate(() => localStorage.getItem('veronese-classes'))).toBe('["person","ball"]');
   const categories = [{ id: 8, name: 'box' }, { id: 3, name: 'ball' }];
   await dropOn(page, [file('categories.json', JSON.stringify({ images: [], annotations: [], categories }))]);
   await expect(notice).toHaveText('One class added to the list.');
-  // What is no list of classes says so, and adds nothing.
+  // The dialogue says what is no list of classes, and adds nothing.
   const list = page.locator('#class-list');
+  const told = list.getByRole('status');
+  await page.keyboard.press('1');
   await page.getByRole('button', { name: 'Classes…' }).click();
   expect(await axe(page)).toEqual([]);
+  // Keys are not about the object behind it.
+  await list.getByRole('button', { name: 'Done' }).focus();
+  await page.keyboard.press('Delete');
+  await expect(page.locator('#undo')).toBeDisabled();
   await list.locator('input').setInputFiles([file('label.txt', '0 0.25 0.5 0.75 0.5\n')]);
-  await expect(notice).toHaveText(/^“label\.txt” is no list of classes/);
+  await expect(told).toHaveText(/^“label\.txt” is no list of classes/);
   await list.locator('input').setInputFiles([file('names.txt', '\ufeffperson\r\ntree\r\n')]);
+  await expect(told).toHaveText('One class added to the list.');
   const lines = list.getByRole('textbox', { name: 'Classes' });
   await expect(lines).toHaveValue('person\nball\nbox\ntree');
   await lines.fill('person\nbox\nball\n\nbox\n');

@@ -142,6 +142,35 @@ test('undo takes back the stroke that waits, and the one that spreads goes on', 
   await expect(page.locator('#undo')).toBeDisabled();
 });
 
+test('a colour that is looked for in the palette while a correction spreads is one step after it', async ({ page }) => {
+  await openSegmented(page, await clipFrames(16));
+  await goTo(page, 3);
+  const colour = page.getByLabel('Colour of Object 1');
+  const first = await colour.inputValue();
+  await selectNew(page);
+  await colour.evaluate((field: HTMLInputElement) => {
+    const observer = new MutationObserver(([change]) => {
+      if (change!.target.textContent === '') return;
+      observer.disconnect();
+      for (const value of ['#101010', '#202020', '#303030']) {
+        field.value = value;
+        field.dispatchEvent(new Event('input', { bubbles: true }));
+      }
+      field.dispatchEvent(new Event('change', { bubbles: true }));
+    });
+    observer.observe(document.querySelector('#clip-detail')!, { childList: true, characterData: true, subtree: true });
+  });
+  await drag(page, ...OVER_DISC);
+  await expect(colour).toHaveValue('#303030');
+  await clipDone(page);
+  const undo = page.locator('#undo');
+  await undo.click();
+  await expect(colour).toHaveValue(first);
+  await expect(undo).toBeEnabled();
+  await undo.click();
+  await expect(undo).toBeDisabled();
+});
+
 test('corrections of others leave objects with a name or a lock as they are', async ({ page }) => {
   const files = await clipFrames(8);
   const found = (await clipInNode(files)).map((labels) => labels.map((label) => Number(label === 1)));

@@ -14,8 +14,8 @@ const LABELS = 'default/instances/labels.txt';
 const EPOCH = { mtime: new Date(1980, 0, 1) };
 
 export function encodeCvatMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, Uint8Array> {
-  return gathered(frames, meta, ({ classes, tracked }): Gathering<Uint8Array> => {
-    const ids = new MotsIds(classes);
+  return gathered(frames, meta, (clip): Gathering<Uint8Array> => {
+    const ids = new MotsIds(clip);
     // Where labels are no objects, each is a class of its own and its number is that of its track as well.
     const tracks = new Numbering();
     const taken = new Set<string>();
@@ -24,7 +24,7 @@ export function encodeCvatMots<Frames extends LabelFrames>(frames: Frames, meta?
       add({ image, width, height, masks }) {
         const samples = new Uint8Array(width * height * 2);
         for (const mask of masks) {
-          const value = ids.of(mask.name, tracked ? mask.label : tracks.of(String(mask.label)));
+          const value = ids.of(mask.name, clip.tracked ? mask.label : tracks.of(String(mask.label)));
           mask.pixels.forEach((set, at) => {
             if (!set) return;
             const pixel = (mask.top + Math.floor(at / mask.width)) * width + mask.left + (at % mask.width);

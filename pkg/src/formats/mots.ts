@@ -1,9 +1,10 @@
 // MOTS in text: a line for each mask, "frame id class height width run-lengths"; frames count from 1.
 
-import type { ClipMeta, Encoded, LabelFrames, MotFiles } from '../../types/formats.js';
+import type { ClipMeta, Encoded, FormatMeta, LabelFrames, MotFiles } from '../../types/formats.js';
 import { VeroneseError } from '../common/errors.js';
 import { cocoRle } from './coco-rle.js';
 import { gathered, type Gathering, idOf, Numbering } from './frames.js';
+import { nameOf } from './input.js';
 import { oneLine, seqinfo } from './mot-challenge.js';
 
 const CLASS = 1000;
@@ -14,8 +15,12 @@ const MOST = 64;
 export class MotsIds {
   readonly #classes: Numbering;
 
-  constructor(classes: readonly string[] = []) {
-    this.#classes = new Numbering(classes.map(oneLine));
+  /** Of a list that leaves no room for the classes of all objects, only those that objects have are numbered. */
+  constructor({ classes = [], names = {}, labels = Object.keys(names).map(Number) }: FormatMeta) {
+    const used = new Set(labels.map((label) => oneLine(nameOf(label, { names }))));
+    const listed = classes.map(oneLine);
+    const fits = new Set([...listed, ...used]).size <= MOST;
+    this.#classes = new Numbering(fits ? listed : listed.filter((name) => used.has(name)));
   }
 
   of(name: string, label: number): number {
@@ -32,7 +37,7 @@ export class MotsIds {
 
 export function encodeMots<Frames extends LabelFrames>(frames: Frames, meta?: ClipMeta): Encoded<Frames, MotFiles> {
   return gathered(frames, meta, (clip): Gathering<MotFiles> => {
-    const ids = new MotsIds(clip.classes);
+    const ids = new MotsIds(clip);
     const lines: string[] = [];
     const images: string[] = [];
     return {

@@ -21,19 +21,19 @@ export function namesIn(text: string): string[] {
 }
 
 /**
- * Adds the classes of files to the list: text with one a line, labels of CVAT, categories of COCO. Returns whether all are such lists;
- * otherwise nothing is added. `chosen`: as lists of classes, so that masks beside them do not matter, and what is none is an error.
+ * Adds the classes of files to the list: text with one a line, labels of CVAT, categories of COCO. Returns what to say
+ * about it; `null` unless all are such lists, and nothing is added. `chosen`: as lists of classes, so that masks beside them do not matter,
+ * and what is none is an error.
  */
-export async function importClasses(files: readonly File[], store: Store, chosen = false): Promise<boolean> {
+export async function importClasses(files: readonly File[], store: Store, chosen = false): Promise<string | null> {
   const lists = await Promise.all(files.map(async (file) => classesIn(file.name, await file.text(), chosen)));
   const at = lists.indexOf(null);
   if (at >= 0 && chosen) throw new PageError('no-classes', texts.none(files[at]!.name));
-  if (at >= 0 || lists.length === 0) return false;
+  if (at >= 0 || lists.length === 0) return null;
   const { classList } = store.get();
   const all = [...new Set([...classList, ...lists.flatMap((names) => names ?? [])])];
   store.set({ classList: all });
-  store.say(texts.added(all.length - classList.length));
-  return true;
+  return texts.added(all.length - classList.length);
 }
 
 /** `null` for a file that is no list of classes. */
@@ -75,12 +75,15 @@ export function keepClasses(store: Store): void {
   } catch {
     // A browser that keeps nothing begins without a list.
   }
-  store.subscribe(({ classList }, before) => {
-    if (classList === before.classList) return;
+  const keep = (): void => {
     try {
-      localStorage.setItem(KEY, JSON.stringify(classList));
+      localStorage.setItem(KEY, JSON.stringify(store.get().classList));
     } catch {
       // The list is in the project still.
     }
+  };
+  keep(); // what was listed before this was loaded
+  store.subscribe(({ classList }, before) => {
+    if (classList !== before.classList) keep();
   });
 }

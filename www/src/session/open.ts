@@ -64,7 +64,8 @@ export class Open {
     try {
       const given = [...(await files)];
       const maybeList = slot === null && given.every(({ name }) => /\.(json|txt)$/i.test(name));
-      if (maybeList && (await (await loaded(import('./class-list.js'))).importClasses(given, this.#store))) return;
+      const added = maybeList ? await (await loaded(import('./class-list.js'))).importClasses(given, this.#store) : null;
+      if (added !== null) return this.#store.say(added);
       const isOfClip = slot === null && this.#store.get().tracked !== null;
       const maybe = isOfClip && given.some(({ name }) => /\.(json|png|txt|xml|zip)$/i.test(name));
       const areMasks = maybe && (await (await importing()).areMasks(given, this.#store.get()));

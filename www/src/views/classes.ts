@@ -1,10 +1,10 @@
 //! Classes of objects: the field in each row, what it offers, and the dialogue with the list. Loaded with the first list of objects.
 
+import { sentenceOf } from '../common/errors.js';
 import { nameOf } from '../common/naming.js';
 import { panels } from '../common/strings-of-panels.js';
 import { keyOf } from '../result/masks.js';
 import { importClasses, keepClasses, namesIn } from '../session/class-list.js';
-import { report } from '../session/failures.js';
 import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { find } from './markup.js';
@@ -15,6 +15,7 @@ export function mountClasses(root: ParentNode, store: Store, session: Session): 
   const dialog = find(root, '#class-list', HTMLDialogElement);
   const text = find(dialog, 'textarea', HTMLTextAreaElement);
   const file = find(dialog, 'input', HTMLInputElement);
+  const told = find(dialog, '[role=status]', HTMLElement);
   keepClasses(store);
 
   const connected = new WeakSet<HTMLInputElement>();
@@ -43,17 +44,17 @@ export function mountClasses(root: ParentNode, store: Store, session: Session): 
   file.addEventListener('change', async () => {
     const files = [...(file.files ?? [])];
     file.value = ''; // so that choosing the same file again is a change
-    try {
-      await importClasses(files, store, true);
-    } catch (error) {
-      report(store, error);
-    }
+    // Here, because what is behind the dialogue is not read out.
+    told.textContent = await importClasses(files, store, true).catch(sentenceOf);
   });
   find(dialog, 'button', HTMLButtonElement).addEventListener('click', () => dialog.close());
   dialog.addEventListener('click', (event) => {
     if (event.target === dialog) dialog.close(); // a click on the backdrop
   });
-  dialog.addEventListener('close', take);
+  dialog.addEventListener('close', () => {
+    take();
+    told.textContent = '';
+  });
 }
 
 /** Takes what is typed or chosen in a field for a class. */

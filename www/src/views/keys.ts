@@ -33,7 +33,8 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
   });
 
   document.addEventListener('keydown', (event) => {
-    if (event.defaultPrevented || event.altKey || dialog.open || takesText(event.target)) return;
+    // What lies behind a dialogue stays as it is.
+    if (event.defaultPrevented || event.altKey || document.querySelector('dialog[open]') !== null || takesText(event.target)) return;
     const name = event.key.toLowerCase();
     const command = event.ctrlKey || event.metaKey;
     if (!command && !single.checked && name !== 'escape') return;

@@ -79,7 +79,12 @@ export class Carrying {
   #note(said: Noted | Drawn, cause: DoneCause, goesOn: boolean): void {
     const { tracked } = this.#store.get();
     if (tracked === null) return;
-    if (this.#corrections !== null) return void this.correct(said);
+    if (this.#corrections !== null) {
+      const { waiting } = this.#corrections;
+      const last = goesOn ? waiting.findLastIndex((one) => kindOf(one) === kindOf(said)) : -1;
+      if (last >= 0) waiting.splice(last, 1);
+      return void this.correct(said);
+    }
     const after = withSaid(tracked, said);
     if (!goesOn && tracked.spans.length > 0) this.#store.clip({ past: [...tracked.past, versionOf(tracked)], future: [] });
     this.#shown.version(after, tracked.run.phase === 'working' ? tracked.run : { phase: 'done', cause, changed: changedIn(after, tracked) });
@@ -182,6 +187,11 @@ export class Carrying {
       this.#shown.version(waiting.reduce(withSaid, corrections.now), { ...CARRYING, labelled: changed.size });
     };
   }
+}
+
+/** What notes are about; `null` for what is said of masks. */
+function kindOf(said: Said): string | null {
+  return 'pointed' in said || 'painted' in said || 'edits' in said ? null : Object.keys(said.notes).join();
 }
 
 /** Number of frames that are others than before. */
