@@ -34,8 +34,6 @@ export class Projects {
   readonly #files = new Map<string, readonly File[]>();
   /** Whether the work on each is kept. That on what is open is in the state. */
   readonly #keeping = new Map<string, Keeping>();
-  /** Those whose frames could not be copied. */
-  readonly #without = new Set<string>();
   /** What each looked like last. */
   readonly #thumbnails = new Map<string, string>();
   /** When the project of each was looked for, as an ISO 8601 date. What is saved later is another tab's. */
@@ -227,15 +225,13 @@ export class Projects {
     const { putFrames } = await this.#load();
     const files = this.#files.get(of);
     const kept = sample !== undefined || (files !== undefined && (await putFrames(of, files)));
-    if (kept === !this.#without.has(of)) return;
-    if (kept) this.#without.delete(of);
-    else this.#without.add(of);
     const keeping = this.#keeping.get(of);
-    if (keeping?.is === 'kept') this.#tell(of, { ...keeping, without: !kept });
+    if (keeping?.is === 'kept' && keeping.without === kept) this.#tell(of, { ...keeping, without: !kept });
   }
 
   #keeps(of: string): void {
-    this.#tell(of, { is: 'kept', at: Date.now(), without: this.#without.has(of) });
+    const before = this.#keeping.get(of);
+    this.#tell(of, { is: 'kept', at: Date.now(), without: before?.is === 'kept' && before.without });
   }
 
   /** Nothing is lost: the work is open still, and leaving asks. The next change tries again. */
