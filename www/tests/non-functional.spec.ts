@@ -85,7 +85,7 @@ test('the page loads what it needs: scripts within their size budgets, none for 
   // The host page has scripts of its own. Mediabunny is `reader` and, with what writes videos, `video-file`.
   const files = readdirSync(join(DIST, 'assets')).filter((name) => name.endsWith('.js') && !/^(embed|element|reader|video-file)-/.test(name));
   const sizeOf = (names: readonly string[]): number => names.reduce((sum, name) => sum + gzipSync(readFileSync(join(DIST, 'assets', name)), { level: 9 }).length, 0);
-  expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(71 * 1024);
+  expect(sizeOf(files.filter((name) => asked.has(name)))).toBeLessThanOrEqual(72 * 1024);
   // What is loaded when it is used; what reads masks of annotation tools is needed by few, what reads masks given to calls by none here.
   const later = files.filter((name) => !asked.has(name));
   const reading = later.filter((name) => /^(importing|annotations|indexed-png|given-masks)-/.test(name));
