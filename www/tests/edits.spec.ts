@@ -33,7 +33,9 @@ async function drawAtOnce(page: Page, lines: readonly (readonly [Place, Place])[
 /** Selects the brush, and a mask by its position in the list. */
 async function brush(page: Page, row: number): Promise<void> {
   await page.locator('#tools [value=brush]').check();
-  await page.locator('#motions > li').nth(row).locator('.motion-words').click();
+  const chosen = page.locator('#motions > li').nth(row);
+  await chosen.locator('.motion-words').click();
+  await expect(chosen).toHaveClass(/selected/);
 }
 
 const strokes = (page: Page) => page.locator('#strokes g path');
