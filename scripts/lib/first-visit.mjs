@@ -1,7 +1,7 @@
 // What a first visitor waits for: the page is opened anew with nothing kept, until its clip is found.
 
 /** How often it is opened. */
-const VISITS = 5;
+const VISITS = 3;
 
 /** Medians over visits, milliseconds since the page was asked for: the module is there, masks are first drawn, the clip is found; and the longest task. */
 export async function firstVisits(browser, address) {
