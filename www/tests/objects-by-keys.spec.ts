@@ -37,6 +37,12 @@ test('objects are selected, locked and deleted, and corrected frames are found',
   await page.keyboard.press('Delete');
   await expect(rows).toHaveCount(2);
   await clipDone(page);
+  // The one lane that is left is beside its name, in the upper of the two that have room.
+  const halves = await page.locator('#lanes').evaluate((canvas: HTMLCanvasElement) => {
+    const half = Math.floor(canvas.height / 2);
+    return [0, half].map((top) => canvas.getContext('2d')!.getImageData(0, top, canvas.width, half).data.some((value) => value > 0));
+  });
+  expect(halves).toEqual([true, false]);
   await page.keyboard.press('Control+z');
   await expect(rows).toHaveCount(3);
 });

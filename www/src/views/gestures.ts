@@ -8,7 +8,7 @@ import type { Session } from '../session/session.js';
 import type { State, Store } from '../state/state.js';
 import { Peek } from './blink.js';
 import type { LateBrush } from './late-brush.js';
-import { takesText } from './markup.js';
+import { isDialogueOpen, takesText } from './markup.js';
 import { changeRadius } from './tools.js';
 import type { Zoom } from './zoom.js';
 
@@ -111,7 +111,7 @@ export function mountGestures(layers: HTMLElement, store: Store, session: Sessio
   document.addEventListener('keydown', (event) => {
     const { key, target } = event;
     // Wherever the focus is, these are first about what is being drawn.
-    const takesBack = brush.now?.painting && (key === 'Escape' || key === 'Backspace') && !takesText(target);
+    const takesBack = brush.now?.painting && !isDialogueOpen() && (key === 'Escape' || key === 'Backspace') && !takesText(target);
     const plain = !event.ctrlKey && !event.metaKey && !event.altKey;
     if (plain && (target === layers || takesBack) && brush.now?.key(event)) event.preventDefault();
   });

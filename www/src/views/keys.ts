@@ -5,7 +5,7 @@ import { strings } from '../common/strings.js';
 import type { Session } from '../session/session.js';
 import type { Store } from '../state/state.js';
 import { Peek } from './blink.js';
-import { find, takesArrows, takesText } from './markup.js';
+import { find, isDialogueOpen, takesArrows, takesText } from './markup.js';
 import type { Key } from './shortcuts.js';
 
 export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: Store, session: Session, keys: readonly Key[]): void {
@@ -33,8 +33,7 @@ export function mountKeys(dialog: HTMLDialogElement, open: HTMLElement, store: S
   });
 
   document.addEventListener('keydown', (event) => {
-    // What lies behind a dialogue stays as it is.
-    if (event.defaultPrevented || event.altKey || document.querySelector('dialog[open]') !== null || takesText(event.target)) return;
+    if (event.defaultPrevented || event.altKey || isDialogueOpen() || takesText(event.target)) return;
     const name = event.key.toLowerCase();
     const command = event.ctrlKey || event.metaKey;
     if (!command && !single.checked && name !== 'escape') return;

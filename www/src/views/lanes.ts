@@ -74,7 +74,7 @@ function draw(canvas: HTMLCanvasElement, tracked: Tracked, lives: readonly Life[
   canvas.height = Math.max(1, Math.round(canvas.clientHeight * dense));
   const context = contextOf(canvas);
   const frames = shownFrames(tracked);
-  const [column, row] = [canvas.width / frames.length, canvas.height / Math.max(1, lives.length)];
+  const [column, row] = [canvas.width / frames.length, canvas.height / Math.max(LEAST_LANES, lives.length)];
   const places = new Map(lives.map(({ id }, k) => [id, k]));
   frames.forEach((frame, index) => {
     const [left, right] = [Math.floor(index * column), Math.floor((index + 1) * column)];

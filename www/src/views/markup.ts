@@ -43,6 +43,11 @@ export function takesArrows(target: EventTarget | null): boolean {
   return takesText(target) || (target instanceof HTMLElement && target.matches('input[type=radio], input[type=range], summary, [role=slider]'));
 }
 
+/** Whether a dialogue is open: what lies behind it stays as it is. */
+export function isDialogueOpen(): boolean {
+  return document.querySelector('dialog[open]') !== null;
+}
+
 /** Whether the user prefers reduced motion. */
 export function prefersStillness(): boolean {
   return matchMedia('(prefers-reduced-motion: reduce)').matches;

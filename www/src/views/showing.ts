@@ -28,24 +28,23 @@ export function mountShowing(root: Window, store: Store, session: Session, { sta
     }
     if (!touched) await session.frames.goTo(start);
   };
-  let going = Promise.resolve();
-  let isGoing = false;
+  /** On the way to the frame that was found last. */
+  let going: Promise<void> | null = null;
   const follow = async (index: number): Promise<void> => {
-    isGoing = true;
     session.shown.kind('objects');
     await session.frames.goTo(index);
-    isGoing = false;
+    going = null;
   };
   const leave = store.subscribe(({ tracked, look, result }, before) => {
     if (tracked === null) return;
     const { previews, run } = tracked;
-    if (previews !== before.tracked?.previews && run.phase === 'working' && result !== null && !isGoing) {
+    if (previews !== before.tracked?.previews && run.phase === 'working' && result !== null && going === null) {
       const newest = previews.findLastIndex((frame) => frame !== null);
       // The masks of the first pair stay until there is something to see.
       if (newest >= 0 && (look.kind === 'objects' || previews[newest]!.objects.length > 0)) going = follow(newest);
     }
     if (run.phase !== 'done') return;
     leave();
-    if (run.cause === 'found') void going.then(play);
+    if (run.cause === 'found') void Promise.resolve(going).then(play);
   });
 }
