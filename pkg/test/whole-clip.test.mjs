@@ -5,7 +5,6 @@ import { describe, test } from 'node:test';
 import { Worker } from 'node:worker_threads';
 import { segmentClip, Segmenter, SegmenterPool, VeroneseError } from 'veronese';
 import { frame } from './support/frames.mjs';
-import { failure } from './support/shapes.mjs';
 
 const COUNT = 7;
 const SIZE = { width: 96, height: 72 };
@@ -39,13 +38,15 @@ async function all(clip) {
   return frames;
 }
 
-/** The indices that a clip returns before it fails, and its error. */
+/** The indices that a clip returns before it fails, if it does, and its error. */
 async function until(clip) {
   const given = [];
-  const error = await failure((async () => {
+  try {
     for await (const { index } of clip) given.push(index);
-  })());
-  return { given, error };
+  } catch (error) {
+    return { given, error };
+  }
+  return { given, error: undefined };
 }
 
 /** The frames of a clip, its tracks, its state, and the stages it went through. */
@@ -67,13 +68,18 @@ const idsOf = (frames) => frames.map(({ objects }) => objects.map(({ id }) => id
 const whole = await outcome(segmentClip, readable());
 const corrected = await outcome(segmentClip, readable(), { corrections: [{ frame: 3, labels: mask(9, 0) }] });
 
-/** Both ways to segment a clip. */
+/** All ways to segment a clip. */
 const WAYS = {
   directly: () => segmentClip,
   'in a worker': (t) => {
     const segmenter = new Segmenter();
     t.after(() => segmenter.close());
     return (...args) => segmenter.segmentClip(...args);
+  },
+  'in several workers': (t) => {
+    const pool = new SegmenterPool({ jobs: 3 });
+    t.after(() => pool.close());
+    return (...args) => pool.segmentClip(...args);
   },
 };
 
@@ -208,13 +214,15 @@ for (const [way, make] of Object.entries(WAYS)) {
         if (index === 3) throw MINE;
       };
       assert.deepEqual(await until(segment(readable(), { ...FAST, onPairs })), { given: [], error: MINE });
-      assert.deepEqual([...kept.keys()], [0, 1, 2, 3]);
+      // Several workers may have come further.
+      assert.deepEqual([...kept.keys()].sort().slice(0, 4), [0, 1, 2, 3]);
+      for (const index of ALL.slice(4)) kept.delete(index);
       kept.set(1, kept.get(1).slice(0, 40));
       kept.set(2, new Uint8Array(3));
       const solved = [];
       const options = { knownPairs: async (index) => kept.get(index), onPairs: (index) => void solved.push(index) };
       const { frames, tracks, state } = await outcome(segment, readable(), options);
-      assert.deepEqual(solved, [1, 2, 4, 5, 6], 'damaged ones are solved again');
+      assert.deepEqual(solved.sort(), [1, 2, 4, 5, 6], 'damaged ones are solved again');
       assert.deepEqual({ frames, tracks, state }, { frames: whole.frames, tracks: whole.tracks, state: whole.state });
       assert.deepEqual(kept.get(0).length > 0, true, 'the bytes stay the caller\'s');
       const unfit = await until(segment(readable(), { ...FAST, knownPairs: () => 'pairs' }));
@@ -473,6 +481,66 @@ describe('clips', () => {
     assert.equal((await until(dying)).error.code, 'worker-failed');
     assert.deepEqual(await all(segmenter.segmentClip(readable(), FAST)), whole.frames);
     assert.equal(workers.length, 2);
+  });
+
+  test('are the same to the bit with any number of workers, whichever of their pairs are known', async (t) => {
+    const count = 21;
+    const moving = Array.from({ length: count }, (_, index) => frame(index / 2, SIZE));
+    const pairs = new Map();
+    const alone = await outcome(segmentClip, { length: count, read: (index) => moving[index] }, { onPairs: (index, bytes) => void pairs.set(index, bytes) });
+    for (const jobs of [2, 3, 8]) {
+      const pool = new SegmenterPool({ jobs });
+      t.after(() => pool.close());
+      for (const known of [[], [1, 2, 3, 9, 14, 20]]) {
+        const [solved, previews] = [[], []];
+        const { frames, tracks, state, stages } = await outcome((...args) => pool.segmentClip(...args), { length: count, read: async (index) => moving[index] }, {
+          knownPairs: (index) => (known.includes(index) ? pairs.get(index) : undefined),
+          onPairs: (index, bytes) => {
+            solved.push(index);
+            assert.deepEqual(bytes, pairs.get(index), `pairs of frame ${index}`);
+          },
+          onPreview: ({ index }) => void previews.push(index),
+        });
+        assert.deepEqual({ frames, tracks, state }, { frames: alone.frames, tracks: alone.tracks, state: alone.state }, `${jobs} workers`);
+        assert.deepEqual(stages, alone.stages);
+        assert.deepEqual(previews, stages.pairs.slice(0, -1), 'in their order');
+        assert.deepEqual(solved.sort((one, other) => one - other), stages.pairs.filter((index) => !known.includes(index)));
+      }
+    }
+  });
+
+  test('of a pool outlive a worker that only helps', async (t) => {
+    const outcomeWithout = (number) => {
+      const workers = [];
+      const worker = () => {
+        workers.push(new Worker(new URL('../dist/worker-node.js', import.meta.url)));
+        return workers.at(-1);
+      };
+      const pool = new SegmenterPool({ jobs: 3, worker });
+      t.after(() => pool.close());
+      let ended = false;
+      const onPairs = async () => {
+        if (ended || workers.length <= number) return;
+        ended = true;
+        await workers[number].terminate();
+      };
+      return until(pool.segmentClip(readable(), { ...FAST, onPairs })).finally(() => assert.equal(ended, true));
+    };
+    assert.deepEqual((await outcomeWithout(2)), { given: ALL, error: undefined });
+    // The first worker has the clip.
+    assert.equal((await outcomeWithout(0)).error.code, 'worker-failed');
+  });
+
+  test('of a pool leave its other calls their turn', async (t) => {
+    const pool = new SegmenterPool({ jobs: 2 });
+    t.after(() => pool.close());
+    const order = [];
+    const clip = all(pool.segmentClip(readable(), { ...FAST, onPairs: (index) => void order.push(index) }));
+    const pair = await pool.segmentPair(list[0], list[1], FAST);
+    order.push('pair');
+    assert.equal(pair.labels.length, PIXELS);
+    assert.deepEqual(await clip, whole.frames);
+    assert.ok(order.indexOf('pair') < order.length - 1, String(order));
   });
 
   test('of a pool run side by side', async (t) => {

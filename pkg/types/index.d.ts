@@ -339,7 +339,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   onChange?: ((frame: number, segmented: () => Promise<ClipFrame>) => void | Promise<void>) | undefined;
   /**
    * Called with what the pairs of each frame have told, nearly all the work, as bytes. Kept and handed back by `knownPairs` they let a run
-   * that was interrupted continue with the same results.
+   * that was interrupted continue with the same results. Several workers solve frames in any order; calls may then overlap.
    */
   onPairs?: ((index: number, pairs: Uint8Array) => void | Promise<void>) | undefined;
   /**
@@ -628,6 +628,11 @@ export class SegmenterPool extends Segmenter {
   /** Throws code `invalid-option`. */
   constructor(options?: PoolOptions);
   readonly jobs: number;
+  /**
+   * As {@link Segmenter.segmentClip}. One worker keeps the clip; the pairs of a whole clip with `lookAhead: 'all'` are solved by all
+   * workers that have nothing else to do, a few frames ahead. The results are the same to the bit with any number of workers.
+   */
+  segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
   /**
    * Segments many pairs and yields their outcomes in order. At most 2·`jobs` pairs are running or waiting to be fetched, so an async
    * generator that reads frames runs no faster than the workers. A failed pair yields an outcome with `error`, and the iteration

@@ -80,8 +80,11 @@ export function segmenters(host: Host) {
 
     segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
       return clipOf(frames, options, async (signal) => {
-        const claim = await this.#pool.claim(signal);
-        return { ...claim, perform: claim.run };
+        const claim = async (signal?: AbortSignal) => {
+          const { run, ...rest } = await this.#pool.claim(signal);
+          return { ...rest, perform: run };
+        };
+        return { ...(await claim(signal)), helpers: { count: this.#pool.size - 1, claim } };
       });
     }
 

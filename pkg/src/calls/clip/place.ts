@@ -10,6 +10,14 @@ export interface Place {
   release: () => void;
   /** Says whether the clip waits for its reader, if others may wait for the place. */
   pause?: (paused: boolean) => void;
+  /** Other places where a part of the work can be done. */
+  helpers?: Helpers;
+}
+
+export interface Helpers {
+  /** How many there may be. */
+  count: number;
+  claim: (signal: AbortSignal) => Promise<Place>;
 }
 
 /** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
@@ -19,12 +27,25 @@ export class PlacedClip {
   readonly #place: Place;
   readonly #signal: AbortSignal | undefined;
   readonly #clip = clips++;
+  /** How many clips hold the place. */
+  readonly #holders: { count: number };
   /** Whether there is something to free. */
   #open = false;
 
-  constructor(place: Place, signal: AbortSignal | undefined) {
+  constructor(place: Place, signal: AbortSignal | undefined, holders = { count: 0 }) {
     this.#place = place;
     this.#signal = signal;
+    this.#holders = holders;
+    holders.count += 1;
+  }
+
+  get helpers(): Helpers | undefined {
+    return this.#place.helpers;
+  }
+
+  /** Another clip in the same place, which is released when all have ended. */
+  beside(signal: AbortSignal): PlacedClip {
+    return new PlacedClip(this.#place, signal, this.#holders);
   }
 
   async begin(whole: boolean, settings: Settings): Promise<void> {
@@ -56,7 +77,10 @@ export class PlacedClip {
 
   /** Frees what the clip holds. Not awaited: if it fails, the clip is gone already. */
   end(): void {
-    const { perform, release } = this.#place;
+    const { perform } = this.#place;
+    const release = () => {
+      if (--this.#holders.count === 0) this.#place.release();
+    };
     if (this.#open) void perform({ call: 'endClip', clip: this.#clip }, {}).catch(() => undefined).finally(release);
     else release();
   }

@@ -9,6 +9,7 @@ import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Said, together } from './said.js';
+import { type Looked, SharedPairs } from './shared-pairs.js';
 import type { Told } from './tracks.js';
 
 /** What is asked, with masks that are checked as well. */
@@ -43,26 +44,37 @@ async function masksOf({ masks, source }: Asked): Promise<Said[]> {
   return checkedMasks(masks, source.length as number);
 }
 
-/** Solves the pairs that are not known. */
+/** Solves the pairs that are not known. Without a look-ahead, who solves them does not matter. */
 async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<ClipSummary> {
-  const { read, length: of } = task.source as Whole;
-  let index = 0;
-  for await (const frame of frames.each(reads(read, upTo(of)))) {
-    if (index === 0) checkSizes(task, frame);
-    task.onProgress?.({ frame: index, of, stage: 'pairs' });
-    const known = await clip.wait(task.knownPairs?.(index));
-    const bytes = known === undefined ? undefined : (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
-    const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(bytes && { known: bytes }) });
-    frames.ahead();
-    const pairs = await step;
-    if (pairs) await clip.wait(task.onPairs?.(index, pairs));
-    if (task.onPreview) {
-      const preview = await clip.step<ClipFrame | undefined>({ call: 'previewClip' });
-      if (preview) await clip.wait(task.onPreview(preview));
-    }
-    index += 1;
+  const onPairs = (index: number, pairs: Uint8Array) => clip.wait(task.onPairs?.(index, pairs));
+  const { signal, settings } = task;
+  const { helpers } = clip;
+  const shared = helpers && helpers.count > 0 && settings['lookAhead'] === 'all' ? new SharedPairs(clip, helpers, settings) : undefined;
+  const all = looked(clip, frames, task);
+  for await (const { index, frame, pairs: known } of shared ? shared.solved(all, { signal, onPairs }) : all) {
+    task.onProgress?.({ frame: index, of: task.source.length, stage: 'pairs' });
+    const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(known && { known }) });
+    const seen = task.onPreview ? clip.step<ClipFrame | undefined>({ call: 'previewClip' }) : undefined;
+    (shared ?? frames).ahead();
+    const [pairs, preview] = await Promise.all([step, seen]);
+    if (pairs) await onPairs(index, pairs);
+    if (preview) await clip.wait(task.onPreview?.(preview));
+    shared?.taken();
   }
   return clip.step({ call: 'concludeClip' });
+}
+
+/** The frames of a clip with what is known of their pairs. */
+async function* looked(clip: PlacedClip, frames: Frames, task: Task): AsyncGenerator<Looked, void, undefined> {
+  const { read, length } = task.source as Whole;
+  let index = 0;
+  for await (const frame of frames.each(reads(read, upTo(length)))) {
+    if (index === 0) checkSizes(task, frame);
+    const known = await clip.wait(task.knownPairs?.(index));
+    const pairs = known === undefined ? undefined : (taken([checkedBytes(`the pairs of frame ${index}`, known)], false)[0] as Uint8Array);
+    yield { index, frame, pairs };
+    index += 1;
+  }
 }
 
 async function restored(clip: PlacedClip, frames: Frames, task: Task, state: Uint8Array): Promise<ClipSummary> {
