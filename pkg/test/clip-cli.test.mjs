@@ -83,6 +83,20 @@ describe('veronese clip', () => {
     assert.deepEqual(Object.keys(images).sort(), [...files.map((name) => `labels/${name}`), ...files.map((name) => `overlay/${name}`)]);
   });
 
+  test('writes the same files with any number of jobs, also where it was killed with others', async (t) => {
+    const { frames, path } = clip(t, 2 * COUNT);
+    const alone = await run([frames, '--out', path('1'), '--jobs', '1']);
+    for (const jobs of ['2', '5']) {
+      const { stdout } = await run([frames, '--out', path(jobs), '--jobs', jobs]);
+      assert.deepEqual([stdout, tree(path(jobs))], [alone.stdout, tree(path('1'))], `${jobs} jobs`);
+    }
+    rmSync(path('1', 'tracks.json'));
+    rmSync(path('1', '.clip', 'state'));
+    const { stdout } = await run([frames, '--out', path('1'), '--jobs', '3']);
+    assert.deepEqual([stdout, tree(path('1'))], [alone.stdout, tree(path('2'))]);
+    for (const jobs of ['0', '257', 'all']) await fails([frames, '--out', path('none'), '--jobs', jobs], 'invalid-option', 2);
+  });
+
   test('can be converted', async (t) => {
     const { frames, out } = clip(t);
     await run([frames, '--out', out]);

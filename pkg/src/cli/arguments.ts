@@ -57,6 +57,7 @@ export const HELP = `veronese segments two video frames by motion: how many moti
                              and DIR/edits.json: {"merge": [[2, 5]], "delete": [3], "background": [4], "names": {"1": "car"},
                              "locked": [6], "propagate": {"NAME": "both"}}, or "forward", "backward" or "none"
       --mark-unknown         use label 255 for pixels whose evidence does not tell an object from the background
+      --jobs N               number of frames compared at once (default: one less than the number of processors); the files are the same
       --out DIR              write labels/NAME.png for each frame, and tracks.json when all are there
       --overlay              also write overlay/NAME.png: the frames with each object in its colour
       --allow-damaged        as for video
@@ -137,6 +138,7 @@ export type Command =
       corrections?: string;
       /** Of a video. */
       allowDamaged: boolean;
+      jobs: number;
       overlay: boolean;
       out: string;
     }
@@ -223,7 +225,7 @@ const ALLOWED: Readonly<Record<string, readonly string[]>> = {
   pair: OF_PAIRS,
   batch: ['list', ...OF_SEQUENCES],
   video: ['allow-damaged', ...OF_SEQUENCES],
-  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'seed', 'out', 'overlay', 'allow-damaged'],
+  clip: ['list', 'every', 'motions', 'quality', 'look-ahead', 'masks', 'corrections', 'mark-unknown', 'jobs', 'seed', 'out', 'overlay', 'allow-damaged'],
   convert: ['to', 'tolerance', 'grouped', 'image', 'background', 'from', 'until', 'shapes', 'video', 'frame-rate', 'clip', 'out'],
   points: ['motions', 'method', 'seed'],
 };
@@ -305,7 +307,7 @@ function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): 
       ...(masks !== undefined && { masks }),
       ...(corrections !== undefined && { corrections }),
     };
-    return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, out };
+    return { name, frames: files, ...given, every: every(values.every), options, overlay, allowDamaged, jobs: jobs(values.jobs, Math.max(1, availableParallelism() - 1)), out };
   }
   for (const name of ['overlay', 'confidence'] as const) {
     if (values[name] && values.out === undefined) throw usage(`'--${name}' needs '--out DIR'`);
@@ -328,7 +330,7 @@ function commandOf({ values, positionals, tokens }: ReturnType<typeof parsed>): 
   const sequence: SequenceSettings = {
     ...settings,
     every: every(values.every),
-    jobs: values.jobs === undefined ? availableParallelism() : whole('jobs', values.jobs, 1, MOST_JOBS),
+    jobs: jobs(values.jobs, availableParallelism()),
     shard: shard(values.shard),
   };
   if (name === 'video') {
@@ -405,6 +407,10 @@ function wrapped(words: readonly string[], width: number, lineBreak: string): st
     [text, used] = [text + piece, used + piece.length];
   }
   return text;
+}
+
+function jobs(text: string | undefined, unasked: number): number {
+  return text === undefined ? unasked : whole('jobs', text, 1, MOST_JOBS);
 }
 
 function every(text: string): number {

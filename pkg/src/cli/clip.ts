@@ -6,7 +6,7 @@ import { version } from '../calls/version.js';
 import { VeroneseError } from '../common/errors.js';
 import { davisPalette } from '../common/palette.js';
 import { encodeColourPng, encodeIndexedPng } from '../entries/codecs.js';
-import { Segmenter } from '../entries/node.js';
+import { SegmenterPool } from '../entries/node.js';
 import type { ClipCommand } from './arguments.js';
 import { readCorrections, type Corrections } from './clip-corrections.js';
 import { type ClipFrames, clipFrames } from './clip-frames.js';
@@ -22,7 +22,7 @@ export async function clip(command: ClipCommand): Promise<void> {
   const { out, options, every, overlay: wanted } = command;
   checkFolder(out);
   const frames = await clipFrames(command);
-  const segmenter = new Segmenter();
+  const segmenter = new SegmenterPool({ jobs: command.jobs });
   const progress = new Passes(frames.length);
   try {
     const said = await readCorrections(command, frames);

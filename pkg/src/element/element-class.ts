@@ -6,7 +6,7 @@ import type { ClipCorrection, ClipFrame, ClipProgress, ClipPrompt, ClipTracks, P
 import { groupLabels, maskOf } from '../calls/labels.js';
 import { isObject, UNLABELLED } from '../common/checks.js';
 import { VeroneseError, veroneseError } from '../common/errors.js';
-import { Segmenter } from '../entries/web.js';
+import { SegmenterPool } from '../entries/web.js';
 import type { ElementClip, ShownFrame } from './clip.js';
 import { optionsOf } from './options.js';
 import { type Kept, kept, type Place, pixelsOf } from './sources.js';
@@ -14,6 +14,9 @@ import { View } from './view.js';
 
 /** Where there are no elements (Node, a worker), the class can still be imported. */
 const Base = globalThis.HTMLElement ?? class {};
+
+/** More workers than this are not worth their memory. */
+const MOST_WORKERS = 8;
 
 export class VeroneseSegmenterElement extends Base {
   static readonly formAssociated = true;
@@ -23,7 +26,7 @@ export class VeroneseSegmenterElement extends Base {
   readonly #view: View;
   /** By a script, instead of what attributes say. */
   #given: { first?: Kept; second?: Kept; frames?: ClipFrames } = {};
-  #segmenter: InstanceType<typeof Segmenter> | undefined;
+  #segmenter: InstanceType<typeof SegmenterPool> | undefined;
   #request: AbortController | undefined;
   #result: Segmentation | undefined;
   #clip: ElementClip | undefined;
@@ -373,9 +376,10 @@ export class VeroneseSegmenterElement extends Base {
   }
 
   /** Asked for before the frames are decoded: a new worker warms up meanwhile. */
-  #worker(): InstanceType<typeof Segmenter> {
+  #worker(): InstanceType<typeof SegmenterPool> {
     if (this.#segmenter === undefined) {
-      this.#segmenter = new Segmenter();
+      // One processor is left for the page.
+      this.#segmenter = new SegmenterPool({ jobs: Math.min(Math.max(1, navigator.hardwareConcurrency - 1), MOST_WORKERS) });
       this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker says why there is none
     }
     return this.#segmenter;

@@ -7,8 +7,11 @@ import type { Settings } from '../messages.js';
 import { inOrder } from '../ordered.js';
 import { type Helpers, PlacedClip } from './place.js';
 
-/** Pairs that a worker solves in a row where it can. Of each block one frame is prepared by two workers. */
-const BLOCK = 4;
+/**
+ * Pairs that a worker solves in a row where it can. Of each block one frame is prepared by two workers; frames are read so many blocks ahead
+ * as there are workers.
+ */
+const BLOCK = 2;
 
 /** A frame of the clip, and what its pairs have told if that is known. */
 export interface Looked {

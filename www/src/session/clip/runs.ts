@@ -1,11 +1,14 @@
-//! The worker of the clip, and the run under way in it: one at a time, another one takes its place.
+//! The workers of the clip, and the run under way in them: one at a time, another one takes its place.
 
-import { Segmenter } from 'veronese';
+import { SegmenterPool } from 'veronese';
 import { PageError, codeOf } from '../../common/errors.js';
 import { strings } from '../../common/strings.js';
 import type { Store } from '../../state/state.js';
 import type { Tracked } from '../../state/tracked.js';
 import { report } from '../failures.js';
+
+/** More workers than this are not worth their memory. */
+const MOST_WORKERS = 8;
 
 /** Changes what is known of the clip. */
 export type Change = (change: Partial<Tracked>) => void;
@@ -19,7 +22,8 @@ interface Ends {
 }
 
 export class ClipRuns {
-  readonly segmenter = new Segmenter();
+  /** One processor is left for the page. */
+  readonly segmenter = new SegmenterPool({ jobs: Math.min(Math.max(1, navigator.hardwareConcurrency - 1), MOST_WORKERS) });
   readonly #store: Store;
   #current: { readonly controller: AbortController; readonly ends: Ends } | null = null;
 
