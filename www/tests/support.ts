@@ -76,6 +76,11 @@ export async function withSamples(page: Page): Promise<void> {
   await page.unroute(FRAMES_OF_SAMPLES);
 }
 
+/** The page is on a machine with so many processors, of which it leaves one alone. Called before it is opened. */
+export async function withProcessors(page: Page, count: number): Promise<void> {
+  await page.addInitScript((value) => Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => value }), count);
+}
+
 /** Opens frames, or a video of `count` frames, as a clip. */
 export async function openClip(page: Page, files: Upload[], { count = files.length, kind = 'groups' }: { count?: number; kind?: 'motions' | 'groups' } = {}): Promise<void> {
   await openEmpty(page, kind);

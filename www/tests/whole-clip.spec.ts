@@ -6,7 +6,7 @@ import { type Page } from '@playwright/test';
 
 import { PALETTE } from '../src/drawing/palette.js';
 import { video } from './video.js';
-import { clipFrames, clipInNode, clipPhase, differences, done, expect, labelsOnCanvas, mergeWith, openClip, openEmpty, openExport, segmentClip, square, test, upload, withSamples } from './support.js';
+import { clipFrames, clipInNode, clipPhase, differences, done, expect, labelsOnCanvas, mergeWith, openClip, openEmpty, openExport, segmentClip, square, test, upload, withProcessors, withSamples } from './support.js';
 
 /** Waits until a frame is on screen with its masks. */
 async function shows(page: Page, index: number): Promise<void> {
@@ -17,6 +17,8 @@ async function shows(page: Page, index: number): Promise<void> {
 test('the objects of a clip keep number, name and colour in all frames', async ({ page }) => {
   const files = await clipFrames(8);
   const found = await clipInNode(files);
+  // Three workers find the same.
+  await withProcessors(page, 4);
   await openClip(page, files);
   await expect(page.locator('#kind-objects')).toBeHidden();
   await segmentClip(page);
@@ -96,6 +98,8 @@ test('a video is segmented as a whole, and gives exactly the requested frames me
 test('a cancelled clip shows the masks of what is done, takes corrections, and continues from there', async ({ page }) => {
   const files = await clipFrames(10);
   const found = await clipInNode(files);
+  // More workers would have begun all frames.
+  await withProcessors(page, 2);
   await openClip(page, files);
   await page.getByRole('button', { name: 'Segment the clip' }).click();
   await expect(page.locator('#clip-detail')).toContainText('left', { timeout: 30_000 });
