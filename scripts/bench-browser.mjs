@@ -33,9 +33,8 @@ const THEIRS = ['farneback', 'opencvPipeline', 'jsfeat'];
 const CLIPS = ['clip', 'clipFlow'];
 /** Number of fresh pages for each case and size, to measure the first call and the time until the page is ready. */
 const FRESH_PAGES = 3;
-/** Rounds that alternate between one and two workers. */
-const THROUGHPUT_ROUNDS = 5;
-const THROUGHPUT_PAIRS = 12;
+/** Rounds in which numbers of workers take turns. */
+const WORKER_ROUNDS = 3;
 /** 0.05 to 16.8 megapixels, the largest supported frame. */
 const SCALES = ['256x192', '512x384', '1024x768', '2048x1536', '3264x2448', '4096x4096'];
 const SCALING_ROUNDS = 3;
@@ -66,7 +65,7 @@ await command(async (args) => {
       rounds,
       ...downloads(alone),
       ...(await measured(browser, address, { rounds, sizes, cases })),
-      workers: await throughput(browser, address, middle),
+      workers: await overWorkers(browser, address, middle),
       ...(scaling && { scaling: await scaled(browser, address, middle) }),
     };
     write(report);
@@ -225,20 +224,30 @@ async function interleaved(browser, address, { rounds, sizes, cases }) {
   return { calls, native };
 }
 
-async function throughput(browser, address, size) {
-  const rates = { 1: [], 2: [] };
-  await onPage(browser, address, async (page) => {
+/** Whole clips with one worker, two, and four where there are so many cores; they take turns. */
+async function overWorkers(browser, address, size) {
+  const numbers = [1, 2, 4].filter((jobs) => jobs <= Math.max(2, cpus().length));
+  return onPage(browser, address, async (page) => {
     await page.evaluate((size) => globalThis.bench.prepare(size), size);
-    for (let round = 0; round < THROUGHPUT_ROUNDS; round += 1) {
-      console.log(`Workers: round ${round + 1} of ${THROUGHPUT_ROUNDS}`);
-      for (const workers of [1, 2]) {
-        const task = [workers, THROUGHPUT_PAIRS, size];
-        rates[workers].push(await page.evaluate((task) => globalThis.bench.throughput(...task), task));
+    const runs = [];
+    for (let round = 0; round < WORKER_ROUNDS + 1; round += 1) {
+      console.log(round === 0 ? 'Workers: warming up' : `Workers: round ${round} of ${WORKER_ROUNDS}`);
+      for (const quality of OURS) {
+        for (const jobs of numbers) {
+          const task = [jobs, quality, size];
+          const clip = await page.evaluate((task) => globalThis.bench.wholeClip(...task), task);
+          if (round > 0) runs.push({ quality, jobs, ...clip });
+        }
+        const masks = new Set(runs.filter((run) => run.quality === quality).map((run) => run.masks));
+        if (masks.size > 1) throw new Stop('The masks depend on the number of workers.');
       }
     }
+    const rows = OURS.flatMap((quality) => numbers.map((jobs) => {
+      const of = (value) => median(runs.filter((run) => run.quality === quality && run.jobs === jobs).map(value));
+      return { quality, jobs, perFrame: of(({ perFrame }) => perFrame), first: of(({ first }) => first) };
+    }));
+    return { size, rows };
   });
-  const [one, two] = [median(rates[1]), median(rates[2])];
-  return { size, onePairsPerSecond: one, twoPairsPerSecond: two, ratio: two / one };
 }
 
 /** Time and memory against pixels, and time against the requested number of motions, with power-law exponents. */

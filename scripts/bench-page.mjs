@@ -5,6 +5,7 @@
 //   --frames N     length of the video (2000)
 //   --size WxH     size of its frames (1920x1080)
 //   --quality Q    fast or best (fast)
+//   --workers N    workers for the video, as on a machine with one processor more (the page's choice here)
 //   --write-docs   writes the table to docs/performance.md as well
 
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -36,7 +37,7 @@ const CORRECTED = { size: [854, 480], frames: 50, at: [5, 10, 15, 20, 25, 30, 35
 const BAR = 150;
 
 await command(async (args) => {
-  const { frames, size, quality, writeDocs } = options(args);
+  const { frames, size, quality, workers, writeDocs } = options(args);
   if (process.platform !== 'linux') throw new Stop('The memory of processes is read from /proc, which only Linux has.');
   const { chromium } = await prepare({ browser: true });
   if (chromium.problem) throw new Stop(chromium.problem);
@@ -53,11 +54,11 @@ await command(async (args) => {
     const maker = await browser.newPage();
     await maker.goto(`${address}#sample=intel-two-cars`);
     await writeLongClip(maker, VIDEO, frames, size);
-    const measured = await segmented(browser, address, quality);
+    const measured = await segmented(browser, address, { quality, workers });
     await writeLongClip(maker, VIDEO, CORRECTED.frames, CORRECTED.size);
     await maker.close();
     const corrected = await correctedFrames(browser, address, quality);
-    const report = { date: new Date().toISOString().slice(0, 10), processor: cpus()[0].model, cores: cpus().length, chromium: browser.version(), frames, size, quality, first, ...measured, corrected };
+    const report = { date: new Date().toISOString().slice(0, 10), processor: cpus()[0].model, cores: cpus().length, chromium: browser.version(), frames, size, quality, workers, first, ...measured, corrected };
     writeFileSync(join(OUT, 'page.json'), `${JSON.stringify(report, undefined, 2)}\n`);
     const text = tableOf(report);
     console.log(`\n${text}`);
@@ -74,20 +75,22 @@ function options(args) {
   const text = { type: 'string' };
   let values;
   try {
-    ({ values } = parseArgs({ args, options: { frames: text, size: text, quality: text, 'write-docs': { type: 'boolean', default: false } } }));
+    ({ values } = parseArgs({ args, options: { frames: text, size: text, quality: text, workers: text, 'write-docs': { type: 'boolean', default: false } } }));
   } catch (error) {
     throw new Stop(error.message);
   }
-  const { frames = '2000', size = '1920x1080', quality = 'fast', 'write-docs': writeDocs } = values;
+  const { frames = '2000', size = '1920x1080', quality = 'fast', workers = String(Math.min(Math.max(1, cpus().length - 1), 8)), 'write-docs': writeDocs } = values;
   if (!/^\d+$/.test(frames) || Number(frames) < 10) throw new Stop('--frames must be a whole number from 10.');
   if (!/^\d+x\d+$/.test(size)) throw new Stop('--size must look like 1920x1080.');
   if (!['fast', 'best'].includes(quality)) throw new Stop('--quality must be fast or best.');
-  return { frames: Number(frames), size: size.split('x').map(Number), quality, writeDocs };
+  if (!/^[1-8]$/.test(workers)) throw new Stop('--workers must be a whole number from 1 to 8.');
+  return { frames: Number(frames), size: size.split('x').map(Number), quality, workers: Number(workers), writeDocs };
 }
 
 /** Segments the video as a person would and returns `{ seconds, opened, samples, done, stepped }`; memory in bytes. */
-async function segmented(browser, address, quality) {
+async function segmented(browser, address, { quality, workers }) {
   const page = await browser.newPage();
+  await page.addInitScript((processors) => Object.defineProperty(Navigator.prototype, 'hardwareConcurrency', { get: () => processors }), workers + 1);
   page.setDefaultTimeout(0);
   await page.goto(`${address}#sample=intel-two-cars&quality=${quality}&masks=groups`);
   await reached(page, '#run', 'done');
@@ -210,8 +213,8 @@ function proportional(id) {
   }
 }
 
-function tableOf({ date, processor, cores, chromium, frames, size, quality, seconds, status, opened, samples, done, stepped, tasks, first, corrected }) {
-  const head = `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: ${frames} frames of ${size.join(' × ')} pixels, quality *${quality}*, in ${seconds.toFixed(0)} seconds, ${(frames / seconds).toFixed(1)} frames a second. “${status}”`;
+function tableOf({ date, processor, cores, chromium, frames, size, quality, workers, seconds, status, opened, samples, done, stepped, tasks, first, corrected }) {
+  const head = `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: ${frames} frames of ${size.join(' × ')} pixels, quality *${quality}*, ${workers} workers, in ${seconds.toFixed(0)} seconds, ${(frames / seconds).toFixed(1)} frames a second. “${status}”`;
   const at = Array.from({ length: ROWS }, (_, k) => samples[Math.floor(((k + 1) / ROWS) * (samples.length - 1))]);
   const rows = [['opened', opened], ...at.map(({ seconds, bytes }) => [`after ${seconds.toFixed(0)} s`, bytes]), ['segmented', done], ['after steps to 32 other frames', stepped]];
   const memory = [head, '', '| | memory of the browser, MiB |', '| --- | --- |', ...rows.map(([name, bytes]) => `| ${name} | ${mib(bytes)} |`)];

@@ -6,6 +6,8 @@ import { loadJsfeat, trackCorners } from './jsfeat.js';
 /** Frames of a clip that are not counted: the first ones are searched without anything known. */
 const UNCOUNTED = 4;
 const frames = new Map();
+/** Of so many workers each: their first clip is not counted. */
+const pools = new Map();
 let veronese;
 
 /** The cases: `load` prepares one, `run` is a call. */
@@ -82,25 +84,28 @@ globalThis.bench = {
     return memory.buffer.byteLength;
   },
 
-  /** Pairs per second of `workers` workers that process `pairs` pairs in total. */
-  async throughput(workers, pairs, size) {
+  /** A whole clip with so many workers: milliseconds until the first frame's masks, of a frame in the mean, and the masks' hash. */
+  async wholeClip(jobs, quality, size) {
     await loadVeronese();
-    const { first, second } = frames.get(size);
-    const segmenters = Array.from({ length: workers }, () => new veronese.Segmenter());
-    const once = (segmenter) => segmenter.segmentPair(first, second, { quality: 'fast' });
-    // Load and compile everything before the clock starts.
-    for (let k = 0; k < 3; k += 1) await Promise.all(segmenters.map(once));
+    const { clip } = frames.get(size);
+    if (!pools.has(jobs)) pools.set(jobs, new veronese.SegmenterPool({ jobs }));
     const start = performance.now();
-    await Promise.all(Array.from({ length: pairs }, (_, k) => once(segmenters[k % workers])));
-    const seconds = (performance.now() - start) / 1000;
-    segmenters.forEach((segmenter) => segmenter.close());
-    return pairs / seconds;
+    let [first, masks] = [undefined, ''];
+    const onPreview = () => void (first ??= performance.now() - start);
+    const source = { length: clip.length, read: (index) => clip[index] };
+    for await (const { labels } of pools.get(jobs).segmentClip(source, { quality, onPreview })) masks = await hashOf(masks, labels);
+    return { perFrame: (performance.now() - start) / clip.length, first, masks };
   },
 };
 
 async function loadVeronese() {
   veronese ??= await import('/pkg/dist/web.js');
   await veronese.init();
+}
+
+async function hashOf(before, labels) {
+  const digest = await crypto.subtle.digest('SHA-256', await new Blob([before, labels]).arrayBuffer());
+  return Array.from(new Uint8Array(digest), (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
 /** Follows the objects of a clip as from a camera: each frame is answered before the next one comes. */

@@ -57,9 +57,16 @@ function ratioToFlow(name, cases) {
   return flow ? (cases[name].median / flow.median).toFixed(2) : '';
 }
 
-function workers({ workers: { size, onePairsPerSecond, twoPairsPerSecond, ratio } }) {
-  const rates = `${onePairsPerSecond.toFixed(1)} with one worker, ${twoPairsPerSecond.toFixed(1)} with two`;
-  return `Throughput at ${times(size)} pixels, fast, in pairs per second: ${rates} (${ratio.toFixed(2)} times as many).`;
+/** Whole clips. The first frame's masks are measured in frames of one worker. */
+function workers({ sizes, workers: { size, rows } }) {
+  const flow = sizes[size].clipFlow?.median;
+  const lines = rows.map(({ quality, jobs, perFrame, first }) => {
+    const one = rows.find((row) => row.quality === quality && row.jobs === 1).perFrame;
+    const cells = [quality, String(jobs), ms(perFrame), (one / perFrame).toFixed(2), ms(first), (first / one).toFixed(1)];
+    return [...cells, flow === undefined ? '' : (perFrame / flow).toFixed(2)];
+  });
+  const head = ['quality', 'workers', 'a frame', 'times as fast', 'first masks after', 'in frames of one worker', '÷ Farneback'];
+  return `Whole clips of ${times(size)} pixels, with the same masks whatever the number of workers:\n\n${table(head, lines)}`;
 }
 
 /** Medians of the same source in native code and in the browser, alternating on the same frames. */
