@@ -3,17 +3,30 @@
 use super::evidence::Flow;
 use crate::clip::model;
 use crate::frame::Plane;
-use crate::frame::warp::Footprint;
+use crate::frame::warp::{CHUNK, Footprints, RowPath};
 use crate::labelling::BACKGROUND;
 
 /// What a plane of another frame says about each pixel of this one: its value where the pixel's motion leads, or at the nearest place
 /// inside the frame.
 pub(crate) fn carried(plane: &Plane, along: &Flow) -> Plane {
     let (width, height) = (plane.width(), plane.height());
-    Plane::from_fn(width, height, |x, y| {
-        let [u, v] = along.at(x, y);
-        Footprint::new((x as f64 + u) as f32, (y as f64 + v) as f32, width, height).sample(plane.values())
-    })
+    let mut carried = Plane::filled(width, height, 0.0);
+    let (mut samples, mut at) = ([0.0; CHUNK], Footprints::new());
+    let rows = carried.values_mut().chunks_exact_mut(width).zip(along.labels.chunks_exact(width));
+    for (y, (row, labels)) in rows.enumerate() {
+        let mut x = 0;
+        // Pixels with one motion lie side by side.
+        for run in labels.chunk_by(|one, next| one == next) {
+            let path = RowPath::new(&along.motions[usize::from(run[0])], x, y);
+            for (chunk, values) in row[x..x + run.len()].chunks_mut(CHUNK).enumerate() {
+                at.follow(&path, chunk * CHUNK, values.len(), width, height);
+                at.sample(plane.values(), &mut samples);
+                values.copy_from_slice(&samples[..values.len()]);
+            }
+            x += run.len();
+        }
+    }
+    carried
 }
 
 /// The labels of a frame whose pixels go on with the motions that led from the frame before it to the one before that, whose flow that is.
