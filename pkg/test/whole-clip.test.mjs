@@ -531,6 +531,39 @@ describe('clips', () => {
     assert.equal((await outcomeWithout(0)).error.code, 'worker-failed');
   });
 
+  test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', async (t) => {
+    const workers = [];
+    const worker = () => {
+      const one = new Worker(new URL('../dist/worker-node.js', import.meta.url));
+      one.once('exit', () => (one.ended = true));
+      workers.push(one);
+      return one;
+    };
+    const pool = new SegmenterPool({ jobs: 4, worker });
+    t.after(() => pool.close());
+    const [large, larger] = [0, 1].map((k) => frame(k, { width: 640, height: 480 }));
+    const controller = new AbortController();
+    const busy = pool.segmentPair(large, larger, { quality: 'best', signal: controller.signal }).catch(({ code }) => code);
+    assert.deepEqual(await all(pool.segmentClip(readable(), FAST)), whole.frames);
+    const answered = Promise.race([busy, 'still busy']);
+    assert.equal(await answered, 'still busy');
+    controller.abort();
+    assert.equal(await busy, 'cancelled');
+    // The cancelled call's worker has ended as it would have without a clip; of the others, one keeps the clip.
+    while (workers.filter(({ ended }) => !ended).length > 1) await new Promise((resolve) => setTimeout(resolve, 20));
+
+    let given;
+    const slow = { length: COUNT, read: (index) => (index < 5 ? list[index] : new Promise((resolve) => (given = () => resolve(list[index])))) };
+    const closed = until(pool.segmentClip(slow, FAST));
+    while (!given) await new Promise((resolve) => setTimeout(resolve, 20));
+    pool.close();
+    const { length } = workers;
+    given();
+    assert.equal((await closed).error.code, 'cancelled');
+    await new Promise((resolve) => setTimeout(resolve, 300));
+    assert.equal(workers.length, length, 'no worker was started');
+  });
+
   test('of a pool leave its other calls their turn', async (t) => {
     const pool = new SegmenterPool({ jobs: 2 });
     t.after(() => pool.close());

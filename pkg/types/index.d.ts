@@ -344,7 +344,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
   onPairs?: ((index: number, pairs: Uint8Array) => void | Promise<void>) | undefined;
   /**
    * Gives what `onPairs` was called with, if it is known. Bytes that are damaged, of another version of this package, or of other options,
-   * another frame or other frames before it count as unknown.
+   * another frame or other frames before it count as unknown. Asked when a frame is read, which may be some frames ahead.
    */
   knownPairs?: ((index: number) => Uint8Array | undefined | Promise<Uint8Array | undefined>) | undefined;
   /**
@@ -630,7 +630,8 @@ export class SegmenterPool extends Segmenter {
   readonly jobs: number;
   /**
    * As {@link Segmenter.segmentClip}. One worker keeps the clip; the pairs of a whole clip with `lookAhead: 'all'` are solved by all
-   * workers that have nothing else to do, a few frames ahead. The results are the same to the bit with any number of workers.
+   * workers that have nothing else to do, some frames ahead, and those end afterwards. The results are the same to the bit with any number
+   * of workers.
    */
   segmentClip(frames: ClipSource, options?: ClipOptions): Clip;
   /**

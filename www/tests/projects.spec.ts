@@ -6,7 +6,7 @@ import { gunzipSync, gzipSync } from 'node:zlib';
 import { type Page } from '@playwright/test';
 
 import { video } from './video.js';
-import { type Upload, clipFrames, clipInNode, clipPhase, differences, done, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, segmentClip, square, test, upload, withoutStorage } from './support.js';
+import { type Upload, clipFrames, clipInNode, clipPhase, differences, done, expect, goTo, labelsOnCanvas, openAdvanced, openClip, openEmpty, openExport, segmentClip, square, test, upload, withoutStorage, withProcessors } from './support.js';
 
 async function numbersOnCanvas(page: Page): Promise<Uint8Array> {
   return Uint8Array.from(await labelsOnCanvas(page), (label) => Math.max(0, label));
@@ -158,6 +158,7 @@ test('the settings are those of the project', async ({ page }) => {
 });
 
 test('a run that was cancelled continues after a reload', async ({ page }) => {
+  await withProcessors(page, 2);
   await openEmpty(page, 'groups');
   const clip = await video(page, 12, 'webm', 'vp8');
   await openClip(page, [clip], { count: 12 });
@@ -260,6 +261,7 @@ test('a project whose state is of an older version is segmented again and correc
 });
 
 test('a project of an older version whose segmentation is cancelled keeps its masks, and takes corrections when that is done', async ({ page }) => {
+  await withProcessors(page, 2);
   const files = await clipFrames(24);
   await correctedClip(page, files);
   const project = await savedProject(page);

@@ -20,7 +20,7 @@ export function clipOf(frames: ClipSource, options: ClipOptions | undefined, res
 }
 
 /** Ends clips whose iterators were dropped before their end. */
-const dropped = new FinalizationRegistry<Told>(({ clip }) => clip?.end());
+const dropped = new FinalizationRegistry<Told>(({ clip }) => void clip?.end());
 
 async function* segmented(
   frames: ClipSource,
@@ -45,6 +45,7 @@ async function* segmented(
     }
   } finally {
     delete told.clip;
-    clip.end();
+    // Nobody waits for that.
+    void clip.end();
   }
 }

@@ -26,6 +26,9 @@ export async function main(args: string[]): Promise<void> {
     process.exitCode = EXIT.usage;
     return;
   }
+  // Every thread adds listeners of its own.
+  process.stdout.setMaxListeners(0);
+  process.stderr.setMaxListeners(0);
   const output = new Output();
   process.on('SIGINT', () => stop(output, EXIT.interrupted));
   process.on('SIGTERM', () => stop(output, EXIT.terminated));

@@ -379,7 +379,7 @@ export class VeroneseSegmenterElement extends Base {
   #worker(): InstanceType<typeof SegmenterPool> {
     if (this.#segmenter === undefined) {
       // One processor is left for the page.
-      this.#segmenter = new SegmenterPool({ jobs: Math.min(Math.max(1, navigator.hardwareConcurrency - 1), MOST_WORKERS) });
+      this.#segmenter = new SegmenterPool({ jobs: Math.min(Math.max(1, (navigator.hardwareConcurrency ?? 2) - 1), MOST_WORKERS) });
       this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker says why there is none
     }
     return this.#segmenter;

@@ -22,6 +22,8 @@ export interface Claim<Task, Result> {
   release: () => void;
   /** Says whether it waits for the caller's code, which may itself wait for a worker. */
   pause: (paused: boolean) => void;
+  /** Why the worker has ended, if it has. */
+  lost: () => VeroneseError | undefined;
 }
 
 /** A {@link Claim} inside the pool. */
@@ -35,6 +37,8 @@ interface Claiming {
 const PATIENCE = 2000;
 
 interface Claimant {
+  /** Whether it takes only a worker that has nothing to do. */
+  idle: boolean;
   give: (claim: Claiming) => void;
   reject: (reason: VeroneseError) => void;
 }
@@ -101,8 +105,11 @@ export class WorkerPool<Task, Result> {
     await this.#run(task, {}, undefined, true);
   }
 
-  /** Reserves a worker. A worker has one claim at a time; claims are met in the order of the calls. Other tasks run in between. */
-  claim(signal?: AbortSignal): Promise<Claim<Task, Result>> {
+  /**
+   * Reserves a worker, with `idle` one that has nothing to do. A worker has one claim at a time; claims are met in the order of the calls.
+   * Other tasks run in between.
+   */
+  claim(signal?: AbortSignal, idle = false): Promise<Claim<Task, Result>> {
     if (signal?.aborted) return Promise.reject(cancelled(signal));
     return new Promise((resolve, reject) => {
       const onAbort = () => {
@@ -110,13 +117,15 @@ export class WorkerPool<Task, Result> {
         reject(cancelled(signal));
       };
       const claimant: Claimant = {
+        idle,
         give: (claim) => {
           signal?.removeEventListener('abort', onAbort);
           const pause = (paused: boolean) => {
             claim.paused = paused;
             this.#watch();
           };
-          resolve({ run: (task, options) => this.#run(task, options, claim), release: () => this.#release(claim), pause });
+          const run = (task: Task, options?: CallOptions) => this.#run(task, options, claim);
+          resolve({ run, release: () => this.#release(claim), pause, lost: () => claim.lost });
         },
         reject: (reason) => {
           signal?.removeEventListener('abort', onAbort);
@@ -134,8 +143,9 @@ export class WorkerPool<Task, Result> {
     // Idle workers first, then those that have started.
     free.sort((one, other) => Number(isBusy(one)) - Number(isBusy(other)) || Number(!one.thread) - Number(!other.thread));
     for (const lane of free) {
-      const claimant = this.#claimants.shift();
-      if (!claimant) break;
+      const claimant = this.#claimants.find(({ idle }) => !idle || !isBusy(lane));
+      if (!claimant) continue;
+      this.#claimants.splice(this.#claimants.indexOf(claimant), 1);
       lane.claim = {};
       claimant.give(lane.claim);
     }
@@ -182,6 +192,11 @@ export class WorkerPool<Task, Result> {
     this.#watch();
   }
 
+  /** Ends the workers that have nothing to do and are not reserved, and so gives their memory back. A later call starts fresh ones. */
+  endIdle(): void {
+    for (const lane of this.#lanes) if (!lane.job && !lane.claim) this.#end(lane);
+  }
+
   #cancel(job: Job<Task, Result>, reason: unknown = cancelled(job.signal)): void {
     const lane = this.#lanes.find((lane) => lane.job === job);
     // A reserved worker finishes the task, because its state would be lost.
@@ -190,6 +205,7 @@ export class WorkerPool<Task, Result> {
     else if (!lane) this.#waiting.splice(this.#waiting.indexOf(job), 1);
     this.#settle(job, () => job.reject(reason));
     this.#next();
+    this.#assign();
   }
 
   #settle(job: Job<Task, Result>, how: () => void): void {
@@ -291,6 +307,7 @@ export class WorkerPool<Task, Result> {
       else job.resolve(reply.kind === 'done' ? reply.result : (undefined as Result));
     });
     this.#next();
+    this.#assign();
   }
 }
 

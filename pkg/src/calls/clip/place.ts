@@ -17,7 +17,10 @@ export interface Place {
 export interface Helpers {
   /** How many there may be. */
   count: number;
+  /** One that has nothing else to do. */
   claim: (signal: AbortSignal) => Promise<Place>;
+  /** They are no longer needed. */
+  end: () => void;
 }
 
 /** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
@@ -70,19 +73,17 @@ export class PlacedClip {
 
   /** What the caller's code gives, unless the signal is aborted first. */
   async wait<T>(promised: T | Promise<T>): Promise<T | undefined> {
+    // Nobody else hears what it throws if the signal comes first.
+    Promise.resolve(promised).catch(() => undefined);
     const order = { room: 1, signal: this.#signal, stop: () => cancelled(this.#signal) };
     for await (const value of inOrder([promised], async (value) => value, order)) return value;
     return undefined;
   }
 
-  /** Frees what the clip holds. Not awaited: if it fails, the clip is gone already. */
-  end(): void {
-    const { perform } = this.#place;
-    const release = () => {
-      if (--this.#holders.count === 0) this.#place.release();
-    };
-    if (this.#open) void perform({ call: 'endClip', clip: this.#clip }, {}).catch(() => undefined).finally(release);
-    else release();
+  /** Frees what the clip holds. If that fails, the clip is gone already. */
+  async end(): Promise<void> {
+    if (this.#open) await this.#place.perform({ call: 'endClip', clip: this.#clip }, {}).catch(() => undefined);
+    if (--this.#holders.count === 0) this.#place.release();
   }
 
   #perform(task: ClipTask) {

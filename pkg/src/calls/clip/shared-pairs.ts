@@ -7,10 +7,7 @@ import type { Settings } from '../messages.js';
 import { inOrder } from '../ordered.js';
 import { type Helpers, PlacedClip } from './place.js';
 
-/**
- * Pairs that a worker solves in a row where it can. Of each block one frame is prepared by two workers; frames are read so many blocks ahead
- * as there are workers.
- */
+/** Pairs that a worker solves in a row where it can: of each block one frame is prepared by two workers. */
 const BLOCK = 2;
 
 /** A frame of the clip, and what its pairs have told if that is known. */
@@ -33,7 +30,9 @@ export class SharedPairs {
   readonly #clip: PlacedClip;
   readonly #helpers: Helpers;
   readonly #settings: Settings;
-  readonly #ending = new AbortController();
+  /** Of each worker one: engines warn of many listeners to one signal. */
+  readonly #endings: AbortController[];
+  #ended = false;
   /** In order. */
   readonly #unsolved: Unsolved[] = [];
   /** Blocks that somebody solves. */
@@ -50,6 +49,7 @@ export class SharedPairs {
     this.#clip = clip;
     this.#helpers = helpers;
     this.#settings = settings;
+    this.#endings = Array.from({ length: 1 + helpers.count }, () => new AbortController());
   }
 
   /** Asks for one more frame. Called when the clip has begun to take one. */
@@ -85,10 +85,12 @@ export class SharedPairs {
         return { failure: { thrown } };
       }
     };
-    const room = BLOCK * (1 + this.#helpers.count);
+    // A frame for each worker, and a block to choose from.
+    const room = this.#endings.length + BLOCK;
     try {
-      void this.#solve();
-      for (let k = 0; k < this.#helpers.count; k++) void this.#help();
+      const [own, ...others] = this.#endings.map((ending) => ending.signal) as [AbortSignal, ...AbortSignal[]];
+      void this.#solve(own);
+      void Promise.all(others.map((signal) => this.#help(signal))).then(() => this.#helpers.end());
       const begun = (ask: () => void) => (this.#ask = ask);
       for await (const { looked, failure } of inOrder(frames, work, { room, signal, stop: () => cancelled(signal), begun })) {
         if (failure) throw failure.thrown;
@@ -96,7 +98,8 @@ export class SharedPairs {
         yield { ...looked, frame: copyOf(looked.frame) };
       }
     } finally {
-      this.#ending.abort();
+      this.#ended = true;
+      this.#endings.forEach((ending) => ending.abort());
       this.#notify();
     }
   }
@@ -112,8 +115,7 @@ export class SharedPairs {
   }
 
   /** Solves pairs in the worker of the clip, which takes frames first: all others wait for that. */
-  async #solve(): Promise<void> {
-    const { signal } = this.#ending;
+  async #solve(signal: AbortSignal): Promise<void> {
     const isFree = () => this.#unsolved.length > 0 && !this.#known.has(this.#next);
     while (await this.#until(isFree)) {
       try {
@@ -125,11 +127,10 @@ export class SharedPairs {
   }
 
   /** Solves pairs in another worker, which is had for a block at a time, because others may want it. Where it fails, nobody misses it. */
-  async #help(): Promise<void> {
-    const { signal } = this.#ending;
+  async #help(signal: AbortSignal): Promise<void> {
     try {
       while (await this.#until(() => this.#unsolved.length > 0)) {
-        await this.#solveBlock(new PlacedClip(await this.#helpers.claim(signal), signal), async () => !signal.aborted);
+        await this.#solveBlock(new PlacedClip(await this.#helpers.claim(signal), signal), async () => !this.#ended);
       }
     } catch {
       // What it was to solve waits for another worker.
@@ -138,24 +139,26 @@ export class SharedPairs {
 
   /** Solves pairs that follow each other, a block at most, while it may go on. */
   async #solveBlock(clip: PlacedClip, mayGoOn: () => Promise<boolean>): Promise<void> {
-    let pair = this.#taken((index) => !this.#begun.has(blockOf(index))) ?? this.#unsolved.pop();
-    const block = pair && blockOf(pair.index);
+    let pair: Unsolved | undefined;
+    let block: number | undefined;
     try {
-      if (!pair) return;
-      this.#begun.add(blockOf(pair.index));
       await clip.begin(true, this.#settings);
-      await clip.step({ call: 'pushClip', frame: copyOf(pair.frames[0]) });
+      // Not before: the worker may have had something else to do.
+      pair = this.#taken((index) => !this.#begun.has(blockOf(index)));
+      if (pair) this.#begun.add((block = blockOf(pair.index)));
+      pair ??= this.#unsolved.pop();
+      if (pair) await clip.step({ call: 'pushClip', frame: copyOf(pair.frames[0]) });
       while (pair) {
         const { index, frames, resolve }: Unsolved = pair;
         resolve(await clip.step<Uint8Array>({ call: 'pushClip', frame: copyOf(frames[1]) }));
-        pair = (await mayGoOn()) ? this.#taken((other) => other === index + 1 && blockOf(other) === block) : undefined;
+        pair = (await mayGoOn()) ? this.#taken((other) => other === index + 1 && blockOf(other) === blockOf(index)) : undefined;
       }
     } catch (thrown) {
       if (pair) this.#add(pair);
       throw thrown;
     } finally {
       if (block !== undefined) this.#begun.delete(block);
-      clip.end();
+      await clip.end();
     }
   }
 
@@ -167,7 +170,7 @@ export class SharedPairs {
 
   /** Waits until this holds. Says whether it does: not if the clip has ended before. */
   async #until(holds: () => boolean): Promise<boolean> {
-    while (!this.#ending.signal.aborted) {
+    while (!this.#ended) {
       if (holds()) return true;
       await new Promise<void>((resolve) => this.#listeners.push(resolve));
     }
