@@ -121,7 +121,7 @@ export function proveClip(program, { blocks, size, say = () => undefined }) {
 }
 
 /** Calls `work` with what starts a server and programs of the example in a temporary folder, and ends whatever still runs. */
-async function withServer(program, work) {
+export async function withServer(program, work, { appendfsync = 'always' } = {}) {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-scale-out-'));
   const running = new Set();
   const start = (command, args, env = {}) => {
@@ -143,9 +143,9 @@ async function withServer(program, work) {
       return JSON.parse(state.text);
     };
     // Jobs must survive the server, so it appends each change to a file.
-    const redis = () => start(program, ['--port', String(port), '--bind', '127.0.0.1', '--dir', folder, '--save', '', '--appendonly', 'yes', '--appendfsync', 'always']);
+    const redis = () => start(program, ['--port', String(port), '--bind', '127.0.0.1', '--dir', folder, '--save', '', '--appendonly', 'yes', '--appendfsync', appendfsync]);
     const worker = () => node('work.mjs', '--jobs', '1', '--lock', LOCK);
-    return await work({ folder, start, redis, node, finished, worker });
+    return await work({ folder, url: env.REDIS_URL, start, redis, node, finished, worker });
   } finally {
     for (const child of running) child.kill('SIGKILL');
     rmSync(folder, { recursive: true, force: true });
