@@ -109,6 +109,9 @@ export function proveClip(program, { blocks, size, say = () => undefined }) {
     const objects = (path) => JSON.parse(readFileSync(path, 'utf8')).objects;
     assert.deepEqual(objects(join(place, 'clip.json')), objects(join(straight, 'tracks.json')));
     assert.deepEqual(await produce(), { clips: 1, done: 1, queued: 0, added: 0, blocks: 0 });
+    const { clips, queue } = await finished(node('status.mjs', '--out', out));
+    assert.deepEqual(clips, { clips: 1, done: 1, failed: 0, missing: 0 });
+    assert.ok(Object.values(queue).every((count) => count === 0), JSON.stringify(queue));
     await ended(workers.slice(1));
     const did = workers.flatMap(doneBy);
     // The damaged pair, and the first frame, which has none.

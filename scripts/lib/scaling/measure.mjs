@@ -148,6 +148,8 @@ function farmMeasured(program, place, quality, workers) {
       for (const { child } of started) child.stdout.on('data', () => isDone() && resolve());
     });
     const seconds = (performance.now() - since) / 1000;
+    const failed = started.find(({ errors }) => errors !== '');
+    if (failed) throw new Stop(failed.errors);
     return { seconds: round(seconds), busy: round(started.reduce((sum, { child }) => sum + processorSeconds(child.pid), 0)) };
   });
 }
