@@ -1,7 +1,7 @@
 // One clip as a job: what it is called, where its result is, how it is done. What the pairs of each frame told is kept until the clip is
-// done, so that a worker that takes over from another one continues at the last frame solved.
+// done: blocks of the clip write it beforehand, and a worker that takes over from another one continues at the last frame solved.
 
-import { mkdir, readFile, readdir, rm } from 'node:fs/promises';
+import { readFile, readdir, rm } from 'node:fs/promises';
 import { join } from 'node:path';
 import { davisPalette, version } from 'veronese';
 import { decodeImage, encodeIndexedPng } from 'veronese/codecs';
@@ -12,16 +12,26 @@ export async function framesOf(folder) {
   return (await readdir(folder)).filter((name) => /\.(png|jpe?g|webp|bmp|p[bgpn]m)$/i.test(name)).sort();
 }
 
-/** The name of a clip's job: names and contents of the frames, settings, version. */
-export async function clipJobOf(folder, options) {
+/** Names and hashes of the contents of some frames. */
+export async function hashesOf(folder, names) {
   const hashes = [];
-  for (const name of await framesOf(folder)) hashes.push([name, sha256(await readFile(join(folder, name)))]);
+  for (const name of names) hashes.push([name, sha256(await readFile(join(folder, name)))]);
+  return hashes;
+}
+
+/** The name of a clip's job: names and contents of the frames, settings, version. */
+export function clipJobOf(hashes, options) {
   return `clip-${sha256(JSON.stringify({ software: `veronese ${version}`, options, hashes }))}`;
 }
 
 /** `OUT/ab/clip-ab…`: the folder of a clip's result. */
 export function clipPlaceOf(out, job) {
   return join(out, job.slice(5, 7), job);
+}
+
+/** The folder that keeps what the pairs of frames told, until the clip is done: a file for each frame, named by its index. */
+export function pairsPlaceOf(out, job) {
+  return join(clipPlaceOf(out, job), 'pairs');
 }
 
 /** The tracks that a job found, or undefined where it is not done, or where its files are no longer what was written. */
@@ -42,23 +52,22 @@ export async function clipResultOf(out, job) {
   }
 }
 
-/** Does a clip unless it is done. Returns whether there was something to do, and how many frames were known from an earlier attempt. */
-export async function performClip(pool, { job, folder, out, options }) {
-  if (await clipResultOf(out, job)) return { did: false, known: 0 };
-  if ((await clipJobOf(folder, options)) !== job) throw new Error(`${folder} has changed since the job was made`);
+/** Does a clip unless it is done. Returns whether there was something to do, and how many frames were known or had to be solved. */
+export async function performClip(segmenter, { job, folder, out, options }) {
+  if (await clipResultOf(out, job)) return { did: false, known: 0, solved: 0 };
   const [place, names] = [clipPlaceOf(out, job), await framesOf(folder)];
-  const pairs = (index) => join(place, 'pairs', String(index));
-  await mkdir(join(place, 'pairs'), { recursive: true });
-  let [known, size] = [0, { width: 0, height: 0 }];
+  if (clipJobOf(await hashesOf(folder, names), options) !== job) throw new Error(`${folder} has changed since the job was made`);
+  const pairs = (index) => join(pairsPlaceOf(out, job), String(index));
+  let [solved, size] = [0, { width: 0, height: 0 }];
   try {
     const source = { length: names.length, read: async (index) => (size = await decodeImage(await readFile(join(folder, names[index])))) };
-    const clip = pool.segmentClip(source, {
+    const clip = segmenter.segmentClip(source, {
       ...options,
-      onPairs: (index, bytes) => writeWhole(pairs(index), bytes),
-      knownPairs: async (index) => {
-        const bytes = await readFile(pairs(index)).catch(() => undefined);
-        if (bytes) known += 1;
-        return bytes;
+      // What is missing, damaged or of other frames is solved here.
+      knownPairs: (index) => readFile(pairs(index)).catch(() => undefined),
+      onPairs: async (index, bytes) => {
+        solved += 1;
+        await writeWhole(pairs(index), bytes);
       },
     });
     const images = {};
@@ -73,6 +82,6 @@ export async function performClip(pool, { job, folder, out, options }) {
     if (!FINAL.has(error.code)) throw error;
     await writeWhole(join(place, 'clip.json'), recordOf(job, { error: { code: error.code, message: error.message } }));
   }
-  await rm(join(place, 'pairs'), { recursive: true, force: true });
-  return { did: true, known };
+  await rm(pairsPlaceOf(out, job), { recursive: true, force: true });
+  return { did: true, known: names.length - solved, solved };
 }

@@ -49,14 +49,14 @@ export function recordOf(job, content) {
 export const FINAL = new Set(['unreadable-image', 'frame-size-mismatch', 'frame-size-unsupported', 'invalid-option']);
 
 /** Does a job unless it is done. Returns whether there was something to do. */
-export async function perform(pool, { job, first, second, out, options }) {
+export async function perform(segmenter, { job, first, second, out, options }) {
   if (await resultOf(out, job)) return false;
   const files = await Promise.all([first, second].map((path) => readFile(path)));
   if (jobOf(files.map(sha256), options) !== job) throw new Error(`${first} or ${second} has changed since the job was made`);
   const place = placeOf(out, job);
   try {
     const [one, two] = await Promise.all(files.map((file) => decodeImage(file)));
-    const { labels, confidence: _, milliseconds: __, ...report } = await pool.segmentPair(one, two, options);
+    const { labels, confidence: _, milliseconds: __, ...report } = await segmenter.segmentPair(one, two, options);
     const image = await encodeIndexedPng(report.width, report.height, labels, davisPalette());
     await writeWhole(place.png, image);
     await writeWhole(place.json, recordOf(job, { ...report, image: sha256(image) }));

@@ -5,7 +5,8 @@
 import { availableParallelism } from 'node:os';
 import { parseArgs } from 'node:util';
 import { Worker } from 'bullmq';
-import { SegmenterPool } from 'veronese';
+import { Segmenter } from 'veronese';
+import { performBlock } from './block.mjs';
 import { performClip } from './clip.mjs';
 import { connect } from './connection.mjs';
 import { perform, QUEUE } from './job.mjs';
@@ -16,8 +17,19 @@ const jobs = Number(values.jobs ?? availableParallelism());
 const lock = Number(values.lock);
 
 const connection = connect();
-const pool = new SegmenterPool({ jobs });
-const worker = new Worker(QUEUE, ({ name, data }) => (name === 'clip' ? performClip(pool, data) : perform(pool, data)), {
+// Each job under way has a worker of its own. The workers of a pool would help one job while the next one waits for them, and a kill would
+// cost as many jobs.
+const idle = Array.from({ length: jobs }, () => new Segmenter());
+const kinds = { pair: perform, block: performBlock, clip: performClip };
+const work = async ({ name, data }) => {
+  const segmenter = idle.pop();
+  try {
+    return await kinds[name](segmenter, data);
+  } finally {
+    idle.push(segmenter);
+  }
+};
+const worker = new Worker(QUEUE, work, {
   connection,
   concurrency: jobs,
   lockDuration: lock,
@@ -27,7 +39,9 @@ const worker = new Worker(QUEUE, ({ name, data }) => (name === 'clip' ? performC
   removeOnComplete: { count: 0 },
   removeOnFail: { count: 1000 },
 });
-worker.on('completed', ({ name, data: { index } }, done) => console.log(JSON.stringify(name === 'clip' ? { clip: index, ...done } : { index, did: done })));
+worker.on('completed', ({ name, data: { index, from } }, done) => {
+  console.log(JSON.stringify(name === 'pair' ? { index, did: done } : { clip: index, block: from, ...done }));
+});
 worker.on('failed', (job, error) => console.error(`${job?.data.first ?? job?.data.folder}: ${error.message}`));
 worker.on('error', () => undefined); // The connection speaks for itself.
 
@@ -37,7 +51,7 @@ for (const signal of ['SIGINT', 'SIGTERM']) {
     if (ending) process.exit(130);
     ending = true;
     await worker.close();
-    pool.close();
+    for (const segmenter of idle) segmenter.close();
     await connection.quit().catch(() => undefined);
   });
 }

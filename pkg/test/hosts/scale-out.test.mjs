@@ -3,10 +3,11 @@
 import assert from 'node:assert/strict';
 import { existsSync, mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { test } from 'node:test';
-import { SegmenterPool } from 'veronese';
-import { clipJobOf, clipPlaceOf, clipResultOf, performClip } from '../../../examples/scale-out/clip.mjs';
+import { Segmenter, SegmenterPool } from 'veronese';
+import { blockJobOf, missingBlocks, performBlock } from '../../../examples/scale-out/block.mjs';
+import { clipJobOf, clipPlaceOf, clipResultOf, framesOf, hashesOf, pairsPlaceOf, performClip } from '../../../examples/scale-out/clip.mjs';
 import { jobOf, perform, placeOf, resultOf, sha256 } from '../../../examples/scale-out/job.mjs';
-import { prove, redisServer } from '../../../scripts/lib/scale-out.mjs';
+import { prove, proveClip, redisServer } from '../../../scripts/lib/scale-out.mjs';
 import { frame, pair, png } from '../support/frames.mjs';
 import { temporaryFolder } from '../support/program.mjs';
 
@@ -15,6 +16,11 @@ const program = await redisServer();
 test('every pair exactly once, though a worker is killed and the Redis server restarted', { skip: !program && 'there is no redis-server and no valkey-server' }, async () => {
   const { pairs } = await prove(program, { pairs: 60, size: { width: 48, height: 36 } });
   assert.equal(pairs, 60);
+});
+
+test('a clip in blocks is to the bit what one run writes, though a worker is killed inside a block', { skip: !program && 'there is no redis-server and no valkey-server' }, async () => {
+  const { did } = await proveClip(program, { blocks: 3, size: { width: 96, height: 72 } });
+  assert.ok(did.length >= 4);
 });
 
 test('a result that was edited, damaged or lost its image is done again', async (t) => {
@@ -57,11 +63,7 @@ test('a result that was edited, damaged or lost its image is done again', async 
 
 test('a clip whose worker is lost goes on at the last frame solved, to the same files', async (t) => {
   const folder = temporaryFolder(t);
-  const frames = folder.path('frames');
-  mkdirSync(frames);
-  for (let k = 0; k < 8; k++) folder.file(`frames/${k}.png`, Buffer.from(png(frame(k, { width: 64, height: 48 }))));
-  const options = { quality: 'fast' };
-  const job = await clipJobOf(frames, options);
+  const { frames, options, job } = await clipOf(folder, 8);
   const [out, straight] = [folder.path('out'), folder.path('straight')];
   const task = { job, folder: frames, options };
 
@@ -77,15 +79,72 @@ test('a clip whose worker is lost goes on at the last frame solved, to the same 
   t.after(() => pool.close());
   const { did, known } = await performClip(pool, { ...task, out });
   assert.ok(did && known >= 3, `${known} known`);
-  assert.deepEqual(await performClip(pool, { ...task, out: straight }), { did: true, known: 0 });
-  const files = (place) => readdirSync(place).sort().map((name) => [name, readFileSync(`${place}/${name}`, 'base64')]);
+  assert.deepEqual(await performClip(pool, { ...task, out: straight }), { did: true, known: 0, solved: 8 });
   const found = files(clipPlaceOf(out, job));
   assert.deepEqual(found, files(clipPlaceOf(straight, job)));
-  assert.deepEqual(found.map(([name]) => name), [...Array.from({ length: 8 }, (_, k) => `${k}.png.png`), 'clip.json']);
-  assert.deepEqual(await performClip(pool, { ...task, out }), { did: false, known: 0 });
+  assert.deepEqual(found.map(([name]) => name), [...Array.from({ length: 8 }, (_, k) => `0${k}.png.png`), 'clip.json']);
+  assert.deepEqual(await performClip(pool, { ...task, out }), { did: false, known: 0, solved: 0 });
 
-  rmSync(`${clipPlaceOf(out, job)}/3.png.png`);
+  rmSync(`${clipPlaceOf(out, job)}/03.png.png`);
   assert.equal(await clipResultOf(out, job), undefined, 'an image is missing');
   assert.equal((await performClip(pool, { ...task, out })).did, true);
   assert.deepEqual(files(clipPlaceOf(out, job)), found);
 });
+
+test('the pairs of a clip are solved in blocks; those that are missing or damaged are solved again', async (t) => {
+  const folder = temporaryFolder(t);
+  const { frames, options, job, hashes } = await clipOf(folder, 12);
+  const [out, straight] = [folder.path('out'), folder.path('straight')];
+  const segmenter = new Segmenter();
+  t.after(() => segmenter.close());
+  const blockOf = ({ from, to }) => ({ job: blockJobOf(job, hashes.slice(from, to + 1)), clip: job, folder: frames, from, to, out, options });
+  const blocks = await missingBlocks(out, job, 12, 4);
+  assert.deepEqual(blocks, [{ from: 0, to: 4 }, { from: 4, to: 8 }, { from: 8, to: 11 }]);
+  for (const block of blocks.toReversed()) assert.deepEqual(await performBlock(segmenter, blockOf(block)), { did: true, known: 0 });
+  assert.deepEqual(readdirSync(pairsPlaceOf(out, job)).map(Number).toSorted((one, other) => one - other), Array.from({ length: 11 }, (_, k) => k + 1));
+
+  const pairs = (index) => `${pairsPlaceOf(out, job)}/${index}`;
+  const bytes = readFileSync(pairs(6));
+  rmSync(pairs(6));
+  assert.deepEqual(await missingBlocks(out, job, 12, 4), [blocks[1]]);
+  assert.deepEqual(await performBlock(segmenter, blockOf(blocks[1])), { did: true, known: 3 });
+  assert.deepEqual(readFileSync(pairs(6)), bytes);
+  assert.deepEqual(await performBlock(segmenter, blockOf(blocks[1])), { did: false, known: 4 });
+  await assert.rejects(performBlock(segmenter, { ...blockOf(blocks[1]), from: 5, to: 9 }), /has changed/);
+
+  rmSync(pairs(2));
+  writeFileSync(pairs(5), bytes.subarray(0, -1));
+  writeFileSync(pairs(7), bytes); // of another frame
+  // And the first frame, which has no pair.
+  assert.deepEqual(await performClip(segmenter, { job, folder: frames, options, out }), { did: true, known: 8, solved: 4 });
+  await performClip(segmenter, { job, folder: frames, options, out: straight });
+  assert.deepEqual(files(clipPlaceOf(out, job)), files(clipPlaceOf(straight, job)));
+  assert.deepEqual(await performBlock(segmenter, blockOf(blocks[0])), { did: false, known: 4 }, 'the clip is done');
+});
+
+test('a frame that cannot be read is told by the job of its clip, not by that of its block', async (t) => {
+  const folder = temporaryFolder(t);
+  const { frames, options } = await clipOf(folder, 6);
+  writeFileSync(`${frames}/03.png`, 'no image');
+  const hashes = await hashesOf(frames, await framesOf(frames));
+  const [job, out] = [clipJobOf(hashes, options), folder.path('out')];
+  const segmenter = new Segmenter();
+  t.after(() => segmenter.close());
+  const block = { job: blockJobOf(job, hashes.slice(0, 5)), clip: job, folder: frames, from: 0, to: 4, out, options };
+  assert.deepEqual(await performBlock(segmenter, block), { did: true, known: 0 });
+  assert.deepEqual(readdirSync(pairsPlaceOf(out, job)).toSorted(), ['1', '2']);
+  assert.equal((await performClip(segmenter, { job, folder: frames, out, options })).did, true);
+  assert.equal((await clipResultOf(out, job)).error.code, 'unreadable-image');
+});
+
+async function clipOf(folder, count) {
+  const frames = folder.path('frames');
+  mkdirSync(frames);
+  for (let k = 0; k < count; k++) folder.file(`frames/${String(k).padStart(2, '0')}.png`, Buffer.from(png(frame(k, { width: 64, height: 48 }))));
+  const [options, hashes] = [{ quality: 'fast' }, await hashesOf(frames, await framesOf(frames))];
+  return { frames, options, hashes, job: clipJobOf(hashes, options) };
+}
+
+function files(place) {
+  return readdirSync(place).toSorted().map((name) => [name, readFileSync(`${place}/${name}`, 'base64')]);
+}
