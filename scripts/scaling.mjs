@@ -9,13 +9,13 @@ import { parseArgs } from 'node:util';
 
 import { writeMarked } from './lib/marked.mjs';
 import { projectText, root } from './lib/project.mjs';
-import { command } from './lib/run.mjs';
+import { Stop, command } from './lib/run.mjs';
 import { checkTable, constantTable, farmTable, poolTable } from './lib/scaling/tables.mjs';
 
 const CONSTANTS = 'experiments/scaling.json';
 
 await command(async (args) => {
-  const { values } = parseArgs({ args, options: { measure: { type: 'string' }, 'write-docs': { type: 'boolean', default: false } } });
+  const values = options(args);
   if (values.measure) {
     const { measured } = await import('./lib/scaling/measure.mjs');
     writeFileSync(join(root, CONSTANTS), `${JSON.stringify(await measured(resolve(values.measure), console.log), null, 1)}\n`);
@@ -25,3 +25,11 @@ await command(async (args) => {
   console.log(Object.values(parts).join('\n\n'));
   if (values['write-docs']) writeMarked('docs/scaling.md', parts);
 });
+
+function options(args) {
+  try {
+    return parseArgs({ args, options: { measure: { type: 'string' }, 'write-docs': { type: 'boolean', default: false } } }).values;
+  } catch (error) {
+    throw new Stop(error.message);
+  }
+}
