@@ -110,6 +110,22 @@ pub(crate) struct Pair {
     pub(crate) reduction: f64,
 }
 
+/// Objects before a background that may be at rest: their motions, and labels of the working size, whose rows are `width` long.
+struct Objects<'a> {
+    motions: &'a [AffineMotion],
+    labels: &'a [u8],
+    width: usize,
+}
+
+impl Objects<'_> {
+    /// The change of brightness. Along a single motion that of plain ground would be that of the objects.
+    fn brightness_at_rest(&self, level: &Level) -> Photometric {
+        let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(self.motions).copied().collect();
+        let step = level.stride << level.index;
+        Photometric::along_labels(level, &motions, &|x, y| usize::from(self.labels[y * step * self.width + x * step]))
+    }
+}
+
 impl Pair {
     /// The pair of two frames.
     fn of_frames([first, second]: [&Frame; 2], settings: &Settings) -> Pair {
@@ -168,21 +184,30 @@ impl Pair {
         self.measure_along(motion);
     }
 
-    /// As [`find_dominant`](Self::find_dominant) where the background is at rest and objects, labelled at the working size, have these motions.
-    /// Along a single motion the change of brightness of plain ground would be that of the objects.
-    fn take_rest(&mut self, objects: &[AffineMotion], labels: &[u8], brightness: bool) {
-        let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(objects).copied().collect();
-        let width = self.finest().width();
-        let rounds = if brightness { self.finest().model.rounds } else { 0 };
-        for _ in 0..rounds {
-            let level = &self.levels[self.base];
-            let label = |x: usize, y: usize| usize::from(labels[(y << level.index) * width + (x << level.index)]);
-            let photometric = Photometric::along_labels(level, &motions, &label);
-            self.remove(photometric);
+    /// As [`find_dominant`](Self::find_dominant) where the background is at rest and objects have these labels and motions.
+    fn take_rest(&mut self, objects: &Objects<'_>, brightness: bool) {
+        for _ in 0..self.rest_rounds(brightness) {
+            self.remove(objects.brightness_at_rest(&self.levels[self.base]));
             let level = &mut self.levels[self.base];
             level.noise = noise(level, &AffineMotion::STATIC);
         }
         self.measure_along(&AffineMotion::STATIC);
+    }
+
+    /// A sample of the base level much as [`take_rest`](Self::take_rest) would leave it, for a fraction of the time.
+    fn sample_of_rest(&self, objects: &Objects<'_>, brightness: bool) -> Level {
+        let mut level = self.levels[self.base].clone();
+        for _ in 0..self.rest_rounds(brightness) {
+            objects.brightness_at_rest(&level.thinned()).remove_from(&mut level);
+            level.noise = noise(&level, &AffineMotion::STATIC);
+        }
+        level.noise = noise(&level, &AffineMotion::STATIC);
+        level.thinned()
+    }
+
+    /// How often the change of brightness and the noise of a background at rest take turns.
+    fn rest_rounds(&self, brightness: bool) -> usize {
+        if brightness { self.finest().model.rounds } else { 0 }
     }
 
     /// Measures the noise along the dominant motion.

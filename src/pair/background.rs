@@ -4,15 +4,16 @@
 //! spans several objects although the camera is at rest. Where noise explains most of the frame at rest, both hypotheses are therefore
 //! solved to the end, each with objects and a change of brightness of its own, and the one that describes the frames in fewer nats is taken.
 
-use super::Pair;
 use super::hypothesis::{known, refine, with_dominant};
 use super::labels::{Labelled, label};
 use super::settings::Settings;
+use super::{Objects, Pair};
 use crate::estimation::selection::ScoredMotion;
 use crate::labelling::BACKGROUND;
 use crate::motion::AffineMotion;
 use crate::order::median;
 use crate::progress::Stages;
+use crate::view::level::Level;
 
 /// A pair whose change of brightness is removed, and its labels.
 pub(super) struct Solved {
@@ -46,10 +47,13 @@ pub(super) fn solve(mut pair: Pair, likely: &[AffineMotion], settings: &Settings
     if known[BACKGROUND] == AffineMotion::STATIC {
         return moving;
     }
-    at_rest.take_rest(&known[BACKGROUND + 1..], &moving.labelled.labels, settings.brightness());
-    if !rest_is_likely(&at_rest) {
+    let Solved { pair, labelled } = &moving;
+    let width = pair.finest().width();
+    let objects = Objects { motions: &known[BACKGROUND + 1..], labels: &labelled.labels, width };
+    if !rest_is_likely(&at_rest.sample_of_rest(&objects, settings.brightness())) {
         return moving;
     }
+    at_rest.take_rest(&objects, settings.brightness());
     known.extend(likely);
     let at_rest = under(at_rest, AffineMotion::STATIC, &known, settings, stages);
     // Lengths can be compared only if they assume the same noise.
@@ -75,8 +79,7 @@ fn under(
 }
 
 /// Whether noise explains half of the pixels at rest.
-fn rest_is_likely(pair: &Pair) -> bool {
-    let level = &pair.levels[pair.base];
+fn rest_is_likely(level: &Level) -> bool {
     let at_rest = ScoredMotion::new(level, AffineMotion::STATIC);
     median(at_rest.cost.values()).is_some_and(|cost| cost < level.model.rest)
 }

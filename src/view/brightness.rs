@@ -57,8 +57,11 @@ impl Photometric {
             let footprint = Footprint::new(px, py, second.width(), second.height());
             footprint.inside.then(|| footprint.sample(second.values()))
         };
+        let width = level.width();
+        // Taken once: they are the same in every step.
+        let samples: Vec<Option<f32>> = (0..level.first.values().len()).map(|p| sample(p % width, p / width)).collect();
         let start = Photometric::from_moments(&level.first, second, level.model);
-        (0..level.model.iterations).fold(start, |photometric, _| photometric.step(level, sample))
+        (0..level.model.iterations).fold(start, |photometric, _| photometric.step(level, |x, y| samples[y * width + x]))
     }
 
     /// One reweighted least squares step between the pixels of the first frame and the samples of the second that belong to them.
