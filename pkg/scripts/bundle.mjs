@@ -27,8 +27,8 @@ const XML = '@rgrove/parse-xml';
 const SHARED = ['common/'];
 /** What encoders and readers of masks share. */
 const BOTH_WAYS = ['base64', 'input', 'names', 'veronese-json'].map((name) => `formats/${name}.js`);
-/** What all entries with calls share, but for what they load when masks are given. */
-const CALLS = ['module/', 'calls/(?!clip/given-masks\\.js)', 'pool/', 'entries/package.js'];
+/** What all entries with calls share, but for what they load when masks are given or several workers share a clip. */
+const CALLS = ['module/', 'calls/(?!clip/(?:given-masks|shared-pairs)\\.js)', 'pool/', 'entries/package.js'];
 
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({

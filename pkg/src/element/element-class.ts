@@ -15,9 +15,6 @@ import { View } from './view.js';
 /** Where there are no elements (Node, a worker), the class can still be imported. */
 const Base = globalThis.HTMLElement ?? class {};
 
-/** More workers than this are not worth their memory. */
-const MOST_WORKERS = 8;
-
 export class VeroneseSegmenterElement extends Base {
   static readonly formAssociated = true;
   static readonly observedAttributes = ['first', 'second', 'src', 'motions', 'quality', 'grouped', 'name', 'required'];
@@ -378,8 +375,8 @@ export class VeroneseSegmenterElement extends Base {
   /** Asked for before the frames are decoded: a new worker warms up meanwhile. */
   #worker(): InstanceType<typeof SegmenterPool> {
     if (this.#segmenter === undefined) {
-      // One processor is left for the page.
-      this.#segmenter = new SegmenterPool({ jobs: Math.min(Math.max(1, (navigator.hardwareConcurrency ?? 2) - 1), MOST_WORKERS) });
+      // One processor is left for the page; more than eight workers are not worth their memory.
+      this.#segmenter = new SegmenterPool({ jobs: Math.min(navigator.hardwareConcurrency - 1 || 1, 8) });
       this.#segmenter.warmUp().catch(() => undefined); // the call that needs the worker says why there is none
     }
     return this.#segmenter;

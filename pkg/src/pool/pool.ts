@@ -18,7 +18,7 @@ export type Spawn<Task, Result> = (onReply: (reply: Reply<Result>) => void, onDe
 /** A worker reserved for a sequence of tasks that share state. */
 export interface Claim<Task, Result> {
   /** Rejects if the worker has ended since. */
-  run: (task: Task, options?: CallOptions) => Promise<Result>;
+  perform: (task: Task, options?: CallOptions) => Promise<Result>;
   release: () => void;
   /** Says whether it waits for the caller's code, which may itself wait for a worker. */
   pause: (paused: boolean) => void;
@@ -124,8 +124,8 @@ export class WorkerPool<Task, Result> {
             claim.paused = paused;
             this.#watch();
           };
-          const run = (task: Task, options?: CallOptions) => this.#run(task, options, claim);
-          resolve({ run, release: () => this.#release(claim), pause, lost: () => claim.lost });
+          const perform = (task: Task, options?: CallOptions) => this.#run(task, options, claim);
+          resolve({ perform, release: () => this.#release(claim), pause, lost: () => claim.lost });
         },
         reject: (reason) => {
           signal?.removeEventListener('abort', onAbort);

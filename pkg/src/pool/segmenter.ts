@@ -22,14 +22,13 @@ import type {
   WorkerLike,
 } from '../../types/index.js';
 import { clipOf } from '../calls/clip.js';
-import type { Place } from '../calls/clip/place.js';
 import { buffersOfTask, type CallTask, type Result, type Task } from '../calls/messages.js';
 import { inOrder } from '../calls/ordered.js';
 import { fitCall, parted, relabelCall, segmentCall, start } from '../calls/tasks.js';
 import { entriesOf, invalidInput, invalidOption, isWhole, optionsObject, reading } from '../common/checks.js';
 import { cancelled, VeroneseError } from '../common/errors.js';
 import type { Core, Glue } from '../module/core.js';
-import { type Claim, WorkerPool } from './pool.js';
+import { WorkerPool } from './pool.js';
 import { spawnWith } from './threads.js';
 
 /** Most workers of one pool: more is a mistake, not a wish. */
@@ -80,16 +79,7 @@ export function segmenters(host: Host) {
     }
 
     segmentClip(frames: ClipSource, options?: ClipOptions): Clip {
-      return clipOf(frames, options, async (signal) => {
-        const own = await this.#pool.claim(signal);
-        const helper = async (signal: AbortSignal) => {
-          // A pool that was closed starts no worker for it.
-          const lost = own.lost();
-          if (lost) throw lost;
-          return placeOf(await this.#pool.claim(signal, true));
-        };
-        return { ...placeOf(own), helpers: { count: this.#pool.size - 1, claim: helper, end: () => this.#pool.endIdle() } };
-      });
+      return clipOf(frames, options, async (signal) => ({ ...(await this.#pool.claim(signal)), workers: this.#pool }));
     }
 
     async warmUp(): Promise<void> {
@@ -157,10 +147,6 @@ export function segmenters(host: Host) {
   }
 
   return { Segmenter, SegmenterPool, segmentPairs };
-}
-
-function placeOf({ run, release, pause }: Claim<Task, Result>): Place {
-  return { perform: run, release, pause };
 }
 
 /** Names of {@link SegmenterOptions}. */

@@ -10,24 +10,25 @@ export interface Place {
   release: () => void;
   /** Says whether the clip waits for its reader, if others may wait for the place. */
   pause?: (paused: boolean) => void;
-  /** Other places where a part of the work can be done. */
-  helpers?: Helpers;
+  /** Why the place is no more, if it is so. */
+  lost?: () => VeroneseError | undefined;
+  /** Where it is one of several workers, all of them. */
+  workers?: Workers;
 }
 
-export interface Helpers {
-  /** How many there may be. */
-  count: number;
-  /** One that has nothing else to do. */
-  claim: (signal: AbortSignal) => Promise<Place>;
-  /** They are no longer needed. */
-  end: () => void;
+export interface Workers {
+  readonly size: number;
+  /** With `idle`, one that has nothing to do. */
+  claim: (signal: AbortSignal, idle: boolean) => Promise<Place>;
+  /** Ends those that have nothing to do. */
+  endIdle: () => void;
 }
 
 /** Number of clips so far. Each number is used once, because a module that replaces another after a panic must not find a clip under it. */
 let clips = 0;
 
 export class PlacedClip {
-  readonly #place: Place;
+  readonly place: Place;
   readonly #signal: AbortSignal | undefined;
   readonly #clip = clips++;
   /** How many clips hold the place. */
@@ -36,19 +37,15 @@ export class PlacedClip {
   #open = false;
 
   constructor(place: Place, signal: AbortSignal | undefined, holders = { count: 0 }) {
-    this.#place = place;
+    this.place = place;
     this.#signal = signal;
     this.#holders = holders;
     holders.count += 1;
   }
 
-  get helpers(): Helpers | undefined {
-    return this.#place.helpers;
-  }
-
   /** Another clip in the same place, which is released when all have ended. */
   beside(signal: AbortSignal): PlacedClip {
-    return new PlacedClip(this.#place, signal, this.#holders);
+    return new PlacedClip(this.place, signal, this.#holders);
   }
 
   async begin(whole: boolean, settings: Settings): Promise<void> {
@@ -82,11 +79,11 @@ export class PlacedClip {
 
   /** Frees what the clip holds. If that fails, the clip is gone already. */
   async end(): Promise<void> {
-    if (this.#open) await this.#place.perform({ call: 'endClip', clip: this.#clip }, {}).catch(() => undefined);
-    if (--this.#holders.count === 0) this.#place.release();
+    if (this.#open) await this.place.perform({ call: 'endClip', clip: this.#clip }, {}).catch(() => undefined);
+    if (--this.#holders.count === 0) this.place.release();
   }
 
   #perform(task: ClipTask) {
-    return this.#place.perform(task, { signal: this.#signal });
+    return this.place.perform(task, { signal: this.#signal });
   }
 }

@@ -5,7 +5,7 @@ import type { Pixels } from '../../../types/index.js';
 import { cancelled } from '../../common/errors.js';
 import type { Settings } from '../messages.js';
 import { inOrder } from '../ordered.js';
-import { type Helpers, PlacedClip } from './place.js';
+import { PlacedClip, type Workers } from './place.js';
 
 /** Pairs that a worker solves in a row where it can: of each block one frame is prepared by two workers. */
 const BLOCK = 2;
@@ -28,7 +28,7 @@ interface Unsolved {
 
 export class SharedPairs {
   readonly #clip: PlacedClip;
-  readonly #helpers: Helpers;
+  readonly #workers: Workers;
   readonly #settings: Settings;
   /** Of each worker one: engines warn of many listeners to one signal. */
   readonly #endings: AbortController[];
@@ -44,12 +44,12 @@ export class SharedPairs {
   #listeners: (() => void)[] = [];
   #ask = () => {};
 
-  /** The worker of the clip solves pairs itself where it has nothing else to do; the helpers solve others. */
-  constructor(clip: PlacedClip, helpers: Helpers, settings: Settings) {
+  /** The worker of the clip solves pairs itself where it has nothing else to do; the others help. */
+  constructor(clip: PlacedClip, workers: Workers, settings: Settings) {
     this.#clip = clip;
-    this.#helpers = helpers;
+    this.#workers = workers;
     this.#settings = settings;
-    this.#endings = Array.from({ length: 1 + helpers.count }, () => new AbortController());
+    this.#endings = Array.from({ length: workers.size }, () => new AbortController());
   }
 
   /** Asks for one more frame. Called when the clip has begun to take one. */
@@ -90,7 +90,7 @@ export class SharedPairs {
     try {
       const [own, ...others] = this.#endings.map((ending) => ending.signal) as [AbortSignal, ...AbortSignal[]];
       void this.#solve(own);
-      void Promise.all(others.map((signal) => this.#help(signal))).then(() => this.#helpers.end());
+      void Promise.all(others.map((signal) => this.#help(signal))).then(() => this.#workers.endIdle());
       const begun = (ask: () => void) => (this.#ask = ask);
       for await (const { looked, failure } of inOrder(frames, work, { room, signal, stop: () => cancelled(signal), begun })) {
         if (failure) throw failure.thrown;
@@ -130,7 +130,9 @@ export class SharedPairs {
   async #help(signal: AbortSignal): Promise<void> {
     try {
       while (await this.#until(() => this.#unsolved.length > 0)) {
-        await this.#solveBlock(new PlacedClip(await this.#helpers.claim(signal), signal), async () => !this.#ended);
+        // Workers that were ended with that of the clip are not started for it again.
+        if (this.#clip.place.lost?.()) return;
+        await this.#solveBlock(new PlacedClip(await this.#workers.claim(signal, true), signal), async () => !this.#ended);
       }
     } catch {
       // What it was to solve waits for another worker.

@@ -9,7 +9,7 @@ import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Said, together } from './said.js';
-import { type Looked, SharedPairs } from './shared-pairs.js';
+import type { Looked } from './shared-pairs.js';
 import type { Told } from './tracks.js';
 
 /** What is asked, with masks that are checked as well. */
@@ -48,18 +48,20 @@ async function masksOf({ masks, source }: Asked): Promise<Said[]> {
 async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<ClipSummary> {
   const onPairs = (index: number, pairs: Uint8Array) => clip.wait(task.onPairs?.(index, pairs));
   const { signal, settings } = task;
-  const { helpers } = clip;
-  const shared = helpers && helpers.count > 0 && settings['lookAhead'] === 'all' ? new SharedPairs(clip, helpers, settings) : undefined;
+  const { workers } = clip.place;
+  const several = settings['lookAhead'] === 'all' && workers && workers.size > 1;
+  // A single worker does without that code.
+  const shared = several && new (await import('./shared-pairs.js')).SharedPairs(clip, workers, settings);
   const all = looked(clip, frames, task);
   for await (const { index, frame, pairs: known } of shared ? shared.solved(all, { signal, onPairs }) : all) {
     task.onProgress?.({ frame: index, of: task.source.length, stage: 'pairs' });
     const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(known && { known }) });
     const seen = task.onPreview ? clip.step<ClipFrame | undefined>({ call: 'previewClip' }) : undefined;
-    (shared ?? frames).ahead();
+    (shared || frames).ahead();
     const [pairs, preview] = await Promise.all([step, seen]);
     if (pairs) await onPairs(index, pairs);
     if (preview) await clip.wait(task.onPreview?.(preview));
-    shared?.taken();
+    if (shared) shared.taken();
   }
   return clip.step({ call: 'concludeClip' });
 }

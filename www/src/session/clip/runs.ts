@@ -23,7 +23,7 @@ interface Ends {
 
 export class ClipRuns {
   /** One processor is left for the page. */
-  readonly segmenter = new SegmenterPool({ jobs: Math.min(Math.max(1, (navigator.hardwareConcurrency ?? 2) - 1), MOST_WORKERS) });
+  readonly segmenter = new SegmenterPool({ jobs: Math.min(navigator.hardwareConcurrency - 1 || 1, MOST_WORKERS) });
   readonly #store: Store;
   #current: { readonly controller: AbortController; readonly ends: Ends } | null = null;
 
