@@ -43,9 +43,9 @@ export class PlacedClip {
     holders.count += 1;
   }
 
-  /** Another clip in the same place, which is released when all have ended. */
-  beside(signal: AbortSignal): PlacedClip {
-    return new PlacedClip(this.place, signal, this.#holders);
+  /** Another clip, in the same place, which is released when all have ended, or in another one. */
+  beside(signal: AbortSignal, place = this.place): PlacedClip {
+    return new PlacedClip(place, signal, place === this.place ? this.#holders : undefined);
   }
 
   async begin(whole: boolean, settings: Settings): Promise<void> {

@@ -4,8 +4,8 @@
 import type { Pixels } from '../../../types/index.js';
 import { cancelled } from '../../common/errors.js';
 import type { Settings } from '../messages.js';
-import { inOrder } from '../ordered.js';
-import { PlacedClip, type Workers } from './place.js';
+import type { inOrder } from '../ordered.js';
+import type { PlacedClip, Workers } from './place.js';
 
 /** Pairs that a worker solves in a row where it can: of each block one frame is prepared by two workers. */
 const BLOCK = 2;
@@ -66,6 +66,8 @@ export class SharedPairs {
   /** The frames in their order, with what their pairs have told. `onPairs` hears of those that were solved, as soon as they are. */
   async *solved(
     frames: AsyncIterable<Looked>,
+    // Given, not imported: bundlers put what this file imports into the worker, which has no use for it.
+    order: typeof inOrder,
     { signal, onPairs }: { signal: AbortSignal | undefined; onPairs: (index: number, pairs: Uint8Array) => Promise<void> },
   ): AsyncGenerator<Looked, void, undefined> {
     let last: Pixels | undefined;
@@ -92,7 +94,7 @@ export class SharedPairs {
       void this.#solve(own);
       void Promise.all(others.map((signal) => this.#help(signal))).then(() => this.#workers.endIdle());
       const begun = (ask: () => void) => (this.#ask = ask);
-      for await (const { looked, failure } of inOrder(frames, work, { room, signal, stop: () => cancelled(signal), begun })) {
+      for await (const { looked, failure } of order(frames, work, { room, signal, stop: () => cancelled(signal), begun })) {
         if (failure) throw failure.thrown;
         // The next pair may still need it.
         yield { ...looked, frame: copyOf(looked.frame) };
@@ -132,7 +134,7 @@ export class SharedPairs {
       while (await this.#until(() => this.#unsolved.length > 0)) {
         // Workers that were ended with that of the clip are not started for it again.
         if (this.#clip.place.lost?.()) return;
-        await this.#solveBlock(new PlacedClip(await this.#workers.claim(signal, true), signal), async () => !this.#ended);
+        await this.#solveBlock(this.#clip.beside(signal, await this.#workers.claim(signal, true)), async () => !this.#ended);
       }
     } catch {
       // What it was to solve waits for another worker.

@@ -4,12 +4,13 @@ import type { ClipFrame } from '../../../types/index.js';
 import { checkedBytes, invalidInput } from '../../common/checks.js';
 import { VeroneseError } from '../../common/errors.js';
 import type { ClipChange, ClipSummary } from '../messages.js';
+import { inOrder } from '../ordered.js';
 import { taken } from '../taking.js';
 import type { Asked, Whole } from './asked.js';
 import { type Frames, reads } from './frames.js';
 import type { PlacedClip } from './place.js';
 import { isWithin, type Said, together } from './said.js';
-import type { Looked } from './shared-pairs.js';
+import type { Looked, SharedPairs } from './shared-pairs.js';
 import type { Told } from './tracks.js';
 
 /** What is asked, with masks that are checked as well. */
@@ -49,19 +50,22 @@ async function solved(clip: PlacedClip, frames: Frames, task: Task): Promise<Cli
   const onPairs = (index: number, pairs: Uint8Array) => clip.wait(task.onPairs?.(index, pairs));
   const { signal, settings } = task;
   const { workers } = clip.place;
-  const several = settings['lookAhead'] === 'all' && workers && workers.size > 1;
-  // A single worker does without that code.
-  const shared = several && new (await import('./shared-pairs.js')).SharedPairs(clip, workers, settings);
+  let shared: SharedPairs | undefined;
+  if (settings['lookAhead'] === 'all' && workers && workers.size > 1) {
+    // A single worker does without that code.
+    const { SharedPairs } = await import('./shared-pairs.js');
+    shared = new SharedPairs(clip, workers, settings);
+  }
   const all = looked(clip, frames, task);
-  for await (const { index, frame, pairs: known } of shared ? shared.solved(all, { signal, onPairs }) : all) {
+  for await (const { index, frame, pairs: known } of shared ? shared.solved(all, inOrder, { signal, onPairs }) : all) {
     task.onProgress?.({ frame: index, of: task.source.length, stage: 'pairs' });
     const step = clip.step<Uint8Array | undefined>({ call: 'pushClip', frame, ...(known && { known }) });
     const seen = task.onPreview ? clip.step<ClipFrame | undefined>({ call: 'previewClip' }) : undefined;
-    (shared || frames).ahead();
+    (shared ?? frames).ahead();
     const [pairs, preview] = await Promise.all([step, seen]);
     if (pairs) await onPairs(index, pairs);
     if (preview) await clip.wait(task.onPreview?.(preview));
-    if (shared) shared.taken();
+    shared?.taken();
   }
   return clip.step({ call: 'concludeClip' });
 }
