@@ -100,7 +100,14 @@ pub(crate) fn solve(
         let Solved { pair: solved, labelled } =
             background::solve(Pair::new(first, pyramid, second, settings), likely, settings, &mut stages);
         pair = solved;
-        let cost = if settings.follows { hypothesis::cost(&pair, &labelled.motions) } else { 0.0 };
+        let cost = if settings.follows {
+            // Of a pair prepared as one that is followed: costs are in units of its noise.
+            let mut followed = Pair::new(first, pyramid, second, settings);
+            followed.find_dominant_near(&labelled.motions[BACKGROUND], settings.dominant_search());
+            hypothesis::cost(&followed, &labelled.motions)
+        } else {
+            0.0
+        };
         (labelled, [(1.0 + model.follow_tolerance) * cost, cost])
     });
     let with_shadows = labelled.labels.clone();
