@@ -21,7 +21,7 @@ fn bench(
     for n in motions {
         let protocol = Protocol::new(n, 0.05);
         let problems: Vec<Measurements> = (0..8).map(|seed| protocol.problem(seed).measurements).collect();
-        let options = FitOptions { motions: count(n), ..FitOptions::default() };
+        let options = FitOptions::default().with_motions(count(n));
         let mut turn = problems.iter().cycle();
         group.bench_function(format!("n={n}"), |b| {
             b.iter_batched(

@@ -11,7 +11,7 @@ fn pair(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("pair 320×240");
     group.sample_size(10);
     for (name, quality) in [("fast", Quality::Fast), ("best", Quality::Best)] {
-        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_quality(quality);
         group.bench_function(name, |b| {
             b.iter(|| segment_pair(black_box(scene.first()), scene.second(), &options, &mut |_| {}));
         });

@@ -17,7 +17,7 @@ fn main() -> Result<()> {
     }
 
     let noisy = measure(&truth, 0.05)?;
-    let options = FitOptions { motions: MotionCount::Given(2), ..FitOptions::default() };
+    let options = FitOptions::default().with_motions(MotionCount::Given(2));
     for motion in fit_motions(&noisy, &options, &mut |_| {})?.motions {
         let error = 100.0 * error(&truth, &motion.matrix);
         println!("with 5 % noise: {} measurements, wrong by {error:.1} %", motion.measurements);

@@ -10,6 +10,7 @@ use crate::refinement::Report;
 pub const UNLABELLED: u8 = 255;
 
 /// The result of [`fit_motions`](crate::fit_motions).
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct MotionFit {
@@ -28,6 +29,7 @@ pub struct MotionFit {
 }
 
 /// One motion of a [`MotionFit`].
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct FittedMotion {
@@ -46,6 +48,7 @@ pub struct FittedMotion {
 }
 
 /// Evidence for the number of motions.
+#[non_exhaustive]
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct FitEvidence {
@@ -57,6 +60,7 @@ pub struct FitEvidence {
 }
 
 /// A number of motions that was tried.
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Candidate {
@@ -67,6 +71,7 @@ pub struct Candidate {
 }
 
 /// The results of the steps of the paper's algorithm.
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PaperStages {

@@ -66,6 +66,7 @@ pub fn vary(model: ClipModel) {
 }
 
 /// Options of a [`ClipSegmenter`] or a [`StreamSegmenter`].
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ClipOptions {
     /// Options of each pair. With `mark_unknown`, pixels whose evidence does not tell an object from the background get the label 255;
@@ -77,6 +78,18 @@ pub struct ClipOptions {
 }
 
 impl ClipOptions {
+    /// The same with other options of each [`pair`](Self::pair).
+    #[must_use]
+    pub const fn with_pair(self, pair: SegmentOptions) -> ClipOptions {
+        ClipOptions { pair, ..self }
+    }
+
+    /// The same with another [`look_ahead`](Self::look_ahead).
+    #[must_use]
+    pub const fn with_look_ahead(self, look_ahead: Option<usize>) -> ClipOptions {
+        ClipOptions { look_ahead, ..self }
+    }
+
     /// The settings for the pairs of frames of the given width and height.
     fn settings(&self, size: [usize; 2]) -> Settings {
         match self.look_ahead {
@@ -87,6 +100,7 @@ impl ClipOptions {
 }
 
 /// One frame of a clip, segmented.
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ClipFrame {
@@ -103,6 +117,7 @@ pub struct ClipFrame {
 }
 
 /// An object in one frame of a clip.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ClipObject {

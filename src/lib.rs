@@ -105,6 +105,13 @@
 //! 2. [`factorisation`]: from the multibody motion to n motions, as in the paper (eq. 13–17) or by differentiation;
 //! 3. [`refinement`]: the paper's nonlinear refinement (eq. 19), and the maximum likelihood fit of a mixture of motions with outliers.
 //!
+//! # Stability
+//!
+//! From 1.0 on the crate follows semantic versioning. Options are made with `default()` and `with_…`, and results may get further
+//! fields, so neither can be written as literals. Two parts may change in any version: what is hidden from this documentation, and the
+//! modules [`embedding`], [`factorisation`], [`linear`], [`paper`] and [`refinement`], which are the method in parts, for study, and have
+//! types of nalgebra in their signatures.
+//!
 //! # Reproducibility
 //!
 //! The same input gives the same bits in native code and in WebAssembly. "Reproducible bits" in ARCHITECTURE.md explains how.
@@ -142,8 +149,6 @@ mod progress;
 mod random;
 pub mod refinement;
 mod view;
-#[cfg(target_arch = "wasm32")]
-pub mod wasm;
 
 pub use answer::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED};
 pub use clip::{Correction, MAX_CORRECTED, Relabelling, relabel};
@@ -162,4 +167,5 @@ pub use pair::segment_pair_with;
 pub use pair::{Junction, PairEvidence, Segmentation, SegmentedMotion, segment_pair};
 pub use points::fit_motions;
 pub use progress::{Progress, Stage};
+#[doc(hidden)]
 pub use random::Random;

@@ -39,6 +39,7 @@ impl Default for KeptPixels {
 }
 
 /// The result of [`literal_pair`].
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct LiteralSegmentation {

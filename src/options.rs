@@ -50,7 +50,7 @@ impl MotionCount {
 /// let derivatives = (0..18).map(|j| if j < 9 { [2.0, 0.0, -1.0] } else { [0.0, 2.0, 0.5] }).collect();
 /// let data = Measurements::new(positions, derivatives)?;
 /// for method in [Method::Paper, Method::Best] {
-///     let options = FitOptions { motions: MotionCount::Given(1), method, ..FitOptions::default() };
+///     let options = FitOptions::default().with_motions(MotionCount::Given(1)).with_method(method);
 ///     let fit = fit_motions(&data, &options, &mut |_| {})?;
 ///     let [u, v] = fit.motions[0].matrix.flow(1.0, 1.0);
 ///     assert!((u - 0.5).abs() < 1e-6 && (v + 0.25).abs() < 1e-6);
@@ -59,6 +59,7 @@ impl MotionCount {
 /// # Ok(())
 /// # }
 /// ```
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Method {
     /// The paper's algorithm: rank rule (12), five-step factorisation (section 3.3), nonlinear refinement of (19). Each measurement gets
@@ -70,6 +71,16 @@ pub enum Method {
     Best,
 }
 
+impl Method {
+    /// Its name in options and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Method::Paper => "paper",
+            Method::Best => "best",
+        }
+    }
+}
+
 /// How much work to spend on a pair of frames.
 ///
 /// ```
@@ -79,13 +90,14 @@ pub enum Method {
 /// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
 /// # let (first, second) = (scene.first(), scene.second());
 /// for quality in [Quality::Fast, Quality::Best] {
-///     let options = SegmentOptions { quality, ..SegmentOptions::default() };
+///     let options = SegmentOptions::default().with_quality(quality);
 ///     let found = segment_pair(first, second, &options, &mut |_| {})?;
 ///     assert_eq!(found.labels.len(), 160 * 120); // labels always have the size of the frames
 /// }
 /// # Ok(())
 /// # }
 /// ```
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Quality {
     /// For live video: frames are processed at 320 pixels or less (longer side), with fewer candidate motions.
@@ -95,14 +107,25 @@ pub enum Quality {
     Best,
 }
 
+impl Quality {
+    /// Its name in options and reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Quality::Fast => "fast",
+            Quality::Best => "best",
+        }
+    }
+}
+
 /// Options of [`fit_motions`](crate::fit_motions).
 ///
 /// ```
 /// use veronese::{FitOptions, Method, MotionCount};
 ///
-/// let options = FitOptions { motions: MotionCount::Given(3), ..FitOptions::default() };
+/// let options = FitOptions::default().with_motions(MotionCount::Given(3));
 /// assert_eq!((options.method, options.seed), (Method::Best, 1));
 /// ```
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FitOptions {
     /// Number of motions; default [`MotionCount::Auto`].
@@ -119,6 +142,26 @@ impl Default for FitOptions {
     }
 }
 
+impl FitOptions {
+    /// The same with another [`motions`](Self::motions).
+    #[must_use]
+    pub const fn with_motions(self, motions: MotionCount) -> FitOptions {
+        FitOptions { motions, ..self }
+    }
+
+    /// The same with another [`method`](Self::method).
+    #[must_use]
+    pub const fn with_method(self, method: Method) -> FitOptions {
+        FitOptions { method, ..self }
+    }
+
+    /// The same with another [`seed`](Self::seed).
+    #[must_use]
+    pub const fn with_seed(self, seed: u64) -> FitOptions {
+        FitOptions { seed, ..self }
+    }
+}
+
 /// Options of [`segment_pair`](crate::segment_pair).
 ///
 /// ```
@@ -127,12 +170,7 @@ impl Default for FitOptions {
 /// # fn main() -> veronese::Result<()> {
 /// # let scene = scenes::generate(&scenes::SceneOptions { width: 96, height: 72, ..Default::default() })?;
 /// # let (first, second) = (scene.first(), scene.second());
-/// let options = SegmentOptions {
-///     motions: MotionCount::Given(2),
-///     mark_unknown: true,
-///     confidence: true,
-///     ..SegmentOptions::default()
-/// };
+/// let options = SegmentOptions::default().with_motions(MotionCount::Given(2)).with_mark_unknown(true).with_confidence(true);
 /// let found = segment_pair(first, second, &options, &mut |_| {})?;
 /// assert_eq!(found.count, 2);
 /// assert_eq!(found.labels.iter().filter(|&&label| label == UNLABELLED).count(), found.unlabelled);
@@ -140,6 +178,7 @@ impl Default for FitOptions {
 /// # Ok(())
 /// # }
 /// ```
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct SegmentOptions {
     /// Number of motions; default [`MotionCount::Auto`].
@@ -152,4 +191,30 @@ pub struct SegmentOptions {
     /// Compute [`Segmentation::confidence`](crate::Segmentation::confidence), the probability that the label of a pixel is right;
     /// default `false`.
     pub confidence: bool,
+}
+
+impl SegmentOptions {
+    /// The same with another [`motions`](Self::motions).
+    #[must_use]
+    pub const fn with_motions(self, motions: MotionCount) -> SegmentOptions {
+        SegmentOptions { motions, ..self }
+    }
+
+    /// The same with another [`quality`](Self::quality).
+    #[must_use]
+    pub const fn with_quality(self, quality: Quality) -> SegmentOptions {
+        SegmentOptions { quality, ..self }
+    }
+
+    /// The same with another [`mark_unknown`](Self::mark_unknown).
+    #[must_use]
+    pub const fn with_mark_unknown(self, mark_unknown: bool) -> SegmentOptions {
+        SegmentOptions { mark_unknown, ..self }
+    }
+
+    /// The same with another [`confidence`](Self::confidence).
+    #[must_use]
+    pub const fn with_confidence(self, confidence: bool) -> SegmentOptions {
+        SegmentOptions { confidence, ..self }
+    }
 }

@@ -16,6 +16,7 @@ use crate::refinement::{Report, product};
 const STAGES: &[&str] = &["embedding", "factorisation", "refinement", "labels"];
 
 /// The results of all steps of [`paper_fit`].
+#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct PaperFit {
     /// Rank for each number of motions tried (Theorem 1); empty if the number was given.

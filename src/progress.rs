@@ -1,6 +1,7 @@
 //! Progress reports. The core has no clock; a listener that wants times measures them between two calls.
 
 /// A stage of a call that has just begun.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stage {
     /// A stable camelCase name, the key of the stage in the timing report.

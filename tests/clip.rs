@@ -10,7 +10,7 @@ use support::moving::{Thing, correct, frames_of, mask, moving_and_resting, one_n
 use veronese::clip::{
     ClipFrame, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, SegmentedClip, Spread, StreamSegmenter,
 };
-use veronese::{Error, Frame, MotionCount, Quality, SegmentOptions};
+use veronese::{Error, Frame, MotionCount, Quality};
 
 /// As a stream if there is a look-ahead.
 fn segment(frames: &[Frame], options: ClipOptions) -> Vec<ClipFrame> {
@@ -349,11 +349,11 @@ fn pairs_are_known_for_their_frames_and_options_alone() {
             pushed => pushed.is_ok(),
         }
     };
-    let two = SegmentOptions { motions: MotionCount::Given(2), ..own.pair };
-    let marked = SegmentOptions { mark_unknown: true, ..own.pair };
-    assert!(takes(&known[1]) && takes(&pairs_of(ClipOptions { pair: marked, ..own }, &frames[..2])[1]));
+    let two = own.pair.with_motions(MotionCount::Given(2));
+    let marked = own.pair.with_mark_unknown(true);
+    assert!(takes(&known[1]) && takes(&pairs_of(own.with_pair(marked), &frames[..2])[1]));
     assert!(!takes(&known[0]) && !takes(&known[2]) && !takes(&pairs_of(own, &frames[1..4])[1]));
-    for other in [options(Quality::Fast, Some(1)), options(Quality::Best, None), ClipOptions { pair: two, ..own }] {
+    for other in [options(Quality::Fast, Some(1)), options(Quality::Best, None), own.with_pair(two)] {
         assert!(!takes(&pairs_of(other, &frames[..2])[1]));
     }
 }
@@ -362,10 +362,7 @@ fn pairs_are_known_for_their_frames_and_options_alone() {
 #[test]
 fn undecided_pixels_are_marked_when_asked() {
     let (frames, _) = moving_and_resting();
-    let marked = ClipOptions {
-        pair: SegmentOptions { mark_unknown: true, ..options(Quality::Fast, None).pair },
-        ..options(Quality::Fast, None)
-    };
+    let marked = options(Quality::Fast, None).with_pair(options(Quality::Fast, None).pair.with_mark_unknown(true));
     let clip = whole(&frames, marked);
     let plain = whole(&frames, options(Quality::Fast, None));
     let (mut unknown, mut all) = (0, 0);

@@ -15,7 +15,7 @@ use veronese::{
 };
 
 fn fit(measurements: &Measurements, motions: MotionCount) -> Result<MotionFit, Error> {
-    fit_motions(measurements, &FitOptions { motions, ..FitOptions::default() }, &mut |_| {})
+    fit_motions(measurements, &FitOptions::default().with_motions(motions), &mut |_| {})
 }
 
 fn matrices(fit: &MotionFit) -> Vec<AffineMotion> {

@@ -155,7 +155,7 @@ fn check_pair(name: &str) {
     for (&altered, quality) in altered.iter().flat_map(|altered| [Quality::Fast, Quality::Best].map(|q| (altered, q))) {
         let case = format!("{name}, {altered:?}, {quality:?}");
         let [first, second] = [0, 1].map(|k| altered.frame(&pictures[k]));
-        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_quality(quality);
         let found = segment_pair(&first, &second, &options, &mut |_| {}).unwrap();
         let size = [first.width(), first.height()];
         let moved = displacement(&found, size);
@@ -206,7 +206,7 @@ fn what_fast_gets_right_of_the_samples_best_has_right() {
         let size = [first.width(), first.height()];
         let centre = |x: usize, y: usize| [x as f64 + 0.5, y as f64 + 0.5];
         let right = |quality: Quality| {
-            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let options = SegmentOptions::default().with_quality(quality);
             let found = segment_pair(&first, &second, &options, &mut |_| {}).unwrap();
             let group = |p: usize| found.motions[usize::from(found.labels[p])].group;
             let objects = expected["objects"].as_array().unwrap().iter().map(|object| {
@@ -242,7 +242,7 @@ fn nothing_moves_in_an_empty_room() {
 #[test]
 fn ground_is_at_rest_below_the_cars_of_a_camera_at_rest() {
     let moved = |quality: Quality| {
-        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_quality(quality);
         let seeds = 53_000..53_030;
         let moving = seeds.filter(|&seed| {
             let scene = scenes::bare_ground(seed).unwrap();
@@ -263,8 +263,8 @@ fn passing_cars_are_two_objects_from_coming_to_leaving() {
     paths.sort();
     let frames: Vec<Frame> = paths.iter().map(|path| Altered::No.frame(&picture(path.to_str().unwrap()))).collect();
     for quality in [Quality::Fast, Quality::Best] {
-        let pair = SegmentOptions { quality, ..SegmentOptions::default() };
-        let mut clip = ClipSegmenter::new(ClipOptions { pair, look_ahead: None }).unwrap();
+        let pair = SegmentOptions::default().with_quality(quality);
+        let mut clip = ClipSegmenter::new(ClipOptions::default().with_pair(pair).with_look_ahead(None)).unwrap();
         frames.iter().for_each(|frame| drop(clip.push(frame.clone()).unwrap()));
         let clip = clip.conclude();
         let objects = expected["objects"].as_array().unwrap();

@@ -19,7 +19,7 @@ use veronese::{
 };
 
 fn fit(data: &Measurements, method: Method, motions: MotionCount) -> Result<MotionFit, Error> {
-    fit_motions(data, &FitOptions { motions, method, seed: 1 }, &mut |_| {})
+    fit_motions(data, &FitOptions::default().with_motions(motions).with_method(method).with_seed(1), &mut |_| {})
 }
 
 /// Measurements of a 320×240 frame: positions in pixels, motions of a few pixels, grey-level derivatives.
@@ -230,7 +230,7 @@ fn the_stages_of_the_paper_are_reported() {
     let mut random = Random::from_seed(9);
     let (truth, data) = pixel_data(2, &mut random);
     let mut begun = Vec::new();
-    let options = FitOptions { method: Method::Paper, ..FitOptions::default() };
+    let options = FitOptions::default().with_method(Method::Paper);
     let found = fit_motions(&data, &options, &mut |stage| begun.push(stage.name)).unwrap();
     assert_eq!(begun, ["embedding", "factorisation", "refinement", "labels"]);
     let stages = found.stages.unwrap();

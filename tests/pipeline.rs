@@ -200,7 +200,7 @@ fn the_leader_and_the_follower_are_separate_motions() {
 fn the_leader_and_the_follower_are_separate_motions_if_their_number_is_given() {
     let told_apart = (1..=5).filter(|&seed| {
         let scene = scenes::leader_follower(seed).unwrap();
-        let options = SegmentOptions { motions: MotionCount::Given(3), ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_motions(MotionCount::Given(3));
         let result = segment(scene.first(), scene.second(), options);
         result.count == 3 && mean(&overlaps(&scene, &result.labels)) > 0.85
     });
@@ -241,7 +241,7 @@ fn ambiguous_frames_are_one_static_motion() {
     let (frame, flat) = (textured(64, 48, 0.0), constant(64, 48, 90));
     for (first, second) in [(&frame, &frame), (&flat, &flat), (&flat, &constant(64, 48, 97))] {
         for motions in [MotionCount::Auto, MotionCount::Given(3)] {
-            let result = segment(first, second, SegmentOptions { motions, ..SegmentOptions::default() });
+            let result = segment(first, second, SegmentOptions::default().with_motions(motions));
             assert_eq!(result.count, 1);
             let moved = result.motions[0].matrix.flow(32.0, 24.0);
             assert!(moved.iter().all(|f| f.abs() < 0.01), "{moved:?}");
@@ -261,7 +261,7 @@ fn a_motion_of_the_whole_frame_is_the_only_one() {
 fn any_allowed_size_works() {
     for (width, height) in [(16, 16), (17, 61), (16, 300), (16, 4096), (333, 16), (449, 40), (1000, 20)] {
         for quality in [Quality::Fast, Quality::Best] {
-            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let options = SegmentOptions::default().with_quality(quality);
             segment(&textured(width, height, 0.0), &textured(width, height, 0.7), options);
         }
     }
@@ -298,7 +298,7 @@ fn the_motion_of_narrow_frames_is_found() {
             Frame::from_rgba(width, height, pixels.collect::<Vec<u8>>()).unwrap()
         };
         for quality in [Quality::Fast, Quality::Best] {
-            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let options = SegmentOptions::default().with_quality(quality);
             let found = segment(&frame(0, 0), &frame(u, v), options);
             let flow = found.motions[0].matrix.flow(width as f64 / 2.0, height as f64 / 2.0);
             let error = (flow[0] - u as f64).abs().max((flow[1] - v as f64).abs());
@@ -312,8 +312,8 @@ fn unrelated_frames_give_a_valid_result() {
     let other = scenes::generate(&SceneOptions { width: 96, height: 72, seed: 77, ..SceneOptions::default() }).unwrap();
     for options in [
         SegmentOptions::default(),
-        SegmentOptions { mark_unknown: true, ..SegmentOptions::default() },
-        SegmentOptions { motions: MotionCount::Given(10), quality: Quality::Fast, ..SegmentOptions::default() },
+        SegmentOptions::default().with_mark_unknown(true),
+        SegmentOptions::default().with_motions(MotionCount::Given(10)).with_quality(Quality::Fast),
     ] {
         segment(&textured(96, 72, 0.0), other.second(), options);
     }
@@ -333,7 +333,7 @@ fn the_number_of_motions_can_be_given() {
     })
     .unwrap();
     for n in 1..=3 {
-        let options = SegmentOptions { motions: MotionCount::Given(n), ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_motions(MotionCount::Given(n));
         assert_eq!(segment(scene.first(), scene.second(), options).count, n);
     }
 }
@@ -342,7 +342,7 @@ fn the_number_of_motions_can_be_given() {
 fn unknown_pixels_are_marked_on_request_only() {
     let options = SceneOptions { width: 200, height: 150, speed: Speed::Large, seed: 9, ..SceneOptions::default() };
     let scene = scenes::generate(&options).unwrap();
-    let marked = SegmentOptions { mark_unknown: true, ..SegmentOptions::default() };
+    let marked = SegmentOptions::default().with_mark_unknown(true);
     let result = segment(scene.first(), scene.second(), marked);
     assert!(result.unlabelled > 0);
     let occluded = scene.occluded.iter().filter(|&&o| o).count();
@@ -354,7 +354,7 @@ fn unknown_pixels_are_marked_on_request_only() {
 
 #[test]
 fn pixels_without_texture_are_unknown() {
-    let marked = SegmentOptions { mark_unknown: true, ..SegmentOptions::default() };
+    let marked = SegmentOptions::default().with_mark_unknown(true);
     let flat = constant(64, 48, 90);
     let result = segment(&flat, &flat, marked);
     assert_eq!((result.count, result.unlabelled), (1, 64 * 48));
@@ -386,7 +386,7 @@ fn calibration(quality: Quality) -> [(usize, usize); 5] {
     let mut bins = [(0, 0); 5];
     for options in SceneOptions::series(1200, &[(200, 150)]) {
         let scene = scenes::generate(&options).unwrap();
-        let options = SegmentOptions { confidence: true, quality, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_confidence(true).with_quality(quality);
         let result = segment(scene.first(), scene.second(), options);
         // The meaning of a label is the layer that most of its pixels show.
         let meaning: Vec<u8> = (0..result.count)
@@ -423,7 +423,7 @@ fn confidence_changes_nothing_else_and_other_numbers_of_motions_score_worse() {
     let scene =
         scenes::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();
     let plain = segment(scene.first(), scene.second(), SegmentOptions::default());
-    let asked = SegmentOptions { confidence: true, ..SegmentOptions::default() };
+    let asked = SegmentOptions::default().with_confidence(true);
     let sure = segment(scene.first(), scene.second(), asked);
     assert_eq!(fingerprint(&plain), fingerprint(&sure));
     let n = scene.motions.len();
@@ -441,7 +441,7 @@ fn sizes_and_numbers_out_of_range_are_errors() {
     assert_eq!(Frame::from_rgba(4097, 16, &[]).unwrap_err().code(), "frame-size-unsupported");
     assert_eq!(Frame::from_rgba(16, 16, &[0; 1023]).unwrap_err().code(), "pixel-count-mismatch");
     for n in [0, 11] {
-        let options = SegmentOptions { motions: MotionCount::Given(n), ..options };
+        let options = options.with_motions(MotionCount::Given(n));
         assert_eq!(segment_pair(&a, &a, &options, &mut |_| {}).unwrap_err().code(), "invalid-option");
     }
 }
@@ -475,8 +475,8 @@ fn the_same_bits_on_every_target() {
     let expected: [u64; 3] = [0x6642_e969_77f2_8885, 0x1a49_21d2_4c2b_658f, 0xbc1e_6392_8d7b_325b];
     let options = [
         SegmentOptions::default(),
-        SegmentOptions { quality: Quality::Fast, ..SegmentOptions::default() },
-        SegmentOptions { motions: MotionCount::Given(4), mark_unknown: true, ..SegmentOptions::default() },
+        SegmentOptions::default().with_quality(Quality::Fast),
+        SegmentOptions::default().with_motions(MotionCount::Given(4)).with_mark_unknown(true),
     ];
     let scene =
         scenes::generate(&SceneOptions { width: 200, height: 150, seed: 31, ..SceneOptions::default() }).unwrap();

@@ -89,7 +89,7 @@ fn print_stages(folder: &Path, sizes: &[&str]) -> Result<(), Box<dyn Error>> {
         let (first, second) = (frame("first")?, frame("second")?);
         let mut cells = Vec::new();
         for (name, quality) in QUALITIES {
-            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let options = SegmentOptions::default().with_quality(quality);
             let (mut begun, start) = (Vec::<(&str, Instant)>::new(), Instant::now());
             let mut listen = |stage: Stage| begun.push((stage.name, Instant::now()));
             std::hint::black_box(segment_pair(&first, &second, &options, &mut listen)?);
@@ -115,7 +115,7 @@ fn print_stages(folder: &Path, sizes: &[&str]) -> Result<(), Box<dyn Error>> {
 fn print_times(folder: &Path) -> Result<(), Box<dyn Error>> {
     let mut cases = Vec::new();
     for n in MOTIONS {
-        let options = FitOptions { motions: MotionCount::Given(n), ..FitOptions::default() };
+        let options = FitOptions::default().with_motions(MotionCount::Given(n));
         let mut times = Vec::new();
         for seed in 0..PROBLEMS {
             let data = read_points(&folder.join(format!("points-{n}-{seed}")))?;
@@ -126,7 +126,7 @@ fn print_times(folder: &Path) -> Result<(), Box<dyn Error>> {
     let frame = |name: &str| Ok::<_, Box<dyn Error>>(Frame::from_rgba(WIDTH, HEIGHT, &fs::read(folder.join(name))?)?);
     let (first, second) = (frame("first")?, frame("second")?);
     for (name, quality) in QUALITIES {
-        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_quality(quality);
         let time = milliseconds(|| segment_pair(&first, &second, &options, &mut |_| {}).map(|found| found.count))?;
         cases.push(format!("\"pair {name}\": [{time}]"));
     }

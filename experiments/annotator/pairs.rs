@@ -28,7 +28,7 @@ pub(crate) struct Row {
 /// All figures of a clip.
 pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     let data = case.load()?;
-    let asked = SegmentOptions { quality: options.quality, ..SegmentOptions::default() };
+    let asked = SegmentOptions::default().with_quality(options.quality);
     let (mut pairs, mut times) = (Vec::new(), Vec::new());
     for t in FIRST.into_iter().filter(|t| t + 1 < data.frames.len()) {
         let frames = [&data.frames[t], &data.frames[t + 1]];

@@ -42,8 +42,8 @@ impl<'a> Session<'a> {
         quality: Quality,
         pairs: &Path,
     ) -> std::result::Result<Session<'a>, Failure> {
-        let pair = SegmentOptions { quality, ..SegmentOptions::default() };
-        let mut segmenter = ClipSegmenter::new(ClipOptions { pair, ..ClipOptions::default() })?;
+        let pair = SegmentOptions::default().with_quality(quality);
+        let mut segmenter = ClipSegmenter::new(ClipOptions::default().with_pair(pair))?;
         fs::create_dir_all(pairs)?;
         for (index, frame) in frames.iter().enumerate() {
             let file = pairs.join(index.to_string());

@@ -55,8 +55,8 @@ impl Method {
         match self {
             Method::Clip => "clip",
             Method::Stream(Quality::Best, _) => "stream",
-            Method::Stream(Quality::Fast, 0) => "live",
-            Method::Stream(Quality::Fast, _) => "stream-fast",
+            Method::Stream(_, 0) => "live",
+            Method::Stream(..) => "stream-fast",
             Method::Pairs => "pairs",
             Method::PairsFast => "pairs-fast",
             Method::Flow => "flow",
@@ -70,8 +70,8 @@ impl Method {
         match self {
             Method::Clip => "clip",
             Method::Stream(Quality::Best, _) => "stream, look-ahead 4",
-            Method::Stream(Quality::Fast, 0) => "stream, fast, look-ahead 0",
-            Method::Stream(Quality::Fast, _) => "stream, fast, look-ahead 4",
+            Method::Stream(_, 0) => "stream, fast, look-ahead 0",
+            Method::Stream(..) => "stream, fast, look-ahead 4",
             Method::Pairs => "pair by pair",
             Method::PairsFast => "pair by pair, fast",
             Method::Flow => "OpenCV, DIS flow",
@@ -100,8 +100,8 @@ pub(crate) fn clip_labels(mut segmenter: ClipSegmenter, frames: &[Frame]) -> Res
 
 /// The same of the stream segmenter.
 fn stream_labels(quality: Quality, look_ahead: usize, frames: &[Frame]) -> Result<Vec<Vec<u8>>> {
-    let pair = SegmentOptions { quality, ..SegmentOptions::default() };
-    let mut segmenter = StreamSegmenter::new(ClipOptions { pair, look_ahead: Some(look_ahead) })?;
+    let pair = SegmentOptions::default().with_quality(quality);
+    let mut segmenter = StreamSegmenter::new(ClipOptions::default().with_pair(pair).with_look_ahead(Some(look_ahead)))?;
     let mut found = Vec::new();
     for frame in frames {
         found.extend(segmenter.push(frame.clone())?);
@@ -118,7 +118,7 @@ pub(crate) fn found(
     peers: &Path,
 ) -> std::result::Result<Option<Found>, Box<dyn std::error::Error + Send + Sync>> {
     let start = Instant::now();
-    let pairs = |quality| pair_by_pair(&data.frames, &SegmentOptions { quality, ..SegmentOptions::default() });
+    let pairs = |quality| pair_by_pair(&data.frames, &SegmentOptions::default().with_quality(quality));
     let own = match method {
         Method::Clip => Some(clip_labels(ClipSegmenter::new(ClipOptions::default())?, &data.frames)?),
         Method::Without(part) => {

@@ -119,7 +119,7 @@ pub(crate) fn measure(cases: &[Loaded], model: &Model, method: Method, images: u
     let one = |case: &Loaded, image: [bool; 2]| -> Result<Scored, Failure> {
         let Loaded { part, data, .. } = case;
         let data = &mirrored(data, image)?;
-        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_quality(quality);
         let found = segment_pair_with(model, &data.first, &data.second, &options)?;
         let scores = outcome(method, data, &found.labels, &grouped(&found), &[], 0.0);
         let (Some(single), Some(groups)) = (scores.single, scores.grouped) else {

@@ -94,8 +94,8 @@ impl OfScenes {
     fn of(data: &Data) -> Result<Option<OfScenes>> {
         let (Some(truth), Some(occluded)) = (&data.truth, &data.occluded) else { return Ok(None) };
         let run = |options: &SegmentOptions| segment_pair(&data.first, &data.second, options, &mut |_| {});
-        let sure = run(&SegmentOptions { confidence: true, ..SegmentOptions::default() })?;
-        let marked = run(&SegmentOptions { mark_unknown: true, ..SegmentOptions::default() })?;
+        let sure = run(&SegmentOptions::default().with_confidence(true))?;
+        let marked = run(&SegmentOptions::default().with_mark_unknown(true))?;
         let meaning = meanings(&sure.labels, truth);
         let mut counts = OfScenes::default();
         for (p, (&label, &confidence)) in sure.labels.iter().zip(sure.confidence.iter().flatten()).enumerate() {
@@ -132,7 +132,7 @@ struct OfPairs {
 
 impl OfPairs {
     fn of(data: &Data, quality: Quality) -> Result<OfPairs> {
-        let options = SegmentOptions { quality, confidence: true, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_quality(quality).with_confidence(true);
         let found = segment_pair(&data.first, &data.second, &options, &mut |_| {})?;
         let truth = data.truth.as_deref().unwrap_or_default();
         let meaning = meanings(&found.labels, truth);

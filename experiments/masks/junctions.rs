@@ -44,7 +44,7 @@ pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Known>, Failure> {
         let place = sequences.iter().position(|name| *name == case.sequence()).unwrap_or_default();
         let mut known = Vec::new();
         for quality in QUALITIES {
-            let options = SegmentOptions { quality, ..SegmentOptions::default() };
+            let options = SegmentOptions::default().with_quality(quality);
             let found = segment_pair(&data.first, &data.second, &options, &mut |_| {})?;
             known.extend(of_result(&found, &data, place % 2 == 1));
         }

@@ -57,7 +57,7 @@ fn measure(case: &Case, baselines: &Path, variants: &[Variant]) -> Result<Measur
     let mut shown = Vec::new();
     for (method, quality) in [(Method::Best, Quality::Best), (Method::Fast, Quality::Fast)] {
         let start = Instant::now();
-        let options = SegmentOptions { quality, ..SegmentOptions::default() };
+        let options = SegmentOptions::default().with_quality(quality);
         let found = segment_pair(&data.first, &data.second, &options, &mut |_| {})?;
         let milliseconds = 1e3 * start.elapsed().as_secs_f64();
         let motions: Vec<AffineMotion> = found.motions.iter().map(|motion| motion.matrix).collect();

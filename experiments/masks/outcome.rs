@@ -92,7 +92,7 @@ impl Variant {
 pub(crate) fn of_variant(variant: Variant, method: Method, data: &Data) -> Result<Outcome> {
     let (first, second) = (&data.first, &data.second);
     let quality = if method == Method::Fast { Quality::Fast } else { Quality::Best };
-    let options = SegmentOptions { quality, ..SegmentOptions::default() };
+    let options = SegmentOptions::default().with_quality(quality);
     let start = Instant::now();
     let found = match variant {
         Variant::Whole => segment_pair(first, second, &options, &mut |_| {})?,

@@ -64,7 +64,7 @@ fn trial(motions: usize, noise: f64, seed: u64) -> Trial {
     let problem = Protocol::new(motions, noise).problem(seed);
     let data = &problem.measurements;
     let paper = paper_fit(data, MotionCount::Given(motions), &mut |_| {}).ok();
-    let given = FitOptions { motions: MotionCount::Given(motions), ..FitOptions::default() };
+    let given = FitOptions::default().with_motions(MotionCount::Given(motions));
     let ours = fit_motions(data, &given, &mut |_| {}).ok();
     let rule = number_of_motions(&data.normalised().0, MAX_TRIED).ok();
     let count = fit_motions(data, &FitOptions::default(), &mut |_| {}).ok();

@@ -30,7 +30,7 @@ pub(crate) const TABLES: [(&str, Table); 6] = [
 ];
 
 fn fit(problem: &Problem, motions: MotionCount) -> Result<MotionFit> {
-    Ok(fit_motions(&problem.measurements, &FitOptions { motions, ..FitOptions::default() }, &mut |_| {})?)
+    Ok(fit_motions(&problem.measurements, &FitOptions::default().with_motions(motions), &mut |_| {})?)
 }
 
 /// A line: the mean errors of the estimator and of the oracle, which knows the true labels.

@@ -69,7 +69,7 @@ fn panels(
     let paper = literal_pair(first, second, before, KEPT, MOVING)?;
     let rule = literal_pair(first, second, before, KEPT, MotionCount::Auto)?;
     let automatic = segment_pair(first, second, &SegmentOptions::default(), &mut |_| {})?;
-    let options = SegmentOptions { motions: WITH_BACKGROUND, ..SegmentOptions::default() };
+    let options = SegmentOptions::default().with_motions(WITH_BACKGROUND);
     let ours = segment_pair(first, second, &options, &mut |_| {})?;
     let threshold = literal_pair(first, second, before, KeptPixels::default(), MOVING);
     eprintln!(

@@ -120,8 +120,8 @@ impl Job {
                 data.frames.truncate(FRAMES);
                 data.truths.truncate(FRAMES);
                 let width = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?.width();
-                let pair = SegmentOptions { quality: self.quality, ..SegmentOptions::default() };
-                let segmenter = ClipSegmenter::new(ClipOptions { pair, ..ClipOptions::default() })?;
+                let pair = SegmentOptions::default().with_quality(self.quality);
+                let segmenter = ClipSegmenter::new(ClipOptions::default().with_pair(pair))?;
                 let found = clips::methods::clip_labels(segmenter, &data.frames)?;
                 let scores = clips::scores::scores(&data.truths, &found, width);
                 (entry.j, entry.by_hand, entry.f) = (Some(scores.j_auto), Some(scores.j_tracks), scores.f_auto);

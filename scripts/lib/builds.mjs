@@ -8,7 +8,7 @@ import { cargoHome, root, which } from './project.mjs';
 import { Stop, must, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
-const RUST_SOURCES = ['src', 'Cargo.toml', 'Cargo.lock', '.cargo'];
+const RUST_SOURCES = ['src', 'wasm', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 
 /**
  * The modules that wasm-pack builds. The core (frames) and the measurements module run everywhere; segmenting frames needs only the core.
@@ -86,13 +86,13 @@ async function wasmPack(name, folder, features) {
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET]);
   // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
   // because wasm-pack optimises every module in the folder.
-  const pack = ['build', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
+  const pack = ['build', 'wasm', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
   const cargo = ['--locked', '--config', `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`];
   cargo.push('--no-default-features', '--features', features.join(','));
   await must(
     'The WebAssembly module could not be built.',
     'wasm-pack',
-    [...pack, '--out-dir', folder, '--out-name', name, '--', ...cargo],
+    [...pack, '--out-dir', join(root, folder), '--out-name', name, '--', ...cargo],
     // These variables would override the flags of .cargo/config.toml, which enable SIMD.
     { env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined } },
   );

@@ -10,9 +10,10 @@ const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
 // Only the benchmarks of masks and clips use the other feature.
 const ALL = ['--features', 'codecs,ablation'];
-// With the crate of generated scenes.
+// With the crates of generated scenes and of the WebAssembly modules.
 const ALL_TARGETS = ['--locked', '--workspace', '--all-targets'];
 const TESTS = ['--locked', '--workspace', '--lib', '--tests'];
+const MODULES = ['--package', 'veronese-wasm', ...WASM];
 const only = (feature) => ['--no-default-features', '--features', feature];
 const DENY = ['--', '-D', 'warnings'];
 const DOC = ['doc', '--locked', '--no-deps'];
@@ -24,11 +25,11 @@ const CHECKS = [
   ['clippy with codecs and ablation', 'cargo', ['clippy', ...ALL_TARGETS, ...ALL, ...DENY]],
   // Benchmarks and examples are native programs.
   ['clippy for wasm', 'cargo', ['clippy', ...TESTS, ...WASM, ...DENY]],
-  ['clippy for the core module', 'cargo', ['clippy', '--locked', '--lib', ...only('frames'), ...WASM, ...DENY]],
-  ['clippy for the module of measurements', 'cargo', ['clippy', '--locked', '--lib', ...only('points'), ...WASM, ...DENY]],
+  ['clippy for the core module', 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only('frames'), ...DENY]],
+  ['clippy for the module of measurements', 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only('points'), ...DENY]],
   ['clippy for wasm with codecs', 'cargo', ['clippy', ...TESTS, ...WASM, ...CODECS, ...DENY]],
   ['documentation', 'cargo', [...DOC, '--workspace', ...CODECS], DENY_IN_DOCS],
-  ['documentation for wasm', 'cargo', [...DOC, ...CODECS, ...WASM], DENY_IN_DOCS],
+  ['documentation for wasm', 'cargo', [...DOC, ...MODULES, ...CODECS], DENY_IN_DOCS],
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
   // After the builds: it asks the types of the package too.

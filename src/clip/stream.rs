@@ -15,7 +15,7 @@ use crate::frame::Frame;
 /// # fn main() -> veronese::Result<()> {
 /// # let scene = scenes::generate(&scenes::SceneOptions { width: 160, height: 120, objects: 1, ..Default::default() })?;
 /// # let (first, second) = (scene.first(), scene.second());
-/// let mut stream = StreamSegmenter::new(ClipOptions { look_ahead: Some(0), ..ClipOptions::default() })?;
+/// let mut stream = StreamSegmenter::new(ClipOptions::default().with_look_ahead(Some(0)))?;
 /// let mut frames = Vec::new();
 /// for frame in [first, second] {
 ///     frames.extend(stream.push(frame.clone())?);

@@ -15,6 +15,7 @@ pub const KAPPA: f64 = 3e-3;
 pub const MAX_TRIED: usize = 6;
 
 /// The rank of P̃_i for one number of motions i.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct RankCandidate {
@@ -29,6 +30,7 @@ pub struct RankCandidate {
 }
 
 /// The result of [`number_of_motions`].
+#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct RankRule {
     /// The number of motions n of (12). If no number satisfies (12), see [`number_of_motions`].

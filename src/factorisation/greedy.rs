@@ -9,6 +9,7 @@ const MAX_PASSES: usize = 3;
 const LEAST_GAIN: f64 = 1e-9;
 
 /// The result of [`choose`].
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
     /// Indices of the chosen hypotheses, in the order in which they were added.

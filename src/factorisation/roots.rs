@@ -14,6 +14,7 @@ const SETTLED: f64 = 4.0 * f64::EPSILON;
 const COMPLEX: f64 = 1e-7;
 
 /// The roots of a polynomial, counted with multiplicity.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Roots {
     /// The finite roots: real, or in exactly conjugate pairs.

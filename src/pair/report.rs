@@ -27,6 +27,7 @@ use crate::order::descending;
 use crate::view::cost::{CostModel, costs};
 
 /// What [`segment_pair`](crate::segment_pair) found.
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Segmentation {
@@ -57,6 +58,7 @@ pub struct Segmentation {
 }
 
 /// One motion of a [`Segmentation`].
+#[non_exhaustive]
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct SegmentedMotion {
@@ -78,6 +80,7 @@ pub struct SegmentedMotion {
 }
 
 /// Evidence for the number of motions of a pair.
+#[non_exhaustive]
 #[derive(Clone, Debug, Default, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct PairEvidence {

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 /// Why a solver stopped.
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub enum Termination {
@@ -14,15 +15,32 @@ pub enum Termination {
     MaxIterations,
 }
 
+impl Termination {
+    /// Its name in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Termination::Converged => "converged",
+            Termination::Stalled => "stalled",
+            Termination::MaxIterations => "maxIterations",
+        }
+    }
+}
+
 /// The report of an iterative solver. A solver that stops early is not an error.
 ///
 /// ```
-/// use veronese::refinement::{Report, Termination};
+/// use veronese::refinement::{Termination, product};
+/// use veronese::{AffineMotion, Measurements};
 ///
-/// let report = Report { termination: Termination::Stalled, iterations: 3, initial_cost: 2.0, final_cost: 1.0 };
-/// assert!(report.was_successful());
-/// assert!(!Report { termination: Termination::MaxIterations, ..report }.was_successful());
+/// // A horizontal and a vertical gradient at each of three positions; all of them move by (0.5, -0.25).
+/// let positions = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].repeat(2);
+/// let derivatives = (0..6).map(|j| if j < 3 { [2.0, 0.0, -1.0] } else { [0.0, 2.0, 0.5] }).collect();
+/// let (_, report) = product::refine(&[AffineMotion::STATIC], &Measurements::new(positions, derivatives)?);
+/// assert_eq!((report.termination, report.was_successful()), (Termination::Converged, true));
+/// assert!(report.final_cost < report.initial_cost);
+/// # Ok::<(), veronese::Error>(())
 /// ```
+#[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Report {

@@ -70,7 +70,8 @@ pub fn frame([width, height]: [usize; 2], ground: &Texture, things: &[Thing], t:
 }
 
 pub fn options(quality: Quality, look_ahead: Option<usize>) -> ClipOptions {
-    ClipOptions { pair: SegmentOptions { quality, ..SegmentOptions::default() }, look_ahead }
+    let pair = SegmentOptions::default().with_quality(quality);
+    ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)
 }
 
 pub fn whole(frames: &[Frame], options: ClipOptions) -> SegmentedClip {

@@ -26,7 +26,7 @@ export type CallTask =
   | { call: 'fitMotions'; measurements: PointMeasurements; settings: Settings }
   | ClipTask;
 
-/** What is done with a clip from its first frame on; src/wasm/clip.rs says what each step returns. */
+/** What is done with a clip from its first frame on; wasm/src/clip.rs says what each step returns. */
 export type ClipStep =
   | { call: 'pushClip'; frame: Pixels; known?: Uint8Array }
   | { call: 'restoreClip'; state: Uint8Array; markUnknown: boolean }

@@ -41,6 +41,7 @@ pub struct Correction<'a> {
 }
 
 /// Result of [`relabel`].
+#[non_exhaustive]
 #[derive(Clone, Debug)]
 pub struct Relabelling {
     /// The motions in the order given, including those without pixels.

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::labelling::regions::groups::Regions;
 
 /// The common border of two motions of a [`Segmentation`](super::Segmentation), and whether they may be one thing.
+#[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Junction {
     /// The labels of the two motions, the smaller first.

@@ -10,10 +10,12 @@
 //! always copy. An exception that unwinds Rust frames, such as a panic, does not restore the stack pointer. The instance must not be
 //! called again; the package replaces it.
 
+#![cfg(target_arch = "wasm32")]
+
 use js_sys::{Array, Function, Object, Reflect};
 use wasm_bindgen::prelude::*;
 
-use crate::{Error, MAX_MOTIONS, MotionCount, Stage};
+use veronese::{Error, MAX_MOTIONS, MotionCount, Stage};
 
 #[cfg(feature = "frames")]
 mod clip;

@@ -3,8 +3,8 @@
 use js_sys::{Object, Reflect, Uint8Array};
 use wasm_bindgen::prelude::*;
 
-use super::Failure;
-use crate::codecs;
+use crate::Failure;
+use veronese::codecs;
 
 /// Decodes a PNG, JPEG, WebP, BMP or PNM file to `{ data: Uint8Array, width, height }`, RGBA.
 ///
@@ -47,6 +47,6 @@ pub fn encode_colour_png(width: u32, height: u32, pixels: &[u8]) -> Result<Uint8
     copy(codecs::encode_colour_png(width as usize, height as usize, pixels))
 }
 
-fn copy(file: crate::Result<Vec<u8>>) -> Result<Uint8Array, JsValue> {
+fn copy(file: veronese::Result<Vec<u8>>) -> Result<Uint8Array, JsValue> {
     Ok(Uint8Array::from(&file.map_err(Failure::from)?[..]))
 }

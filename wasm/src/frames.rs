@@ -4,11 +4,11 @@ use js_sys::{Function, Reflect, Uint8Array, Uint8ClampedArray};
 use wasm_bindgen::prelude::*;
 use web_sys::{CanvasRenderingContext2d, ImageData, OffscreenCanvasRenderingContext2d};
 
-use super::plain::{Record, candidate, list};
-use super::{
+use crate::plain::{Record, candidate, list};
+use crate::{
     Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown, written,
 };
-use crate::{
+use veronese::{
     AffineMotion, Correction, Error, Frame, Junction, MAX_SIDE, MIN_SIDE, PairEvidence, Quality, SegmentOptions,
     Segmentation, SegmentedMotion,
 };
@@ -31,14 +31,10 @@ pub fn segment_pair(
     let options = segment_options(options)?;
     let (first, second) = frames(first, second)?;
     let segmentation =
-        crate::segment_pair(&first, &second, &options, &mut listener(on_stage)).map_err(Failure::from)?;
-    let quality = match options.quality {
-        Quality::Fast => "fast",
-        Quality::Best => "best",
-    };
+        veronese::segment_pair(&first, &second, &options, &mut listener(on_stage)).map_err(Failure::from)?;
     let settings = Record::new()
         .set("motions", &motions_asked(options.motions))
-        .text("quality", quality)
+        .text("quality", options.quality.name())
         .set("markUnknown", &options.mark_unknown.into())
         .text("software", SOFTWARE);
     let report = add_segmentation(Record::new().number("version", REPORT_VERSION), &segmentation)
@@ -60,7 +56,7 @@ pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsVal
     segment_pair(first, second, options, None)
 }
 
-/// Solves the labels of a segmentation again under a correction (see [`crate::Correction`]). `matrices` holds six entries per motion,
+/// Solves the labels of a segmentation again under a correction (see [`veronese::Correction`]). `matrices` holds six entries per motion,
 /// `groups` one group per motion, `labels` and `evidence` one entry per pixel; `options` has the `quality` of the labels.
 ///
 /// Returns `{ motions, unlabelled, labels: Uint8Array }` with entries as in [`segment_pair`].
@@ -89,7 +85,7 @@ pub fn relabel(
     let motions: Vec<AffineMotion> = entries.iter().map(|&entries| AffineMotion::new(entries)).collect();
     let correction = Correction { motions: &motions, groups, labels, allowed: evidence };
     let progress = &mut listener(on_stage);
-    let relabelled = crate::relabel(&first, &second, &correction, &options, progress).map_err(Failure::from)?;
+    let relabelled = veronese::relabel(&first, &second, &correction, &options, progress).map_err(Failure::from)?;
     let report = Record::new()
         .set("motions", &segmented_motions(&relabelled.motions))
         .count("unlabelled", relabelled.unlabelled)
@@ -228,9 +224,10 @@ fn flag(name: &str, value: &JsValue) -> Result<bool, Failure> {
 
 /// Adds the entries of a segmentation except its byte arrays.
 fn add_segmentation(record: Record, segmentation: &Segmentation) -> Record {
-    let Segmentation { width, height, count, motions, labels: _, junctions, evidence, unlabelled, confidence: _ } =
-        segmentation;
-    let PairEvidence { candidates } = evidence;
+    let Segmentation {
+        width, height, count, motions, labels: _, junctions, evidence, unlabelled, confidence: _, ..
+    } = segmentation;
+    let PairEvidence { candidates, .. } = evidence;
     record
         .count("width", *width)
         .count("height", *height)
@@ -247,7 +244,7 @@ fn segmented_motions(motions: &[SegmentedMotion]) -> JsValue {
 }
 
 fn segmented_motion(motion: &SegmentedMotion) -> JsValue {
-    let SegmentedMotion { label, matrix, pixels, share, residual, bbox, group } = motion;
+    let SegmentedMotion { label, matrix, pixels, share, residual, bbox, group, .. } = motion;
     Record::new()
         .count("label", usize::from(*label))
         .numbers("matrix", &matrix.matrix)
@@ -260,7 +257,7 @@ fn segmented_motion(motion: &SegmentedMotion) -> JsValue {
 }
 
 fn junction(junction: &Junction) -> JsValue {
-    let Junction { labels, likelihood, border } = junction;
+    let Junction { labels, likelihood, border, .. } = junction;
     Record::new()
         .numbers("labels", &labels.map(f64::from))
         .number("likelihood", *likelihood)

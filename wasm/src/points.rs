@@ -3,11 +3,11 @@
 use js_sys::Function;
 use wasm_bindgen::prelude::*;
 
-use super::plain::{Record, candidate, numbers};
-use super::{Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown};
-use crate::embedding::rank::RankCandidate;
-use crate::refinement::{Report, Termination};
-use crate::{AffineMotion, FitEvidence, FitOptions, FittedMotion, Measurements, Method, MotionFit, PaperStages};
+use crate::plain::{Record, candidate, numbers};
+use crate::{Failure, REPORT_VERSION, SOFTWARE, choice, entries, invalid, listener, motions, motions_asked, unknown};
+use veronese::embedding::rank::RankCandidate;
+use veronese::refinement::Report;
+use veronese::{AffineMotion, FitEvidence, FitOptions, FittedMotion, Measurements, Method, MotionFit, PaperStages};
 
 /// `Number.MAX_SAFE_INTEGER`, 2⁵³ − 1.
 const MAX_SAFE_INTEGER: f64 = 9_007_199_254_740_991.0;
@@ -17,7 +17,7 @@ const MAX_SAFE_INTEGER: f64 = 9_007_199_254_740_991.0;
 /// Returns the report of points as a plain object without `milliseconds`, which the caller measures, with `labels: Uint8Array`.
 ///
 /// # Errors
-/// A `VeroneseError`: the codes of [`crate::Error`], and `invalid-input` for arrays whose length is not a multiple of 2 or 3.
+/// A `VeroneseError`: the codes of [`veronese::Error`], and `invalid-input` for arrays whose length is not a multiple of 2 or 3.
 #[wasm_bindgen(js_name = fitMotions)]
 pub fn fit_motions(
     positions: &[f64],
@@ -28,15 +28,11 @@ pub fn fit_motions(
     let options = fit_options(options)?;
     let measurements = Measurements::new(rows("positions", positions)?, rows("derivatives", derivatives)?);
     let fit = measurements
-        .and_then(|measurements| crate::fit_motions(&measurements, &options, &mut listener(on_stage)))
+        .and_then(|measurements| veronese::fit_motions(&measurements, &options, &mut listener(on_stage)))
         .map_err(Failure::from)?;
-    let method = match options.method {
-        Method::Paper => "paper",
-        Method::Best => "best",
-    };
     let settings = Record::new()
         .set("motions", &motions_asked(options.motions))
-        .text("method", method)
+        .text("method", options.method.name())
         .number("seed", options.seed as f64)
         .text("software", SOFTWARE);
     let report = add_fit(Record::new().number("version", REPORT_VERSION), &fit)
@@ -79,8 +75,8 @@ fn seed(value: &JsValue) -> Result<u64, Failure> {
 
 /// Adds the entries of a fit except its labels.
 fn add_fit(record: Record, fit: &MotionFit) -> Record {
-    let MotionFit { count, motions, labels: _, evidence, stages } = fit;
-    let FitEvidence { singular_values, candidates } = evidence;
+    let MotionFit { count, motions, labels: _, evidence, stages, .. } = fit;
+    let FitEvidence { singular_values, candidates, .. } = evidence;
     let evidence = Record::new().numbers("singularValues", singular_values).list("candidates", candidates, candidate);
     let record =
         record.count("count", *count).list("motions", motions, fitted_motion).set("evidence", &evidence.into_value());
@@ -91,7 +87,7 @@ fn add_fit(record: Record, fit: &MotionFit) -> Record {
 }
 
 fn fitted_motion(motion: &FittedMotion) -> JsValue {
-    let FittedMotion { label, matrix, measurements, determined, covariance } = motion;
+    let FittedMotion { label, matrix, measurements, determined, covariance, .. } = motion;
     let record = Record::new()
         .count("label", usize::from(*label))
         .numbers("matrix", &matrix.matrix)
@@ -104,15 +100,10 @@ fn fitted_motion(motion: &FittedMotion) -> JsValue {
 }
 
 fn paper_stages(stages: &PaperStages) -> JsValue {
-    let PaperStages { ranks, rank_rule_fired, factorisation, refined, refinement } = stages;
-    let Report { termination, iterations, initial_cost, final_cost } = refinement;
-    let termination = match termination {
-        Termination::Converged => "converged",
-        Termination::Stalled => "stalled",
-        Termination::MaxIterations => "maxIterations",
-    };
+    let PaperStages { ranks, rank_rule_fired, factorisation, refined, refinement, .. } = stages;
+    let Report { termination, iterations, initial_cost, final_cost, .. } = refinement;
     let refinement = Record::new()
-        .text("termination", termination)
+        .text("termination", termination.name())
         .count("iterations", *iterations)
         .number("initialCost", *initial_cost)
         .number("finalCost", *final_cost);
@@ -126,7 +117,7 @@ fn paper_stages(stages: &PaperStages) -> JsValue {
 }
 
 fn rank_candidate(tried: &RankCandidate) -> JsValue {
-    let RankCandidate { motions, rank, columns, ratio } = tried;
+    let RankCandidate { motions, rank, columns, ratio, .. } = tried;
     Record::new()
         .count("motions", *motions)
         .count("rank", *rank)

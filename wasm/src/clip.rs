@@ -11,14 +11,14 @@ use std::cell::RefCell;
 use js_sys::Uint8Array;
 use wasm_bindgen::prelude::*;
 
-use super::frames::{frame_from_pixels, pair_option};
-use super::plain::{Record, list, numbers};
-use super::{Failure, entries, invalid};
-use crate::clip::{
+use crate::frames::{frame_from_pixels, pair_option};
+use crate::plain::{Record, list, numbers};
+use crate::{Failure, entries, invalid};
+use veronese::clip::{
     ClipCorrection, ClipFrame, ClipObject, ClipOptions, ClipSegmenter, FramePairs, MAX_LOOK_AHEAD, Prompt,
     SegmentedClip, Spread, StreamSegmenter,
 };
-use crate::{AffineMotion, Error, Frame};
+use veronese::{AffineMotion, Error, Frame};
 
 thread_local! {
     /// Clips in progress; rarely more than one.
@@ -307,7 +307,7 @@ fn look_ahead(value: &JsValue) -> Result<Option<usize>, Failure> {
 }
 
 fn clip_frame(frame: &ClipFrame) -> JsValue {
-    let ClipFrame { index, labels, objects, background } = frame;
+    let ClipFrame { index, labels, objects, background, .. } = frame;
     Record::new()
         .count("index", *index)
         .bytes("labels", labels)
@@ -317,7 +317,7 @@ fn clip_frame(frame: &ClipFrame) -> JsValue {
 }
 
 fn clip_object(object: &ClipObject) -> JsValue {
-    let ClipObject { id, pixels, bbox, confidence, matrix: motion } = object;
+    let ClipObject { id, pixels, bbox, confidence, matrix: motion, .. } = object;
     Record::new()
         .count("id", usize::from(*id))
         .count("pixels", *pixels)
