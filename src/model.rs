@@ -111,9 +111,6 @@ model! {
     reach: i32 = 3;
     /// The same where other motions may still be in sight: the first translation of a frame, the local flow of a window. Generated.
     robustness_loose: f32 = 9.0;
-    /// Cost of the median pixel at rest up to which a background at rest is looked into: noise alone has E[e/(1 + e/T)] = 0.63 for e of one
-    /// degree of freedom and T = 4. Real.
-    rest: f32 = 0.8;
 
     /// Information added to every window, 1/pixel², so that flat ones do not move. Generated.
     flow_flat: f32 = 0.02;
