@@ -6,11 +6,12 @@ import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
-const python = fileURLToPath(
+/** The program. */
+export const python = fileURLToPath(
   new URL(process.platform === 'win32' ? '../../../.tools/python/Scripts/python.exe' : '../../../.tools/python/bin/python', import.meta.url),
 );
 
-/** Why the decoders cannot run, or false. */
+/** Why what is Python cannot run, or false. */
 export const skip = !existsSync(python) && 'the decoders are not installed: they need Python 3.10 or newer with venv, then `npm run setup`';
 
 /** Runs a script of this folder on a folder; what it printed, as JSON. */

@@ -1,0 +1,229 @@
+// examples/hosts/cvat-clip.py with CVAT's real SDK and the real `veronese`, against a server that answers as CVAT does.
+
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { decode } from 'fast-png';
+import { png } from '../support/frames.mjs';
+import { temporaryFolder } from '../support/program.mjs';
+import { python, skip } from '../support/python.mjs';
+import { clip } from './asking.mjs';
+
+const here = (path) => fileURLToPath(new URL(path, import.meta.url));
+const LENGTH = 8;
+const CREDENTIALS = { CVAT_ACCESS_TOKEN: 'personal-token' };
+
+/** Two squares that move apart, side by side. */
+function pictures() {
+  const [left, right] = [clip(LENGTH), clip(LENGTH, { square: [-1, 2] })];
+  return left.map((one, k) => {
+    const { width, height } = one;
+    const data = new Uint8ClampedArray(2 * one.data.length);
+    for (let y = 0; y < height; y++) {
+      for (const [side, { data: half }] of [one, right[k]].entries()) data.set(half.subarray(4 * y * width, 4 * (y + 1) * width), 4 * (2 * y + side) * width);
+    }
+    return { data, width: 2 * width, height };
+  });
+}
+
+/** A server with a task of these frames, a way to ask it as CVAT's page does, and one to run the program. */
+async function cvat(t) {
+  const folder = temporaryFolder(t);
+  mkdirSync(folder.path('frames'));
+  for (const [k, picture] of pictures().entries()) writeFileSync(folder.path('frames', `f${k}.png`), png(picture));
+  const server = spawn(python, ['-B', here('cvat_server.py'), folder.path('frames')], { stdio: ['ignore', 'pipe', 'inherit'] });
+  t.after(() => server.kill());
+  const port = await new Promise((resolve, reject) => {
+    server.stdout.once('data', (text) => resolve(Number(text)));
+    server.once('exit', (code) => reject(new Error(`the server ended with ${code}`)));
+  });
+  const origin = `http://127.0.0.1:${port}`;
+  const ask = async (method, path, body) => {
+    const headers = { Authorization: 'Bearer personal-token', 'Content-Type': 'application/json' };
+    const response = await fetch(origin + path, { method, headers, ...(body && { body: JSON.stringify(body) }) });
+    assert.equal(response.status, 200, await response.clone().text());
+    return response.json();
+  };
+  const out = folder.path('work');
+  return {
+    out,
+    origin,
+    ask,
+    tracks: async () => (await ask('GET', '/api/tasks/42/annotations')).tracks,
+    save: (action, tracks) => ask('PATCH', `/api/tasks/42/annotations?action=${action}`, { tracks }),
+    run: (args, env) => run([...args, '--server-host', origin, '--out', out], env),
+    labels: () => labelsIn(`${out}/clip/labels`),
+  };
+}
+
+/** Runs the program to its end. */
+function run(args, env = CREDENTIALS) {
+  const program = [process.execPath, here('../../bin/veronese.js')].map((word) => `'${word}'`).join(' ');
+  const child = spawn(python, ['-B', here('../../../examples/hosts/cvat-clip.py'), ...args, '--quality', 'fast'], {
+    env: { PATH: process.env.PATH, HOME: process.env.HOME, VERONESE: program, ...env },
+  });
+  return new Promise((resolve) => {
+    const text = { stdout: '', stderr: '' };
+    for (const name of ['stdout', 'stderr']) child[name].setEncoding('utf8').on('data', (piece) => (text[name] += piece));
+    child.once('close', (code) => resolve({ code, ...text }));
+  });
+}
+
+async function done(running) {
+  const { code, stdout, stderr } = await running;
+  assert.equal(code, 0, stderr);
+  return JSON.parse(stdout);
+}
+
+async function refused(running, code) {
+  const ended = await running;
+  assert.equal(ended.code, 1, ended.stderr);
+  assert.match(ended.stderr, new RegExp(`^cvat-clip: error: ${code}: .+\n$`));
+  assert.equal(ended.stdout, '');
+}
+
+function labelsIn(folder) {
+  return readdirSync(folder).sort().map((name) => decode(readFileSync(`${folder}/${name}`)).data);
+}
+
+/** The pixels of each object in each frame, as the server gives those of tracks. */
+function masksOf(labels) {
+  const masks = {};
+  for (const [frame, data] of labels.entries()) {
+    for (const id of new Set(data)) if (id > 0 && id < 255) (masks[id] ??= {})[frame] = Array.from(data, (label) => Number(label === id)).join('');
+  }
+  return masks;
+}
+
+const shapeIn = (track, frame) => track.shapes.find((shape) => shape.frame === frame);
+const groupOf = (tracks, group) => tracks.find((track) => track.group === group);
+const square = (left, top, side) => [left, top, left + side, top, left + side, top + side, left, top + side];
+
+describe('a clip in CVAT', { skip, timeout: 300_000 }, () => {
+  test('becomes tracks: filled, their polygons are the labels, pixel by pixel', async (t) => {
+    const { run, ask, tracks, labels } = await cvat(t);
+    const printed = await done(run(['annotate', '42', '--label', 'thing', '--tolerance', '0']));
+    const found = masksOf(labels());
+    assert.ok(Object.keys(found).length >= 2, 'both squares move');
+    assert.deepEqual(printed, { task: 42, frames: LENGTH, objects: Object.keys(found).length });
+    assert.deepEqual(await ask('GET', '/test/masks'), found);
+    for (const track of await tracks()) {
+      assert.deepEqual([track.label_id, track.source], [7, 'auto']);
+      const last = track.shapes.at(-1);
+      if (last.frame < LENGTH - 1) assert.ok(last.outside, 'a track ends where the object does');
+    }
+  });
+
+  test('takes what a person changes: a redrawn polygon goes on, the rest stays as it is', async (t) => {
+    const { run, ask, save, tracks, labels } = await cvat(t);
+    await done(run(['annotate', '42', '--label', 'thing', '--tolerance', '0']));
+    assert.deepEqual(await done(run(['correct', '42', '--tolerance', '0'])), { task: 42, changed: 0, deleted: 0, tracks: 0 });
+    const before = await tracks();
+    const [first, second] = [1, 2].map((group) => groupOf(before, group));
+    const asked = (await ask('GET', '/test/log')).length;
+
+    // Half of the object in frame 3 is what the person wants.
+    const drawn = square(30, 24, 18);
+    shapeIn(first, 3).points = drawn;
+    shapeIn(first, 3).occluded = true;
+    await save('update', [first]);
+    assert.equal((await done(run(['correct', '42', '--tolerance', '0']))).changed, 1);
+
+    const after = await tracks();
+    const changed = groupOf(after, 1);
+    assert.deepEqual([shapeIn(changed, 3).points, shapeIn(changed, 3).occluded, changed.source], [drawn, true, 'semi-auto']);
+    assert.deepEqual(groupOf(after, 2), second, 'nobody touched it, and its track is the same one');
+    assert.deepEqual((await ask('GET', '/test/log')).slice(asked), [{ action: 'update', groups: [1] }, { action: 'update', groups: [1] }]);
+    const masks = await ask('GET', '/test/masks');
+    assert.deepEqual(masks, masksOf(labels()));
+    const size = (frame) => masks[1][frame].replaceAll('0', '').length;
+    assert.ok(size(2) < 30 * 30 && size(4) < 30 * 30, `${size(2)} and ${size(4)} pixels: the neighbouring frames follow`);
+    assert.deepEqual(await done(run(['correct', '42', '--tolerance', '0'])), { task: 42, changed: 0, deleted: 0, tracks: 0 });
+  });
+
+  test('does not spread where it should not', async (t) => {
+    const { run, ask, save, tracks } = await cvat(t);
+    await done(run(['annotate', '42', '--label', 'thing']));
+    const before = await ask('GET', '/test/masks');
+    const first = groupOf(await tracks(), 1);
+    const drawn = square(30, 24, 18);
+    shapeIn(first, 3).points = drawn;
+    await save('update', [first]);
+    await done(run(['correct', '42', '--propagate', 'none']));
+    const after = await ask('GET', '/test/masks');
+    assert.deepEqual(shapeIn(groupOf(await tracks(), 1), 3).points, drawn);
+    for (const masks of [before, after]) delete masks[1][3];
+    assert.deepEqual(after, before, 'frames that nobody touched are as they were');
+  });
+
+  test('takes new tracks, deleted ones and frames that an object is not in, one after another', async (t) => {
+    const { run, ask, save, tracks, labels } = await cvat(t);
+    await done(run(['annotate', '42', '--label', 'thing', '--tolerance', '0']));
+    const [first, second] = [1, 2];
+    const held = await tracks();
+    await save('delete', [groupOf(held, second)]);
+    const one = groupOf(held, first);
+    shapeIn(one, 5).outside = true;
+    await save('update', [one]);
+    assert.deepEqual(await done(run(['correct', '42', '--tolerance', '0'])), { task: 42, changed: 1, deleted: 1, tracks: 1 });
+    let masks = await ask('GET', '/test/masks');
+    assert.equal(masks[second], undefined);
+    assert.deepEqual([masks[first][5], masks[first][4] !== undefined, masks[first][6] !== undefined], [undefined, true, true]);
+
+    // Drawn in one frame, in the way of CVAT's page: without a group, and on to the end.
+    const shape = { type: 'polygon', frame: 2, outside: false, occluded: false, z_order: 0, rotation: 0, points: square(116, 22, 36), attributes: [] };
+    const other = { type: 'rectangle', frame: 0, outside: false, occluded: false, z_order: 0, rotation: 0, points: [1, 1, 20, 20], attributes: [] };
+    await save('create', [
+      { frame: 2, label_id: 9, group: 0, source: 'manual', shapes: [shape], attributes: [] },
+      { frame: 0, label_id: 8, group: 0, source: 'manual', shapes: [other], attributes: [] },
+    ]);
+    assert.deepEqual(await done(run(['correct', '42', '--tolerance', '0'])), { task: 42, changed: 1, deleted: 0, tracks: 1 });
+    const after = await tracks();
+    const added = after.find(({ label_id: label }) => label === 9);
+    assert.ok(added.group > 2, `object ${added.group} has a number that none had`);
+    assert.deepEqual(shapeIn(added, 2).points, shape.points);
+    assert.ok(added.shapes.filter(({ outside }) => !outside).length > 3, 'it is followed through the clip');
+    assert.equal(after.filter(({ label_id: label }) => label === 8).length, 1, 'other shapes are not ours');
+    masks = await ask('GET', '/test/masks');
+    assert.deepEqual([masks[second], masks[first][5]], [undefined, undefined], 'what was said before still holds');
+    assert.deepEqual(masks, masksOf(labels()));
+  });
+
+  test('with a password, and without the frames that were deleted', async (t) => {
+    const { run, ask, tracks } = await cvat(t);
+    await ask('POST', '/test/settings', { deleted_frames: [1, 7] });
+    const { frames } = await done(run(['annotate', '42', '--label', 'thing', '--auth', 'annotator'], { PASS: 'only-for-tests' }));
+    assert.equal(frames, LENGTH - 2);
+    for (const { shapes } of await tracks()) assert.ok(shapes.every(({ frame }) => frame !== 1 && frame !== 7));
+  });
+
+  test('is refused with a sentence, before anything is written to CVAT', async (t) => {
+    const { run, ask, save, tracks } = await cvat(t);
+    const annotate = ['annotate', '42', '--label', 'thing'];
+    await refused(run(annotate, { CVAT_ACCESS_TOKEN: 'another' }), 'cvat-answered');
+    await refused(run(['annotate', '41', '--label', 'thing']), 'cvat-answered');
+    await refused(run(['annotate', '42']), 'no-label');
+    await refused(run(['annotate', '42', '--label', 'frame']), 'no-label');
+    await refused(run(['correct', '42']), 'not-annotated');
+    await refused(run([...annotate, '--frames', '7']), 'too-many-frames');
+    await refused(run([...annotate, '--pixels', '1000']), 'frame-size-unsupported');
+    await refused(run([...annotate, '--veronese', 'no-such-program']), 'no-program');
+    await ask('POST', '/test/settings', { segment_size: 4 });
+    await refused(run(annotate), 'several-jobs');
+    await ask('POST', '/test/settings', { segment_size: LENGTH });
+    assert.deepEqual(await ask('GET', '/test/log'), []);
+    await done(run(annotate));
+    await refused(run(annotate), 'annotated-already');
+    await refused(run(['correct', '41']), 'cvat-answered');
+    assert.ok((await tracks()).length > 0);
+    await save('delete', await tracks());
+  });
+});
+
+test('the SDK is the one that the tests of formats use', { skip }, () => {
+  const of = (path) => /^cvat[-_]sdk==(\S+)$/m.exec(readFileSync(here(path), 'utf8'))?.[1];
+  assert.ok(of('../../../examples/hosts/requirements.txt'));
+  assert.equal(of('../../../examples/hosts/requirements.txt'), of('../support/requirements.txt'));
+});
