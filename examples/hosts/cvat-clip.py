@@ -247,30 +247,41 @@ def edits_in(folder):
 
 
 def say(work, options, before, now, changed):
-    """Adds to the corrections what a person changed: the whole of each object that was touched in a frame, and each pixel that is another's."""
+    """Writes the frames in which something changed as corrections."""
     only = {frame for where in changed.values() for frame in where}
-    size = sizes(work)
+    tracks = json.loads((work.clip / "tracks.json").read_text(encoding="utf-8"))
+    size = tracks["width"], tracks["height"]
     with tempfile.TemporaryDirectory() as folder:
-        masks = []
-        for name, objects in (("before", before), ("now", now)):
-            masks.append(drawn_masks(work, options, Path(folder) / name, objects, only, size))
+        old, new = (drawn_masks(work, options, Path(folder) / name, objects, changed, size) for name, objects in (("before", before), ("now", now)))
+    empty = bytes(size[0] * size[1])
     for frame in only:
+        name = name_of(frame)
+        with Image.open(work.clip / "labels" / f"{name}.png") as image:
+            found = image.tobytes()
         touched = {number for number, where in changed.items() if frame in where}
-        empty = bytes(size[0] * size[1])
-        old, new = (found.get(name_of(frame), empty) for found in masks)
-        said = bytes(b if a != b or b in touched else SILENT for a, b in zip(old, new))
-        path = work.said / f"{name_of(frame)}.png"
-        if path.exists():
-            with Image.open(path) as image:
-                said = bytes(b if b != SILENT else a for a, b in zip(image.tobytes(), said))
-        Image.frombytes("L", size, said).save(path)
+        said = bytes(map(Said(touched).of, old.get(name, empty), new.get(name, empty), found))
+        Image.frombytes("L", size, said).save(work.said / f"{name}.png")
 
 
-def drawn_masks(work, options, folder, objects, only, size):
-    """The labels of some frames by their names, as `veronese convert --to corrections` draws polygons; none of a frame without any."""
+class Said:
+    """What is certain of a pixel of a frame in which some objects were `touched`."""
+
+    def __init__(self, touched):
+        self.touched = touched
+
+    def of(self, old, new, found):
+        """From what the polygons were, what they are, and what was found: polygons may only be near to that."""
+        if old != new or new in self.touched or found in self.touched:
+            return new
+        # Of objects that nobody touched nothing is said: they would be followed anew.
+        return 0 if found == 0 else SILENT
+
+
+def drawn_masks(work, options, folder, objects, changed, size):
+    """The labels of the frames that changed, as `veronese convert --to corrections` draws polygons; none of a frame without any."""
     folder.mkdir()
-    cvat_tracks.write_xml(folder / "tracks.xml", objects, only, work.held["frames"], size)
-    if not any(said.get(frame) for said in objects.values() for frame in only):
+    cvat_tracks.write_xml(folder / "tracks.xml", objects, changed, work.held["frames"], size)
+    if not any(said.get(frame) for said in objects.values() for where in changed.values() for frame in where):
         return {}
     veronese(options, "convert", folder / "tracks.xml", "--to", "corrections", "--clip", work.clip, "--out", folder / "labels")
     masks = {}
@@ -278,11 +289,6 @@ def drawn_masks(work, options, folder, objects, only, size):
         with Image.open(path) as image:
             masks[path.stem] = image.tobytes()
     return masks
-
-
-def sizes(work):
-    tracks = json.loads((work.clip / "tracks.json").read_text(encoding="utf-8"))
-    return tracks["width"], tracks["height"]
 
 
 def send(task, action, tracks):

@@ -72,8 +72,10 @@ def changes(before, now, frames):
     return {number: where for number, where in changed.items() if where}
 
 
-def write_xml(path, objects, only, frames, size):
-    """What is known of some frames, `only`, in CVAT's own format for videos, with frames counted as the clip counts them."""
+def write_xml(path, objects, changed, frames, size):
+    """What is known of the frames that changed, in CVAT's own format for videos, with frames counted as the clip counts them. What changed
+    lies on top."""
+    only = {frame for where in changed.values() for frame in where}
     root = ElementTree.Element("annotations")
     original = ElementTree.SubElement(ElementTree.SubElement(ElementTree.SubElement(root, "meta"), "task"), "original_size")
     for side, value in zip(("width", "height"), size):
@@ -83,7 +85,8 @@ def write_xml(path, objects, only, frames, size):
         for index, frame in enumerate(frames):
             for points in said.get(frame, []) if frame in only else []:
                 pairs = ";".join(f"{x},{y}" for x, y in zip(points[::2], points[1::2]))
-                ElementTree.SubElement(track, POLYGON, frame=str(index), outside="0", points=pairs)
+                above = str(int(frame in changed.get(number, ())))
+                ElementTree.SubElement(track, POLYGON, frame=str(index), outside="0", points=pairs, z_order=above)
     ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
 
 

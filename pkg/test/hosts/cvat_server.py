@@ -6,6 +6,7 @@ cannot open is refused. As in CVAT, what is updated is deleted and created again
 Beside it, for tests: GET /test/masks gives the pixels of all tracks, as COCO's own code fills polygons, and GET /test/log what was asked.
 """
 
+import hashlib
 import itertools
 import json
 import re
@@ -65,7 +66,7 @@ def meta():
     frames = [{"width": SIZE[0], "height": SIZE[1], "name": file.name, "related_files": 0, "has_related_context": False} for file in FILES]
     return {
         "chunk_size": 72, "size": len(FILES), "image_quality": 70, "start_frame": 0, "stop_frame": len(FILES) - 1, "frame_filter": "",
-        "frames": frames, "deleted_frames": SETTINGS["deleted_frames"], "included_frames": None, "storage": "local", "cloud_storage_id": None,
+        "frames": frames, "chunks_updated_date": WHEN, "deleted_frames": SETTINGS["deleted_frames"], "included_frames": None, "storage": "local", "cloud_storage_id": None,
     }
 
 
@@ -120,13 +121,13 @@ def patch(action, data):
 
 
 def masks():
-    """{group: {frame: "0110…"}}, of frames with a visible key frame."""
+    """{group: {frame: [number of pixels, hash of one byte for each pixel]}}, of frames with a visible key frame."""
     found = {}
     for track in tracks.values():
         for shape in track["shapes"]:
             if shape["type"] == "polygon" and not shape["outside"]:
                 filled = coco_mask.decode(coco_mask.frPyObjects([shape["points"]], SIZE[1], SIZE[0]))[:, :, 0]
-                found.setdefault(track["group"], {})[shape["frame"]] = "".join(map(str, filled.ravel()))
+                found.setdefault(track["group"], {})[shape["frame"]] = [int(filled.sum()), hashlib.sha256(filled.tobytes()).hexdigest()]
     return found
 
 
