@@ -15,8 +15,8 @@ import { Stop, command, must } from './lib/run.mjs';
 const OUT = join(root, 'out', 'proof', 'label-studio');
 const FRAMES = ['first.png', 'second.png'].map((name) => join(root, 'www/public/samples/intel-two-cars', name));
 const CLIP = join(root, 'www/public/samples/passing-cars/frames/%02d.webp');
-/** Frames of the clip, and how many there are in a second. */
-const [LENGTH, RATE] = [24, 25];
+/** Of the clip the first frame, which has both cars, how many there are, and how many in a second. */
+const [START, LENGTH, RATE] = [20, 24, 25];
 
 await command(async () => {
   const { chromium } = await prepare({ browser: true });
@@ -39,16 +39,16 @@ await command(async () => {
     const held = await predictions(studio, backend.address, frames, FRAMES);
     await checkMasks(held.found);
     const file = join(OUT, 'task.png');
-    const text = await picture(studio, held, chromium.path, file);
+    const { text } = await picture(studio, held, chromium.path, file);
     for (const label of ['moving-1', 'moving-2']) assert.ok(text.includes(label), `the page does not show ${label}`);
     console.log(`Label Studio shows them: ${relative(root, file)}`);
 
     const boxes = await videoPredictions(studio, backend.address, address, RATE);
-    await checkBoxes(boxes.found[0], video);
+    const size = await checkBoxes(boxes.found[0], video);
     const screen = join(OUT, 'video.png');
-    const words = await picture(studio, boxes, chromium.path, screen);
-    assert.ok(words.includes('moving'), 'the page does not show the boxes');
-    console.log(`Label Studio shows them: ${relative(root, screen)}`);
+    const { rectangles } = await picture(studio, boxes, chromium.path, screen);
+    checkShown(rectangles, boxes.found[0], size);
+    console.log(`Label Studio shows them where they are: ${relative(root, screen)}`);
   } finally {
     backend.close();
     files.close();
@@ -74,17 +74,17 @@ async function checkMasks(found) {
   }
 }
 
-/** The first frames of the page's sample, as browsers play them. */
+/** Frames of the page's sample, as browsers play them. */
 async function madeVideo() {
   mkdirSync(OUT, { recursive: true });
   const file = join(OUT, 'street.webm');
-  const input = ['-v', 'error', '-framerate', String(RATE), '-i', CLIP, '-frames:v', String(LENGTH)];
+  const input = ['-v', 'error', '-framerate', String(RATE), '-start_number', String(START), '-i', CLIP, '-frames:v', String(LENGTH)];
   const sentence = 'The video could not be made: that takes the program ffmpeg with VP9.';
   await must(sentence, 'ffmpeg', [...input, '-c:v', 'libvpx-vp9', '-b:v', '4M', '-g', '1', '-pix_fmt', 'yuv420p', file]);
   return file;
 }
 
-/** Checks that the stored boxes are around the objects that `veronese clip` finds in the same file. */
+/** Checks that the stored boxes are around the objects that `veronese clip` finds in the same file; returns the size of its frames. */
 async function checkBoxes([{ result, score, model_version: version }], video) {
   const out = join(OUT, 'clip');
   const program = join(root, 'pkg/bin/veronese.js');
@@ -99,6 +99,16 @@ async function checkBoxes([{ result, score, model_version: version }], video) {
   assert.deepEqual(stored, expected);
   assert.ok(result.every(({ type, value }) => type === 'videorectangle' && value.framesCount === LENGTH));
   console.log(`Label Studio holds boxes of ${result.length} objects of ${version}, score ${score.toFixed(3)}: those of the labels, in every frame.`);
+  return { width, height };
+}
+
+/** Checks that the rectangles that the page draws over the first frame, in pixels of the video, are the stored boxes. */
+function checkShown(rectangles, [{ result }], { width, height }) {
+  const stored = result.map(({ value }) => value.sequence[0]).filter(({ frame }) => frame === 1);
+  assert.ok(stored.length > 1, 'both cars are in the first frame');
+  const rounded = (boxes) => boxes.map((sides) => sides.map(Math.round)).sort((one, other) => one[0] - other[0]);
+  const expected = stored.map((box) => [box.x * width, box.y * height, box.width * width, box.height * height].map((share) => share / 100));
+  assert.deepEqual(rounded(rectangles), rounded(expected));
 }
 
 function freePort() {

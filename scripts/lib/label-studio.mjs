@@ -154,7 +154,7 @@ export async function decodedByStudio(rle) {
   return JSON.parse(stdout);
 }
 
-/** Signs in through the page and takes a screenshot of the task with its masks or boxes. */
+/** Signs in through the page and takes a screenshot of the task with its masks or boxes; returns the text and the rectangles that it shows. */
 export async function picture(studio, { project, task }, chromiumPath, file) {
   const { chromium } = createRequire(join(root, 'www', 'package.json'))('@playwright/test');
   const browser = await chromium.launch({ executablePath: chromiumPath, args: ['--no-sandbox', '--disable-background-networking'] });
@@ -171,7 +171,12 @@ export async function picture(studio, { project, task }, chromiumPath, file) {
     await sleep(3000);
     mkdirSync(dirname(file), { recursive: true });
     await page.screenshot({ path: file });
-    return await page.evaluate(() => document.body.innerText);
+    return await page.evaluate(() => {
+      // Konva, with which Label Studio draws over pictures and videos, keeps its stages.
+      const nodes = (globalThis.Konva?.stages ?? []).flatMap((stage) => stage.find('Rect'));
+      const rectangles = nodes.map((node) => [node.x(), node.y(), node.width() * node.scaleX(), node.height() * node.scaleY()]);
+      return { text: document.body.innerText, rectangles };
+    });
   } finally {
     await browser.close();
   }
