@@ -42,8 +42,8 @@ export async function boxesOf({ folder, tracks, frameRate }, rate, { fromName, t
 
   async function read(name) {
     const bytes = await readFile(join(folder, 'labels', `${name}.png`));
-    const { width, height, read: labels } = readAnnotations([{ name: `${name}.png`, bytes }]).frames.get(name);
-    return { labels: labels(), width, height, image: name };
+    const labels = readAnnotations([{ name: `${name}.png`, bytes }]).frames.get(name);
+    return { labels: labels.read(), width: labels.width, height: labels.height, image: name };
   }
 }
 

@@ -74,10 +74,11 @@ class Work:
 def main():
     options = arguments()
     try:
+        work = Work(options.out, options.task)
         # The credentials are sent to this server alone: a redirect to another does not get them.
         with cvat_sdk.make_client_from_cli(options) as client:
             run = {"annotate": annotate, "correct": correct}[options.command]
-            print(json.dumps(run(client.tasks.retrieve(options.task), options)))
+            print(json.dumps(run(client.tasks.retrieve(options.task), work, options)))
     except Refusal as refusal:
         sys.exit(f"cvat-clip: error: {refusal}")
     except ApiException as error:
@@ -109,9 +110,8 @@ def arguments():
     return parser.parse_args()
 
 
-def annotate(task, options):
+def annotate(task, work, options):
     """Frames of the task → clip → tracks."""
-    work = Work(options.out, task.id)
     if work.held:
         raise Refusal("annotated-already", f"the task has its tracks already: use 'correct', or another folder than '{options.out}'")
     label = label_of(task, options.label)
@@ -126,9 +126,8 @@ def annotate(task, options):
     return {"task": task.id, "frames": len(frames), "objects": len(objects)}
 
 
-def correct(task, options):
+def correct(task, work, options):
     """Tracks that a person changed → corrections → the clip again → tracks. What nobody touched stays as it is."""
-    work = Work(options.out, task.id)
     if not work.held:
         raise Refusal("not-annotated", f"'{options.out}' has no clip of this task: use 'annotate' first")
     frames, before, drawn = work.held["frames"], work.objects(), work.drawn()
@@ -259,22 +258,17 @@ def say(work, options, before, now, changed):
         with Image.open(work.clip / "labels" / f"{name}.png") as image:
             found = image.tobytes()
         touched = {number for number, where in changed.items() if frame in where}
-        said = bytes(map(Said(touched).of, old.get(name, empty), new.get(name, empty), found))
+        pixels = zip(old.get(name, empty), new.get(name, empty), found)
+        said = bytes(certain(*pixel, touched) for pixel in pixels)
         Image.frombytes("L", size, said).save(work.said / f"{name}.png")
 
 
-class Said:
-    """What is certain of a pixel of a frame in which some objects were `touched`."""
-
-    def __init__(self, touched):
-        self.touched = touched
-
-    def of(self, old, new, found):
-        """From what the polygons were, what they are, and what was found: polygons may only be near to that."""
-        if old != new or new in self.touched or found in self.touched:
-            return new
-        # Of objects that nobody touched nothing is said: they would be followed anew.
-        return 0 if found == 0 else SILENT
+def certain(old, new, found, touched):
+    """What is certain of a pixel, from what polygons were and are there, and what was found: polygons may only be near to that."""
+    if old != new or new in touched or found in touched:
+        return new
+    # Of objects that nobody touched nothing is said: they would be followed anew.
+    return 0 if found == 0 else SILENT
 
 
 def drawn_masks(work, options, folder, objects, changed, size):

@@ -6,8 +6,9 @@ import { tmpdir } from 'node:os';
 import { describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { segmentClip } from 'veronese';
-import { rateOf } from '../../../examples/hosts/boxes.mjs';
+import { boxesOf, rateOf } from '../../../examples/hosts/boxes.mjs';
 import { startBackend } from '../../../examples/hosts/label-studio.mjs';
+import { createFollow } from '../../../examples/hosts/video.mjs';
 import { png } from '../support/frames.mjs';
 import { clip, frames, listen, post, video, videoTask, withoutVideos } from './asking.mjs';
 
@@ -75,20 +76,22 @@ describe('a video', { skip: withoutVideos, timeout: 120_000 }, () => {
     assert.deepEqual(folders(), []);
   });
 
-  test('is counted as Label Studio counts, whatever the rate of the file', async (t) => {
-    const { film: address, predict } = await served(t, bytes);
+  test('is counted as Label Studio counts, whatever the rate of the file', async () => {
     const boxes = await found();
     const [id] = Object.keys(boxes[0]);
-    for (const [data, shownAt] of [
-      [{ fps: 20 }, Array.from({ length: 16 }, (_, k) => Math.floor(k / 2))],
-      [{ fps: 5 }, [1, 3, 5, 7]],
-      [{ fps: '30' }, Array.from({ length: 24 }, (_, k) => Math.floor(k / 3))],
-    ]) {
-      const { body } = await post(predict, videoTask(address, data));
-      assert.deepEqual(shown(body.results[0].result[0]), shownAt.map((k) => boxes[k][id]), JSON.stringify(data));
-    }
-    const { body } = await post(predict, videoTask(address, {}));
-    assert.equal(body.results[0].result[0].value.framesCount, Math.round(0.8 * 24), 'without a rate there are 24 a second');
+    const names = { fromName: 'box', toName: 'film', labels: ['car'], modelVersion: 'x' };
+    await createFollow()(bytes, async (clip) => {
+      for (const [rate, shownAt] of [
+        [20, Array.from({ length: 16 }, (_, k) => Math.floor(k / 2))],
+        [5, [1, 3, 5, 7]],
+        [30, Array.from({ length: 24 }, (_, k) => Math.floor(k / 3))],
+        [1, [4]],
+      ]) {
+        const { result } = await boxesOf(clip, rate, names);
+        assert.deepEqual(shown(result[0]), shownAt.map((k) => boxes[k][id]), String(rate));
+      }
+      await assert.rejects(boxesOf(clip, 1e9, names), { status: 422, code: 'invalid-input' });
+    });
   });
 
   test('can be in the task itself, of any container and without a type', async (t) => {
@@ -164,12 +167,6 @@ describe('a video is refused', { skip: withoutVideos, timeout: 120_000 }, () => 
       const { status, body } = await post(`${await backend(t)}/predict`, videoTask(other));
       assert.deepEqual([status, body.error.code], [422, 'invalid-input'], String(other));
     }
-  });
-
-  test('with more frames at the rate of the configuration than an answer can have', async (t) => {
-    const { film: address, predict } = await served(t, bytes);
-    const { status, body } = await post(predict, videoTask(address, { fps: 1e9 }));
-    assert.deepEqual([status, body.error?.code], [422, 'invalid-input'], JSON.stringify(body));
   });
 
   test('when nobody waits for it any more: the work ends, and nothing stays', async (t) => {

@@ -1,4 +1,4 @@
-// The environment with the tools' own decoders. They are Python; set-up puts them into .tools/python where there is a Python
+// The environment with the tools' own decoders and CVAT's SDK. They are Python; set-up puts them into .tools/python where there is a Python
 // (scripts/lib/python-packages.mjs says which).
 
 import assert from 'node:assert/strict';
@@ -12,7 +12,7 @@ export const python = fileURLToPath(
 );
 
 /** Why what is Python cannot run, or false. */
-export const skip = !existsSync(python) && 'the decoders are not installed: they need Python 3.10 or newer with venv, then `npm run setup`';
+export const skip = !existsSync(python) && "the annotation tools' Python packages are not installed: they need Python 3.10 or newer with venv, then `npm run setup`";
 
 /** Runs a script of this folder on a folder; what it printed, as JSON. */
 export function decoded(script, folder) {
