@@ -64,7 +64,7 @@ export async function startBackend({
 
   /** Of two frames. */
   async function masks({ data }, { fromName, toName, labels, keys }, signal) {
-    const files = await Promise.all(keys.map((key) => fetchFile(addressIn(data, key), { token, signal })));
+    const files = await Promise.all(keys.map(async (key) => fetchFile(addressIn(data, key), { token, signal })));
     const found = await segment(files[0], files[1], { confidence: true, signal });
     // The dominant motion, usually the background, is nobody's mask; the others take the labels of the configuration in order.
     const motions = found.motions.slice(1, 1 + labels.length);
