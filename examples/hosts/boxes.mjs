@@ -17,13 +17,18 @@ export function rateOf(text, data) {
   return rate < 1 ? 1 / rate : rate;
 }
 
+/** Label Studio's player seeks a little beyond the border between two frames, seconds. */
+const STEP = 0.002;
+
 /**
  * A prediction of a clip's objects. Label Studio does not count the frames of the file: its frame L is what is on screen at
  * (L − 1) / `rate` seconds. Objects take the labels in order, and those that come after, the last one.
  */
 export async function boxesOf({ folder, tracks, frameRate }, rate, { fromName, toName, labels, modelVersion }) {
   const length = Math.max(1, Math.round((tracks.frames.length / frameRate) * rate));
-  if (length > LONGEST) throw new Refusal(422, 'invalid-input', `the video has ${length} frames at ${rate} per second: at most ${LONGEST} are possible`);
+  if (length > LONGEST) {
+    throw new Refusal(422, 'invalid-input', `at ${rate} per second the video has ${length} frames: at most ${LONGEST} are possible`);
+  }
   const names = Object.fromEntries(tracks.objects.map(({ id }, index) => [id, labels[Math.min(index, labels.length - 1)]]));
   const meta = { clip: 'video', tracked: true, names, labels: tracks.objects.map(({ id }) => id), frameRate: rate };
   const { predictions: [{ result }] } = await encodeLabelStudioVideo(shown(), meta, { fromName, toName, modelVersion });
@@ -32,8 +37,7 @@ export async function boxesOf({ folder, tracks, frameRate }, rate, { fromName, t
   async function* shown() {
     let [last, frame] = [-1];
     for (let index = 0; index < length; index++) {
-      // The middle of the time that it is on screen, away from the borders between two frames of the file.
-      const now = Math.min(tracks.frames.length - 1, Math.floor(((index + 0.5) / rate) * frameRate));
+      const now = Math.min(tracks.frames.length - 1, Math.floor((index / rate + STEP) * frameRate));
       if (now !== last) frame = await read(tracks.frames[now]);
       last = now;
       yield frame;

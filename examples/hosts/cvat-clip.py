@@ -56,11 +56,12 @@ class Work:
     def drawn(self):
         return {int(number): set(frames) for number, frames in self.held["drawn"].items()}
 
-    def hold(self, task, frames, objects, drawn):
+    def hold(self, task, frames, label, objects, drawn):
         """Written as a whole or not at all. `numbers` are all that objects ever had: a new object gets another."""
         content = {
             "task": task,
             "frames": frames,
+            "label": label,
             "objects": objects,
             "drawn": {number: sorted(where) for number, where in drawn.items()},
             "numbers": sorted({*objects, *(self.held["numbers"] if self.held else [])}),
@@ -122,7 +123,7 @@ def annotate(task, work, options):
     objects = outlines(work, options, frames)
     tracks = [cvat_tracks.track_of(number, said, frames, label=label) for number, said in objects.items()]
     send(task, AnnotationUpdateAction.CREATE, tracks)
-    work.hold(task.id, frames, read_back(task, frames, objects), {})
+    work.hold(task.id, frames, label, read_back(task, frames, objects), {})
     return {"task": task.id, "frames": len(frames), "objects": len(objects)}
 
 
@@ -149,19 +150,15 @@ def correct(task, work, options):
     (work.said / "edits.json").write_text(json.dumps(edits), encoding="utf-8")
     veronese(options, "clip", work.frames, "--out", work.clip, "--quality", options.quality, "--corrections", work.said)
 
-    found = outlines(work, options, frames)
+    found = as_drawn(outlines(work, options, frames), now, drawn)
     updated, created = [], []
     for number, said in found.items():
-        held = now.get(number, {})
-        # What a person drew stays as it was drawn; polygons of our own would only be near it.
-        for frame in drawn.get(number, ()):
-            if len(held.get(frame, [])) == 1 or held.get(frame) == []:
-                said[frame] = held[frame]
         members = tracks.get(number, [])
+        held = now.get(number, {})
         whole = len(members) == 1 and members[0].group == number
         if whole and all(frame in held and cvat_tracks.same(held[frame], said[frame]) for frame in frames):
             continue
-        label = members[0].label_id if members else label_of(task, options.label)
+        label = members[0].label_id if members else work.held["label"]
         track = cvat_tracks.track_of(number, said, frames, label=label, drawn=drawn.get(number, ()), old=members)
         (updated if members else created).append(track)
     # An object can be lost by what was said of others, or be of several tracks.
@@ -170,8 +167,18 @@ def correct(task, work, options):
     send(task, AnnotationUpdateAction.CREATE, created)
     if lost:
         task.remove_annotations(ids=[track.id for track in lost])
-    work.hold(task.id, frames, read_back(task, frames, found), {number: where for number, where in drawn.items() if number in found})
+    drawn = {number: where for number, where in drawn.items() if number in found}
+    work.hold(task.id, frames, work.held["label"], read_back(task, frames, found), drawn)
     return {"task": task.id, "changed": len(changed), "deleted": len(deleted), "tracks": len(updated) + len(created)}
+
+
+def as_drawn(found, now, drawn):
+    """The outlines, in a person's frames as they were drawn: those of the labels would only be near that. A track has one polygon a frame."""
+    for number, where in drawn.items():
+        held = now.get(number, {})
+        if number in found:
+            found[number].update({frame: held[frame] for frame in where if frame in held and len(held[frame]) < 2})
+    return {number: said for number, said in found.items() if any(said.values())}
 
 
 def label_of(task, name):

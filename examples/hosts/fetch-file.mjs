@@ -20,8 +20,9 @@ const TYPES = {
 const GLOBAL = ipaddr.parseCIDR('2000::/3');
 
 /**
- * A function that fetches a file of a kind, `image` or `video`. `home` is the origin that relative addresses belong to and the only one that sees a token. Of
- * hosts in private networks, loopback and all else that is not public it fetches from `home` and the origins in `allow` alone.
+ * A function that fetches a file of a kind, `image` or `video`. `home` is the origin that relative addresses belong to and the only one
+ * that sees a token. Of hosts in private networks, loopback and all else that is not public it fetches from `home` and the origins in
+ * `allow` alone.
  */
 export function createFetch({ home, allow = [], largest = LARGEST, patience = PATIENCE, lookup = systemLookup } = {}) {
   const named = new Set([...(home ? [home] : []), ...allow].map(originOf));

@@ -105,4 +105,6 @@ function isToken(text) {
   return typeof text === 'string' && /^[\x21-\x7e]+$/.test(text);
 }
 
-if (process.argv[1] === fileURLToPath(import.meta.url)) await run('ML backend', startBackend, { port: 9090, lists: ['allow'], limits: ['frames', 'seconds'] });
+if (process.argv[1] === fileURLToPath(import.meta.url)) {
+  await run('ML backend', startBackend, { port: 9090, lists: ['allow'], limits: ['frames', 'seconds'] });
+}

@@ -64,7 +64,7 @@ async function probed(video, signal) {
   const [stream] = JSON.parse(stdout).streams ?? [];
   const [numerator, denominator = 1] = String(stream?.avg_frame_rate).split('/').map(Number);
   const frameRate = numerator / denominator;
-  if (!(stream?.width > 0 && stream.height > 0)) throw new Refusal(422, 'unreadable-video', 'the file has no pictures: there is no video stream in it');
+  if (!(stream?.width > 0 && stream.height > 0)) throw new Refusal(422, 'unreadable-video', 'the file has no pictures');
   return { width: stream.width, height: stream.height, count: Number(stream.nb_read_packets), frameRate: frameRate > 0 ? frameRate : 25 };
 }
 
