@@ -48,10 +48,11 @@ const PARTS = {
   hosts: {
     lane: 'node',
     title: 'the packed package in its hosts',
-    run: async ({ chromium }) => {
+    run: async ({ chromium, python }) => {
       await buildModules();
       await buildPackage();
       if (chromium.problem) throw new Stop(chromium.problem);
+      if (python.problem) say(python.problem);
       const env = { VERONESE_CHROMIUM: chromium.path };
       return tests(nodeCounts, 'npm', ['run', 'test:hosts', '--silent', '--workspace', 'pkg'], env);
     },
@@ -90,7 +91,7 @@ await command(async (args) => {
   const setup = await prepare({
     checks: names.includes('check'),
     browser: ['page', 'hosts', 'browsers'].some((name) => names.includes(name)),
-    python: names.includes('formats'),
+    python: ['formats', 'hosts'].some((name) => names.includes(name)),
     hosts: names.includes('hosts'),
   });
   return summarise(await runParts(names, setup));

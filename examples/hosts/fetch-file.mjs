@@ -11,24 +11,30 @@ import { Refusal } from './http.mjs';
 const LARGEST = 64 * 1024 * 1024;
 const PATIENCE = 30_000;
 const REDIRECTS = 5;
+/** What servers may call a file of a kind. */
+const TYPES = {
+  image: /^(image\/|[a-z]+\/octet-stream)/i,
+  video: /^(video\/|application\/(mp4|ogg)|[a-z]+\/octet-stream)/i,
+};
 /** All that is given out of IPv6. Outside there are ways around: `::7f00:1` is an old spelling of 127.0.0.1. */
 const GLOBAL = ipaddr.parseCIDR('2000::/3');
 
 /**
- * A function that fetches a file. `home` is the origin that relative addresses belong to and the only one that sees a token. Of
- * hosts in private networks, loopback and all else that is not public it fetches from `home` and the origins in `allow` alone.
+ * A function that fetches a file of a kind, `image` or `video`. `home` is the origin that relative addresses belong to and the only one
+ * that sees a token. Of hosts in private networks, loopback and all else that is not public it fetches from `home` and the origins in
+ * `allow` alone.
  */
 export function createFetch({ home, allow = [], largest = LARGEST, patience = PATIENCE, lookup = systemLookup } = {}) {
   const named = new Set([...(home ? [home] : []), ...allow].map(originOf));
 
-  return async function fetchFile(address, { token, signal } = {}) {
+  return async function fetchFile(address, { token, signal, kind = 'image' } = {}) {
     signal?.throwIfAborted();
     const limit = new AbortController();
     const timer = setTimeout(() => limit.abort(refused(address, `takes longer than ${patience} ms`)), patience);
     const follow = () => limit.abort(signal.reason);
     signal?.addEventListener('abort', follow);
     try {
-      return await fetched(address, token, limit.signal);
+      return await fetched(address, kind, token, limit.signal);
     } catch (error) {
       if (limit.signal.aborted) throw limit.signal.reason;
       throw error instanceof Refusal ? error : refused(address, `cannot be fetched: ${error.message}`);
@@ -38,7 +44,7 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
     }
   };
 
-  async function fetched(address, token, signal) {
+  async function fetched(address, kind, token, signal) {
     if (/^data:/i.test(address)) return inline(address);
     let url = resolved(address, home);
     // A stranger who redirects back home does not get to ask there in our name.
@@ -47,7 +53,7 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
       trusted &&= url.origin === home;
       const response = await get(url, trusted ? token : undefined, signal);
       const next = [301, 302, 303, 307, 308].includes(response.statusCode) ? response.headers.location : undefined;
-      if (next === undefined) return content(response, address, url);
+      if (next === undefined) return content(response, address, kind, url);
       response.destroy();
       url = resolved(next, url);
     }
@@ -80,12 +86,13 @@ export function createFetch({ home, allow = [], largest = LARGEST, patience = PA
       });
   }
 
-  async function content(response, address, { origin }) {
+  async function content(response, address, kind, { origin }) {
     const { statusCode: status, headers } = response;
     const problem = () => {
       if (origin === home && [401, 403].includes(status)) return `answered ${status}: see LABEL_STUDIO_API_KEY in README.md`;
       if (status < 200 || status > 299) return `answered ${status}`;
-      if (!/^(image\/|[a-z]+\/octet-stream)/i.test(headers['content-type'] ?? 'image/')) return `is ${headers['content-type']}, not an image`;
+      const type = headers['content-type'];
+      if (type !== undefined && !TYPES[kind].test(type)) return `is ${type}, not ${kind === 'image' ? 'an image' : 'a video'}`;
       return undefined;
     };
     const found = problem();

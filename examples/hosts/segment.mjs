@@ -11,7 +11,7 @@ import { Refusal } from './http.mjs';
 const JOBS = 2;
 const TASKS = 256;
 /** Most pixels of a frame: 4K in every shape. A pair takes about 60 bytes for each while it is worked on. */
-const PIXELS = 4096 * 2304;
+export const PIXELS = 4096 * 2304;
 /** A header is read in the first bytes of a file, where metadata may come before the size. */
 const HEADER = 256 * 1024;
 
@@ -45,7 +45,8 @@ export function createSegment({ jobs = JOBS, tasks = TASKS, pixels = PIXELS } = 
   return { segment, perform, close: () => pool.close() };
 }
 
-function checkSize({ width, height }, pixels) {
+/** Throws where a frame is larger than what is worked on. */
+export function checkSize({ width, height }, pixels) {
   if (width * height <= pixels) return;
   throw new Refusal(422, 'frame-size-unsupported', `a frame of ${width}×${height} pixels is too large: this server takes ${pixels} at most`);
 }

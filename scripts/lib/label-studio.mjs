@@ -4,7 +4,7 @@ import { spawn } from 'node:child_process';
 import { createWriteStream, existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { createRequire } from 'node:module';
-import { basename, dirname, join } from 'node:path';
+import { basename, dirname, extname, join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 
 import { root, toolsFolder, which } from './project.mjs';
@@ -60,16 +60,24 @@ export async function startLabelStudio(folder, port) {
   return studio;
 }
 
-/** Serves two frames to Label Studio's page, with the CORS header it needs to read them from a canvas. */
-export async function serveFrames(paths) {
+const TYPES = { '.png': 'image/png', '.webm': 'video/webm' };
+
+/** Serves files to Label Studio's page, with the CORS header it needs to read them from a canvas, and in parts, as a player seeks. */
+export async function serveFiles(paths) {
   const server = createServer((request, response) => {
-    const path = paths[/^\/(\d)\.png$/.exec(request.url)?.[1]];
+    const path = paths[/^\/(\d+)\./.exec(request.url)?.[1]];
     if (!path) return response.writeHead(404).end();
-    return response.writeHead(200, { 'Content-Type': 'image/png', 'Access-Control-Allow-Origin': '*' }).end(readFileSync(path));
+    const content = readFileSync(path);
+    const headers = { 'Content-Type': TYPES[extname(path)], 'Access-Control-Allow-Origin': '*', 'Accept-Ranges': 'bytes' };
+    const [, from, until] = /^bytes=(\d+)-(\d*)$/.exec(request.headers.range ?? '') ?? [];
+    if (from === undefined) return response.writeHead(200, headers).end(content);
+    const part = content.subarray(Number(from), until ? Number(until) + 1 : undefined);
+    const range = `bytes ${from}-${Number(from) + part.length - 1}/${content.length}`;
+    return response.writeHead(206, { ...headers, 'Content-Range': range }).end(part);
   });
   await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
   const origin = `http://127.0.0.1:${server.address().port}`;
-  return { origin, addresses: paths.map((_, index) => `${origin}/${index}.png`), close: () => server.close() };
+  return { origin, addresses: paths.map((path, index) => `${origin}/${index}${extname(path)}`), close: () => server.close() };
 }
 
 const CONFIG = `<View>
@@ -82,12 +90,15 @@ const CONFIG = `<View>
   </View>
 </View>`;
 
-/**
- * Uses the REST API to create a project, our backend, a task with two linked frames and one with two uploaded files, and predictions.
- * Returns the stored predictions of each task.
- */
-export async function predictions(studio, backend, linked, files) {
-  const api = async (method, path, body) => {
+const VIDEO_CONFIG = `<View>
+  <Labels name="kinds" toName="video"><Label value="moving" background="#e6194b"/><Label value="other" background="#3cb44b"/></Labels>
+  <Video name="video" value="$video" frameRate="$fps"/>
+  <VideoRectangle name="box" toName="video"/>
+</View>`;
+
+/** A function that asks the REST API. */
+function apiOf(studio) {
+  return async (method, path, body) => {
     const form = body instanceof FormData;
     const headers = { Authorization: `Token ${studio.token}`, ...(!form && { 'Content-Type': 'application/json' }) };
     const response = await fetch(`${studio.address}/api/${path}`, { method, headers, ...(body && { body: form ? body : JSON.stringify(body) }) });
@@ -95,6 +106,14 @@ export async function predictions(studio, backend, linked, files) {
     if (!response.ok) throw new Stop(`${method} /api/${path} answered ${response.status}: ${text.slice(0, 2000)}`);
     return text === '' ? undefined : JSON.parse(text);
   };
+}
+
+/**
+ * Uses the REST API to create a project, our backend, a task with two linked frames and one with two uploaded files, and predictions.
+ * Returns the stored predictions of each task.
+ */
+export async function predictions(studio, backend, linked, files) {
+  const api = apiOf(studio);
   const project = await api('POST', 'projects', { title: 'What moves', show_collab_predictions: true });
   const uploaded = [];
   for (const path of files) {
@@ -105,14 +124,26 @@ export async function predictions(studio, backend, linked, files) {
   }
   // Only now, because a configuration with two images does not accept uploads.
   await api('PATCH', `projects/${project.id}`, { label_config: CONFIG });
-  const connection = await api('POST', 'ml', { url: backend, project: project.id, title: 'Veronese' });
-  for (const [first, second] of [linked, uploaded]) await api('POST', `projects/${project.id}/import?return_task_ids=true`, [{ data: { first, second } }]);
-  const { tasks } = await api('GET', `tasks?project=${project.id}`);
+  return predicted(api, backend, project.id, [linked, uploaded].map(([first, second]) => ({ first, second })));
+}
+
+/** The same with a project whose task is a linked video. */
+export async function videoPredictions(studio, backend, video, fps) {
+  const api = apiOf(studio);
+  const project = await api('POST', 'projects', { title: 'What moves in a clip', show_collab_predictions: true, label_config: VIDEO_CONFIG });
+  return predicted(api, backend, project.id, [{ video, fps }]);
+}
+
+/** Connects our backend to a project, creates tasks, and has Label Studio ask for their predictions. */
+async function predicted(api, backend, project, all) {
+  const connection = await api('POST', 'ml', { url: backend, project, title: 'Veronese' });
+  for (const data of all) await api('POST', `projects/${project}/import?return_task_ids=true`, [{ data }]);
+  const { tasks } = await api('GET', `tasks?project=${project}`);
   const selectedItems = { all: false, included: tasks.map(({ id }) => id) };
-  await api('POST', `dm/actions?id=retrieve_tasks_predictions&project=${project.id}`, { selectedItems, ordering: [] });
+  await api('POST', `dm/actions?id=retrieve_tasks_predictions&project=${project}`, { selectedItems, ordering: [] });
   const found = await Promise.all(tasks.map(({ id }) => api('GET', `predictions?task=${id}`)));
-  await api('PATCH', `projects/${project.id}`, { model_version: found[0][0]?.model_version });
-  return { project: project.id, task: tasks[0].id, state: connection.state ?? connection.readable_state, found };
+  await api('PATCH', `projects/${project}`, { model_version: found[0][0]?.model_version });
+  return { project, task: tasks[0].id, state: connection.state ?? connection.readable_state, found };
 }
 
 /** Pixels of a stored brush, decoded by Label Studio's own library: one byte each, 0 or 255. */
@@ -123,7 +154,7 @@ export async function decodedByStudio(rle) {
   return JSON.parse(stdout);
 }
 
-/** Signs in through the page and takes a screenshot of the task with its masks. */
+/** Signs in through the page and takes a screenshot of the task with its masks or boxes; returns the text and the rectangles that it shows. */
 export async function picture(studio, { project, task }, chromiumPath, file) {
   const { chromium } = createRequire(join(root, 'www', 'package.json'))('@playwright/test');
   const browser = await chromium.launch({ executablePath: chromiumPath, args: ['--no-sandbox', '--disable-background-networking'] });
@@ -140,7 +171,12 @@ export async function picture(studio, { project, task }, chromiumPath, file) {
     await sleep(3000);
     mkdirSync(dirname(file), { recursive: true });
     await page.screenshot({ path: file });
-    return await page.evaluate(() => document.body.innerText);
+    return await page.evaluate(() => {
+      // Konva, with which Label Studio draws over pictures and videos, keeps its stages.
+      const nodes = (globalThis.Konva?.stages ?? []).flatMap((stage) => stage.find('Rect'));
+      const rectangles = nodes.map((node) => [node.x(), node.y(), node.width() * node.scaleX(), node.height() * node.scaleY()]);
+      return { text: document.body.innerText, rectangles };
+    });
   } finally {
     await browser.close();
   }

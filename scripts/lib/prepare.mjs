@@ -10,7 +10,7 @@ import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
  * Prepares the compiler, wasm tools and npm packages. `checks` adds the formatter and clippy, `browser` adds Chromium, `hosts` adds the
- * bundlers and checkers for the packed package and what the examples need, and `python` adds the decoders of annotation tools.
+ * bundlers and checkers for the packed package and what the examples need, and `python` adds the decoders of annotation tools and CVAT's SDK.
  * Throws `Stop` with a sentence for every missing piece. A missing browser or Python is returned instead, as
  * `{ chromium: { problem } }` or `{ python: { problem } }`, because only their tests need them.
  */

@@ -1,4 +1,5 @@
-// Installs the annotation tools' own decoders (Python) in a separate environment under .tools. Only the tests of formats use it.
+// Installs the annotation tools' own decoders and CVAT's SDK (Python) in a separate environment under .tools. Only the tests of formats
+// and of the examples use it.
 
 import { rmSync } from 'node:fs';
 import { join } from 'node:path';
@@ -17,7 +18,7 @@ export async function preparePython() {
   if (inProject('.tools/python') && (await isInstalled())) return {};
   const program = await suitable(process.platform === 'win32' ? ['python', 'python3'] : ['python3', 'python']);
   if (!program) {
-    return { problem: 'The formats are not read by the tools themselves: that takes Python 3.10 to 3.13 with venv (Debian: apt-get install python3-venv).' };
+    return { problem: 'The formats are not read by the tools themselves, and cvat-clip.py does not run: that takes Python 3.10 to 3.13 with venv (Debian: apt-get install python3-venv).' };
   }
   rmSync(FOLDER, { recursive: true, force: true });
   await must('Python could not make an environment in .tools/python.', program, ['-m', 'venv', FOLDER], { output: 'collect' });

@@ -1,15 +1,53 @@
 // Servers for the servers: files to fetch, and ways to ask.
 
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer, request } from 'node:http';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { png } from '../support/frames.mjs';
-import { pair } from '../support/moving.mjs';
+import { frame, pair } from '../support/moving.mjs';
 
 export const frames = pair();
+
+/** Frames of a clip: a square moves over a background that is at rest, or moves as `options` say. */
+export function clip(length = 8, options) {
+  return Array.from({ length }, (_, k) => frame(k, { width: 96, height: 72, ...options }));
+}
 
 export const CONFIG = `<View>
   <Image name="before" value="$first"/><Image name="after" value="$second"/>
   <BrushLabels name="moving" toName="before"><Label value="car &amp; shadow" background="#f00"/><Label value="second"/></BrushLabels>
 </View>`;
+
+/** For boxes on a video. */
+export const VIDEO_CONFIG = `<View>
+  <Labels name="kinds" toName="film"><Label value="car"/><Label value="other"/></Labels>
+  <Video name="film" value="$video" frameRate="$fps"/><VideoRectangle name="box" toName="film"/>
+</View>`;
+
+/** Why there can be no videos, or false. */
+export const withoutVideos = ['ffmpeg', 'ffprobe'].some((name) => spawnSync(name, ['-version']).status !== 0) && 'the program ffmpeg is not installed';
+
+/** The bytes of a video with exactly these frames. */
+export function video(pictures, { rate = 10, format = 'matroska' } = {}) {
+  const folder = mkdtempSync(join(tmpdir(), 'veronese-test-'));
+  try {
+    pictures.forEach((picture, k) => writeFileSync(join(folder, `${k}.png`), png(picture)));
+    const file = join(folder, 'video');
+    const codec = ['-c:v', 'ffv1', '-pix_fmt', 'bgr0', '-f', format];
+    const { status, stderr } = spawnSync('ffmpeg', ['-v', 'error', '-framerate', String(rate), '-i', join(folder, '%d.png'), ...codec, file]);
+    if (status !== 0) throw new Error(String(stderr));
+    return readFileSync(file);
+  } finally {
+    rmSync(folder, { recursive: true, force: true });
+  }
+}
+
+/** A request of Label Studio for the boxes of one video. */
+export function videoTask(address, data = { fps: 10 }) {
+  return { tasks: [{ data: { video: address, ...data } }], label_config: VIDEO_CONFIG };
+}
 
 /** A server on loopback that ends with the test, and its origin. */
 export async function listen(t, answer, host = '127.0.0.1') {

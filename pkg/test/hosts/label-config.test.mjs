@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { readConfig } from '../../../examples/hosts/label-config.mjs';
-import { CONFIG } from './asking.mjs';
+import { CONFIG, VIDEO_CONFIG } from './asking.mjs';
 
 const simple = { fromName: 'b', toName: 'a', labels: ['x'], keys: ['one', 'two'] };
 const around = (inside) => `<View>${inside}<Image name="a" value="$one"/><Image name="z" value="$two"/></View>`;
@@ -19,6 +19,16 @@ test('configurations are read however they are written', () => {
   ]) assert.deepEqual(readConfig(config), simple, config);
 });
 
+test('a configuration with boxes on a video', () => {
+  const found = { fromName: 'box', toName: 'film', labels: ['car', 'other'], video: 'video', frameRate: '$fps' };
+  assert.deepEqual(readConfig(VIDEO_CONFIG), found);
+  const { frameRate, ...plain } = found;
+  assert.deepEqual(readConfig(VIDEO_CONFIG.replace('frameRate', 'framerate')), { ...plain, frameRate });
+  assert.deepEqual(readConfig(VIDEO_CONFIG.replace('frameRate="$fps"', '')), plain);
+  const more = '<Labels name="n" toName="text"><Label value="no"/></Labels><Text name="text" value="$text"/><Video name="second" value="$no"/>';
+  assert.deepEqual(readConfig(VIDEO_CONFIG.replace('<View>', `<View>${more}`)), found);
+});
+
 test('configurations that are none are refused with a sentence', () => {
   for (const config of [
     undefined, null, 7, {}, '', 'text', '<View', '<View>', '<View></Viewer>', around('<BrushLabels name="b" toName="a">'),
@@ -27,6 +37,9 @@ test('configurations that are none are refused with a sentence', () => {
     '<View><BrushLabels name="b" toName="a"/><Image name="a"/><Image name="z" value="$two"/></View>',
     `<!DOCTYPE View [<!ENTITY e "eeee">]>${around('<BrushLabels name="b" toName="a"><Label value="&e;"/></BrushLabels>')}`,
     around(`<BrushLabels name="b" toName="a"><Label value="${'x'.repeat(70_000)}"/></BrushLabels>`),
+    VIDEO_CONFIG.replace('toName="film"/>', 'toName="other"/>'), VIDEO_CONFIG.replace('<Video ', '<Image '), VIDEO_CONFIG.replace(/<Labels.*Labels>/, ''),
+    VIDEO_CONFIG.replace('value="$video"', ''), VIDEO_CONFIG.replace('value="car"', ''), VIDEO_CONFIG.replace('name="box"', ''),
+    '<View><Video name="v" value="$v"/><BrushLabels name="b" toName="v"><Label value="x"/></BrushLabels></View>',
   ]) assert.throws(() => readConfig(config), { status: 422, code: 'invalid-input' }, String(config).slice(0, 100));
 });
 

@@ -1,4 +1,4 @@
-// The environment with the tools' own decoders. They are Python; set-up puts them into .tools/python where there is a Python
+// The environment with the tools' own decoders and CVAT's SDK. They are Python; set-up puts them into .tools/python where there is a Python
 // (scripts/lib/python-packages.mjs says which).
 
 import assert from 'node:assert/strict';
@@ -6,12 +6,13 @@ import { spawnSync } from 'node:child_process';
 import { existsSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
-const python = fileURLToPath(
+/** The program. */
+export const python = fileURLToPath(
   new URL(process.platform === 'win32' ? '../../../.tools/python/Scripts/python.exe' : '../../../.tools/python/bin/python', import.meta.url),
 );
 
-/** Why the decoders cannot run, or false. */
-export const skip = !existsSync(python) && 'the decoders are not installed: they need Python 3.10 or newer with venv, then `npm run setup`';
+/** Why what is Python cannot run, or false. */
+export const skip = !existsSync(python) && "the annotation tools' Python packages are not installed: they need Python 3.10 or newer with venv, then `npm run setup`";
 
 /** Runs a script of this folder on a folder; what it printed, as JSON. */
 export function decoded(script, folder) {

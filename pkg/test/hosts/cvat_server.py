@@ -1,0 +1,203 @@
+"""The part of CVAT that a task of one job needs: CVAT's REST interface in the words of its own SDK.
+
+cvat_server.py FRAMES prints its port. Requests are checked with the models of the real SDK, and more strictly than CVAT does: what its page
+cannot open is refused. As in CVAT, what is updated is deleted and created again, with other ids.
+
+Beside it, for tests: GET /test/masks gives the pixels of all tracks, as COCO's own code fills polygons, and GET /test/log what was asked.
+"""
+
+import hashlib
+import itertools
+import json
+import re
+import sys
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
+
+from cvat_sdk import models
+from cvat_sdk.api_client import Configuration, exceptions
+from cvat_sdk.api_client.model_utils import validate_and_convert_types
+from PIL import Image
+from pycocotools import mask as coco_mask
+
+TASK = 42
+TOKEN = "personal-token"
+USER, PASSWORD = "annotator", "only-for-tests"
+LABELS = [(7, "thing", "polygon"), (8, "frame", "rectangle"), (9, "other", "any")]
+FILES = sorted(Path(sys.argv[1]).iterdir())
+SIZE = Image.open(FILES[0]).size
+SETTINGS = {"deleted_frames": [], "segment_size": len(FILES), "size": len(FILES)}
+WHEN = "2026-01-01T00:00:00Z"
+USER_MODEL = {"url": "http://localhost/api/users/1", "id": 1, "username": USER, "first_name": "", "last_name": ""}
+
+ids = itertools.count(1)
+tracks = {}
+log = []
+
+
+class Refused(Exception):
+    def __init__(self, status, reason):
+        super().__init__(reason)
+        self.status = status
+
+
+def about():
+    return {"name": "CVAT", "description": "", "version": "2.80.0", "logo_url": "", "subtitle": ""}
+
+
+def task():
+    return {
+        "url": f"http://localhost/api/tasks/{TASK}", "id": TASK, "name": "clip", "project_id": None, "mode": "annotation", "owner": USER_MODEL,
+        "assignee": None, "bug_tracker": "", "created_date": WHEN, "updated_date": WHEN, "overlap": 0, "segment_size": SETTINGS["segment_size"],
+        "status": "annotation", "data_chunk_size": 72, "data_compressed_chunk_type": "imageset", "guide_id": None, "data_original_chunk_type": "imageset",
+        "size": SETTINGS["size"], "image_quality": 70, "data": 1, "dimension": "2d", "subset": "", "organization_id": None, "organization": None,
+        "target_storage": None, "source_storage": None, "assignee_updated_date": None, "validation_mode": None, "consensus_enabled": False,
+        "jobs": {"url": "", "count": 1, "completed": 0, "validation": 0}, "labels": {"url": f"http://localhost/api/labels?task_id={TASK}"},
+    }
+
+
+def labels():
+    of = {"attributes": [], "color": "#ff0000", "sublabels": [], "task_id": TASK, "has_parent": False}
+    return {"count": len(LABELS), "next": None, "previous": None, "results": [{**of, "id": number, "name": name, "type": kind} for number, name, kind in LABELS]}
+
+
+def meta():
+    frames = [{"width": SIZE[0], "height": SIZE[1], "name": file.name, "related_files": 0, "has_related_context": False} for file in FILES]
+    return {
+        "chunk_size": 72, "size": len(FILES), "image_quality": 70, "start_frame": 0, "stop_frame": len(FILES) - 1, "frame_filter": "",
+        "frames": frames, "chunks_updated_date": WHEN, "deleted_frames": SETTINGS["deleted_frames"], "included_frames": None, "storage": "local", "cloud_storage_id": None,
+    }
+
+
+def annotations():
+    return {"version": 0, "tags": [], "shapes": [], "tracks": list(tracks.values())}
+
+
+def checked(data):
+    """Throws unless the body is what the SDK's own models say, and CVAT's page can show it."""
+    try:
+        validate_and_convert_types(data, (models.PatchedLabeledDataRequest,), ["body"], True, True, Configuration())
+    except exceptions.OpenApiException as error:
+        raise Refused(400, str(error)) from error
+    if data.get("tags") or data.get("shapes"):
+        raise Refused(400, "nothing but tracks is expected")
+    kinds = {number: kind for number, _, kind in LABELS}
+    for track in data["tracks"]:
+        if track["label_id"] not in kinds:
+            raise Refused(400, f"label_id `{track['label_id']}` is invalid")
+        frames = [shape["frame"] for shape in track["shapes"]]
+        if frames != sorted(set(frames)) or track["frame"] != frames[0]:
+            raise Refused(400, "a track has a shape for each of its frames, in order, from its own")
+        for shape in track["shapes"]:
+            check_shape(shape, kinds[track["label_id"]])
+    return data["tracks"]
+
+
+def check_shape(shape, kind):
+    if shape["type"] not in ("rectangle", "polygon") or kind not in (shape["type"], "any"):
+        raise Refused(400, f"a track of a label for '{kind}' has no {shape['type']}")
+    x, y = shape["points"][::2], shape["points"][1::2]
+    if len(x) != len(y) or len(x) < (3 if shape["type"] == "polygon" else 2):
+        raise Refused(400, "too few points")
+    if min(x + y) < 0 or max(x) > SIZE[0] or max(y) > SIZE[1] or not 0 <= shape["frame"] < len(FILES):
+        raise Refused(400, "a shape is not in the task")
+
+
+def patch(action, data):
+    wanted = checked(data)
+    if action not in ("create", "update", "delete"):
+        raise Refused(400, "there is no such action")
+    if action != "create":
+        for track in wanted:
+            if tracks.pop(track.get("id"), None) is None:
+                raise Refused(400, f"there is no track {track.get('id')}")
+    for track in wanted if action != "delete" else []:
+        number = next(ids)
+        shapes = [{**shape, "id": next(ids), "points": [round(value, 2) for value in shape["points"]]} for shape in track["shapes"]]
+        tracks[number] = {**track, "id": number, "shapes": shapes, "elements": []}
+    log.append({"action": action, "groups": [track.get("group") for track in wanted]})
+    return {**data, "version": 0, "tags": [], "shapes": []}
+
+
+def masks():
+    """{group: {frame: [number of pixels, hash of one byte for each pixel]}}, of frames with a visible key frame."""
+    found = {}
+    for track in tracks.values():
+        for shape in track["shapes"]:
+            if shape["type"] == "polygon" and not shape["outside"]:
+                filled = coco_mask.decode(coco_mask.frPyObjects([shape["points"]], SIZE[1], SIZE[0]))[:, :, 0]
+                found.setdefault(track["group"], {})[shape["frame"]] = [int(filled.sum()), hashlib.sha256(filled.tobytes()).hexdigest()]
+    return found
+
+
+class Handler(BaseHTTPRequestHandler):
+    protocol_version = "HTTP/1.1"
+
+    def log_message(self, *_):
+        pass
+
+    def answer(self):
+        url = urlsplit(self.path)
+        query = {name: values[0] for name, values in parse_qs(url.query).items()}
+        body = self.rfile.read(int(self.headers.get("Content-Length") or 0))
+        try:
+            content = self.found(f"{self.command} {url.path.rstrip('/')}", query, body)
+            self.send(200, content)
+        except Refused as refused:
+            self.send(refused.status, {"detail": str(refused)})
+
+    do_GET = do_PATCH = do_POST = do_PUT = do_DELETE = answer
+
+    def found(self, route, query, body):
+        if route == "GET /api/server/about":
+            return about()
+        if route == "POST /api/auth/login":
+            given = json.loads(body)
+            if (given.get("username"), given.get("password")) != (USER, PASSWORD):
+                raise Refused(400, "Unable to log in with provided credentials.")
+            return {"key": "session"}
+        if route.startswith("GET /test/"):
+            return {"masks": masks, "log": lambda: log}[route.removeprefix("GET /test/")]()
+        if route == "POST /test/settings":
+            SETTINGS.update(json.loads(body))
+            return {}
+        in_session = "sessionid=s" in self.headers.get("Cookie", "") and self.headers.get("X-CSRFTOKEN" if self.command != "GET" else "Cookie")
+        if self.headers.get("Authorization") != f"Bearer {TOKEN}" and not in_session:
+            raise Refused(401, "Authentication credentials were not provided.")
+        if route == "GET /api/users/self":
+            return USER_MODEL
+        if route == "GET /api/labels":
+            return labels()
+        if (match := re.fullmatch(r"(\w+) /api/tasks/(\d+)(.*)", route)) and int(match[2]) == TASK:
+            return self.of_task(match[1] + match[3], query, body)
+        raise Refused(404, f"Not found: {route}")
+
+    def of_task(self, route, query, body):
+        if route == "GET":
+            return task()
+        if route == "GET/data/meta":
+            return meta()
+        if route == "GET/data" and query.get("type") == "frame" and query.get("quality") == "original":
+            return FILES[int(query["number"])].read_bytes()
+        if route == "GET/annotations":
+            return annotations()
+        if route == "PATCH/annotations":
+            return patch(query.get("action"), json.loads(body))
+        raise Refused(404, f"Not found: {route}")
+
+    def send(self, status, content):
+        raw = content if isinstance(content, bytes) else json.dumps(content).encode()
+        self.send_response(status)
+        self.send_header("Content-Type", "image/png" if isinstance(content, bytes) else "application/json")
+        self.send_header("Content-Length", str(len(raw)))
+        if isinstance(content, dict) and "key" in content:
+            self.send_header("Set-Cookie", "sessionid=s")
+            self.send_header("Set-Cookie", "csrftoken=c")
+        self.end_headers()
+        self.wfile.write(raw)
+
+
+server = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+print(server.server_address[1], flush=True)
+server.serve_forever()
