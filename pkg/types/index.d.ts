@@ -1,5 +1,7 @@
 // The public types, written by hand. Callers may rely on everything in this file.
 
+import './globals.js';
+
 /**
  * RGBA bytes, row by row. An `ImageData` fits. Sides from 16 to 4096 pixels.
  *
@@ -267,7 +269,7 @@ export type ClipMask = {
       labels: Uint8Array | Pixels;
     }
   | {
-      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. Read with `fflate`, a dependency of this package. */
+      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. */
       png: Uint8Array;
     }
   | {
@@ -422,10 +424,15 @@ export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
 }
 
 /** The source of the WebAssembly module. */
-export type WasmSource = URL | string | Response | BufferSource | WebAssembly.Module;
+export type WasmSource = URL | string | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
 
 /** Red, green, blue and optional alpha, 0 to 255. */
 export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
+
+/** What is needed of the 2d context of a canvas, which may be an offscreen one. */
+export interface PaintContext {
+  putImageData(image: never, x: number, y: number): void;
+}
 
 export interface PaintOptions {
   /**
@@ -536,7 +543,7 @@ export function fitMotions(measurements: PointMeasurements, options?: FitOptions
  * frame.
  */
 export function paintLabels(
-  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+  context: PaintContext,
   segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
   options?: PaintOptions,
 ): Promise<void>;

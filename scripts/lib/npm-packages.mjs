@@ -7,6 +7,7 @@ import { Stop, longStep } from './run.mjs';
 
 /** Tools that only some tests and commands need. They are not a workspace, so nobody else has to install them. */
 export const HOSTS = 'pkg/test/hosts';
+export const RUNTIMES = 'pkg/test/runtimes';
 export const SERVERS = 'examples/hosts';
 export const SCALE_OUT = 'examples/scale-out';
 
