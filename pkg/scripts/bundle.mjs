@@ -77,7 +77,7 @@ await bundle.write({
       { name: 'masks', test: within(BOTH_WAYS), priority: 1 },
       { name: 'annotations', test: within(['formats/reading/']) },
       // Whatever loads it loads it once, and whoever bundles the package can put another copy in its place.
-      { name: 'fflate', test: /[\\/]node_modules[\\/]fflate[\\/]/, priority: 1 },
+      { name: 'fflate', test: /[\\/]node_modules[\\/]fflate[\\/]/, priority: 2 },
     ],
   },
 });

@@ -30,7 +30,7 @@ after(async () => {
 
 /** What the README says, for the origin of the package. */
 const policyFor = (origin) =>
-  `default-src 'none'; script-src 'self' ${origin} 'wasm-unsafe-eval'; worker-src blob:; connect-src 'self' ${origin}; img-src data:`;
+  `default-src 'none'; script-src 'self' ${origin} 'wasm-unsafe-eval'; worker-src blob: ${origin}; connect-src 'self' ${origin}; img-src data:`;
 
 /** Serves the package from an origin of its own, and a page with the script; returns the page's address. */
 async function page(t, script, { folder = join(app, 'node_modules/veronese'), policy = policyFor } = {}) {
@@ -123,10 +123,24 @@ describe('a package on another origin, under a strict content security policy', 
     assert.equal(outcome.supervisely, JSON.stringify(encodeSupervisely(expected.labels, 64, 48)));
   });
 
-  test('a policy without blob workers is an error that says what to allow', async (t) => {
-    const policy = (origin) => policyFor(origin).replace('worker-src blob:', "worker-src 'self'");
-    const { outcome } = await outcomeOf(t, browser, await page(t, IN_WORKERS, { policy }));
-    assert.match(outcome.error, /^worker-failed: .*worker-src blob:/s);
+  for (const allowed of ["'self'", 'blob:']) {
+    test(`a policy that allows workers of ${allowed} alone is an error that says what to allow`, async (t) => {
+      const policy = (origin) => policyFor(origin).replace(`worker-src blob: ${origin}`, `worker-src ${allowed}`);
+      const { outcome } = await outcomeOf(t, browser, await page(t, IN_WORKERS, { policy }));
+      assert.match(outcome.error, /^worker-failed: .* its origin and blob: in worker-src/);
+    });
+  }
+
+  test('the address of the blob is forgotten once the worker runs', async (t) => {
+    const script = (dist) => `
+      const made = [];
+      const make = URL.createObjectURL;
+      URL.createObjectURL = (blob) => (made.push(make(blob)), made.at(-1));
+      ${IN_WORKERS(dist).replace('globalThis.outcome = main()', "globalThis.outcome = main().then(() => Promise.all(made.map((address) => fetch(address).then(() => 'known', () => 'unknown'))))")}
+    `;
+    const policy = (origin) => policyFor(origin).replace('connect-src', 'connect-src blob:');
+    const { outcome } = await outcomeOf(t, browser, await page(t, script, { policy }));
+    assert.deepEqual(new Set(outcome), new Set(['unknown']));
   });
 
   test('a file that the worker cannot import is an error that says what may be missing', async (t) => {

@@ -31,6 +31,13 @@ function missing(name, path, exists = true) {
   throw new Error(`${name} is not installed: run \`npm ci\` in pkg/test/runtimes`);
 }
 
+/** It is the runtime that it should be, and finds the same directly and in a worker. */
+function check(output, runtime) {
+  const [name, ...hashes] = output.trim().split('\n');
+  assert.ok(name.startsWith(runtime), name);
+  assert.deepEqual(hashes, [expected, expected]);
+}
+
 describe('Node', () => {
   const versions = [...new Set(Object.keys(optionalDependencies).map((name) => /^node-(\d+)-/.exec(name)?.[1]).filter(Boolean))];
   assert.ok(versions.length > 0);
@@ -40,8 +47,7 @@ describe('Node', () => {
       const program = at(name, 'bin', 'node');
       const reason = missing(`Node ${version}`, program, name in optionalDependencies);
       if (reason) return t.skip(reason);
-      assert.match(run(program, ['--version']), new RegExp(`^v${version}\\.`));
-      assert.equal(run(program, ['runtime.mjs'], { cwd: app }), `${expected} ${expected}\n`);
+      check(run(program, ['runtime.mjs'], { cwd: app }), `Node ${version}.`);
     });
   }
 });
@@ -50,14 +56,14 @@ test('Deno', (t) => {
   const program = at('.bin', 'deno');
   const reason = missing('Deno', program);
   if (reason) return t.skip(reason);
-  assert.equal(run(program, ['run', '--no-remote', '--allow-read', '--allow-env', 'runtime.mjs'], { cwd: app }), `${expected} ${expected}\n`);
+  check(run(program, ['run', '--no-remote', '--allow-read', '--allow-env', 'runtime.mjs'], { cwd: app }), 'Deno 2.');
 });
 
 test('Bun', (t) => {
   const program = at('.bin', 'bun');
   const reason = missing('Bun', program);
   if (reason) return t.skip(reason);
-  assert.equal(run(program, ['runtime.mjs'], { cwd: app }), `${expected} ${expected}\n`);
+  check(run(program, ['runtime.mjs'], { cwd: app }), 'Bun 1.');
 });
 
 test('workerd, in which Cloudflare Workers run', async (t) => {

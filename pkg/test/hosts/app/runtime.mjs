@@ -7,4 +7,5 @@ import { labelHash } from './label-hash.js';
 const segmenter = new Segmenter();
 const hashes = [await labelHash(await segmentPair(first, second)), await labelHash(await segmenter.segmentPair(first, second))];
 segmenter.close();
-console.log(hashes.join(' '));
+const { deno, bun, node } = process.versions;
+console.log([deno ? `Deno ${deno}` : bun ? `Bun ${bun}` : `Node ${node}`, ...hashes].join('\n'));
