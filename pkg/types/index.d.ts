@@ -1,7 +1,5 @@
 // The public types, written by hand. Callers may rely on everything in this file.
 
-import './globals.js';
-
 /**
  * RGBA bytes, row by row. An `ImageData` fits. Sides from 16 to 4096 pixels.
  *
@@ -658,3 +656,14 @@ export function segmentPairs<Input extends PairInput>(
   pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
   options?: PairsOptions & PoolOptions,
 ): AsyncGenerator<PairOutcome<Input>, void, undefined>;
+
+// What is named here of the platform. Where its own types are loaded, this adds nothing to them. Where they are not (`lib` without DOM, no
+// types of Node), it lets a program compile.
+declare global {
+  interface AbortSignal {}
+  interface Response {}
+  interface URL {}
+  namespace WebAssembly {
+    interface Module {}
+  }
+}

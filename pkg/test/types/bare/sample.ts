@@ -4,8 +4,8 @@ import { paintLabels, type Pixels, segmentClip, Segmenter, segmentPair, segmentP
 import { decodeImage } from 'veronese/codecs';
 import { encodeCoco, encodeCocoVideo, type LabelFrame } from 'veronese/formats';
 import { init, SegmenterPool } from 'veronese/slim';
-import 'veronese/inline';
-import 'veronese/worker';
+
+export type Others = [typeof import('veronese/inline'), typeof import('veronese/worker')];
 
 export async function pair(file: Uint8Array, module: ArrayBuffer): Promise<string> {
   await init(module);
