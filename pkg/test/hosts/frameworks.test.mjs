@@ -6,8 +6,8 @@ import { dirname, join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { segmentClip, segmentPair } from 'veronese';
-import { frame, png } from '../support/frames.mjs';
-import { launch, serve } from './browser.mjs';
+import { frame, pair, png } from '../support/frames.mjs';
+import { launch, outcomeOf, serve } from './browser.mjs';
 import { install, run } from './packed.mjs';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
@@ -63,6 +63,36 @@ describe('types', () => {
     writeFileSync(join(folder, 'tsconfig.json'), JSON.stringify({ compilerOptions, include: ['sample.ts'] }));
     run(tsc, ['-p', folder]);
   });
+});
+
+/** How each framework's JSX is compiled, and what it needs to run. */
+const RUNNING = {
+  react: { packages: ['react', 'react-dom'], config: { oxc: { jsx: { runtime: 'automatic', importSource: 'react' } } } },
+  preact: { packages: ['preact'], config: { oxc: { jsx: { runtime: 'automatic', importSource: 'preact' } } } },
+  solid: { packages: ['solid-js'], plugin: async () => (await import('vite-plugin-solid')).default() },
+};
+
+describe('JSX', () => {
+  for (const [name, { packages, config, plugin }] of Object.entries(RUNNING)) {
+    test(`${name}: frames arrive as a property, options as attributes, and listeners hear the events`, async (t) => {
+      const folder = folderWith(`run-${name}`, packages);
+      cpSync(join(here, 'markup/run'), folder, { recursive: true });
+      cpSync(join(app, 'frames.js'), join(folder, 'frames.js'));
+      writeFileSync(join(folder, 'package.json'), '{ "private": true, "type": "module" }\n');
+      writeFileSync(join(folder, 'index.html'), `<!doctype html>\n<link rel="icon" href="data:," />\n<body><script type="module" src="/${name}.jsx"></script></body>\n`);
+      const { build } = await import('vite');
+      await build({ root: folder, configFile: false, logLevel: 'error', clearScreen: false, plugins: plugin ? [await plugin()] : [], ...config });
+      const { address } = await serve(t, join(folder, 'dist'));
+      const { outcome, complaints } = await outcomeOf(t, browser, address);
+      const frames = pair();
+      const whole = segmentClip({ length: 2, read: (index) => frames[index] }, { quality: 'fast', motions: 3 });
+      const first = await whole.next();
+      for await (const _ of whole);
+      assert.deepEqual(complaints, []);
+      const attributes = { motions: '3', quality: 'fast', grouped: true };
+      assert.deepEqual(outcome, { objects: whole.tracks().objects.length, labels: Array.from(first.value.labels).join(''), attributes });
+    });
+  }
 });
 
 /** What each example imports, its configuration included. */
