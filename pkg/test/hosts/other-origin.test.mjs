@@ -9,7 +9,7 @@ import { segmentPair } from 'veronese';
 import { encodeDavis, encodeSupervisely } from 'veronese/formats';
 import { png } from '../support/frames.mjs';
 import { pair } from '../support/moving.mjs';
-import { examples } from '../support/readme.mjs';
+import { policyFor as documented, examples } from '../support/readme.mjs';
 import { outcomeOf, launch, serve } from './browser.mjs';
 import { install } from './packed.mjs';
 import { report } from './app/report.js';
@@ -28,9 +28,8 @@ after(async () => {
   remove?.();
 });
 
-/** What the README says, for the origin of the package. */
-const policyFor = (origin) =>
-  `default-src 'none'; script-src 'self' ${origin} 'wasm-unsafe-eval'; worker-src blob: ${origin}; connect-src 'self' ${origin}; img-src data:`;
+/** What the README says; everything else is forbidden, but for the page's icon. */
+const policyFor = (origin) => `default-src 'none'; img-src data:; ${documented(origin)}`;
 
 /** Serves the package from an origin of its own, and a page with the script; returns the page's address. */
 async function page(t, script, { folder = join(app, 'node_modules/veronese'), policy = policyFor } = {}) {
