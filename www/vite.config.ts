@@ -52,6 +52,18 @@ function withoutMeasurements(): Plugin {
   };
 }
 
+/** The package brings what it needs of fflate. The page needs more of it, so both share the page's. */
+function oneFflate(): Plugin {
+  return {
+    name: 'one-fflate',
+    apply: 'build',
+    enforce: 'pre',
+    resolveId(id, importer) {
+      return /^\.{1,2}\/fflate\.js$/.test(id) ? this.resolve('fflate', importer) : null;
+    },
+  };
+}
+
 /** Preloads, while the page is parsed, the WebAssembly module, and the typeface of the name so that it is there when the page is first drawn. */
 function preload(): Plugin {
   return {
@@ -121,7 +133,7 @@ function serviceWorker(): Plugin {
 export default defineConfig({
   // Relative URLs, so that the built page works in any folder of any host.
   base: './',
-  plugins: [hostPage(), policy(), withoutMeasurements(), preload(), licences(), serviceWorker()],
+  plugins: [hostPage(), policy(), withoutMeasurements(), oneFflate(), preload(), licences(), serviceWorker()],
   worker: { format: 'es' },
   build: {
     target: 'es2023',

@@ -21,8 +21,11 @@ const ENTRIES = sources({
   'formats/index': 'formats/index',
 });
 const PROGRAM = sources({ cli: 'cli/main', 'cli-work': 'cli/work', 'cli-batch-work': 'cli/batch-work' });
-/** Becomes part of the package, from its sources: what it publishes are no modules, which browsers need that load the package unbundled. */
-const XML = '@rgrove/parse-xml';
+/**
+ * Become part of the package: a browser that loads it unbundled finds no package by its name. parse-xml is taken from its sources, because
+ * what it publishes are no modules; of fflate what browsers get, which Node runs too.
+ */
+const BUNDLED = { '@rgrove/parse-xml': '@rgrove/parse-xml/src/index.ts', fflate: 'fflate/esm/browser.js' };
 /** What an encoder of masks shares with the calls. */
 const SHARED = ['common/'];
 /** What encoders and readers of masks share. */
@@ -33,14 +36,14 @@ const CALLS = ['module/', 'calls/(?!clip/(?:given-masks|shared-pairs)\\.js)', 'p
 const within = (places) => new RegExp(`/build/(?:${places.join('|')})`.replaceAll('/', '[\\\\/]'));
 const bundle = await rolldown({
   input: { ...ENTRIES, ...PROGRAM },
-  external: [/^node:/, 'fflate'],
+  external: [/^node:/],
   plugins: [
     {
       name: 'entries',
       // An entry that another one imports stays the one file that package.json names. Importers end up in the top folder.
       resolveId: (id, importer) => {
         const file = importer && resolve(dirname(importer), id);
-        if (id === XML) return resolve(folder('../node_modules'), XML, 'src/index.ts');
+        if (Object.hasOwn(BUNDLED, id)) return resolve(folder('../node_modules'), BUNDLED[id]);
         const entry = Object.keys(ENTRIES).find((name) => ENTRIES[name] === file);
         return entry && { id: `./${entry}.js`, external: 'relative' };
       },
@@ -73,6 +76,8 @@ await bundle.write({
       ...['png-file', 'indexed-png'].map((name) => ({ name, test: within([`formats/${name}.js`]), priority: 1 })),
       { name: 'masks', test: within(BOTH_WAYS), priority: 1 },
       { name: 'annotations', test: within(['formats/reading/']) },
+      // Whatever loads it loads it once, and whoever bundles the package can put another copy in its place.
+      { name: 'fflate', test: /[\\/]node_modules[\\/]fflate[\\/]/, priority: 2 },
     ],
   },
 });

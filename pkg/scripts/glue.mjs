@@ -31,13 +31,15 @@ writeFileSync(new URL('../build/entries/inline-module.js', import.meta.url), lin
 function adapted(glue, calls) {
   // Two thirds of the loader are for sources that loading.ts knows better; what is left needs four lines.
   const loader = /\nasync function __wbg_load\([\s\S]*\nexport \{ initSync, __wbg_init as default \};\n$/;
-  const parts = ['function __wbg_finalize_init(instance, module)', 'function __wbg_get_imports()', 'wasmInstance, wasm;'];
+  // Every browser that runs these modules has TextEncoder.encodeInto.
+  const encoder = /\nif \(!\('encodeInto' in cachedTextEncoder\)\) \{[\s\S]*?\n\}\n/;
+  const parts = ['function __wbg_finalize_init(instance, module)', 'function __wbg_get_imports()', 'wasmInstance, wasm;', 'cachedTextEncoder.encodeInto('];
   const missing = [...parts, ...calls.map((name) => `export function ${name}(`)].filter((part) => !glue.includes(part));
-  if (!loader.test(glue) || missing.length > 0) {
+  if (!loader.test(glue) || !encoder.test(glue) || missing.length > 0) {
     console.error(`veronese: the glue of this wasm-bindgen looks different (${missing}): read pkg/scripts/glue.mjs`);
     process.exit(1);
   }
-  return `${glue.replace(loader, '')}
+  return `${glue.replace(loader, '').replace(encoder, '\n')}
 async function instantiate(module) {
     // The package's modules are made of one source: each could be taken for another.
     if (!WebAssembly.Module.exports(module).some(({ name }) => name === '${calls[0]}')) throw new Error('it has no ${calls[0]}');

@@ -267,7 +267,7 @@ export type ClipMask = {
       labels: Uint8Array | Pixels;
     }
   | {
-      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. Read with `fflate`, a dependency of this package. */
+      /** A PNG file whose samples are labels: indexed or grey, of up to 8 bits. */
       png: Uint8Array;
     }
   | {
@@ -422,10 +422,15 @@ export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
 }
 
 /** The source of the WebAssembly module. */
-export type WasmSource = URL | string | Response | BufferSource | WebAssembly.Module;
+export type WasmSource = URL | string | Response | ArrayBuffer | ArrayBufferView | WebAssembly.Module;
 
 /** Red, green, blue and optional alpha, 0 to 255. */
 export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
+
+/** What is needed of the 2d context of a canvas, which may be an offscreen one. */
+export interface PaintContext {
+  putImageData(image: never, x: number, y: number): void;
+}
 
 export interface PaintOptions {
   /**
@@ -536,7 +541,7 @@ export function fitMotions(measurements: PointMeasurements, options?: FitOptions
  * frame.
  */
 export function paintLabels(
-  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+  context: PaintContext,
   segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
   options?: PaintOptions,
 ): Promise<void>;
@@ -651,3 +656,14 @@ export function segmentPairs<Input extends PairInput>(
   pairs: Iterable<Input | Promise<Input>> | AsyncIterable<Input>,
   options?: PairsOptions & PoolOptions,
 ): AsyncGenerator<PairOutcome<Input>, void, undefined>;
+
+// What is named here of the platform. Where its own types are loaded, this adds nothing to them. Where they are not (`lib` without DOM, no
+// types of Node), it lets a program compile.
+declare global {
+  interface AbortSignal {}
+  interface Response {}
+  interface URL {}
+  namespace WebAssembly {
+    interface Module {}
+  }
+}

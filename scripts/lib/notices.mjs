@@ -11,7 +11,7 @@ import { must } from './run.mjs';
 export const NOTICES = ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'];
 
 /** In the package's scripts, but no dependency of theirs. */
-const BUNDLED = ['@rgrove/parse-xml'];
+const BUNDLED = ['@rgrove/parse-xml', 'fflate'];
 
 /** What a licence's own text has, and nothing else: the first that a component offers is taken. */
 const LICENCES = {

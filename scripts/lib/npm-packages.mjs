@@ -7,6 +7,7 @@ import { Stop, longStep } from './run.mjs';
 
 /** Tools that only some tests and commands need. They are not a workspace, so nobody else has to install them. */
 export const HOSTS = 'pkg/test/hosts';
+export const RUNTIMES = 'pkg/test/runtimes';
 export const SERVERS = 'examples/hosts';
 export const SCALE_OUT = 'examples/scale-out';
 
@@ -19,7 +20,7 @@ export async function prepareNpmPackages(folder = '.') {
   if (isInstalled(at)) return;
   const what = folder === '.' ? 'the npm packages' : `the npm packages of ${folder}`;
   await longStep(
-    `Installing ${what} (about half a minute)`,
+    `Installing ${what} (${folder === RUNTIMES ? 'some hundred megabytes' : 'about half a minute'})`,
     `${what[0].toUpperCase()}${what.slice(1)} could not be installed. See above; if it is the network, run the command again.`,
     'npm',
     // `ci` requires every optional package of every system in the lock file, and some of BullMQ's are not available everywhere.

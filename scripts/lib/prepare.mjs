@@ -2,7 +2,7 @@
 // Nothing is recorded: each piece is checked every time, which takes less than a second.
 
 import { prepareChromium } from './chromium.mjs';
-import { HOSTS, SCALE_OUT, SERVERS, prepareNpmPackages } from './npm-packages.mjs';
+import { HOSTS, RUNTIMES, SCALE_OUT, SERVERS, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
 import { preparePython } from './python-packages.mjs';
 import { Stop } from './run.mjs';
@@ -10,7 +10,8 @@ import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
  * Prepares the compiler, wasm tools and npm packages. `checks` adds the formatter and clippy, `browser` adds Chromium, `hosts` adds the
- * bundlers and checkers for the packed package and what the examples need, and `python` adds the decoders of annotation tools and CVAT's SDK.
+ * bundlers, runtimes and checkers for the packed package and what the examples need, and `python` adds the decoders of annotation tools and
+ * CVAT's SDK.
  * Throws `Stop` with a sentence for every missing piece. A missing browser or Python is returned instead, as
  * `{ chromium: { problem } }` or `{ python: { problem } }`, because only their tests need them.
  */
@@ -19,7 +20,7 @@ export async function prepare({ checks = false, browser = false, hosts = false, 
   await checkRust();
   const rust = prepareCompiler({ checks }).then(prepareWasmTools);
   const javascript = prepareNpmPackages()
-    .then(() => prepareFolders(hosts ? [HOSTS, SCALE_OUT, SERVERS] : []))
+    .then(() => prepareFolders(hosts ? [HOSTS, RUNTIMES, SCALE_OUT, SERVERS] : []))
     .then(() => (browser ? prepareChromium() : {}));
   const decoders = python ? preparePython() : {};
   const outcomes = await Promise.allSettled([rust, javascript, decoders]);

@@ -5,6 +5,7 @@ import type {
   FitOptions,
   Milliseconds,
   MotionFit,
+  PaintContext,
   PaintOptions,
   Pixels,
   PointMeasurements,
@@ -73,14 +74,14 @@ export class Api {
   };
 
   readonly paintLabels = async (
-    context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
+    context: PaintContext,
     segmentation: Pick<Segmentation, 'labels' | 'width' | 'height'>,
     options?: PaintOptions,
   ): Promise<void> => {
     const rest = reading(() => paintArguments(context, segmentation, options));
     await this.#frames.call((glue) => {
       if (isOffscreen(context)) glue.paintLabelsOffscreen(context, ...rest);
-      else glue.paintLabels(context, ...rest);
+      else glue.paintLabels(context as CanvasRenderingContext2D, ...rest);
     });
   };
 }
@@ -167,9 +168,7 @@ function overlayPalette(): (readonly [number, number, number, number])[] {
   return davisPalette().map(([r, g, b], label) => [r, g, b, label === 0 || label === 255 ? 0 : 255] as const);
 }
 
-function isOffscreen(
-  context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D,
-): context is OffscreenCanvasRenderingContext2D {
+function isOffscreen(context: PaintContext): context is OffscreenCanvasRenderingContext2D {
   return typeof OffscreenCanvasRenderingContext2D === 'function' && context instanceof OffscreenCanvasRenderingContext2D;
 }
 

@@ -4,7 +4,7 @@ import type { WasmSource } from '../../types/index.js';
 import { VeroneseError } from '../common/errors.js';
 
 /** Fetches or reads what a URL or path names: the one thing in which browser and Node differ. */
-export type Read = (place: URL | string) => Promise<Response | BufferSource>;
+export type Read = (place: URL | string) => Promise<Response | ArrayBuffer | ArrayBufferView>;
 
 export async function compile(source: WasmSource | Promise<WasmSource>, read: Read): Promise<WebAssembly.Module> {
   try {
@@ -25,12 +25,12 @@ export function loadFailed(reason: string, cause?: unknown): VeroneseError {
   return new VeroneseError('wasm-load-failed', `the WebAssembly module cannot be loaded: ${reason}`, { cause });
 }
 
-async function bytesOf(source: Response | BufferSource): Promise<Uint8Array<ArrayBuffer>> {
+async function bytesOf(source: Response | ArrayBuffer | ArrayBufferView): Promise<Uint8Array<ArrayBuffer>> {
   if (source instanceof Response) {
     if (!source.ok) throw loadFailed(`${source.url || 'the server'} answered ${source.status} ${source.statusText}`);
     return new Uint8Array(await source.arrayBuffer());
   }
-  if (ArrayBuffer.isView(source)) return new Uint8Array(source.buffer, source.byteOffset, source.byteLength);
+  if (ArrayBuffer.isView(source)) return new Uint8Array(source.buffer as ArrayBuffer, source.byteOffset, source.byteLength);
   if (source instanceof ArrayBuffer) return new Uint8Array(source);
   throw loadFailed('the source must be a URL, string, Response, BufferSource or WebAssembly.Module');
 }
