@@ -10,9 +10,10 @@ const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
 // Only the benchmarks of masks and clips use the other feature.
 const ALL = ['--features', 'codecs,ablation'];
-// With the crate of generated scenes.
-const ALL_TARGETS = ['--locked', '--workspace', '--all-targets'];
-const TESTS = ['--locked', '--workspace', '--lib', '--tests'];
+// With the crate of generated scenes. That of the Python package is no program of its own, and nothing for WebAssembly.
+const CRATES = ['--workspace', '--exclude', 'veronese-python'];
+const ALL_TARGETS = ['--locked', ...CRATES, '--all-targets'];
+const TESTS = ['--locked', ...CRATES, '--lib', '--tests'];
 const only = (feature) => ['--no-default-features', '--features', feature];
 const DENY = ['--', '-D', 'warnings'];
 const DOC = ['doc', '--locked', '--no-deps'];
@@ -22,12 +23,14 @@ const CHECKS = [
   ['formatting', 'cargo', ['fmt', '--all', '--check']],
   ['clippy', 'cargo', ['clippy', ...ALL_TARGETS, ...DENY]],
   ['clippy with codecs and ablation', 'cargo', ['clippy', ...ALL_TARGETS, ...ALL, ...DENY]],
+  // It needs no Python.
+  ['clippy for the Python package', 'cargo', ['clippy', '--locked', '--package', 'veronese-python', ...DENY]],
   // Benchmarks and examples are native programs.
   ['clippy for wasm', 'cargo', ['clippy', ...TESTS, ...WASM, ...DENY]],
   ['clippy for the core module', 'cargo', ['clippy', '--locked', '--lib', ...only('frames'), ...WASM, ...DENY]],
   ['clippy for the module of measurements', 'cargo', ['clippy', '--locked', '--lib', ...only('points'), ...WASM, ...DENY]],
   ['clippy for wasm with codecs', 'cargo', ['clippy', ...TESTS, ...WASM, ...CODECS, ...DENY]],
-  ['documentation', 'cargo', [...DOC, '--workspace', ...CODECS], DENY_IN_DOCS],
+  ['documentation', 'cargo', [...DOC, ...CRATES, ...CODECS], DENY_IN_DOCS],
   ['documentation for wasm', 'cargo', [...DOC, ...CODECS, ...WASM], DENY_IN_DOCS],
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
@@ -56,10 +59,11 @@ export async function runChecks() {
   return { passed: results.length - failed, failed, skipped: 0 };
 }
 
-/** Whether crate, package and project have the same version; they are released together. */
+/** Whether crate, packages and project have the same version; they are released together. */
 function versionsAgree() {
   const versions = {
     'Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('Cargo.toml'))?.[1],
+    'python/Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('python/Cargo.toml'))?.[1],
     'package.json': JSON.parse(projectText('package.json')).version,
     'pkg/package.json': JSON.parse(projectText('pkg/package.json')).version,
   };
