@@ -4,8 +4,8 @@ import { prepare } from './lib/prepare.mjs';
 import { command } from './lib/run.mjs';
 
 await command(async () => {
-  const { chromium, python } = await prepare({ checks: true, browser: true, hosts: true, python: true });
-  if (python.problem) console.log(python.problem);
+  const { chromium, python, ownPython } = await prepare({ checks: true, browser: true, hosts: true, python: true, ownPython: true });
+  for (const { problem } of [python, ownPython]) if (problem) console.log(problem);
   if (chromium.problem) console.log(chromium.problem);
   console.log(chromium.problem ? 'Everything else is ready.' : 'Everything is ready.');
   return chromium.problem ? 1 : 0;

@@ -5,12 +5,16 @@
 // they leave.
 
 import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
-import { buildModules, buildPackage, buildPage } from './lib/builds.mjs';
+import { buildModules, buildPackage, buildPage, buildWheel } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
-import { cargoCounts, nodeCounts, playwrightCounts } from './lib/counts.mjs';
+import { cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
+import { OWN, installWheel } from './lib/python-packages.mjs';
 import { Stop, command, inLane, say } from './lib/run.mjs';
 import { tests } from './lib/tests.mjs';
+
+// Without the crate of the Python package, which has no tests without an interpreter.
+const CRATES = ['--workspace', '--exclude', 'veronese-python'];
 
 const LANES = { cargo: { niceness: 10 }, node: { niceness: 0 } };
 
@@ -18,14 +22,27 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', '--workspace', '--no-fail-fast', '--features', 'codecs']),
+    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs']),
   },
   wasm: {
     lane: 'cargo',
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', '--workspace']),
+    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES]),
   },
   check: { lane: 'cargo', title: 'checks', run: runChecks },
+  python: {
+    lane: 'cargo',
+    title: 'the Python package',
+    run: async ({ ownPython: { problem } }) => {
+      if (problem) return { passed: 0, failed: 0, skipped: 1, note: problem };
+      await buildModules();
+      await buildPackage();
+      const wheel = await buildWheel(OWN.python);
+      await installWheel(OWN, wheel);
+      // What is installed is tested, not the sources beside the tests.
+      return tests(pytestCounts, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', 'python'], { VERONESE_WHEEL: wheel });
+    },
+  },
   package: {
     lane: 'node',
     title: 'package tests',
@@ -92,6 +109,7 @@ await command(async (args) => {
     checks: names.includes('check'),
     browser: ['page', 'hosts', 'browsers'].some((name) => names.includes(name)),
     python: ['formats', 'hosts'].some((name) => names.includes(name)),
+    ownPython: names.includes('python'),
     hosts: names.includes('hosts'),
   });
   return summarise(await runParts(names, setup));

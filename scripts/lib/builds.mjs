@@ -1,6 +1,6 @@
-// Builds the WebAssembly modules, the npm package and the page. Each is skipped if nothing changed.
+// Builds the WebAssembly modules, the npm package, the page and the wheel. What has not changed is skipped.
 
-import { existsSync, readdirSync } from 'node:fs';
+import { existsSync, readdirSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
@@ -67,6 +67,21 @@ export const buildPage = once(async () => {
   );
 });
 
+/** Builds the wheel of the Python package, with the maturin of an environment. Returns its path. Cargo knows what is up to date. */
+export async function buildWheel(python) {
+  say('Building the wheel of the Python package (about a minute when everything is new) …');
+  const folder = join(root, 'out', 'wheel');
+  rmSync(folder, { recursive: true, force: true });
+  await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked']);
+  await must(
+    'The wheel could not be built.',
+    python,
+    ['-m', 'maturin', 'build', '--quiet', '--release', '--locked', '--manifest-path', join(root, 'python', 'Cargo.toml'), '--out', folder],
+    { env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: pathFlags().join('\u001f') } },
+  );
+  return join(folder, readdirSync(folder)[0]);
+}
+
 /** The same build for all who ask for it, one after another or at the same time. */
 function once(build) {
   let built;
@@ -98,7 +113,7 @@ async function wasmPack(name, folder, features) {
   );
 }
 
-/** Keeps the builder's folders out of the module, so that the same sources give the same bytes everywhere. */
+/** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */
 function pathFlags() {
   const sources = join(cargoHome, 'registry', 'src');
   const registries = existsSync(sources) ? readdirSync(sources) : [];

@@ -10,9 +10,11 @@ const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
 // Only the benchmarks of masks and clips use the other feature.
 const ALL = ['--features', 'codecs,ablation'];
-// With the crates of generated scenes and of the WebAssembly modules.
-const ALL_TARGETS = ['--locked', '--workspace', '--all-targets'];
-const TESTS = ['--locked', '--workspace', '--lib', '--tests'];
+// With the crates of generated scenes and of the WebAssembly modules. That of the Python package is no program of its own, and nothing
+// for WebAssembly.
+const CRATES = ['--workspace', '--exclude', 'veronese-python'];
+const ALL_TARGETS = ['--locked', ...CRATES, '--all-targets'];
+const TESTS = ['--locked', ...CRATES, '--lib', '--tests'];
 const MODULES = ['--package', 'veronese-wasm', ...WASM];
 const only = (feature) => ['--no-default-features', '--features', feature];
 const DENY = ['--', '-D', 'warnings'];
@@ -23,12 +25,14 @@ const CHECKS = [
   ['formatting', 'cargo', ['fmt', '--all', '--check']],
   ['clippy', 'cargo', ['clippy', ...ALL_TARGETS, ...DENY]],
   ['clippy with codecs and ablation', 'cargo', ['clippy', ...ALL_TARGETS, ...ALL, ...DENY]],
+  // It needs no Python.
+  ['clippy for the Python package', 'cargo', ['clippy', '--locked', '--package', 'veronese-python', ...DENY]],
   // Benchmarks and examples are native programs.
   ['clippy for wasm', 'cargo', ['clippy', ...TESTS, ...WASM, ...DENY]],
   ['clippy for the core module', 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only('frames'), ...DENY]],
   ['clippy for the module of measurements', 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only('points'), ...DENY]],
   ['clippy for wasm with codecs', 'cargo', ['clippy', ...TESTS, ...WASM, ...CODECS, ...DENY]],
-  ['documentation', 'cargo', [...DOC, '--workspace', ...CODECS], DENY_IN_DOCS],
+  ['documentation', 'cargo', [...DOC, ...CRATES, ...CODECS], DENY_IN_DOCS],
   ['documentation for wasm', 'cargo', [...DOC, ...MODULES, ...CODECS], DENY_IN_DOCS],
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
@@ -57,10 +61,11 @@ export async function runChecks() {
   return { passed: results.length - failed, failed, skipped: 0 };
 }
 
-/** Whether crate, package and project have the same version; they are released together. */
+/** Whether crate, packages and project have the same version; they are released together. */
 function versionsAgree() {
   const versions = {
     'Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('Cargo.toml'))?.[1],
+    'python/Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('python/Cargo.toml'))?.[1],
     'package.json': JSON.parse(projectText('package.json')).version,
     'pkg/package.json': JSON.parse(projectText('pkg/package.json')).version,
   };

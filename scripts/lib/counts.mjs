@@ -27,6 +27,13 @@ export function playwrightCounts(output) {
   return sum(output, line, kinds, ([, count, kind]) => [kind, count]);
 }
 
+/** The same for pytest, whose last line has all counts. */
+export function pytestCounts(output) {
+  const kinds = { passed: 'passed', failed: 'failed', error: 'failed', errors: 'failed', skipped: 'skipped', xfailed: 'skipped', xpassed: 'failed' };
+  const last = output.replace(ESCAPES, '').match(/^.*\b\d+ (?:passed|failed|errors?|skipped)\b.* in [\d.]+s.*$/gm)?.at(-1) ?? '';
+  return sum(last, /(\d+) (passed|failed|errors?|skipped|xfailed|xpassed)\b/g, kinds, ([, count, kind]) => [kind, count]);
+}
+
 function sum(output, pattern, kinds, read) {
   const counts = { passed: 0, failed: 0, skipped: 0 };
   for (const match of output.replace(ESCAPES, '').matchAll(pattern)) {

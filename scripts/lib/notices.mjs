@@ -7,14 +7,18 @@ import { dirname, join } from 'node:path';
 import { projectText, root } from './project.mjs';
 import { must } from './run.mjs';
 
-/** In the project, and in the npm package. */
-export const NOTICES = ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'];
+/** In the project and in the npm package, and in the wheel. */
+export const NOTICES = [
+  { paths: ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'], parts: partsOfProject },
+  { paths: ['python/THIRD-PARTY-NOTICES'], parts: partsOfWheel },
+];
 
 /** In the package's scripts, but no dependency of theirs. */
 const BUNDLED = ['@rgrove/parse-xml', 'fflate'];
 
 /** What a licence's own text has, and nothing else: the first that a component offers is taken. */
 const LICENCES = {
+  'BSD-2-Clause': /Redistribution and use in source and binary forms(?![^]*name of)/,
   ISC: /Permission to use, copy, modify, and\/or distribute/,
   MIT: /Permission is hereby granted, free of charge/,
   'BSD-3-Clause': /Redistribution and use in source and binary forms/,
@@ -24,28 +28,45 @@ const LICENCES = {
   'MPL-2.0': /Mozilla Public License Version 2\.0/,
 };
 
-/** In every module, and in no list of packages: it comes with the compiler. */
-const STANDARD_LIBRARY = {
+/** In everything compiled, and in no list of packages: it comes with the compiler, with crates of others under the same licences. */
+const standardLibrary = (crates) => ({
   name: 'Rust standard library',
-  version: '(core, alloc and std, with compiler_builtins, dlmalloc and hashbrown)',
+  version: `(core, alloc and std, with ${crates})`,
   licence: 'MIT OR Apache-2.0',
   source: 'https://github.com/rust-lang/rust',
   texts: [
     `Copyright (c) The Rust Project Contributors\n\n${/Permission is hereby granted[^]*/.exec(projectText('LICENSE-MIT'))[0].trim()}`,
   ],
-};
+});
+
+/** What wheels are built for. */
+const NATIVE = ['x86_64-unknown-linux-gnu', 'aarch64-apple-darwin', 'x86_64-pc-windows-msvc'];
 
 /** The letters of the page's name; README.md there says how they were made. */
 const WORDMARK = () =>
   component('Cormorant Garamond', '4.001 (Bold, six letters)', 'OFL-1.1', 'https://github.com/CatharsisFonts/Cormorant', join(root, 'www/src/styles/wordmark'));
 
-/** The text of the file. */
-export async function notices() {
-  const parts = [
-    ['In the WebAssembly modules', [STANDARD_LIBRARY, ...(await crates())]],
+async function partsOfProject() {
+  const modules = await crates(['--features', 'codecs'], 'wasm32-unknown-unknown');
+  return [
+    ['In the WebAssembly modules', [standardLibrary('compiler_builtins, dlmalloc and hashbrown'), ...modules]],
     ["In the page's scripts", packages()],
     ['In the name at the top of the page', [WORDMARK()]],
   ];
+}
+
+async function partsOfWheel() {
+  const all = new Map();
+  for (const target of NATIVE) {
+    for (const crate of await crates(['--manifest-path', 'python/Cargo.toml'], target)) all.set(`${crate.name} ${crate.version}`, crate);
+  }
+  const std = standardLibrary('addr2line, adler2, cfg_if, compiler_builtins, gimli, hashbrown, libc, memchr, miniz_oxide, object and rustc_demangle');
+  return [['In the module', [std, ...[...all.values()].sort(byName)]]];
+}
+
+/** The text of a file. */
+export async function notices({ parts: partsOf }) {
+  const parts = await partsOf();
   const components = parts.flatMap(([, all]) => all);
   const byText = new Map();
   for (const component of components) for (const text of component.texts) byText.set(text, [...(byText.get(text) ?? []), component]);
@@ -59,10 +80,10 @@ export async function notices() {
   ].join('\n');
 }
 
-/** What is compiled into one of the modules: no macros, which run in the compiler, and nothing that only builds or tests need. */
-async function crates() {
+/** What is compiled into a module: no macros, which run in the compiler, and nothing that only builds or tests need. */
+async function crates(of, triple) {
   const cargo = async (name, target, ...args) => {
-    const all = [name, '--locked', '--features', 'codecs', target, 'wasm32-unknown-unknown', ...args];
+    const all = [name, '--locked', ...of, target, triple, ...args];
     return (await must(`cargo ${name} failed.`, 'cargo', all, { output: 'collect' })).stdout;
   };
   const tree = await cargo('tree', '--target', '--edges', 'normal,no-proc-macro', '--prefix', 'none', '--format', '{p}');
@@ -70,7 +91,11 @@ async function crates() {
   return JSON.parse(await cargo('metadata', '--filter-platform', '--format-version', '1'))
     .packages.filter(({ name, version, source }) => source !== null && linked.has(`${name} v${version}`))
     .map((crate) => component(crate.name, crate.version, crate.license, crate.repository, dirname(crate.manifest_path)))
-    .sort((a, b) => (`${a.name} ${a.version}` < `${b.name} ${b.version}` ? -1 : 1));
+    .sort(byName);
+}
+
+function byName(a, b) {
+  return `${a.name} ${a.version}` < `${b.name} ${b.version}` ? -1 : 1;
 }
 
 /** What npm installs for those who use the package, and for the page: without types, which are not in a script. */

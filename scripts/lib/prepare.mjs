@@ -4,31 +4,32 @@
 import { prepareChromium } from './chromium.mjs';
 import { HOSTS, RUNTIMES, SCALE_OUT, SERVERS, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
-import { preparePython } from './python-packages.mjs';
+import { DECODERS, OWN, preparePython } from './python-packages.mjs';
 import { Stop } from './run.mjs';
 import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
  * Prepares the compiler, wasm tools and npm packages. `checks` adds the formatter and clippy, `browser` adds Chromium, `hosts` adds the
- * bundlers, runtimes and checkers for the packed package and what the examples need, and `python` adds the decoders of annotation tools and
- * CVAT's SDK.
+ * bundlers, runtimes and checkers for the packed package and what the examples need, `python` adds the decoders of annotation tools and
+ * CVAT's SDK, and `ownPython` what builds and tests the Python package.
  * Throws `Stop` with a sentence for every missing piece. A missing browser or Python is returned instead, as
- * `{ chromium: { problem } }` or `{ python: { problem } }`, because only their tests need them.
+ * `{ chromium: { problem } }`, `{ python: { problem } }` or `{ ownPython: { problem } }`, because only their tests need them.
  */
-export async function prepare({ checks = false, browser = false, hosts = false, python = false } = {}) {
+export async function prepare({ checks = false, browser = false, hosts = false, python = false, ownPython = false } = {}) {
   checkNode();
   await checkRust();
   const rust = prepareCompiler({ checks }).then(prepareWasmTools);
   const javascript = prepareNpmPackages()
     .then(() => prepareFolders(hosts ? [HOSTS, RUNTIMES, SCALE_OUT, SERVERS] : []))
     .then(() => (browser ? prepareChromium() : {}));
-  const decoders = python ? preparePython() : {};
-  const outcomes = await Promise.allSettled([rust, javascript, decoders]);
+  const decoders = python ? preparePython(DECODERS) : {};
+  const own = ownPython ? preparePython(OWN) : {};
+  const outcomes = await Promise.allSettled([rust, javascript, decoders, own]);
   const failures = outcomes.filter(({ status }) => status === 'rejected').map(({ reason }) => reason);
   const surprise = failures.find((reason) => !(reason instanceof Stop));
   if (surprise) throw surprise;
   if (failures.length > 0) throw new Stop(failures.map(({ message }) => message).join('\n'));
-  return { chromium: outcomes[1].value, python: outcomes[2].value };
+  return { chromium: outcomes[1].value, python: outcomes[2].value, ownPython: outcomes[3].value };
 }
 
 async function prepareFolders(folders) {

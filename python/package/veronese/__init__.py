@@ -1,0 +1,184 @@
+"""Motion segmentation of two video frames or a clip.
+
+How many motions there are, what each motion is, and which pixels follow it. There is no trained model, and nothing leaves the machine.
+
+A frame is an array of ``uint8`` of shape ``(height, width, 3)``, ``(height, width, 4)`` or ``(height, width)`` (RGB, RGBA or grey), or the
+path of a PNG, JPEG, WebP, BMP or PNM file. Sides are 16 to 4096 pixels. Arrays are copied when a call takes them.
+
+Calls release the interpreter's lock: other threads go on, and Ctrl-C ends a call at once. What is wrong with a frame, an option or a file
+is a :class:`VeroneseError` with a stable ``code``, the same as on the command line.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Callable, Iterable, Literal, Optional, Sequence, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _veronese
+from ._types import (
+    BackgroundMotion,
+    Candidate,
+    ClipFrame,
+    ClipObject,
+    ClipTrack,
+    ClipTracks,
+    Correction,
+    FittedMotion,
+    Junction,
+    Mask,
+    MotionFit,
+    PaperStages,
+    Prompt,
+    RankCandidate,
+    Refinement,
+    SegmentedMotion,
+    Segmentation,
+    Sighting,
+    VeroneseError,
+)
+from ._veronese import Clip, __version__
+
+__all__ = [
+    "BackgroundMotion",
+    "Candidate",
+    "Clip",
+    "ClipFrame",
+    "ClipObject",
+    "ClipProgress",
+    "ClipTrack",
+    "ClipTracks",
+    "Correction",
+    "FittedMotion",
+    "Frame",
+    "Junction",
+    "Mask",
+    "MotionFit",
+    "PaperStages",
+    "Progress",
+    "Prompt",
+    "RankCandidate",
+    "Refinement",
+    "Segmentation",
+    "SegmentedMotion",
+    "Sighting",
+    "VeroneseError",
+    "__version__",
+    "fit_points",
+    "relabel",
+    "segment_clip",
+    "segment_pair",
+]
+
+Frame = Union[NDArray[np.uint8], str, "os.PathLike[str]"]
+"""An array of pixels, or the path of an image file."""
+
+Progress = Callable[[str, int, int], object]
+"""Called when a stage begins, with its name, its index and the number of stages. What it raises ends the call."""
+
+ClipProgress = Callable[[str, int, Optional[int]], object]
+"""Called when work on a frame begins, with the stage (``"pairs"``, ``"corrections"`` or ``"labels"``), the frame's index and the number of
+frames, ``None`` where it is not known. What it raises ends the clip, or the correction."""
+
+
+def segment_pair(
+    first: Frame,
+    second: Frame,
+    *,
+    motions: Union[int, Literal["auto"]] = "auto",
+    quality: Literal["best", "fast"] = "best",
+    mark_unknown: bool = False,
+    confidence: bool = False,
+    progress: Optional[Progress] = None,
+) -> Segmentation:
+    """Segments two frames: how many things move, how each one moves, and which pixels belong to it.
+
+    :param motions: the number of motions, 1 to 10; ``"auto"`` estimates it.
+    :param quality: ``"best"`` for accuracy, ``"fast"`` for live use.
+    :param mark_unknown: gives label 255 to a pixel that is hidden or outside in the second frame, has no texture around it, or whose label
+        would more likely be wrong than right.
+    :param confidence: adds the confidence of every label.
+    """
+    return _veronese.segment_pair(first, second, motions, quality, mark_unknown, confidence, progress)
+
+
+def relabel(
+    first: Frame,
+    second: Frame,
+    segmentation: Segmentation,
+    evidence: NDArray[np.uint16],
+    *,
+    progress: Optional[Progress] = None,
+) -> Segmentation:
+    """Decides the labels of a segmentation anew, given a person's evidence about single pixels. The motions do not change.
+
+    ``evidence`` has a set of possible labels for each pixel: bit k is set if label k is possible, and 0 means no evidence. "This is label
+    2" is ``0b100``; "this is not label 0" of four is ``0b1110``. Evidence is binding on its own pixels and spreads from there to parts of
+    the image that look and move alike. The same arguments give the same result: to undo, call again without the evidence. The result has
+    no ``confidence``.
+    """
+    matrices = np.array([motion.matrix for motion in segmentation.motions], dtype=np.float64).reshape(-1, 6)
+    groups = [motion.group for motion in segmentation.motions]
+    labels, quality = segmentation.labels, segmentation.quality
+    now = _veronese.relabel(first, second, matrices, groups, labels, evidence, quality, progress)
+    changed: dict[str, Any] = dict(zip(("motions", "labels", "unlabelled"), now))
+    return dataclasses.replace(segmentation, confidence=None, **changed)
+
+
+def segment_clip(
+    frames: Union[Iterable[Frame], "os.PathLike[str]"],
+    *,
+    motions: Union[int, Literal["auto"]] = "auto",
+    quality: Literal["best", "fast"] = "best",
+    mark_unknown: bool = False,
+    look_ahead: Union[int, Literal["all"], None] = None,
+    masks: Optional[Sequence[Mask]] = None,
+    corrections: Optional[Sequence[Union[Correction, Prompt]]] = None,
+    locked: Optional[Sequence[int]] = None,
+    state: Optional[bytes] = None,
+    progress: Optional[ClipProgress] = None,
+) -> Clip:
+    """Segments a clip: objects that move get a number, which they keep from their first frame to their last. Label 0 is the background.
+
+    A sequence of frames (a list, an array of shape ``(frames, height, width, 3)``, anything with ``len`` and an index) and the path of a
+    folder are whole clips: each frame is read for its pairs, nearly all the work, then for its labels, and must be the same each time.
+    Other iterables, such as a generator, are streams: a frame is taken when the loop waits for one.
+
+    All frames must have one size. If the source raises or a frame is unusable, the frames before it come first, then the error.
+
+    :param motions: the number of motions in each pair of consecutive frames.
+    :param mark_unknown: gives label 255 to pixels whose evidence does not tell an object from the background.
+    :param look_ahead: the number of frames that each frame waits for, 0 to 8, or ``"all"``: as many as matter, of a whole clip. Default: 8
+        for a stream, ``"all"`` for a whole clip. A number makes a stream of a sequence, unless one of the options below is given.
+    :param masks: masks of objects in some frames, with numbers of your own, which the objects keep. What was found under one of their
+        numbers gets the lowest free one.
+    :param corrections: what is certain in some frames, with the numbers of an earlier run. A correction of a frame that has a mask goes
+        before it where it says anything. Prompts come after all other corrections.
+    :param locked: numbers of objects that do not change when another one is corrected, as those that a mask or a correction speaks of.
+    :param state: what :meth:`Clip.state` gave for the same frames: no pair is solved again. ``motions``, ``quality`` and ``look_ahead`` are
+        those of the state then.
+    """
+    arguments = (motions, quality, mark_unknown, look_ahead, masks, corrections, locked, state, progress)
+    return _veronese.segment_clip(frames, *arguments)
+
+
+def fit_points(
+    positions: ArrayLike,
+    derivatives: ArrayLike,
+    *,
+    motions: Union[int, Literal["auto"]] = "auto",
+    method: Literal["best", "paper"] = "best",
+    seed: int = 1,
+    progress: Optional[Progress] = None,
+) -> MotionFit:
+    """Solves Problem 1 of the paper for image measurements of your own.
+
+    :param positions: x and y of each measurement, shape ``(number, 2)``.
+    :param derivatives: I_x, I_y and I_t of each, shape ``(number, 3)``.
+    :param motions: the number of motions, 1 to 10; ``"auto"`` estimates it.
+    :param method: ``"paper"`` for the algorithm of the paper, ``"best"`` for ours, which is more accurate on noisy data.
+    """
+    return _veronese.fit_points(positions, derivatives, motions, method, seed, progress)

@@ -1,0 +1,275 @@
+"""What the calls take and return besides arrays: plain classes without methods."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, List, Literal, Optional, Tuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Matrix = NDArray[np.float64]
+"""``[a11, a12, a13, a21, a22, a23]``, shape ``(6,)``: the pixel (x, y) of the first frame is displaced by u = a11·x + a12·y + a13,
+v = a21·x + a22·y + a23 pixels in the second. (0, 0) is the centre of the top-left pixel, x right, y down."""
+
+Labels = NDArray[np.uint8]
+"""One label per pixel, shape ``(height, width)``."""
+
+Box = Tuple[int, int, int, int]
+"""First column, first row, width and height of a rectangle, pixels."""
+
+Propagation = Literal["both", "forward", "backward", "none"]
+"""Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere."""
+
+
+class VeroneseError(Exception):
+    """What cannot be processed, and why. ``code`` is stable, the same as on the command line; the message may change."""
+
+    code: str
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return type(self), (self.code, *self.args)
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A number of motions that was tried; a smaller score is better."""
+
+    motions: int
+    score: float
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentedMotion:
+    """One motion of a :class:`Segmentation`."""
+
+    label: int
+    matrix: Matrix
+    pixels: int
+    """Number of its pixels."""
+    share: float
+    """Their share of all pixels, 0 to 1."""
+    residual: float
+    """Root mean square of the motion-compensated intensity difference over its pixels, in grey levels (0 to 255)."""
+    bbox: Box
+    """Bounding box of its pixels."""
+    group: int
+    """Motions of one rigid background share a group; group 0 has the most pixels."""
+
+
+@dataclass(frozen=True)
+class Junction:
+    """The common border of two motions of a :class:`Segmentation`."""
+
+    labels: Tuple[int, int]
+    """The labels of the two motions, the smaller first."""
+    likelihood: float
+    """Probability that the two motions are of one thing, 0 to 1."""
+    border: int
+    """Length of the border in pixels of the frame, measured at the working size."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segmentation:
+    """The result of :func:`segment_pair`."""
+
+    width: int
+    height: int
+    count: int
+    """Number of motions."""
+    motions: List[SegmentedMotion]
+    """By decreasing number of pixels: ``motions[i].label == i``."""
+    labels: Labels
+    """255 is unlabelled."""
+    junctions: List[Junction]
+    """Neighbouring motions, by labels. Borders of a few pixels are left out. ``relabel`` keeps them as they were."""
+    candidates: List[Candidate]
+    """Description lengths of both frames in nats, from one motion to one more than were found."""
+    unlabelled: int
+    """Number of pixels with label 255."""
+    confidence: Optional[NDArray[np.uint8]]
+    """255 times the probability that the label of a pixel is right, if it was asked for."""
+    quality: Literal["best", "fast"]
+
+
+@dataclass(frozen=True, eq=False)
+class FittedMotion:
+    """One motion of a :class:`MotionFit`."""
+
+    label: int
+    matrix: Matrix
+    measurements: int
+    """Number of measurements that belong to it."""
+    determined: int
+    """How many of the six parameters the measurements determine; below 6, the others are arbitrary."""
+    covariance: Optional[NDArray[np.float64]]
+    """Covariance of the six entries, shape ``(6, 6)``, with the labels taken as known; only with the method ``"best"``."""
+
+
+@dataclass(frozen=True)
+class RankCandidate:
+    """The rank of the embedded data for a number of motions; the rule is satisfied if it is one less than the number of columns."""
+
+    motions: int
+    rank: int
+    columns: int
+    ratio: float
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """How a refinement ended."""
+
+    termination: Literal["converged", "stalled", "maxIterations"]
+    iterations: int
+    initial_cost: float
+    final_cost: float
+
+
+@dataclass(frozen=True, eq=False)
+class PaperStages:
+    """The results of the steps of the paper's algorithm."""
+
+    ranks: List[RankCandidate]
+    """For each number of motions that was tried; empty if the number was given."""
+    rank_rule_fired: Optional[bool]
+    """Whether some number satisfied the rank rule; ``None`` if the number was given."""
+    factorisation: List[Matrix]
+    """Motions after the polynomial factorisation."""
+    refined: List[Matrix]
+    """Motions after the nonlinear refinement."""
+    refinement: Refinement
+
+
+@dataclass(frozen=True, eq=False)
+class MotionFit:
+    """The result of :func:`fit_points`."""
+
+    count: int
+    """Number of motions."""
+    motions: List[FittedMotion]
+    """By decreasing number of measurements: ``motions[i].label == i``."""
+    labels: NDArray[np.uint8]
+    """One label per measurement, in the order of the input; 255 is an outlier."""
+    candidates: List[Candidate]
+    singular_values: NDArray[np.float64]
+    """Of the embedded data, decreasing; empty with the method ``"best"``."""
+    stages: Optional[PaperStages]
+    """Only with the method ``"paper"``."""
+
+
+@dataclass(frozen=True, eq=False)
+class ClipObject:
+    """An object in one frame of a clip."""
+
+    id: int
+    """1 to 254, the same in all frames."""
+    pixels: int
+    """Number of its pixels."""
+    bbox: Box
+    """Bounding box of its pixels."""
+    confidence: float
+    """Mean probability that its pixels belong to an object, 0 to 1."""
+    matrix: Optional[Matrix]
+    """Motion of its largest part to the next frame; ``None`` if there is none. In a stream, its motion from the frame before, continued."""
+
+
+@dataclass(frozen=True, eq=False)
+class ClipFrame:
+    """One frame of a clip, segmented."""
+
+    index: int
+    labels: Labels
+    """0 for the background, 255 for a pixel that is marked as unknown, otherwise the number of an object."""
+    objects: List[ClipObject]
+    """The visible objects by number."""
+    background: Optional[Matrix]
+    """Motion of the background, as :attr:`ClipObject.matrix`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sighting:
+    """An object in one frame of its track; see :class:`ClipObject`."""
+
+    frame: int
+    pixels: int
+    bbox: Box
+    confidence: float
+    matrix: Optional[Matrix]
+
+
+@dataclass(frozen=True, eq=False)
+class ClipTrack:
+    """One object through a clip."""
+
+    id: int
+    first: int
+    """Index of the first frame that shows it."""
+    last: int
+    """Index of the last frame that shows it."""
+    frames: List[Sighting]
+    """One entry for each frame that shows it."""
+
+
+@dataclass(frozen=True, eq=False)
+class BackgroundMotion:
+    """Motion of the background from a frame to the next one."""
+
+    frame: int
+    matrix: Matrix
+
+
+@dataclass(frozen=True, eq=False)
+class ClipTracks:
+    """What :meth:`Clip.tracks` returns."""
+
+    objects: List[ClipTrack]
+    """By number, which is the order of appearance."""
+    background: List[BackgroundMotion]
+    """For each frame that goes on to a next one."""
+    dropped: int
+    """Number of objects beyond 254, which count as background."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mask:
+    """Masks of one frame of a clip, with numbers of your own: 0 for the background, 1 to 254 for an object, 255 where nothing is said."""
+
+    frame: int
+    labels: Labels
+    propagate: Optional[Propagation] = None
+    """Default: ``"both"``."""
+
+
+@dataclass(frozen=True, eq=False)
+class Correction:
+    """What is certain in one frame of a clip.
+
+    0 is the background, other numbers are objects (one that no object has makes a new object), and 255 says nothing. A correction replaces
+    an earlier one of its frame; one that says nothing takes it back.
+    """
+
+    frame: int
+    labels: Labels
+    propagate: Optional[Propagation] = None
+    """Default: ``"both"``."""
+
+
+@dataclass(frozen=True)
+class Prompt:
+    """Points to an object in one frame of a clip, found or not: its mask there is made at once, and the object is followed from there.
+
+    It has either a box, which has all of the object, or a click, the column and row of a pixel of the object.
+    """
+
+    frame: int
+    label: int
+    """The number of the object, 1 to 254; one that no object has makes a new object."""
+    box: Optional[Box] = None
+    click: Optional[Tuple[int, int]] = None
+    propagate: Optional[Propagation] = None
+    """Default: that of a correction of the frame, otherwise ``"both"``."""

@@ -1,0 +1,82 @@
+from typing import Any, Iterator, List, Optional, Sequence, Tuple, Union, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._types import ClipFrame, ClipTracks, Correction, MotionFit, Prompt, Segmentation, SegmentedMotion
+
+__all__ = ["Clip", "__version__", "fit_points", "relabel", "segment_clip", "segment_pair"]
+
+__version__: str
+
+def segment_pair(
+    first: object,
+    second: object,
+    motions: object,
+    quality: object,
+    mark_unknown: bool,
+    confidence: bool,
+    progress: Optional[Any],
+) -> Segmentation: ...
+def relabel(
+    first: object,
+    second: object,
+    matrices: NDArray[np.float64],
+    groups: Sequence[int],
+    labels: NDArray[np.uint8],
+    evidence: NDArray[np.uint16],
+    quality: object,
+    progress: Optional[Any],
+) -> Tuple[List[SegmentedMotion], NDArray[np.uint8], int]: ...
+def fit_points(
+    positions: ArrayLike,
+    derivatives: ArrayLike,
+    motions: object,
+    method: object,
+    seed: object,
+    progress: Optional[Any],
+) -> MotionFit: ...
+def segment_clip(
+    frames: object,
+    motions: object,
+    quality: object,
+    mark_unknown: bool,
+    look_ahead: object,
+    masks: object,
+    corrections: object,
+    locked: object,
+    state: Optional[bytes],
+    progress: Optional[Any],
+) -> Clip: ...
+@final
+class Clip:
+    """The frames of a clip, in order, as they are finished.
+
+    It frees what it holds when it is closed, collected or raises. Of a whole clip that is finished, any frame can be asked for again,
+    corrected and looked at: nothing is segmented anew.
+    """
+
+    def __iter__(self) -> Iterator[ClipFrame]: ...
+    def __next__(self) -> ClipFrame: ...
+    def frame(self, index: int) -> ClipFrame:
+        """A frame of a whole clip as it is now, as often as it is asked for."""
+    def correct(self, said: Union[Correction, Prompt]) -> List[int]:
+        """Says what is certain in a frame of a whole clip, or points to an object there. Returns the indices of the frames that change.
+
+        Other objects that a mask or a correction spoke of keep every pixel. Numbers are those before any :meth:`merge` or :meth:`delete`.
+        What is interrupted changes nothing.
+        """
+    def lock(self, objects: Sequence[int]) -> None:
+        """The objects that no correction of others changes; all others can be changed from now on."""
+    def merge(self, *objects: int) -> List[int]:
+        """Makes objects one, which keeps the number of the first. Returns the indices of the frames that change. It cannot be undone."""
+    def delete(self, *objects: int) -> List[int]:
+        """Makes objects background. Returns the indices of the frames that change. It cannot be undone."""
+    def state(self) -> bytes:
+        """What is known of a whole clip, corrections included, for the option ``state``: some kilobytes per frame."""
+    def tracks(self) -> ClipTracks:
+        """The objects of the frames returned so far, as they are now: frames that have changed are read again."""
+    def close(self) -> None:
+        """Frees what the clip holds."""
+    def __enter__(self) -> Clip: ...
+    def __exit__(self, *_exception: object) -> None: ...

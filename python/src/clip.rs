@@ -1,0 +1,535 @@
+//! Clips: frames in, labelled frames and tracks out.
+//!
+//! A stream takes frames that come once. A whole clip reads its frames once for their pairs, where corrections want them, and once for their
+//! labels. Each step is done in the thread that keeps the clip; frames are read between the steps.
+
+mod kept;
+mod said;
+mod source;
+mod tracks;
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use pyo3::exceptions::PyException;
+use pyo3::gc::{PyTraverseError, PyVisit};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+use veronese::clip::{ClipFrame, ClipOptions, MAX_LOOK_AHEAD, Spread};
+use veronese::{Frame, SegmentOptions};
+
+use crate::errors::Failure;
+use crate::options::{self, LookAhead};
+use crate::results;
+use crate::worker::Worker;
+use kept::{Kept, Step, Summary};
+use said::{Pointed, Said, Word};
+use source::Source;
+use tracks::Tracks;
+
+/// Begins a clip. Arguments are checked; nothing is segmented before somebody asks for it.
+#[pyfunction]
+#[allow(clippy::too_many_arguments, reason = "they are named in Python")]
+pub(crate) fn segment_clip(
+    py: Python<'_>,
+    frames: &Bound<'_, PyAny>,
+    motions: &Bound<'_, PyAny>,
+    quality: &Bound<'_, PyAny>,
+    mark_unknown: bool,
+    look_ahead: Option<&Bound<'_, PyAny>>,
+    masks: Option<&Bound<'_, PyAny>>,
+    corrections: Option<&Bound<'_, PyAny>>,
+    locked: Option<&Bound<'_, PyAny>>,
+    state: Option<Vec<u8>>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Clip> {
+    let pair = SegmentOptions::default()
+        .with_motions(options::motions(motions)?)
+        .with_quality(options::quality(quality)?)
+        .with_mark_unknown(mark_unknown)
+        .with_confidence(false);
+    let look_ahead = options::look_ahead(look_ahead)?;
+    let source = Source::of(frames)?;
+    // What needs frames that can be read again.
+    let needs = [
+        ("masks", masks.is_some()),
+        ("corrections", corrections.is_some()),
+        ("locked", locked.is_some()),
+        ("state", state.is_some()),
+        ("look_ahead", look_ahead == LookAhead::All),
+    ];
+    let needed = needs.iter().find(|(_, given)| *given).map(|(name, _)| *name);
+    let length = match (source.length(), needed) {
+        (None, Some(name)) => {
+            let reason = "needs frames that can be read again: a sequence, or the path of a folder";
+            return Err(Failure::option(name, reason).into());
+        }
+        (length, _) => length.unwrap_or(0),
+    };
+    let whole = needed.is_some() || (source.length().is_some() && look_ahead == LookAhead::Unsaid);
+    let look_ahead = match look_ahead {
+        LookAhead::Frames(frames) => Some(frames),
+        _ if whole => None,
+        _ => Some(MAX_LOOK_AHEAD),
+    };
+    let masks = masks.map(|masks| said::masks(masks, length)).transpose()?.unwrap_or_default();
+    let (corrections, prompts) =
+        corrections.map(|corrections| said::corrections(corrections, length)).transpose()?.unwrap_or_default();
+    let locked = locked.map(|locked| said::objects("locked", locked)).transpose()?;
+    let worker = Worker::<Kept>::start()?;
+    worker
+        .call(py, move |kept| kept.begin(whole, ClipOptions::default().with_pair(pair).with_look_ahead(look_ahead)))?;
+    Ok(Clip {
+        worker: Some(worker),
+        source,
+        progress,
+        mark_unknown,
+        asked: Some(Asked { masks, corrections, prompts, locked, state }),
+        size: None,
+        place: if whole { Place::Unsegmented } else { Place::Stream { ready: VecDeque::new(), next: 0, ended: false } },
+        spreads: BTreeMap::new(),
+        tracks: Tracks::default(),
+        failure: None,
+    })
+}
+
+/// What is asked of a whole clip at its beginning.
+struct Asked {
+    masks: Vec<Said>,
+    corrections: Vec<Said>,
+    prompts: Vec<Pointed>,
+    locked: Option<Vec<u8>>,
+    state: Option<Vec<u8>>,
+}
+
+/// How far a clip is.
+enum Place {
+    Stream {
+        ready: VecDeque<ClipFrame>,
+        /// The frame that is read next.
+        next: usize,
+        ended: bool,
+    },
+    Unsegmented,
+    Segmented {
+        length: usize,
+        /// The frame that is returned next.
+        next: usize,
+    },
+}
+
+/// The frames of a clip, in order, as they are finished.
+#[pyclass(module = "veronese")]
+pub(crate) struct Clip {
+    /// None when the clip is closed.
+    worker: Option<Worker<Kept>>,
+    source: Source,
+    progress: Option<Py<PyAny>>,
+    mark_unknown: bool,
+    asked: Option<Asked>,
+    /// Width and height of all frames, once known.
+    size: Option<[usize; 2]>,
+    place: Place,
+    /// Where what was said of a frame spreads.
+    spreads: BTreeMap<usize, Spread>,
+    tracks: Tracks,
+    /// What the source raised, or what is wrong with a frame; the frames before it come first.
+    failure: Option<PyErr>,
+}
+
+#[pymethods]
+impl Clip {
+    fn __iter__(clip: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        clip
+    }
+
+    fn __next__<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        if self.worker.is_none() {
+            return Ok(None);
+        }
+        let next =
+            if matches!(self.place, Place::Stream { .. }) { self.next_of_stream(py) } else { self.next_of_whole(py) };
+        match next {
+            Ok(Some(frame)) => self.told(py, frame).map(Some),
+            Ok(None) => {
+                if matches!(self.place, Place::Stream { .. }) {
+                    self.tracks.end();
+                }
+                self.failure.take().map_or(Ok(None), Err)
+            }
+            Err(error) => {
+                self.close();
+                Err(error)
+            }
+        }
+    }
+
+    /// A frame of a whole clip as it is now, as often as it is asked for.
+    fn frame<'py>(&mut self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyAny>> {
+        self.prepare(py)?;
+        let frame = self.labelled(py, index)?;
+        self.told(py, frame)
+    }
+
+    /// Says what is certain in a frame of a whole clip, or points to an object there. Returns the indices of the frames that change.
+    fn correct(&mut self, py: Python<'_>, said: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
+        self.prepare(py)?;
+        let (length, size) = (self.length(), self.size.unwrap_or_default());
+        let changed = match said::word("it ", said, length)? {
+            Word::Labels(said) => {
+                said::check_size("corrections", &said, size)?;
+                self.say(py, said)?
+            }
+            Word::Prompt(pointed) => {
+                said::check_within(&pointed, size)?;
+                self.point(py, pointed)?
+            }
+        };
+        Ok(self.changed(changed))
+    }
+
+    /// The objects that no correction of others changes; all others can be changed from now on.
+    fn lock(&mut self, py: Python<'_>, objects: &Bound<'_, PyAny>) -> PyResult<()> {
+        let objects = said::objects("objects", objects)?;
+        self.prepare(py)?;
+        self.call(py, move |kept| {
+            kept.segmented(|clip| {
+                clip.lock(&objects);
+                Ok(())
+            })
+        })
+    }
+
+    /// Makes objects one, which keeps the number of the first. Returns the indices of the frames that change.
+    #[pyo3(signature = (*objects))]
+    fn merge(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
+        let objects = said::objects("objects", objects)?;
+        let [kept, others @ ..] = &objects[..] else {
+            return Err(Failure::option("objects", "there is nothing to merge").into());
+        };
+        self.renumber(py, others, *kept)
+    }
+
+    /// Makes objects background. Returns the indices of the frames that change.
+    #[pyo3(signature = (*objects))]
+    fn delete(&mut self, py: Python<'_>, objects: &Bound<'_, PyTuple>) -> PyResult<Vec<usize>> {
+        let objects = said::objects("objects", objects)?;
+        self.renumber(py, &objects, 0)
+    }
+
+    /// What is known of a whole clip, as bytes for the option `state`.
+    fn state<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.prepare(py)?;
+        let state = self.call(py, |kept| kept.segmented(|clip| Ok(clip.to_bytes())))?;
+        Ok(PyBytes::new(py, &state))
+    }
+
+    /// The objects of the frames returned so far, as they are now.
+    fn tracks<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        for index in self.tracks.stale() {
+            let frame = self.labelled(py, index)?;
+            self.tracks.add(&frame);
+        }
+        self.tracks.value(py)
+    }
+
+    /// Frees what the clip holds.
+    fn close(&mut self) {
+        self.worker = None;
+    }
+
+    fn __enter__(clip: PyRef<'_, Self>) -> PyRef<'_, Self> {
+        clip
+    }
+
+    #[pyo3(signature = (*_exception))]
+    fn __exit__(&mut self, _exception: &Bound<'_, PyTuple>) {
+        self.close();
+    }
+
+    // Whoever keeps a clip often listens to it, too.
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        self.source.traverse(&visit)?;
+        visit.call(&self.progress)
+    }
+
+    fn __clear__(&mut self) {
+        self.source = Source::default();
+        self.progress = None;
+    }
+}
+
+impl Clip {
+    fn call<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Kept) -> Result<R, Failure> + Send + 'static,
+    ) -> PyResult<R> {
+        match &self.worker {
+            Some(worker) => worker.call(py, work),
+            None => Err(Failure::input("the clip is closed".into()).into()),
+        }
+    }
+
+    /// Says that work on a frame begins.
+    fn report(&self, py: Python<'_>, stage: &str, index: usize) -> PyResult<()> {
+        match &self.progress {
+            Some(progress) => progress.call1(py, (stage, index, self.source.length())).map(|_| ()),
+            None => Ok(()),
+        }
+    }
+
+    /// A frame of the source, checked against the size of the others. None at the end.
+    fn read(&mut self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
+        let Some(given) = self.source.read(py, index)? else { return Ok(None) };
+        let frame = py.detach(|| given.frame()).map_err(|failure| failure.about(&format!("frame {index}")))?;
+        let (width, height) = (frame.width(), frame.height());
+        let [w, h] = *self.size.get_or_insert([width, height]);
+        if [w, h] != [width, height] {
+            let message = format!("frame {index} has {width}×{height} pixels, the others have {w}×{h}");
+            return Err(Failure { code: "frame-size-mismatch", message }.into());
+        }
+        Ok(Some(frame))
+    }
+
+    /// A frame that was read before.
+    fn read_again(&mut self, py: Python<'_>, index: usize) -> PyResult<Frame> {
+        let gone = || Failure::input(format!("frame {index} is not there any more"));
+        Ok(self.read(py, index)?.ok_or_else(gone)?)
+    }
+
+    /// [`read`](Self::read), where what goes wrong is told after the frames before.
+    fn read_or_fail(&mut self, py: Python<'_>, index: usize) -> PyResult<Option<Frame>> {
+        match self.read(py, index) {
+            // Not what is to end the program, such as KeyboardInterrupt.
+            Err(error) if error.is_instance_of::<PyException>(py) => {
+                self.failure = Some(error);
+                Ok(None)
+            }
+            read => read,
+        }
+    }
+
+    /// A frame to return.
+    fn told<'py>(&mut self, py: Python<'py>, frame: ClipFrame) -> PyResult<Bound<'py, PyAny>> {
+        self.tracks.add(&frame);
+        results::clip_frame(py, frame, self.size.unwrap_or_default())
+    }
+
+    fn next_of_stream(&mut self, py: Python<'_>) -> PyResult<Option<ClipFrame>> {
+        loop {
+            let Place::Stream { ready, next, ended } = &mut self.place else { return Ok(None) };
+            if let Some(frame) = ready.pop_front() {
+                return Ok(Some(frame));
+            }
+            if *ended {
+                return Ok(None);
+            }
+            let index = *next;
+            *next += 1;
+            let done = match self.read_or_fail(py, index)? {
+                Some(frame) => {
+                    self.report(py, "pairs", index)?;
+                    self.call(py, move |kept| kept.push(frame))?.into_iter().collect()
+                }
+                None => self.finished(py)?,
+            };
+            if let Place::Stream { ready, .. } = &mut self.place {
+                ready.extend(done);
+            }
+        }
+    }
+
+    /// The frames of a stream that still wait.
+    fn finished(&mut self, py: Python<'_>) -> PyResult<Vec<ClipFrame>> {
+        let (rest, dropped) = self.call(py, Kept::finish)?;
+        if let Place::Stream { ended, .. } = &mut self.place {
+            *ended = true;
+        }
+        self.tracks.dropped = dropped;
+        Ok(rest)
+    }
+
+    fn next_of_whole(&mut self, py: Python<'_>) -> PyResult<Option<ClipFrame>> {
+        self.prepare(py)?;
+        let Place::Segmented { length, next } = &mut self.place else { return Ok(None) };
+        if next == length {
+            return Ok(None);
+        }
+        let index = *next;
+        *next += 1;
+        let frame = self.read_again(py, index)?;
+        self.report(py, "labels", index)?;
+        self.described(py, index, frame).map(Some)
+    }
+
+    fn length(&self) -> usize {
+        if let Place::Segmented { length, .. } = self.place { length } else { 0 }
+    }
+
+    fn labelled(&mut self, py: Python<'_>, index: usize) -> PyResult<ClipFrame> {
+        let length = self.length();
+        if index >= length {
+            let reason = format!("there is no frame {index} in a clip of {length} frames");
+            return Err(Failure::option("frame", &reason).into());
+        }
+        let frame = self.read_again(py, index)?;
+        self.described(py, index, frame)
+    }
+
+    fn described(&self, py: Python<'_>, index: usize, frame: Frame) -> PyResult<ClipFrame> {
+        self.call(py, move |kept| kept.segmented(|clip| clip.frame(index, &frame)))
+    }
+
+    /// Segments a whole clip, or takes its state, and applies what is asked for at its beginning. Once.
+    fn prepare(&mut self, py: Python<'_>) -> PyResult<()> {
+        if matches!(self.place, Place::Stream { .. }) {
+            let sentence = "this needs a whole clip, and the frames of this one come once".into();
+            return Err(Failure::input(sentence).into());
+        }
+        let Some(asked) = self.asked.take() else { return Ok(()) };
+        let prepared = self.prepare_as(py, asked);
+        if prepared.is_err() {
+            self.close();
+        }
+        prepared
+    }
+
+    fn prepare_as(&mut self, py: Python<'_>, mut asked: Asked) -> PyResult<()> {
+        let summary = match asked.state.take() {
+            Some(state) => self.restored(py, &asked, state)?,
+            None => self.solved(py, &asked)?,
+        };
+        self.tracks.dropped = summary.dropped;
+        self.place = Place::Segmented { length: summary.length, next: 0 };
+        self.apply(py, asked, summary.length)
+    }
+
+    /// Solves all pairs. Of a source that fails, the frames before are a clip.
+    fn solved(&mut self, py: Python<'_>, asked: &Asked) -> PyResult<Summary> {
+        let mut index = 0;
+        while let Some(frame) = self.read_or_fail(py, index)? {
+            if let (0, Some(size)) = (index, self.size) {
+                asked.check(size)?;
+            }
+            self.report(py, "pairs", index)?;
+            self.call(py, move |kept| kept.push(frame))?;
+            index += 1;
+        }
+        self.call(py, Kept::conclude)
+    }
+
+    fn restored(&mut self, py: Python<'_>, asked: &Asked, state: Vec<u8>) -> PyResult<Summary> {
+        let mark_unknown = self.mark_unknown;
+        let summary = self.call(py, move |kept| kept.restore(&state, mark_unknown))?;
+        let (found, wanted) = (summary.length, self.source.length().unwrap_or(0));
+        if found != wanted {
+            return Err(Failure::option("state", &format!("it is of a clip of {found} frames, not {wanted}")).into());
+        }
+        if found > 0 {
+            self.size = Some(summary.size);
+            asked.check(summary.size)?;
+        }
+        Ok(summary)
+    }
+
+    fn apply(&mut self, py: Python<'_>, asked: Asked, length: usize) -> PyResult<()> {
+        let Asked { masks, corrections, prompts, locked, .. } = asked;
+        let numbers: BTreeSet<u8> = masks.iter().flat_map(|mask| mask.labels.iter().copied()).collect();
+        if !numbers.is_empty() {
+            let numbers: Vec<u8> = numbers.into_iter().collect();
+            self.call(py, move |kept| kept.segmented(|clip| Ok(clip.reserve(&numbers))))?;
+        }
+        if let Some(locked) = locked {
+            self.call(py, move |kept| {
+                kept.segmented(|clip| {
+                    clip.lock(&locked);
+                    Ok(())
+                })
+            })?;
+        }
+        // The source may have failed before it came to a frame.
+        for said in said::together(masks, corrections).into_iter().filter(|said| said.frame < length) {
+            self.say(py, said)?;
+        }
+        // What a box or a click points to depends on what else is there.
+        for pointed in prompts.into_iter().filter(|pointed| pointed.frame < length) {
+            self.point(py, pointed)?;
+        }
+        Ok(())
+    }
+
+    fn say(&mut self, py: Python<'_>, Said { frame, labels, spread, .. }: Said) -> PyResult<Vec<usize>> {
+        let spread = spread.unwrap_or_default();
+        let changed = self.spread(py, frame, labels, spread)?;
+        self.spreads.insert(frame, spread);
+        Ok(changed)
+    }
+
+    fn point(&mut self, py: Python<'_>, pointed: Pointed) -> PyResult<Vec<usize>> {
+        let Pointed { frame: index, object, prompt, spread } = pointed;
+        let frame = self.read_again(py, index)?;
+        let labels = self.call(py, move |kept| kept.outline(index, &frame, prompt, object))?;
+        let spread = spread.or_else(|| self.spreads.get(&index).copied()).unwrap_or_default();
+        self.spread(py, index, labels, spread)
+    }
+
+    /// Spreads what is said of a frame. What ends that early leaves everything as it was.
+    fn spread(&mut self, py: Python<'_>, index: usize, labels: Vec<u8>, spread: Spread) -> PyResult<Vec<usize>> {
+        let changed = self.spread_through(py, index, labels, spread);
+        if changed.is_err()
+            && let Some(worker) = &self.worker
+        {
+            worker.post(Kept::cancel);
+        }
+        changed
+    }
+
+    fn spread_through(
+        &mut self,
+        py: Python<'_>,
+        index: usize,
+        labels: Vec<u8>,
+        spread: Spread,
+    ) -> PyResult<Vec<usize>> {
+        self.call(py, move |kept| kept.correct(index, &labels, spread))?;
+        let (mut wanted, mut all) = (Some(index), Vec::new());
+        while let Some(next) = wanted {
+            self.report(py, "corrections", next)?;
+            let frame = self.read_again(py, next)?;
+            let step: Step = self.call(py, move |kept| kept.take(&frame))?;
+            all.extend(step.changed);
+            wanted = step.wanted;
+        }
+        Ok(all)
+    }
+
+    fn renumber(&mut self, py: Python<'_>, objects: &[u8], number: u8) -> PyResult<Vec<usize>> {
+        self.prepare(py)?;
+        let objects: Vec<u8> = objects.iter().copied().filter(|&object| object != number).collect();
+        let changed = self.call(py, move |kept| {
+            kept.segmented(|clip| {
+                let mut changed = Vec::new();
+                for object in objects {
+                    changed.extend(clip.renumber(object, number)?);
+                }
+                Ok(changed)
+            })
+        })?;
+        Ok(self.changed(changed))
+    }
+
+    /// The frames that have changed, in order, each once.
+    fn changed(&mut self, frames: Vec<usize>) -> Vec<usize> {
+        self.tracks.changed(&frames);
+        frames.into_iter().collect::<BTreeSet<_>>().into_iter().collect()
+    }
+}
+
+impl Asked {
+    /// Whether what is said fits the frames.
+    fn check(&self, size: [usize; 2]) -> Result<(), Failure> {
+        self.masks.iter().try_for_each(|mask| said::check_size("masks", mask, size))?;
+        self.corrections.iter().try_for_each(|correction| said::check_size("corrections", correction, size))?;
+        self.prompts.iter().try_for_each(|prompt| said::check_within(prompt, size))
+    }
+}

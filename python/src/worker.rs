@@ -1,0 +1,155 @@
+//! Work in threads without the interpreter. Whoever waits for it looks for signals: Ctrl-C ends a call at once, and its thread at the next
+//! stage, or, of a clip, when the frame is done.
+//!
+//! A thread also keeps a clip, which cannot move from one to another: it shares its frames without atomic counters.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::Builder;
+use std::time::Duration;
+
+use pyo3::prelude::*;
+use veronese::{Progress, Stage};
+
+use crate::errors::Failure;
+
+/// Time between two looks for signals.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// What a thread says to the one that waits.
+enum Said<R> {
+    Stage(Stage),
+    Done(Result<R, Failure>),
+}
+
+/// What unwinds a call whose result nobody waits for.
+struct Abandoned;
+
+/// A call of its own. `progress` is called with the name of each stage, its index and the number of stages; what it raises ends the call.
+pub(crate) fn alone<R: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    work: impl FnOnce(Progress<'_>) -> Result<R, Failure> + Send + 'static,
+) -> PyResult<R> {
+    let (tell, said) = channel();
+    spawn(move || {
+        let mut listener = |stage| {
+            if tell.send(Said::Stage(stage)).is_err() {
+                resume_unwind(Box::new(Abandoned));
+            }
+        };
+        if let Some(done) = caught(|| work(&mut listener)) {
+            // Nobody may wait any more.
+            let _ = tell.send(Said::Done(done));
+        }
+    })?;
+    answer(py, said, |Stage { name, index, of, .. }| match progress {
+        Some(progress) => progress.call1((name, index, of)).map(|_| ()),
+        None => Ok(()),
+    })
+}
+
+type Job<T> = Box<dyn FnOnce(&mut T) -> bool + Send>;
+
+/// A thread that keeps a value until this is dropped.
+pub(crate) struct Worker<T> {
+    jobs: Sender<Job<T>>,
+    /// A forked process has no such thread.
+    process: u32,
+}
+
+impl<T: Default + 'static> Worker<T> {
+    pub(crate) fn start() -> PyResult<Worker<T>> {
+        let (jobs, given) = channel::<Job<T>>();
+        spawn(move || {
+            let mut kept = T::default();
+            for job in given {
+                if !job(&mut kept) {
+                    break;
+                }
+            }
+        })?;
+        Ok(Worker { jobs, process: std::process::id() })
+    }
+
+    /// Does something with the value. After a panic there is none any more.
+    pub(crate) fn call<R: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut T) -> Result<R, Failure> + Send + 'static,
+    ) -> PyResult<R> {
+        if std::process::id() != self.process {
+            let message = "a clip stays in the process that began it".into();
+            return Err(Failure { code: "worker-failed", message }.into());
+        }
+        let (tell, said) = channel();
+        let job = move |kept: &mut T| {
+            let done = caught(|| work(kept));
+            let goes_on = !matches!(done, None | Some(Err(Failure { code: "internal", .. })));
+            let _ = done.is_none_or(|done| tell.send(Said::Done(done)).is_ok());
+            goes_on
+        };
+        self.jobs.send(Box::new(job)).map_err(|_| lost())?;
+        answer(py, said, |_| Ok(()))
+    }
+
+    /// Does something that nobody waits for, before anything else that is asked from now on.
+    pub(crate) fn post(&self, work: impl FnOnce(&mut T) + Send + 'static) {
+        let job = move |kept: &mut T| {
+            caught(|| {
+                work(kept);
+                Ok(())
+            })
+            .is_some_and(|done| done.is_ok())
+        };
+        // A thread that has ended has nothing to put right.
+        let _ = self.jobs.send(Box::new(job));
+    }
+}
+
+fn lost() -> Failure {
+    Failure::internal("the clip was lost when a call failed".into())
+}
+
+fn spawn(work: impl FnOnce() + Send + 'static) -> Result<(), Failure> {
+    match Builder::new().name("veronese".into()).spawn(work) {
+        Ok(_) => Ok(()),
+        Err(error) => {
+            Err(Failure { code: "worker-failed", message: format!("a thread could not be started: {error}") })
+        }
+    }
+}
+
+/// What some work comes to; a panic is an error of code `internal`. None where nobody waits.
+fn caught<R>(work: impl FnOnce() -> Result<R, Failure>) -> Option<Result<R, Failure>> {
+    match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(done) => Some(done),
+        Err(thrown) if thrown.is::<Abandoned>() => None,
+        Err(thrown) => Some(Err(Failure::internal(sentence(&*thrown)))),
+    }
+}
+
+fn sentence(thrown: &(dyn Any + Send)) -> String {
+    let known = thrown.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    known.or_else(|| thrown.downcast_ref::<String>().cloned()).unwrap_or_else(|| "the call failed".into())
+}
+
+/// Waits for the result, without the interpreter.
+fn answer<R: Send>(
+    py: Python<'_>,
+    mut said: Receiver<Said<R>>,
+    mut on_stage: impl FnMut(Stage) -> PyResult<()>,
+) -> PyResult<R> {
+    loop {
+        let (heard, waiting) = py.detach(move || (said.recv_timeout(PATIENCE), said));
+        said = waiting;
+        match heard {
+            Ok(Said::Stage(stage)) => on_stage(stage)?,
+            Ok(Said::Done(done)) => return Ok(done?),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Err(lost().into()),
+        }
+        py.check_signals()?;
+    }
+}

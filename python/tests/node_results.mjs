@@ -1,0 +1,73 @@
+// What the npm package makes of the frames that a test in Python describes (test_same_as_node.py): hashes of all labels and numbers.
+//
+// Standard input: { pairs: [{ frames: [a, b], options }], clips: [{ frames, stream, options, masks, corrections }], points: [{ positions,
+// derivatives, options }] }. A frame is a path of an image, or of RGBA bytes with their size.
+
+import { createHash } from 'node:crypto';
+import { readFile } from 'node:fs/promises';
+import { json } from 'node:stream/consumers';
+import { fitMotions, segmentClip, segmentPair } from 'veronese';
+import { decodeImage } from 'veronese/codecs';
+
+async function pixels(frame) {
+  const bytes = new Uint8Array(await readFile(frame.path));
+  return frame.width === undefined ? decodeImage(bytes) : { data: bytes, width: frame.width, height: frame.height };
+}
+
+const hash = (bytes) => createHash('sha256').update(bytes).digest('hex');
+
+/** All numbers in the order of the test. */
+const numbers = (list) => hash(new Uint8Array(Float64Array.from(list.flat(Infinity)).buffer));
+
+const matrix = (entries) => (entries ? [1, ...entries] : [0]);
+
+function ofPair({ labels, motions, junctions, evidence, confidence }) {
+  return {
+    labels: hash(labels),
+    confidence: confidence ? hash(confidence) : null,
+    numbers: numbers([
+      motions.map(({ label, matrix, pixels, share, residual, bbox, group }) => [label, matrix, pixels, share, residual, bbox, group]),
+      junctions.map(({ labels, likelihood, border }) => [labels, likelihood, border]),
+      evidence.candidates.map(({ motions, score }) => [motions, score]),
+    ]),
+  };
+}
+
+async function ofClip({ frames, stream, options, masks, corrections }) {
+  const read = (index) => pixels(frames[index]);
+  async function* each() {
+    for (const frame of frames) yield pixels(frame);
+  }
+  const said = (list) => Promise.all(list.map(async ({ labels, ...rest }) => (labels ? { ...rest, labels: new Uint8Array(await readFile(labels)) } : rest)));
+  const given = { ...options, ...(masks && { masks: await said(masks) }), ...(corrections && { corrections: await said(corrections) }) };
+  const clip = segmentClip(stream ? each() : { length: frames.length, read }, given);
+  const labels = [];
+  for await (const frame of clip) labels.push(hash(frame.labels));
+  const { objects, background, dropped } = clip.tracks();
+  const seen = ({ frame, pixels, bbox, confidence, matrix: entries }) => [frame, pixels, bbox, confidence, matrix(entries)];
+  const state = await clip.state();
+  return {
+    labels,
+    tracks: numbers([
+      objects.map(({ id, first, last, frames }) => [id, first, last, frames.map(seen)]),
+      background.map(({ frame, matrix }) => [frame, matrix]),
+      dropped,
+    ]),
+    state: state ? hash(state) : null,
+  };
+}
+
+async function ofPoints({ positions, derivatives, options }) {
+  const { labels, motions, evidence } = await fitMotions({ positions: Float64Array.from(positions), derivatives: Float64Array.from(derivatives) }, options);
+  return {
+    labels: hash(labels),
+    numbers: numbers([motions.map(({ matrix, measurements, determined }) => [matrix, measurements, determined]), evidence.singularValues]),
+  };
+}
+
+const asked = await json(process.stdin);
+const results = { pairs: [], clips: [], points: [] };
+for (const { frames, options } of asked.pairs) results.pairs.push(ofPair(await segmentPair(await pixels(frames[0]), await pixels(frames[1]), options)));
+for (const clip of asked.clips) results.clips.push(await ofClip(clip));
+for (const points of asked.points) results.points.push(await ofPoints(points));
+process.stdout.write(JSON.stringify(results));

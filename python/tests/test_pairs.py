@@ -1,0 +1,132 @@
+"""Two frames: what a segmentation has, which forms frames come in, and what is refused."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any, Dict
+
+import numpy as np
+import pytest
+import veronese
+from scenes import frame, write_image
+from veronese import VeroneseError, relabel, segment_pair
+
+FIRST, SECOND = frame(0), frame(1)
+
+
+def test_a_moving_square_is_found_with_its_motion() -> None:
+    found = segment_pair(FIRST, SECOND)
+    assert (found.width, found.height, found.count) == (96, 72, 2)
+    assert found.labels.shape == (72, 96) and found.labels.dtype == np.uint8
+    assert found.labels[36, 42] == 1 and found.labels[5, 5] == 0
+    ground, square = found.motions
+    assert square.matrix.shape == (6,) and square.matrix.dtype == np.float64
+    flow = square.matrix.reshape(2, 3) @ [42, 36, 1]
+    np.testing.assert_allclose(flow, [2, 1], atol=0.3)
+    assert ground.pixels == int((found.labels == 0).sum())
+    assert ground.share == pytest.approx(ground.pixels / found.labels.size)
+    assert found.confidence is None and found.unlabelled == 0 and found.quality == "best"
+    assert [candidate.motions for candidate in found.candidates] == list(range(1, len(found.candidates) + 1))
+    assert all(one.labels == (0, 1) and 0 <= one.likelihood <= 1 for one in found.junctions)
+
+
+def test_options_reach_the_core() -> None:
+    found = segment_pair(FIRST, SECOND, motions=1, quality="fast", mark_unknown=True, confidence=True)
+    assert found.count == 1 and found.quality == "fast"
+    assert found.unlabelled == int((found.labels == 255).sum()) > 0
+    assert found.confidence is not None and found.confidence.shape == found.labels.shape
+    assert not found.confidence[found.labels == 255].any()
+
+
+def test_all_forms_of_a_frame_give_the_same(tmp_path: Path) -> None:
+    def labels(form: Any) -> bytes:
+        return segment_pair(form(FIRST, 0), form(SECOND, 1), quality="fast").labels.tobytes()
+
+    expected = labels(lambda pixels, _: pixels)
+    alpha = np.full((72, 96, 1), 255, dtype=np.uint8)
+    forms: Dict[str, Any] = {
+        "RGBA": lambda pixels, _: np.concatenate([pixels, alpha], axis=2),
+        "a view with steps": lambda pixels, _: np.repeat(np.repeat(pixels, 2, axis=0), 2, axis=1)[::2, ::2],
+        "turned twice": lambda pixels, _: np.ascontiguousarray(pixels[::-1, ::-1])[::-1, ::-1],
+        "column by column": lambda pixels, _: np.asfortranarray(pixels),
+        "a path": lambda pixels, k: write_image(tmp_path / f"{k}.png", pixels),
+        "a text": lambda pixels, k: str(write_image(tmp_path / f"{k}.png", pixels)),
+    }
+    for name, form in forms.items():
+        assert labels(form) == expected, name
+    grey = labels(lambda pixels, _: pixels[..., 0])
+    assert grey == labels(lambda pixels, _: np.stack([pixels[..., 0]] * 3, axis=2))
+
+
+def test_the_caller_may_write_to_the_arrays_afterwards() -> None:
+    first, second = FIRST.copy(), SECOND.copy()
+    found = segment_pair(first, second)
+    first[:], second[:] = 0, 0
+    found.labels[:] = 7
+    assert segment_pair(FIRST, SECOND).count == 2
+
+
+@pytest.mark.parametrize(
+    ("code", "first", "options"),
+    [
+        ("frame-size-mismatch", frame(0, size=(96, 64)), {}),
+        ("frame-size-unsupported", np.zeros((15, 96, 3), np.uint8), {}),
+        ("frame-size-unsupported", np.zeros((16, 4097), np.uint8), {}),
+        ("invalid-input", FIRST.astype(np.float32), {}),
+        ("invalid-input", FIRST[..., :2], {}),
+        ("invalid-input", 3, {}),
+        ("invalid-input", [[1, 2], [3, 4]], {}),
+        ("file-not-found", "nowhere.png", {}),
+        ("unreadable-file", Path(__file__).parent, {}),
+        ("unreadable-image", __file__, {}),
+        ("invalid-option", FIRST, {"motions": 11}),
+        ("invalid-option", FIRST, {"motions": 0}),
+        ("invalid-option", FIRST, {"motions": True}),
+        ("invalid-option", FIRST, {"motions": 2.0}),
+        ("invalid-option", FIRST, {"motions": "two"}),
+        ("invalid-option", FIRST, {"quality": "good"}),
+        ("invalid-option", FIRST, {"quality": None}),
+    ],
+)
+def test_what_cannot_be_processed_has_a_code(code: str, first: Any, options: Any) -> None:
+    with pytest.raises(VeroneseError) as caught:
+        segment_pair(first, SECOND, **options)
+    assert caught.value.code == code
+    assert str(caught.value)
+
+
+def test_a_misspelt_option_is_refused() -> None:
+    with pytest.raises(TypeError, match="motion"):
+        segment_pair(FIRST, SECOND, motion=2)  # type: ignore[call-arg]
+
+
+def test_errors_and_results_cross_processes() -> None:
+    error = pickle.loads(pickle.dumps(VeroneseError("invalid-input", "a sentence")))
+    assert (error.code, str(error)) == ("invalid-input", "a sentence")
+    found = pickle.loads(pickle.dumps(segment_pair(FIRST, SECOND, quality="fast")))
+    assert found.motions[1].matrix.shape == (6,)
+
+
+def test_strokes_change_labels_and_can_be_taken_back() -> None:
+    found = segment_pair(FIRST, SECOND)
+    evidence = np.zeros((72, 96), dtype=np.uint16)
+    evidence[20:30, 30:40] = 0b01
+    stages = []
+    changed = relabel(FIRST, SECOND, found, evidence, progress=lambda stage, index, of: stages.append((stage, index, of)))
+    assert (changed.labels[20:30, 30:40] == 0).all()
+    assert changed.motions[1].pixels < found.motions[1].pixels
+    assert stages[0] == ("frames", 0, 3)
+    undone = relabel(FIRST, SECOND, found, np.zeros_like(evidence))
+    assert (undone.labels == found.labels).all()
+    wrong: Any
+    for wrong in (evidence[1:], evidence.astype(np.uint8)):
+        with pytest.raises(VeroneseError) as caught:
+            relabel(FIRST, SECOND, found, wrong)
+        assert caught.value.code == "invalid-input"
+
+
+def test_the_version_is_that_of_the_wheel() -> None:
+    from importlib.metadata import version
+
+    assert veronese.__version__ == version("veronese")
