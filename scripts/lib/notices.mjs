@@ -47,7 +47,7 @@ const WORDMARK = () =>
   component('Cormorant Garamond', '4.001 (Bold, six letters)', 'OFL-1.1', 'https://github.com/CatharsisFonts/Cormorant', join(root, 'www/src/styles/wordmark'));
 
 async function partsOfProject() {
-  const modules = await crates(['--features', 'codecs'], 'wasm32-unknown-unknown');
+  const modules = await crates(['--manifest-path', 'wasm/Cargo.toml', '--features', 'codecs'], 'wasm32-unknown-unknown');
   return [
     ['In the WebAssembly modules', [standardLibrary('compiler_builtins, dlmalloc and hashbrown'), ...modules]],
     ["In the page's scripts", packages()],
