@@ -4,6 +4,7 @@ import { buildModules, buildPackage } from './builds.mjs';
 import { constantsAreFew } from './constants.mjs';
 import { importsAgree } from './imports.mjs';
 import { projectText } from './project.mjs';
+import { publicApiAgrees } from './public-api.mjs';
 import { run, say } from './run.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
@@ -47,6 +48,7 @@ export async function runChecks() {
     ['one version everywhere', versionsAgree()],
     ['modules import what the architecture allows', importsAgree()],
     ['few chosen numbers, all of them in src/model.rs', constantsAreFew()],
+    ['the names of the crate', await publicApiAgrees()],
   ];
   // The types of the package come from the built modules, those of the page from the built package.
   await buildModules();

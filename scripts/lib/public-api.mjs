@@ -1,0 +1,56 @@
+// The names of the crate that semantic versioning covers: tests/public-api.txt has them, `npm run public-api` writes it, and the checks
+// compare it, so that no name comes or goes unseen. It takes cargo-public-api and a nightly toolchain; the workflows have both.
+//
+// The names of the npm package are its types, pkg/types, which are written by hand; tests compare them with what is exported.
+
+import { writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { projectText, root } from './project.mjs';
+import { Stop, must, run, say } from './run.mjs';
+
+const FILE = 'tests/public-api.txt';
+/** Parts that may change in any version (src/lib.rs, "Stability"). */
+const UNSTABLE = /\bveronese::(?:embedding|factorisation|linear|paper|refinement)\b/;
+
+/** Whether the names are those of the file; true where they cannot be listed. */
+export async function publicApiAgrees() {
+  const problem = await missing();
+  if (problem) {
+    say(`The names of the crate were not compared: ${problem}`);
+    return true;
+  }
+  const [found, expected] = [await names(), projectText(FILE)];
+  const lines = (text) => new Set(text.split('\n'));
+  const without = (one, other) => [...lines(one)].filter((line) => !lines(other).has(line));
+  for (const line of without(found, expected)) say(`new: ${line}`);
+  for (const line of without(expected, found)) say(`gone: ${line}`);
+  if (found !== expected) say(`The names of the crate are not those of ${FILE}. If that is meant, run \`npm run public-api\`.`);
+  return found === expected;
+}
+
+export async function writePublicApi() {
+  const problem = await missing();
+  if (problem) throw new Stop(problem);
+  writeFileSync(join(root, FILE), await names());
+  say(`Written to ${FILE}.`);
+}
+
+async function missing() {
+  if ((await run('cargo', ['public-api', '--version'], { output: 'collect' })).code !== 0) {
+    return 'cargo-public-api is not installed (cargo install cargo-public-api).';
+  }
+  if ((await run('rustup', ['run', 'nightly', 'rustc', '--version'], { output: 'collect' })).code !== 0) {
+    return 'there is no nightly toolchain (rustup toolchain install nightly).';
+  }
+  return undefined;
+}
+
+async function names() {
+  // Without what traits give, and without paths of other crates to the names' own types.
+  const { stdout } = await must('The names of the crate could not be listed.', 'cargo', ['public-api', '--package', 'veronese', '--features', 'codecs', '-sss'], {
+    output: 'collect',
+  });
+  const stable = stdout.split('\n').filter((line) => line && !UNSTABLE.test(line));
+  return `${stable.join('\n')}\n`;
+}
