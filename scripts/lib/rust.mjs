@@ -11,7 +11,8 @@ const TARGET = 'wasm32-unknown-unknown';
 const WASM_PACK = '0.15.1';
 const GECKODRIVER = '0.37.1';
 const RUSTUP = 'https://rustup.rs';
-// Shared by both tools, which have packages in common. Removed at the end, so an interrupted installation resumes where it stopped.
+const CARGO_CYCLONEDX = '0.5.9';
+// Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
 /** The version of wasm-bindgen in Cargo.lock; the program that generates the JavaScript must have the same version. */
@@ -58,29 +59,41 @@ export async function prepareCompiler({ checks }) {
 
 /** Installs wasm-pack and wasm-bindgen, each in exactly the version this project requires. */
 export async function prepareWasmTools() {
-  await cargoInstall('wasm-bindgen', 'wasm-bindgen-cli', wasmBindgenVersion(), ['wasm-bindgen-test-runner']);
-  await cargoInstall('wasm-pack', 'wasm-pack', WASM_PACK);
-  rmSync(COMPILE_FOLDER, { recursive: true, force: true });
+  await cargoInstall([
+    { program: 'wasm-bindgen', crate: 'wasm-bindgen-cli', version: wasmBindgenVersion(), companions: ['wasm-bindgen-test-runner'] },
+    { program: 'wasm-pack', crate: 'wasm-pack', version: WASM_PACK },
+  ]);
 }
 
 /** Installs the program that drives Firefox; only its tests need it. */
 export async function prepareGeckodriver() {
-  await cargoInstall('geckodriver', 'geckodriver', GECKODRIVER);
-  rmSync(COMPILE_FOLDER, { recursive: true, force: true });
+  await cargoInstall([{ program: 'geckodriver', crate: 'geckodriver', version: GECKODRIVER }]);
 }
 
-async function cargoInstall(program, crate, version, companions = []) {
-  const { code, text } = await run(program, ['--version'], { output: 'collect' });
-  const present = code === 0 && text.trim().split(' ')[1] === version;
-  if (present && companions.every(which)) return;
-  // The tools run for seconds, so quick compilation matters more than fast code.
+/** Installs the program that lists the crates of a release. */
+export async function prepareCycloneDx() {
+  await cargoInstall([{ program: 'cargo-cyclonedx', crate: 'cargo-cyclonedx', version: CARGO_CYCLONEDX, ask: ['cyclonedx', '--version'] }]);
+}
+
+/**
+ * Installs those of the tools that are not on the path in exactly this version: with cargo-binstall, which downloads programs, where it is
+ * installed, otherwise all by one `cargo install`, so that they are compiled with the packages that they have in common.
+ */
+async function cargoInstall(tools) {
+  const missing = [];
+  for (const tool of tools) if (!(await isPresent(tool))) missing.push(tool);
+  if (missing.length === 0) return;
+  const crates = missing.map(({ crate, version }) => `${crate}@${version}`);
+  if (which('cargo-binstall') && (await binstall(crates))) return;
+  const names = missing.map(({ crate, version }) => `${crate} ${version}`).join(' and ');
   await longStep(
-    `Installing ${crate} ${version} into .tools (some minutes; once)`,
-    `${crate} ${version} could not be installed. See above; if it is the network, run the command again.`,
+    `Installing ${names} into .tools (some minutes; once)`,
+    `${names} could not be installed. See above; if it is the network, run the command again.`,
     'cargo',
-    ['install', '--locked', '--force', '--root', toolsFolder, `${crate}@${version}`],
+    ['install', '--locked', '--force', '--root', toolsFolder, ...crates],
     {
       env: {
+        // The tools run for seconds, so quick compilation matters more than fast code.
         CARGO_TARGET_DIR: COMPILE_FOLDER,
         CARGO_PROFILE_RELEASE_OPT_LEVEL: '1',
         CARGO_PROFILE_RELEASE_LTO: 'off',
@@ -90,6 +103,20 @@ async function cargoInstall(program, crate, version, companions = []) {
       },
     },
   );
+  rmSync(COMPILE_FOLDER, { recursive: true, force: true });
+}
+
+/** Whether a program says that it has this version, and those that come with it are there too. */
+async function isPresent({ program, version, companions = [], ask = ['--version'] }) {
+  const { code, text } = await run(program, ask, { output: 'collect' });
+  return code === 0 && text.trim().split(' ')[1] === version && companions.every(which);
+}
+
+/** Whether cargo-binstall could install them all. It compiles nothing here: that is done below, with quicker settings. */
+async function binstall(crates) {
+  console.log(`Installing ${crates.join(' and ')} into .tools with cargo-binstall …`);
+  const args = ['binstall', '--no-confirm', '--disable-strategies', 'compile', '--root', toolsFolder, '--force', ...crates];
+  return (await run('cargo', args, { output: 'collect' })).code === 0;
 }
 
 async function rustup(args, lack) {
