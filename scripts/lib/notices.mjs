@@ -13,7 +13,7 @@ const PYTHON = 'python/Cargo.toml';
 const files = () => ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES', ...(inProject(PYTHON) ? ['python/THIRD-PARTY-NOTICES'] : [])];
 
 /** In the package's scripts, but no dependency of theirs. */
-const BUNDLED = ['@rgrove/parse-xml'];
+export const BUNDLED = ['@rgrove/parse-xml'];
 
 /** What a licence's own text has, and nothing else: the first that a component offers is taken. */
 const LICENCES = {
