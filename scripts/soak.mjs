@@ -5,13 +5,13 @@ import { buildAll } from './lib/builds.mjs';
 import { cargoCounts, nodeCounts, playwrightCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { Stop, command } from './lib/run.mjs';
-import { tests } from './lib/tests.mjs';
+import { IN_WASM, tests } from './lib/tests.mjs';
 
 const NATIVE = ['test', '--locked', '--no-fail-fast', '--features', 'codecs'];
 const RUNS = [
   ['cargo', [...NATIVE, '--tests', '--', '--ignored']],
   ['cargo', [...NATIVE, '--test', 'properties'], { PROPTEST_CASES: '200000' }],
-  ['wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', '--', '--ignored']],
+  ['cargo', ['test', ...IN_WASM.args, '--locked', '--', '--ignored'], IN_WASM.env],
 ];
 
 await command(async () => {

@@ -10,7 +10,7 @@ import { runChecks } from './lib/checks.mjs';
 import { cargoCounts, nodeCounts, playwrightCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { Stop, command, inLane, say } from './lib/run.mjs';
-import { tests } from './lib/tests.mjs';
+import { IN_WASM, tests } from './lib/tests.mjs';
 
 const LANES = { cargo: { niceness: 10 }, node: { niceness: 0 } };
 
@@ -23,7 +23,7 @@ const PARTS = {
   wasm: {
     lane: 'cargo',
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', '--workspace']),
+    run: () => tests(cargoCounts, 'cargo', ['test', ...IN_WASM.args, '--locked', '--workspace'], IN_WASM.env),
   },
   check: { lane: 'cargo', title: 'checks', run: runChecks },
   package: {

@@ -1,17 +1,17 @@
 // Builds the WebAssembly modules, the npm package and the page. Each is skipped if nothing changed.
 
-import { existsSync, readdirSync } from 'node:fs';
-import { join } from 'node:path';
+import { copyFileSync, existsSync, readdirSync } from 'node:fs';
+import { dirname, join } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
-import { cargoHome, root, which } from './project.mjs';
+import { cargoHome, inProject, root, which } from './project.mjs';
 import { Stop, must, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 const RUST_SOURCES = ['src', 'Cargo.toml', 'Cargo.lock', '.cargo'];
 
 /**
- * The modules that wasm-pack builds. The core (frames) and the measurements module run everywhere; segmenting frames needs only the core.
+ * The modules. The core (frames) and the measurements module run everywhere; segmenting frames needs only the core.
  * The module with codecs has everything and reads image files in Node.
  */
 export const MODULES = [
@@ -27,24 +27,32 @@ export async function buildAll() {
   await buildPage();
 }
 
-/** Compiles Rust to WebAssembly, one module after another. */
+/** Compiles Rust to WebAssembly. Cargo compiles one module after another; the next one while the one before is optimised. */
 export const buildModules = once(async () => {
   const versions = await Promise.all(
-    [['rustc', '-vV'], ['wasm-pack', '--version'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
+    [['rustc', '-vV'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
       async ([program, flag]) => (await run(program, [flag], { output: 'collect' })).text,
     ),
   );
-  // wasm-pack skips this step without an error if there is no wasm-opt, and takes any wasm-opt on the path.
   if (!which('wasm-opt')?.startsWith(join(root, 'node_modules'))) {
     throw new Stop('wasm-opt of the npm package binaryen is missing: delete node_modules and run the command again.');
   }
-  for (const { name, folder, title, features } of MODULES) {
-    const outputs = [`${folder}/${name}.js`, `${folder}/${name}.d.ts`, `${folder}/${name}_bg.wasm`];
-    await step(`${title} (one to three minutes when everything is new)`, folder, outputs, RUST_SOURCES, versions, () =>
-      wasmPack(name, folder, features),
-    );
-  }
+  let turn = Promise.resolve();
+  const built = MODULES.map((module) => {
+    const outputs = [`${module.name}.js`, `${module.name}.d.ts`, `${module.name}_bg.wasm`].map((file) => `${module.folder}/${file}`);
+    return step(`${module.title} (one to three minutes when everything is new)`, module.folder, outputs, RUST_SOURCES, versions, async () => {
+      await finish(module, await (turn = turn.then(() => compile(module))));
+    });
+  });
+  await Promise.all(built);
 });
+
+/** Compiles the modules that are not there yet, as far as Cargo goes, while their other tools are still being installed. */
+export async function compileModulesAhead() {
+  const missing = MODULES.filter(({ name, folder }) => !inProject(`${folder}/${name}_bg.wasm`));
+  if (missing.length > 0) say('Compiling the modules meanwhile …');
+  for (const module of missing) await compile(module, { output: 'collect' });
+}
 
 /** Builds the npm package: the modules' JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
 export const buildPackage = once(async () => {
@@ -81,22 +89,42 @@ async function step(title, folder, outputs, inputs, versions, build) {
   if (!built) say(`${folder} is up to date.`);
 }
 
-async function wasmPack(name, folder, features) {
+/** Compiles a module and returns the path of what wasm-bindgen takes. */
+async function compile({ name, features }, options = {}) {
+  const { crate, compiled } = await moduleCrate();
   // The dependencies' sources must be downloaded before the flags below can name their folders.
-  await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET]);
-  // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
-  // because wasm-pack optimises every module in the folder.
-  const pack = ['build', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
-  const cargo = ['--locked', '--config', `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`];
-  cargo.push('--no-default-features', '--features', features.join(','));
-  await must(
-    'The WebAssembly module could not be built.',
-    'wasm-pack',
-    [...pack, '--out-dir', folder, '--out-name', name, '--', ...cargo],
+  await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET], options);
+  const flags = ['--config', `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`];
+  const what = ['--package', crate, '--lib', '--no-default-features', '--features', features.join(',')];
+  await must('The WebAssembly module could not be compiled.', 'cargo', ['build', '--locked', '--release', '--target', TARGET, ...what, ...flags], {
+    ...options,
     // These variables would override the flags of .cargo/config.toml, which enable SIMD.
-    { env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined } },
-  );
+    env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined },
+  });
+  // The next module gets the same name.
+  const own = join(dirname(compiled), `${name}.module.wasm`);
+  copyFileSync(compiled, own);
+  return own;
 }
+
+/** Makes a compiled module's JavaScript and types, and optimises it. */
+async function finish({ name, folder }, compiled) {
+  const { optimisation } = await moduleCrate();
+  await must('The JavaScript of the module could not be made.', 'wasm-bindgen', ['--target', 'web', '--out-dir', folder, '--out-name', name, compiled]);
+  const module = join(root, folder, `${name}_bg.wasm`);
+  await must('The module could not be optimised.', 'wasm-opt', [module, '-o', module, ...optimisation]);
+}
+
+/** The crate that is compiled to modules: its name, the file that Cargo makes, and the flags for wasm-opt. wasm-pack takes them from there too. */
+const moduleCrate = once(async () => {
+  const args = ['metadata', '--locked', '--no-deps', '--format-version', '1'];
+  const { stdout } = await must('The crates of the project could not be listed.', 'cargo', args, { output: 'collect' });
+  const { packages, target_directory: target } = JSON.parse(stdout);
+  const crate = packages.find(({ metadata }) => metadata?.['wasm-pack']);
+  const library = crate.targets.find(({ crate_types: types }) => types.includes('cdylib')).name.replaceAll('-', '_');
+  const optimisation = crate.metadata['wasm-pack'].profile.release['wasm-opt'];
+  return { crate: crate.name, compiled: join(target, TARGET, 'release', `${library}.wasm`), optimisation };
+});
 
 /** Keeps the builder's folders out of the module, so that the same sources give the same bytes everywhere. */
 function pathFlags() {

@@ -2,7 +2,7 @@
 
 const ESCAPES = /\u001b\[[0-9;]*m/g;
 
-/** The counts `{ passed, failed, skipped }` in the output of cargo test and wasm-pack test: one line for each binary. */
+/** The counts `{ passed, failed, skipped }` in the output of cargo test: one line for each binary. */
 export function cargoCounts(output) {
   const counts = { passed: 0, failed: 0, skipped: 0 };
   const line = /^test result: \w+\. (\d+) passed; (\d+) failed; (\d+) ignored/gm;

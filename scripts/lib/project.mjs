@@ -15,9 +15,8 @@ export const toolsFolder = join(root, '.tools');
 export const cargoHome = process.env.CARGO_HOME || join(homedir(), '.cargo');
 
 /**
- * The environment of every program started here. npm's programs come first: wasm-pack takes any `wasm-opt` on the path,
- * and those of Linux distributions may be too old for the instructions the compiler writes. Cargo's folder comes last,
- * for a shell that was opened before rustup was installed.
+ * The environment of every program started here. npm's programs come first: a `wasm-opt` of a Linux distribution may be too old for the
+ * instructions the compiler writes. Cargo's folder comes last, for a shell that was opened before rustup was installed.
  */
 export const environment = {
   ...process.env,

@@ -1,14 +1,13 @@
-// The Rust side of set-up: compiler, wasm target, linker, wasm-pack and wasm-bindgen.
+// The Rust side of set-up: compiler, wasm target, linker and wasm-bindgen.
 
 import { existsSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 
 import { installDebianPackages } from './debian.mjs';
 import { atLeast, projectText, toolsFolder, which } from './project.mjs';
-import { Stop, longStep, run } from './run.mjs';
+import { Stop, longStep, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
-const WASM_PACK = '0.15.1';
 const GECKODRIVER = '0.37.1';
 const RUSTUP = 'https://rustup.rs';
 const CARGO_CYCLONEDX = '0.5.9';
@@ -57,40 +56,39 @@ export async function prepareCompiler({ checks }) {
   }
 }
 
-/** Installs wasm-pack and wasm-bindgen, each in exactly the version this project requires. */
-export async function prepareWasmTools() {
-  await cargoInstall([
-    { program: 'wasm-bindgen', crate: 'wasm-bindgen-cli', version: wasmBindgenVersion(), companions: ['wasm-bindgen-test-runner'] },
-    { program: 'wasm-pack', crate: 'wasm-pack', version: WASM_PACK },
-  ]);
+/**
+ * Installs wasm-bindgen in exactly the version that the modules require. Where that takes minutes, `meanwhile` runs beside it: neither keeps
+ * all cores busy all the time.
+ */
+export async function prepareWasmTools(meanwhile) {
+  const tool = { program: 'wasm-bindgen', crate: 'wasm-bindgen-cli', version: wasmBindgenVersion(), companions: ['wasm-bindgen-test-runner'] };
+  await cargoInstall(tool, meanwhile);
 }
 
 /** Installs the program that drives Firefox; only its tests need it. */
 export async function prepareGeckodriver() {
-  await cargoInstall([{ program: 'geckodriver', crate: 'geckodriver', version: GECKODRIVER }]);
+  await cargoInstall({ program: 'geckodriver', crate: 'geckodriver', version: GECKODRIVER });
 }
 
 /** Installs the program that lists the crates of a release. */
 export async function prepareCycloneDx() {
-  await cargoInstall([{ program: 'cargo-cyclonedx', crate: 'cargo-cyclonedx', version: CARGO_CYCLONEDX, ask: ['cyclonedx', '--version'] }]);
+  await cargoInstall({ program: 'cargo-cyclonedx', crate: 'cargo-cyclonedx', version: CARGO_CYCLONEDX, ask: ['cyclonedx', '--version'] });
 }
 
 /**
- * Installs those of the tools that are not on the path in exactly this version: with cargo-binstall, which downloads programs, where it is
- * installed, otherwise all by one `cargo install`, so that they are compiled with the packages that they have in common.
+ * Installs a program unless it is on the path in exactly this version: with cargo-binstall, which downloads it, where that is installed,
+ * otherwise by compiling it.
  */
-async function cargoInstall(tools) {
-  const missing = [];
-  for (const tool of tools) if (!(await isPresent(tool))) missing.push(tool);
-  if (missing.length === 0) return;
-  const crates = missing.map(({ crate, version }) => `${crate}@${version}`);
-  if (which('cargo-binstall') && (await binstall(crates))) return;
-  const names = missing.map(({ crate, version }) => `${crate} ${version}`).join(' and ');
-  await longStep(
-    `Installing ${names} into .tools (some minutes; once)`,
-    `${names} could not be installed. See above; if it is the network, run the command again.`,
+async function cargoInstall(tool, meanwhile = async () => {}) {
+  if (await isPresent(tool)) return;
+  const name = `${tool.crate} ${tool.version}`;
+  const crate = `${tool.crate}@${tool.version}`;
+  if (which('cargo-binstall') && (await binstall(crate))) return;
+  const compiled = longStep(
+    `Installing ${name} into .tools (some minutes; once)`,
+    `${name} could not be installed. See above; if it is the network, run the command again.`,
     'cargo',
-    ['install', '--locked', '--force', '--root', toolsFolder, ...crates],
+    ['install', '--locked', '--force', '--root', toolsFolder, crate],
     {
       env: {
         // The tools run for seconds, so quick compilation matters more than fast code.
@@ -103,6 +101,7 @@ async function cargoInstall(tools) {
       },
     },
   );
+  await Promise.all([compiled, meanwhile()]);
   rmSync(COMPILE_FOLDER, { recursive: true, force: true });
 }
 
@@ -112,10 +111,10 @@ async function isPresent({ program, version, companions = [], ask = ['--version'
   return code === 0 && text.trim().split(' ')[1] === version && companions.every(which);
 }
 
-/** Whether cargo-binstall could install them all. It compiles nothing here: that is done below, with quicker settings. */
-async function binstall(crates) {
-  console.log(`Installing ${crates.join(' and ')} into .tools with cargo-binstall …`);
-  const args = ['binstall', '--no-confirm', '--disable-strategies', 'compile', '--root', toolsFolder, '--force', ...crates];
+/** Whether cargo-binstall could install the crate. It compiles nothing here: that is done above, with quicker settings. */
+async function binstall(crate) {
+  say(`Installing ${crate} into .tools with cargo-binstall …`);
+  const args = ['binstall', '--no-confirm', '--disable-strategies', 'compile', '--root', toolsFolder, '--force', crate];
   return (await run('cargo', args, { output: 'collect' })).code === 0;
 }
 
