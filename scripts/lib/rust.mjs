@@ -83,12 +83,13 @@ async function cargoInstall(tool, meanwhile = async () => {}) {
   if (await isPresent(tool)) return;
   const name = `${tool.crate} ${tool.version}`;
   const crate = `${tool.crate}@${tool.version}`;
+  const wanted = [tool.program, ...(tool.companions ?? [])].flatMap((program) => ['--bin', program]);
   if (which('cargo-binstall') && (await binstall(crate))) return;
   const compiled = longStep(
     `Installing ${name} into .tools (some minutes; once)`,
     `${name} could not be installed. See above; if it is the network, run the command again.`,
     'cargo',
-    ['install', '--locked', '--force', '--root', toolsFolder, crate],
+    ['install', '--locked', '--force', '--root', toolsFolder, ...wanted, crate],
     {
       env: {
         // The tools run for seconds, so quick compilation matters more than fast code.
