@@ -7,7 +7,6 @@ import { parseArgs } from 'node:util';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
 import { identity, identityProblems } from './lib/identity.mjs';
-import { noticesProblem } from './lib/notices.mjs';
 import { prepareNpmPackages } from './lib/npm-packages.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { projectText, root } from './lib/project.mjs';
@@ -131,7 +130,8 @@ async function checkTree(release) {
 }
 
 async function checkLicences() {
-  refuse([...licenceProblems(), await noticesProblem()].filter(Boolean));
+  const { code, text } = await run(process.execPath, ['scripts/notices.mjs', '--check'], { output: 'collect' });
+  refuse([...licenceProblems(), ...(code === 0 ? [] : [text.trim()])]);
   return [`${WITH_NOTICES.join(', ')}, of the packages that are used now`];
 }
 

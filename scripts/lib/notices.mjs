@@ -1,26 +1,23 @@
 // THIRD-PARTY-NOTICES: the licences of what others wrote and Veronese ships, from the sources that Cargo and npm have downloaded.
 // cargo-about does the same for crates, but takes minutes to compile and knows no packages of npm.
 
-import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
-import { inProject, projectText, root } from './project.mjs';
+import { projectText, root } from './project.mjs';
 import { must } from './run.mjs';
 
-const PYTHON = 'python/Cargo.toml';
-
-/** In the project, and in the packages: one text for all of them. */
-const files = () => ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES', ...(inProject(PYTHON) ? ['python/THIRD-PARTY-NOTICES'] : [])];
+/** In the project, and in the npm package. */
+export const NOTICES = ['THIRD-PARTY-NOTICES', 'pkg/THIRD-PARTY-NOTICES'];
 
 /** In the package's scripts, but no dependency of theirs. */
-export const BUNDLED = ['@rgrove/parse-xml'];
+const BUNDLED = ['@rgrove/parse-xml'];
 
 /** What a licence's own text has, and nothing else: the first that a component offers is taken. */
 const LICENCES = {
   ISC: /Permission to use, copy, modify, and\/or distribute/,
   MIT: /Permission is hereby granted, free of charge/,
   'BSD-3-Clause': /Redistribution and use in source and binary forms/,
-  'BSD-2-Clause': /Redistribution and use in source and binary forms/,
   'Apache-2.0': /Apache License\s+Version 2\.0/,
   'Unicode-3.0': /UNICODE LICENSE V3/,
   'OFL-1.1': /SIL OPEN FONT LICENSE Version 1\.1/,
@@ -42,28 +39,10 @@ const STANDARD_LIBRARY = {
 const WORDMARK = () =>
   component('Cormorant Garamond', '4.001 (Bold, six letters)', 'OFL-1.1', 'https://github.com/CatharsisFonts/Cormorant', join(root, 'www/src/styles/wordmark'));
 
-/** Writes the text wherever it belongs. */
-export async function writeNotices() {
-  const text = await notices();
-  for (const path of files()) writeFileSync(join(root, path), text);
-}
-
-/** A sentence if a file is not of what is shipped now. */
-export async function noticesProblem() {
-  const text = await notices();
-  const stale = files().filter((path) => !inProject(path) || projectText(path) !== text);
-  return stale.length > 0 ? `${stale.join(' and ')}: not of the packages that are used now; run npm run notices` : undefined;
-}
-
 /** The text of the file. */
-async function notices() {
-  const modules = [STANDARD_LIBRARY, ...(await crates(['--features', 'codecs'], 'wasm32-unknown-unknown'))];
-  // What the modules have too is named once.
-  const known = new Set(modules.map(({ name, version }) => `${name} ${version}`));
-  const wheel = inProject(PYTHON) ? (await crates(['--manifest-path', PYTHON])).filter(({ name, version }) => !known.has(`${name} ${version}`)) : [];
+export async function notices() {
   const parts = [
-    ['In the WebAssembly modules' + (wheel.length > 0 ? ', and in the Python package' : ''), modules],
-    ...(wheel.length > 0 ? [['In the Python package alone', wheel]] : []),
+    ['In the WebAssembly modules', [STANDARD_LIBRARY, ...(await crates())]],
     ["In the page's scripts", packages()],
     ['In the name at the top of the page', [WORDMARK()]],
   ];
@@ -80,16 +59,15 @@ async function notices() {
   ].join('\n');
 }
 
-/**
- * What is compiled into a program for `target` (or for any system): no macros, which run in the compiler, and nothing that only builds or
- * tests need. `which` names the crate and its features.
- */
-async function crates(which, target) {
-  const cargo = async (name, ...args) =>
-    (await must(`cargo ${name} failed.`, 'cargo', [name, '--locked', ...which, ...args], { output: 'collect' })).stdout;
-  const tree = await cargo('tree', '--target', target ?? 'all', '--edges', 'normal,no-proc-macro', '--prefix', 'none', '--format', '{p}');
+/** What is compiled into one of the modules: no macros, which run in the compiler, and nothing that only builds or tests need. */
+async function crates() {
+  const cargo = async (name, target, ...args) => {
+    const all = [name, '--locked', '--features', 'codecs', target, 'wasm32-unknown-unknown', ...args];
+    return (await must(`cargo ${name} failed.`, 'cargo', all, { output: 'collect' })).stdout;
+  };
+  const tree = await cargo('tree', '--target', '--edges', 'normal,no-proc-macro', '--prefix', 'none', '--format', '{p}');
   const linked = new Set(tree.split('\n').map((line) => line.split(' ', 2).join(' ')));
-  return JSON.parse(await cargo('metadata', ...(target ? ['--filter-platform', target] : []), '--format-version', '1'))
+  return JSON.parse(await cargo('metadata', '--filter-platform', '--format-version', '1'))
     .packages.filter(({ name, version, source }) => source !== null && linked.has(`${name} v${version}`))
     .map((crate) => component(crate.name, crate.version, crate.license, crate.repository, dirname(crate.manifest_path)))
     .sort((a, b) => (`${a.name} ${a.version}` < `${b.name} ${b.version}` ? -1 : 1));

@@ -5,7 +5,6 @@ import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSyn
 import { tmpdir } from 'node:os';
 import { basename, join } from 'node:path';
 
-import { BUNDLED } from '../notices.mjs';
 import { projectText, root } from '../project.mjs';
 import { must } from '../run.mjs';
 import { prepareCycloneDx } from '../rust.mjs';
@@ -17,12 +16,13 @@ export async function writeSboms(out) {
   return [await npmSbom(out), ...(await crateSboms(out))];
 }
 
-/** In a folder of its own: what users install, and what the package's scripts contain already. */
+/** In a folder of its own: what users install, and what the package's scripts contain already, which the notices name. */
 async function npmSbom(out) {
   const folder = mkdtempSync(join(tmpdir(), 'veronese-sbom-'));
   try {
     const { name, version, description, license, repository, dependencies, devDependencies } = JSON.parse(projectText('pkg/package.json'));
-    const contained = Object.fromEntries(BUNDLED.map((bundled) => [bundled, devDependencies[bundled]]));
+    const notices = projectText('pkg/THIRD-PARTY-NOTICES');
+    const contained = Object.fromEntries(Object.entries(devDependencies).filter((entry) => notices.includes(`\n- ${entry.join(' ')}: `)));
     const manifest = { name, version, description, license, repository, dependencies: { ...dependencies, ...contained } };
     writeFileSync(join(folder, 'package.json'), JSON.stringify(manifest));
     const npm = (sentence, ...args) => must(sentence, 'npm', [...args, '--package-lock-only'], { cwd: folder, output: 'collect' });
