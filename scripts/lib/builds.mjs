@@ -41,7 +41,7 @@ export const buildModules = once(async () => {
   const built = MODULES.map((module) => {
     const outputs = [`${module.name}.js`, `${module.name}.d.ts`, `${module.name}_bg.wasm`].map((file) => `${module.folder}/${file}`);
     return step(`${module.title} (one to three minutes when everything is new)`, module.folder, outputs, RUST_SOURCES, versions, async () => {
-      await finish(module, await (turn = turn.then(() => compile(module))));
+      await finish(module, await (turn = turn.then(() => compileOnce(module))));
     });
   });
   await Promise.all(built);
@@ -51,7 +51,7 @@ export const buildModules = once(async () => {
 export async function compileModulesAhead() {
   const missing = MODULES.filter(({ name, folder }) => !inProject(`${folder}/${name}_bg.wasm`));
   if (missing.length > 0) say('Compiling the modules meanwhile …');
-  for (const module of missing) await compile(module, { output: 'collect' });
+  for (const module of missing) await compileOnce(module, { output: 'collect' });
 }
 
 /** Builds the npm package: the modules' JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
@@ -87,6 +87,14 @@ async function step(title, folder, outputs, inputs, versions, build) {
     await build();
   });
   if (!built) say(`${folder} is up to date.`);
+}
+
+const compilations = new Map();
+
+/** Compiles a module unless this program has done so: Cargo would again, because all modules have one name and each replaces the last. */
+function compileOnce(module, options) {
+  if (!compilations.has(module.name)) compilations.set(module.name, compile(module, options));
+  return compilations.get(module.name);
 }
 
 /** Compiles a module and returns the path of what wasm-bindgen takes. */
