@@ -61,7 +61,13 @@ export async function prepareCompiler({ checks }) {
  * all cores busy all the time.
  */
 export async function prepareWasmTools(meanwhile) {
-  const tool = { program: 'wasm-bindgen', crate: 'wasm-bindgen-cli', version: wasmBindgenVersion(), companions: ['wasm-bindgen-test-runner'] };
+  const tool = {
+    program: 'wasm-bindgen',
+    crate: 'wasm-bindgen-cli',
+    version: wasmBindgenVersion(),
+    companions: ['wasm-bindgen-test-runner'],
+    busy: ['walrus', 'wasmparser', 'wasm-encoder', 'wasm-bindgen-cli-support'],
+  };
   await cargoInstall(tool, meanwhile);
 }
 
@@ -84,17 +90,18 @@ async function cargoInstall(tool, meanwhile = async () => {}) {
   const name = `${tool.crate} ${tool.version}`;
   const crate = `${tool.crate}@${tool.version}`;
   const wanted = [tool.program, ...(tool.companions ?? [])].flatMap((program) => ['--bin', program]);
+  // Programs run for a second and take minutes to compile: only the packages that do the work are optimised.
+  const optimised = (tool.busy ?? []).flatMap((name) => ['--config', `profile.release.package.${name}.opt-level=1`]);
   if (which('cargo-binstall') && (await binstall(crate))) return;
   const compiled = longStep(
     `Installing ${name} into .tools (some minutes; once)`,
     `${name} could not be installed. See above; if it is the network, run the command again.`,
     'cargo',
-    ['install', '--locked', '--force', '--root', toolsFolder, ...wanted, crate],
+    ['install', '--locked', '--force', '--root', toolsFolder, ...wanted, ...optimised, crate],
     {
       env: {
-        // The tools run for seconds, so quick compilation matters more than fast code.
         CARGO_TARGET_DIR: COMPILE_FOLDER,
-        CARGO_PROFILE_RELEASE_OPT_LEVEL: '1',
+        CARGO_PROFILE_RELEASE_OPT_LEVEL: '0',
         CARGO_PROFILE_RELEASE_LTO: 'off',
         CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
         RUSTFLAGS: undefined,
