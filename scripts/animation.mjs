@@ -28,14 +28,12 @@ await command(async () => {
     await must('The clip could not be segmented.', process.execPath, ['pkg/bin/veronese.js', 'clip', FRAMES, '--out', folder, '--overlay'], {
       output: 'collect',
     });
-    const input = (pictures) => ['-framerate', FRAMES_PER_SECOND, '-i', pictures];
-    await must('The animation could not be written.', 'ffmpeg', [
-      ...['-hide_banner', '-loglevel', 'error', '-y'],
-      ...input(join(root, FRAMES, '%02d.webp')),
-      ...input(join(folder, 'overlay', '%02d.png')),
-      ...['-filter_complex', `[0][1]hstack,scale=${WIDTH}:-2:flags=lanczos`],
-      ...['-c:v', 'libwebp', '-loop', '0', '-q:v', '60', '-compression_level', '6', FILE],
-    ]);
+    const [frames, overlays] = [join(root, FRAMES, '%02d.webp'), join(folder, 'overlay', '%02d.png')];
+    const input = ['-framerate', FRAMES_PER_SECOND, '-i', frames, '-framerate', FRAMES_PER_SECOND, '-i', overlays];
+    const joined = ['-filter_complex', `[0][1]hstack,scale=${WIDTH}:-2:flags=lanczos`];
+    const output = ['-c:v', 'libwebp', '-loop', '0', '-q:v', '60', '-compression_level', '6', FILE];
+    const quietly = ['-hide_banner', '-loglevel', 'error', '-y'];
+    await must('The animation could not be written.', 'ffmpeg', [...quietly, ...input, ...joined, ...output]);
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }

@@ -1,10 +1,11 @@
-// npm run build: the WebAssembly modules, the npm package and the page.
+// npm run build: the WebAssembly modules, the npm package and the page. With --modules only the modules.
 
-import { buildAll } from './lib/builds.mjs';
+import { buildAll, buildModules } from './lib/builds.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { command } from './lib/run.mjs';
 
-await command(async () => {
+await command(async (args) => {
   await prepare();
-  await buildAll();
+  if (args.includes('--modules')) await buildModules();
+  else await buildAll();
 });

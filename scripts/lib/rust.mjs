@@ -5,13 +5,14 @@ import { join } from 'node:path';
 
 import { installDebianPackages } from './debian.mjs';
 import { atLeast, projectText, toolsFolder, which } from './project.mjs';
-import { Stop, longStep, run } from './run.mjs';
+import { Stop, longStep, run, say } from './run.mjs';
 
 const TARGET = 'wasm32-unknown-unknown';
 const WASM_PACK = '0.15.1';
 const GECKODRIVER = '0.37.1';
 const RUSTUP = 'https://rustup.rs';
-// Shared by both tools, which have packages in common. Removed at the end, so an interrupted installation resumes where it stopped.
+const CARGO_CYCLONEDX = '0.5.9';
+// Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
 /** The version of wasm-bindgen in Cargo.lock; the program that generates the JavaScript must have the same version. */
@@ -56,33 +57,64 @@ export async function prepareCompiler({ checks }) {
   }
 }
 
-/** Installs wasm-pack and wasm-bindgen, each in exactly the version this project requires. */
-export async function prepareWasmTools() {
-  await cargoInstall('wasm-bindgen', 'wasm-bindgen-cli', wasmBindgenVersion(), ['wasm-bindgen-test-runner']);
-  await cargoInstall('wasm-pack', 'wasm-pack', WASM_PACK);
+/**
+ * Installs wasm-pack and wasm-bindgen, each in exactly the version that the modules require. Where that takes minutes, `meanwhile` runs
+ * beside it: neither keeps all cores busy all the time.
+ */
+export async function prepareWasmTools(meanwhile) {
+  const bindgen = {
+    program: 'wasm-bindgen',
+    crate: 'wasm-bindgen-cli',
+    version: wasmBindgenVersion(),
+    companions: ['wasm-bindgen-test-runner'],
+    busy: ['walrus', 'wasmparser', 'wasm-encoder', 'wasm-bindgen-cli-support'],
+  };
+  const tools = [bindgen, { program: 'wasm-pack', crate: 'wasm-pack', version: WASM_PACK }];
+  const missing = [];
+  for (const tool of tools) if (!(await isPresent(tool))) missing.push(tool);
+  if (missing.length === 0) return;
+  const install = async () => {
+    // One after another: they have packages in common, which are compiled once.
+    for (const tool of missing) await cargoInstall(tool);
+  };
+  await Promise.all([install(), meanwhile()]);
   rmSync(COMPILE_FOLDER, { recursive: true, force: true });
 }
 
 /** Installs the program that drives Firefox; only its tests need it. */
 export async function prepareGeckodriver() {
-  await cargoInstall('geckodriver', 'geckodriver', GECKODRIVER);
+  await installAlone({ program: 'geckodriver', crate: 'geckodriver', version: GECKODRIVER });
+}
+
+/** Installs the program that lists the crates of a release. */
+export async function prepareCycloneDx() {
+  await installAlone({ program: 'cargo-cyclonedx', crate: 'cargo-cyclonedx', version: CARGO_CYCLONEDX, ask: ['cyclonedx', '--version'] });
+}
+
+/** Installs a program unless it is on the path in exactly this version. */
+async function installAlone(tool) {
+  if (await isPresent(tool)) return;
+  await cargoInstall(tool);
   rmSync(COMPILE_FOLDER, { recursive: true, force: true });
 }
 
-async function cargoInstall(program, crate, version, companions = []) {
-  const { code, text } = await run(program, ['--version'], { output: 'collect' });
-  const present = code === 0 && text.trim().split(' ')[1] === version;
-  if (present && companions.every(which)) return;
-  // The tools run for seconds, so quick compilation matters more than fast code.
+/** Installs a program: with cargo-binstall, which downloads it, where that is installed, otherwise by compiling it. */
+async function cargoInstall(tool) {
+  const name = `${tool.crate} ${tool.version}`;
+  const crate = `${tool.crate}@${tool.version}`;
+  const wanted = [tool.program, ...(tool.companions ?? [])].flatMap((program) => ['--bin', program]);
+  // Programs run for a second and take minutes to compile: only the packages that do the work are optimised.
+  const optimised = (tool.busy ?? []).flatMap((name) => ['--config', `profile.release.package.${name}.opt-level=1`]);
+  if (which('cargo-binstall') && (await binstall(crate))) return;
   await longStep(
-    `Installing ${crate} ${version} into .tools (some minutes; once)`,
-    `${crate} ${version} could not be installed. See above; if it is the network, run the command again.`,
+    `Installing ${name} into .tools (some minutes; once)`,
+    `${name} could not be installed. See above; if it is the network, run the command again.`,
     'cargo',
-    ['install', '--locked', '--force', '--root', toolsFolder, `${crate}@${version}`],
+    ['install', '--locked', '--force', '--root', toolsFolder, ...wanted, ...optimised, crate],
     {
       env: {
         CARGO_TARGET_DIR: COMPILE_FOLDER,
-        CARGO_PROFILE_RELEASE_OPT_LEVEL: '1',
+        CARGO_PROFILE_RELEASE_OPT_LEVEL: '0',
         CARGO_PROFILE_RELEASE_LTO: 'off',
         CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
         RUSTFLAGS: undefined,
@@ -90,6 +122,19 @@ async function cargoInstall(program, crate, version, companions = []) {
       },
     },
   );
+}
+
+/** Whether a program says that it has this version, and those that come with it are there too. */
+async function isPresent({ program, version, companions = [], ask = ['--version'] }) {
+  const { code, text } = await run(program, ask, { output: 'collect' });
+  return code === 0 && text.trim().split(' ')[1] === version && companions.every(which);
+}
+
+/** Whether cargo-binstall could install the crate. It compiles nothing here: that is done above, with quicker settings. */
+async function binstall(crate) {
+  say(`Installing ${crate} into .tools with cargo-binstall …`);
+  const args = ['binstall', '--no-confirm', '--disable-strategies', 'compile', '--root', toolsFolder, '--force', crate];
+  return (await run('cargo', args, { output: 'collect' })).code === 0;
 }
 
 async function rustup(args, lack) {

@@ -3,7 +3,7 @@
 import { constants, lstatSync, openSync, readdirSync, statSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { Socket } from 'node:net';
-import { basename, extname, join } from 'node:path';
+import { basename, extname, join, parse, sep } from 'node:path';
 import { text } from 'node:stream/consumers';
 import { VeroneseError } from '../common/errors.js';
 import { isFileName } from './sequence.js';
@@ -78,11 +78,15 @@ async function contentOf(list: string): Promise<string> {
   return text(new Socket({ fd: openSync(list, constants.O_RDONLY | constants.O_NONBLOCK), readable: true, writable: false }));
 }
 
-/** Files that match a pattern: `*` and `?` within a name, `[a-c]` one of some letters, `**` folders at any depth. */
+/**
+ * Files that match a pattern: `*` and `?` within a name, `[a-c]` one of some letters, `**` folders at any depth. On Windows it may begin
+ * with a drive, and backslashes divide it too.
+ */
 function matching(pattern: string): string[] {
-  const [start, ...rest] = pattern.split('/').filter((part, index) => part !== '' || index === 0);
-  const parts = start === '' ? rest : [start as string, ...rest];
-  let places = [start === '' ? '/' : ''];
+  const path = sep === '\\' ? pattern.replaceAll('\\', '/') : pattern;
+  const { root } = parse(path);
+  const parts = path.slice(root.length).split('/').filter((part) => part !== '');
+  let places = [root];
   for (const [index, part] of parts.entries()) {
     const last = index === parts.length - 1;
     places = places.flatMap((place) => {
