@@ -121,13 +121,8 @@ impl Objects<'_> {
     /// The change of brightness. Along a single motion that of plain ground would be that of the objects.
     fn brightness_at_rest(&self, level: &Level) -> Photometric {
         let motions: Vec<AffineMotion> = [AffineMotion::STATIC].iter().chain(self.motions).copied().collect();
-        Photometric::along_labels(level, &motions, &|x, y| usize::from(self.label_at(level, x, y)))
-    }
-
-    /// The label of a pixel of a level.
-    fn label_at(&self, level: &Level, x: usize, y: usize) -> u8 {
         let step = level.stride << level.index;
-        self.labels[y * step * self.width + x * step]
+        Photometric::along_labels(level, &motions, &|x, y| usize::from(self.labels[y * step * self.width + x * step]))
     }
 }
 

@@ -1,16 +1,15 @@
 //! What the background does: what the dominant motion says, or nothing.
 //!
 //! The dominant motion explains more pixels than any other *single* motion. Plain ground fits every motion, so that it may be one that
-//! spans several objects although the camera is at rest. Where pixels of the background speak for rest,
-//! both hypotheses are therefore solved to the end, each with objects and a change of brightness of its own, and the one that describes the
-//! frames in fewer nats is taken.
+//! spans several objects although the camera is at rest. Where most pixels speak for rest, both hypotheses are therefore solved to the end, each
+//! with objects and a change of brightness of its own, and the one that describes the frames in fewer nats is taken.
 
 use super::hypothesis::{known, refine, with_dominant};
 use super::labels::{Labelled, label};
 use super::settings::Settings;
 use super::{Objects, Pair};
 use crate::estimation::selection::ScoredMotion;
-use crate::labelling::{BACKGROUND, is_background};
+use crate::labelling::BACKGROUND;
 use crate::motion::AffineMotion;
 use crate::progress::Stages;
 use crate::view::level::Level;
@@ -50,8 +49,7 @@ pub(super) fn solve(mut pair: Pair, likely: &[AffineMotion], settings: &Settings
     let Solved { pair, labelled } = &moving;
     let width = pair.finest().width();
     let objects = Objects { motions: &known[BACKGROUND + 1..], labels: &labelled.labels, width };
-    let sample = at_rest.sample_of_rest(&objects, settings.brightness());
-    if !may_rest(&sample, &known[BACKGROUND], &objects) {
+    if !rest_is_likely(&at_rest.sample_of_rest(&objects, settings.brightness()), &known[BACKGROUND]) {
         return moving;
     }
     at_rest.take_rest(&objects, settings.brightness());
@@ -79,19 +77,10 @@ fn under(
     Solved { pair, labelled }
 }
 
-/// Whether the background may be at rest: rest explains at least half as many of its pixels better than `motion` as it explains worse. Pixels
-/// are counted, because an object that `motion` spans may be explained so much worse at rest that it outweighs the ground around it; half as
-/// many are enough, because `motion` was fitted to them.
-fn may_rest(level: &Level, motion: &AffineMotion, objects: &Objects<'_>) -> bool {
+/// Whether rest explains more pixels better than `motion` than it explains worse. Pixels are counted, because an object that `motion` spans
+/// may be explained so much worse at rest that it outweighs the ground around it.
+fn rest_is_likely(level: &Level, motion: &AffineMotion) -> bool {
     let [rest, moving] = [AffineMotion::STATIC, *motion].map(|motion| ScoredMotion::new(level, motion).cost);
-    let (mut better, mut worse) = (0, 0);
-    for y in 0..level.height() {
-        for (x, (rest, moving)) in rest.row(y).iter().zip(moving.row(y)).enumerate() {
-            if is_background(objects.label_at(level, x, y)) {
-                better += usize::from(rest < moving);
-                worse += usize::from(rest > moving);
-            }
-        }
-    }
-    2 * better >= worse
+    let pixels = || rest.values().iter().zip(moving.values());
+    pixels().filter(|(rest, moving)| rest < moving).count() >= pixels().filter(|(rest, moving)| rest > moving).count()
 }
