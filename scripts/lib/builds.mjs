@@ -1,7 +1,7 @@
 // Builds the WebAssembly modules, the npm package, the page and the wheel. What has not changed is skipped.
 
 import { existsSync, readdirSync, rmSync } from 'node:fs';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
 import { cargoHome, root, which } from './project.mjs';
@@ -96,21 +96,34 @@ async function step(title, folder, outputs, inputs, versions, build) {
   if (!built) say(`${folder} is up to date.`);
 }
 
-async function wasmPack(name, folder, features) {
+async function wasmPack(name, folder, features, flags = []) {
   // The dependencies' sources must be downloaded before the flags below can name their folders.
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET]);
   // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
   // because wasm-pack optimises every module in the folder.
   const pack = ['build', 'wasm', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
-  const cargo = ['--locked', '--config', `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`];
+  const cargo = ['--locked', '--config', `target.${TARGET}.rustflags=${JSON.stringify([...pathFlags(), ...flags])}`];
   cargo.push('--no-default-features', '--features', features.join(','));
   await must(
     'The WebAssembly module could not be built.',
     'wasm-pack',
-    [...pack, '--out-dir', join(root, folder), '--out-name', name, '--', ...cargo],
+    [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...cargo],
     // These variables would override the flags of .cargo/config.toml, which enable SIMD.
     { env: { RUSTFLAGS: undefined, CARGO_ENCODED_RUSTFLAGS: undefined } },
   );
+}
+
+/**
+ * Builds the core module without SIMD in `folder`, with the flags that it has otherwise, and returns its path. It takes the JavaScript of the
+ * core module.
+ */
+export async function buildPlainModule(folder) {
+  say('Building the core module without SIMD (one to three minutes when everything is new) …');
+  await wasmPack('veronese', folder, ['frames'], ['-Ctarget-feature=-simd128']);
+  const path = join(folder, 'veronese_bg.wasm');
+  const { text } = await must('The module without SIMD could not be read.', 'wasm-dis', [path], { output: 'collect' });
+  if (/\bv128\b/.test(text)) throw new Stop('The module that was built without SIMD has instructions of SIMD.');
+  return path;
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */
