@@ -10,7 +10,7 @@
 //   --minutes N   for this run (15)
 //   --count N     another number for the part that is named
 //   --seed S      of hostile and kills (1)
-//   --jobs N      workers of pools (1)
+//   --jobs N      workers of pools (2)
 //   --again       forgets what is done of these parts
 
 import { createHash } from 'node:crypto';
@@ -74,7 +74,7 @@ function options(args) {
   const text = (value) => ({ type: 'string', ...(value === undefined ? {} : { default: value }) });
   let found;
   try {
-    const known = { minutes: text('15'), count: text(), seed: text('1'), jobs: text('1'), again: { type: 'boolean', default: false } };
+    const known = { minutes: text('15'), count: text(), seed: text('1'), jobs: text('2'), again: { type: 'boolean', default: false } };
     found = parseArgs({ args, options: known, allowPositionals: true });
   } catch (error) {
     throw new Stop(error.message);

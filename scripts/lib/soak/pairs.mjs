@@ -29,9 +29,9 @@ async function batch(pool, start, count, references) {
     for (let k = start; k < start + count; k += 1) yield pairOf(k);
   }
   let answered = 0;
-  for await (const { input, result, error } of pool.segmentPairs(inputs(), OPTIONS)) {
+  for await (const { input, segmentation, error } of pool.segmentPairs(inputs(), OPTIONS)) {
     assert.equal(error, undefined, `pair ${input.number}: ${error?.message}`);
-    if (input.number === REFERENCE) sameAsBefore(references, 'pairs', hashOf(result));
+    if (input.number === REFERENCE) sameAsBefore(references, 'pairs', hashOf(segmentation));
     answered += 1;
   }
   assert.equal(answered, count, 'every pair is answered');
