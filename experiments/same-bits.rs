@@ -113,9 +113,13 @@ fn write_results(folder: &Path, out: &Path) -> Result<(), Box<dyn Error>> {
             Ok(Frame::from_rgba(case.width, case.height, fs::read(folder.join(file))?)?)
         });
         let frames = frames.collect::<Result<Vec<_>, _>>()?;
-        let (labels, numbers) = if case.clip { of_clip(&frames, &case.options)? } else { of_pair(&frames, &case.options)? };
+        let (labels, numbers) =
+            if case.clip { of_clip(&frames, &case.options)? } else { of_pair(&frames, &case.options)? };
         fs::write(out.join(format!("{}.labels", case.name)), labels)?;
-        fs::write(out.join(format!("{}.numbers", case.name)), numbers.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>())?;
+        fs::write(
+            out.join(format!("{}.numbers", case.name)),
+            numbers.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>(),
+        )?;
     }
     Ok(())
 }
