@@ -14,8 +14,8 @@ const FUZZ = join(root, 'fuzz');
 const TARGETS = readdirSync(join(FUZZ, 'targets')).map((name) => name.replace(/\.rs$/, '')).sort();
 /** Longest input: frames are small, and what is longer shows no more. */
 const LONGEST = 4096;
-/** One input may take this long, seconds, and this much memory, MiB. A picture of 4096 × 4096 pixels takes 400 MiB. */
-const LIMITS = ['-timeout=60', '-rss_limit_mb=2048', `-max_len=${LONGEST}`];
+/** One input may take this long, seconds (a busy machine leaves little to what is nice), and this much memory, MiB. A picture of 4096 × 4096 pixels takes 400 MiB. */
+const LIMITS = ['-timeout=300', '-rss_limit_mb=2048', `-max_len=${LONGEST}`];
 /** All inputs that are kept, bytes. */
 const MOST_KEPT = 200_000;
 
