@@ -6,6 +6,7 @@
 // What is not there is said and left out: browsers, a suitable Python.
 
 import { mkdirSync, readFileSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
@@ -101,25 +102,46 @@ async function ofProgram(program, args) {
   return JSON.parse((await must('The program failed.', program, args, { output: 'collect' })).stdout);
 }
 
-/** The answers of the browsers that are installed, by name in small letters. */
+/** The answers of the browsers that are installed, by name in small letters. Those of WebDriver need a driver beside the browser. */
 async function ofBrowsers(chromium, wanted) {
-  const browsers = (await findBrowsers(chromium?.path)).filter(({ name }) => wanted.has(name.toLowerCase()));
-  for (const { problem } of browsers) if (problem) console.log(problem);
-  const there = browsers.filter(({ problem }) => !problem);
-  if (there.length === 0) return {};
-  console.log(`${there.map(({ name }) => name).join(', ')} …`);
+  const others = wanted.has('firefox') || wanted.has('webkit') ? await findBrowsers(undefined) : [];
+  const driven = others.filter(({ name }) => name !== 'Chromium' && wanted.has(name.toLowerCase()));
+  const problems = [...(wanted.has('chromium') ? [chromium] : []), ...driven].flatMap(({ problem }) => problem ?? []);
+  for (const problem of problems) console.log(problem);
+  const found = {};
   const server = await serve(root, { host: HOST, headers: {} });
   const base = `http://${HOST}:${server.address().port}`;
-  const asked = { page: `${base}/${HERE}/page.html`, folder: `${base}/${OUT}/cases`, out: join(root, OUT, 'NAME.json') };
+  const [page, folder] = [`${base}/${HERE}/page.html`, `${base}/${OUT}/cases`];
   try {
-    const env = { VERONESE_BROWSERS: JSON.stringify(there), VERONESE_SAME_BITS: JSON.stringify(asked) };
-    const { code } = await run('npm', ['run', '--silent', 'same-bits', '--workspace', 'www'], { env });
-    if (code !== 0) throw new Stop('Not all browsers have answered: see above.');
+    if (wanted.has('chromium') && !chromium.problem) found.chromium = await ofChromium(chromium.path, page, folder);
+    const there = driven.filter(({ problem }) => !problem);
+    if (there.length > 0) {
+      console.log(`${there.map(({ name }) => name).join(', ')} …`);
+      const asked = { page, folder, out: join(root, OUT, 'NAME.json') };
+      const env = { VERONESE_BROWSERS: JSON.stringify(there), VERONESE_SAME_BITS: JSON.stringify(asked) };
+      const { code } = await run('npm', ['run', '--silent', 'same-bits', '--workspace', 'www'], { env });
+      if (code !== 0) throw new Stop('Not all browsers have answered: see above.');
+      for (const { name } of there) found[name.toLowerCase()] = JSON.parse(readFileSync(join(root, OUT, `${name}.json`), 'utf8'));
+    }
   } finally {
     server.close();
     server.closeAllConnections();
   }
-  return Object.fromEntries(there.map(({ name }) => [name.toLowerCase(), JSON.parse(readFileSync(join(root, OUT, `${name}.json`), 'utf8'))]));
+  return found;
+}
+
+async function ofChromium(executablePath, page, folder) {
+  console.log('Chromium …');
+  const browsers = createRequire(join(root, 'www/package.json'))('@playwright/test').chromium;
+  const browser = await browsers.launch({ executablePath, args: ['--no-sandbox'] });
+  try {
+    const opened = await browser.newPage();
+    await opened.goto(page);
+    await opened.waitForFunction(() => globalThis.sameBits !== undefined);
+    return await opened.evaluate((cases) => globalThis.sameBits(cases), folder);
+  } finally {
+    await browser.close();
+  }
 }
 
 /** Prints the table; returns the exit code. */
