@@ -8,13 +8,14 @@
 //   --workers N    workers for the video, as on a machine with one processor more (the page's choice here)
 //   --write-docs   writes the table to docs/performance.md as well
 
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { parseArgs } from 'node:util';
 
+import { browserMemory } from './lib/browser-memory.mjs';
 import { buildAll } from './lib/builds.mjs';
 import { firstVisits, tasksSince, watchTasks } from './lib/first-visit.mjs';
 import { writeLongClip } from './lib/long-clip.mjs';
@@ -98,7 +99,7 @@ async function segmented(browser, address, { quality, workers }) {
   await page.locator('#open-pair').setInputFiles(VIDEO);
   await page.waitForFunction(() => document.querySelector('#clip-name').textContent !== '');
   await reached(page, '#run', 'done');
-  const opened = await memory(session);
+  const opened = await browserMemory(session);
   await page.evaluate(watchTasks);
   await page.locator('#clip-segment').click();
   await reached(page, '#clip-run', 'working');
@@ -115,7 +116,7 @@ async function segmented(browser, address, { quality, workers }) {
       if (phase !== 'done') throw new Stop(`The run ended as '${phase}': ${await page.locator('#notice').textContent()}`);
       break;
     }
-    samples.push({ seconds: (Date.now() - began) / 1000, share: value === null ? null : Number(value), text, bytes: await memory(session) });
+    samples.push({ seconds: (Date.now() - began) / 1000, share: value === null ? null : Number(value), text, bytes: await browserMemory(session) });
     // The share begins anew when all pairs are solved.
     if (value !== null && (Number(value) >= share + 0.1 || Number(value) < share)) {
       share = Number(value);
@@ -125,7 +126,7 @@ async function segmented(browser, address, { quality, workers }) {
   }
   const seconds = (Date.now() - began) / 1000;
   const status = await page.locator('#clip-status').textContent();
-  const done = await memory(session);
+  const done = await browserMemory(session);
   const segmenting = await page.evaluate(tasksSince);
   const track = page.locator('#track');
   for (const key of ['End', 'Home', ...Array.from({ length: 30 }, () => 'PageUp')]) {
@@ -133,7 +134,7 @@ async function segmented(browser, address, { quality, workers }) {
     await reached(page, '#run', 'done');
   }
   const tasks = { segmenting, stepping: await page.evaluate(tasksSince) };
-  return { seconds, status, opened, samples, done, stepped: await memory(session), tasks };
+  return { seconds, status, opened, samples, done, stepped: await browserMemory(session), tasks };
 }
 
 /** Times from the end of strokes until the stroke is drawn, the corrected frame is, and the correction has spread, milliseconds. */
@@ -197,20 +198,6 @@ async function strokeTimes() {
 
 async function reached(page, selector, phase) {
   await page.waitForFunction(([selector, phase]) => document.querySelector(selector).dataset.phase === phase, [selector, phase]);
-}
-
-/** The memory of all processes of the browser, what they share counted once, bytes. */
-async function memory(session) {
-  const { processInfo } = await session.send('SystemInfo.getProcessInfo');
-  return processInfo.reduce((sum, { id }) => sum + proportional(id), 0);
-}
-
-function proportional(id) {
-  try {
-    return 1024 * Number(/^Pss:\s+(\d+) kB/m.exec(readFileSync(`/proc/${id}/smaps_rollup`, 'utf8'))?.[1] ?? 0);
-  } catch {
-    return 0; // It has ended meanwhile.
-  }
 }
 
 function tableOf({ date, processor, cores, chromium, frames, size, quality, workers, seconds, status, opened, samples, done, stepped, tasks, first, corrected }) {

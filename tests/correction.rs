@@ -155,6 +155,20 @@ fn unlabelled_pixels_without_strokes_stay_unlabelled() {
 }
 
 #[test]
+fn strokes_on_unlabelled_pixels_alone_are_obeyed() {
+    let case = Case::new(96, 72, 5);
+    let mut labels = case.found.labels.clone();
+    labels[..96 * 10].fill(UNLABELLED);
+    let mut allowed = vec![0; case.pixels()];
+    case.disc(&mut allowed, [30, 4], 3, 0b10);
+    let corrected = case.ask(&labels, &allowed).unwrap();
+    for p in 0..case.pixels() {
+        let expected = if allowed[p] == 0 { labels[p] } else { 1 };
+        assert_eq!(corrected.labels[p], expected, "pixel {p}");
+    }
+}
+
+#[test]
 fn inconsistent_input_is_rejected() {
     let case = Case::new(64, 48, 1);
     let (pixels, labels) = (case.pixels(), &case.found.labels);

@@ -1,7 +1,7 @@
 // Builds the WebAssembly modules, the npm package, the page and the wheel. What has not changed is skipped.
 
 import { existsSync, readdirSync, rmSync } from 'node:fs';
-import { join } from 'node:path';
+import { join, resolve } from 'node:path';
 
 import { buildIfChanged } from './fingerprint.mjs';
 import { cargoHome, root, which } from './project.mjs';
@@ -50,7 +50,7 @@ export const buildModules = once(async () => {
 export async function compileAhead() {
   const args = ['build', '--locked', '--release', '--target', TARGET, '--package', 'veronese', '--features', 'codecs'];
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET], { output: 'collect' });
-  await run('cargo', [...args, ...flags()], { output: 'collect', env: FLAGS_OF_PROJECT });
+  await run('cargo', [...args, ...configured()], { output: 'collect', env: FLAGS_OF_PROJECT });
 }
 
 /** Builds the npm package: the modules' JavaScript, the compiled TypeScript, and the bundle of both in a few files. */
@@ -103,24 +103,37 @@ async function step(title, folder, outputs, inputs, versions, build) {
   if (!built) say(`${folder} is up to date.`);
 }
 
-async function wasmPack(name, folder, features) {
+async function wasmPack(name, folder, features, flags = []) {
   // The dependencies' sources must be downloaded before the flags below can name their folders.
   await must('The Rust packages could not be fetched.', 'cargo', ['fetch', '--locked', '--target', TARGET]);
   // --out-dir is never pkg itself, because wasm-pack deletes the package.json there. Each module has its own folder,
   // because wasm-pack optimises every module in the folder.
   const pack = ['build', 'wasm', '--release', '--target', 'web', '--mode', 'no-install', '--no-pack', '--no-gitignore'];
-  const cargo = ['--locked', ...flags(), '--no-default-features', '--features', features.join(',')];
+  const cargo = ['--locked', ...configured(flags), '--no-default-features', '--features', features.join(',')];
   await must(
     'The WebAssembly module could not be built.',
     'wasm-pack',
-    [...pack, '--out-dir', join(root, folder), '--out-name', name, '--', ...cargo],
+    [...pack, '--out-dir', resolve(root, folder), '--out-name', name, '--', ...cargo],
     { env: FLAGS_OF_PROJECT },
   );
 }
 
-/** Cargo's arguments for modules. */
-function flags() {
-  return ['--config', `target.${TARGET}.rustflags=${JSON.stringify(pathFlags())}`];
+/**
+ * Builds the core module without SIMD in `folder`, with the flags that it has otherwise, and returns its path. It takes the JavaScript of the
+ * core module.
+ */
+export async function buildPlainModule(folder) {
+  say('Building the core module without SIMD (one to three minutes when everything is new) …');
+  await wasmPack('veronese', folder, ['frames'], ['-Ctarget-feature=-simd128']);
+  const path = join(folder, 'veronese_bg.wasm');
+  const { text } = await must('The module without SIMD could not be read.', 'wasm-dis', [path], { output: 'collect' });
+  if (/\bv128\b/.test(text)) throw new Stop('The module that was built without SIMD has instructions of SIMD.');
+  return path;
+}
+
+/** Cargo's arguments for modules, with further flags of the compiler. */
+function configured(flags = []) {
+  return ['--config', `target.${TARGET}.rustflags=${JSON.stringify([...pathFlags(), ...flags])}`];
 }
 
 /** Keeps the builder's folders out of modules and wheels, so that the same sources give the same bytes everywhere. */

@@ -26,6 +26,8 @@ const DENY_IN_DOCS = { RUSTDOCFLAGS: '-D warnings' };
 
 const CHECKS = [
   ['formatting', 'cargo', ['fmt', '--all', '--check']],
+  // They compile with a nightly toolchain only.
+  ['formatting of the fuzz targets', 'cargo', ['fmt', '--manifest-path', 'fuzz/Cargo.toml', '--check']],
   ['clippy', 'cargo', ['clippy', ...ALL_TARGETS, ...DENY]],
   ['clippy with codecs and ablation', 'cargo', ['clippy', ...ALL_TARGETS, ...ALL, ...DENY]],
   // It needs no Python.

@@ -41,7 +41,9 @@ impl Format {
         if !bytes.starts_with(self.mark.as_bytes()) {
             return Err(self.invalid("these bytes are not of this version: segment the clip again"));
         }
-        let whole = bytes.split_last_chunk().filter(|(content, sum)| hash(0, content) == u64::from_le_bytes(**sum));
+        // A fuzzer does not guess sums, and somebody who changes bytes can compute them.
+        let is_sum = |content, sum| cfg!(fuzzing) || hash(0, content) == u64::from_le_bytes(sum);
+        let whole = bytes.split_last_chunk().filter(|(content, sum)| is_sum(content, **sum));
         whole.and_then(|(content, _)| content.get(self.mark.len()..)).ok_or_else(|| self.damaged())
     }
 

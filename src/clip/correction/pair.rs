@@ -74,9 +74,9 @@ pub fn relabel(
     let settings =
         Settings { draft_side: usize::MAX, ..Settings::new(options, [first.width(), first.height()], &Model::DEFAULT) };
     let mut stages = Stages::new(STAGES, progress);
-    let divisions = correction.divisions();
     let mut labels = correction.labels.to_vec();
-    if !divisions.is_empty() {
+    if correction.is_disobeyed() {
+        let divisions = correction.divisions();
         stages.begin("frames");
         let working = Working::new(first, second, correction, &settings);
         stages.begin("labels");
@@ -122,6 +122,16 @@ impl Correction<'_> {
     /// All motions.
     fn all(&self) -> u16 {
         u16::MAX >> (u16::BITS as usize - self.motions.len())
+    }
+
+    /// Whether the label of a pixel is what its set says. A set of none or of all motions says nothing.
+    fn is_obeyed(&self, label: u8, set: u16) -> bool {
+        set == 0 || set == self.all() || is_in(label, set)
+    }
+
+    /// Whether there is anything to do.
+    fn is_disobeyed(&self) -> bool {
+        self.labels.iter().zip(self.allowed).any(|(&label, &set)| !self.is_obeyed(label, set))
     }
 
     /// What strokes tell apart. Those that agree with the labels under them tell nothing.
@@ -257,7 +267,7 @@ impl<'a> Working<'a> {
     fn obey(&self, labels: &mut [u8]) {
         let mut choices: Vec<Option<Vec<u8>>> = vec![None; 1 << self.costs.len()];
         for (p, (label, &set)) in labels.iter_mut().zip(self.correction.allowed).enumerate() {
-            if set != 0 && set != self.correction.all() && !is_in(*label, set) {
+            if !self.correction.is_obeyed(*label, set) {
                 *label = choices[usize::from(set)].get_or_insert_with(|| self.choice(set))[self.pixel(p)];
             }
         }

@@ -1,0 +1,257 @@
+// What the public entries are handed where something else belongs: for hostile.test.mjs, and at random for npm run soak -- hostile.
+
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import * as index from 'veronese';
+import { pair, points } from './frames.mjs';
+import { timeless } from './shapes.mjs';
+
+const TYPES = new URL('../../types/index.d.ts', import.meta.url);
+const CODES = readFileSync(TYPES, 'utf8').match(/ErrorCode =[^;]+;/)[0].match(/'[a-z-]+'/g).map((code) => code.slice(1, -1));
+
+const detached = (array) => {
+  structuredClone(array.buffer, { transfer: [array.buffer] });
+  return array;
+};
+const shrunk = (Kind) => {
+  const buffer = new ArrayBuffer(4096, { maxByteLength: 8192 });
+  const array = new Kind(buffer, 1024, 16);
+  buffer.resize(512);
+  return array;
+};
+const revoked = () => {
+  const { proxy, revoke } = Proxy.revocable({}, {});
+  revoke();
+  return proxy;
+};
+const throwing = new Proxy({}, {
+  get: () => { throw new RangeError('mine'); },
+  ownKeys: () => { throw new RangeError('mine'); },
+});
+
+/** What is handed in where something else belongs. */
+export const VALUES = {
+  undefined: undefined,
+  null: null,
+  true: true,
+  false: false,
+  zero: 0,
+  'minus one': -1,
+  one: 1,
+  half: 0.5,
+  NaN: NaN,
+  Infinity: Infinity,
+  '300': 300,
+  'more than 32 bits': 2 ** 32 + 16,
+  'more than 53 bits': 2 ** 60,
+  bigint: 1n,
+  'empty text': '',
+  text: 'text',
+  symbol: Symbol('text'),
+  function: () => 5,
+  'empty list': [],
+  'list of null': [null],
+  'sparse list': Array(3),
+  'empty object': {},
+  'object without prototype': Object.create(null),
+  'object with a function': { made: () => 5 },
+  cyclic: (() => { const value = {}; value.value = value; return value; })(),
+  throwing,
+  'revoked proxy': revoked(),
+  date: new Date(0),
+  map: new Map([[1, 2]]),
+  promise: Promise.resolve(1),
+  'like a signal': { aborted: false },
+  'like a worker': { postMessage() {} },
+  'no bytes': new Uint8Array(0),
+  'three bytes': Uint8Array.of(1, 2, 3),
+  'detached bytes': detached(new Uint8Array(16 * 16 * 4)),
+  'detached words': detached(new Uint16Array(16 * 16)),
+  'detached doubles': detached(new Float64Array(30)),
+  'shrunk bytes': shrunk(Uint8Array),
+  'shrunk words': shrunk(Uint16Array),
+  'shrunk doubles': shrunk(Float64Array),
+  'shared bytes': new Uint8Array(new SharedArrayBuffer(3)),
+  floats: new Float32Array(16 * 16 * 4),
+  'a buffer': new ArrayBuffer(16 * 16 * 4),
+  'a data view': new DataView(new ArrayBuffer(16 * 16 * 4)),
+  'bytes that are called something else': Object.defineProperty(new Uint8Array(16), Symbol.toStringTag, { value: 'Float64Array' }),
+};
+export const named = (fits) => Object.keys(VALUES).filter((name) => !/throwing|proxy/.test(name) && fits(VALUES[name]));
+/** Objects that say nothing. */
+export const EMPTY = named((value) => typeof value === 'object' && value !== null && !Array.isArray(value) && Object.keys(value).length === 0);
+export const OPTIONS = ['undefined', ...EMPTY];
+export const FINITE = named(Number.isFinite);
+
+const size = { width: 16, height: 16 };
+export const [first, second] = pair(size);
+export const found = await index.segmentPair(first, second, { confidence: true });
+const [motion] = found.motions;
+export const evidence = new Uint16Array(256);
+export const measurements = points(40, 1, 2);
+const withMotion = (change) => ({ ...found, motions: [{ ...motion, ...change }, ...found.motions.slice(1)] });
+
+/**
+ * The calls that a Segmenter has too: arguments with the value in one place, and the names of the values that may stand there. A
+ * name that is not listed must be refused.
+ */
+export const CALLS = {
+  'segmentPair: first': ['segmentPair', (v) => [v, second], []],
+  'segmentPair: second': ['segmentPair', (v) => [first, v], []],
+  'segmentPair: data': ['segmentPair', (v) => [{ ...first, data: v }, second], []],
+  'segmentPair: width': ['segmentPair', (v) => [{ ...first, width: v }, second], []],
+  'segmentPair: height': ['segmentPair', (v) => [first, { ...second, height: v }], []],
+  'segmentPair: options': ['segmentPair', (v) => [first, second, v], OPTIONS],
+  'segmentPair: motions': ['segmentPair', (v) => [first, second, { motions: v }], ['undefined', 'one']],
+  'segmentPair: quality': ['segmentPair', (v) => [first, second, { quality: v }], ['undefined']],
+  'segmentPair: markUnknown': ['segmentPair', (v) => [first, second, { markUnknown: v }], ['undefined', 'true', 'false']],
+  'segmentPair: confidence': ['segmentPair', (v) => [first, second, { confidence: v }], ['undefined', 'true', 'false']],
+  'segmentPair: seed, which does nothing': ['segmentPair', (v) => [first, second, { seed: v }], Object.keys(VALUES)],
+  'segmentPair: signal': ['segmentPair', (v) => [first, second, { signal: v }], ['undefined']],
+  'segmentPair: onProgress': ['segmentPair', (v) => [first, second, { onProgress: v }], ['undefined', 'function']],
+  'segmentPair: transfer': ['segmentPair', (v) => [structuredClone(first), structuredClone(second), { transfer: v }], ['undefined', 'true', 'false']],
+  'segmentPair: an option that does not exist': ['segmentPair', (v) => [first, second, { nonsense: v }], ['undefined']],
+  'segmentPair: an option of fitMotions': ['segmentPair', (v) => [first, second, { method: v }], ['undefined']],
+  'relabel: first': ['relabel', (v) => [v, second, found, evidence], []],
+  'relabel: second': ['relabel', (v) => [first, v, found, evidence], []],
+  'relabel: segmentation': ['relabel', (v) => [first, second, v, evidence], []],
+  'relabel: evidence': ['relabel', (v) => [first, second, found, v], []],
+  'relabel: options': ['relabel', (v) => [first, second, found, evidence, v], OPTIONS],
+  'relabel: an option that does not exist': ['relabel', (v) => [first, second, found, evidence, { nonsense: v }], ['undefined']],
+  'relabel: an option of segmentPair': ['relabel', (v) => [first, second, found, evidence, { motions: v }], ['undefined']],
+  'relabel: motions': ['relabel', (v) => [first, second, { ...found, motions: v }, evidence], []],
+  'relabel: a motion': ['relabel', (v) => [first, second, { ...found, motions: [v] }, evidence], []],
+  'relabel: matrix': ['relabel', (v) => [first, second, withMotion({ matrix: v }), evidence], []],
+  'relabel: an entry of a matrix': ['relabel', (v) => [first, second, withMotion({ matrix: [0, 0, 1, 0, v, 0] }), evidence], FINITE],
+  'relabel: group': ['relabel', (v) => [first, second, withMotion({ group: v }), evidence], ['zero', 'one']],
+  'relabel: labels': ['relabel', (v) => [first, second, { ...found, labels: v }, evidence], []],
+  'relabel: settings': ['relabel', (v) => [first, second, { ...found, settings: v }, evidence], []],
+  'relabel: quality': ['relabel', (v) => [first, second, { ...found, settings: { ...found.settings, quality: v } }, evidence], []],
+  'relabel: confidence': ['relabel', (v) => [first, second, { ...found, confidence: v }, evidence], Object.keys(VALUES)],
+  'relabel: what the segmentation has besides': ['relabel', (v) => [first, second, { ...found, name: v }, evidence], Object.keys(VALUES)],
+  'fitMotions: measurements': ['fitMotions', (v) => [v], []],
+  'fitMotions: positions': ['fitMotions', (v) => [{ ...measurements, positions: v }], []],
+  'fitMotions: derivatives': ['fitMotions', (v) => [{ ...measurements, derivatives: v }], []],
+  'fitMotions: options': ['fitMotions', (v) => [measurements, v], OPTIONS],
+  'fitMotions: motions': ['fitMotions', (v) => [measurements, { motions: v }], ['undefined', 'one']],
+  'fitMotions: method': ['fitMotions', (v) => [measurements, { method: v }], ['undefined']],
+  'fitMotions: seed': ['fitMotions', (v) => [measurements, { seed: v }], ['undefined', 'zero', 'one', '300', 'more than 32 bits']],
+  'fitMotions: an option that does not exist': ['fitMotions', (v) => [measurements, { nonsense: v }], ['undefined']],
+};
+
+/** What becomes of a call: its result, or the error's code and sentence. */
+export async function outcome(call) {
+  let result;
+  try {
+    result = await call();
+  } catch (error) {
+    assert.ok(error?.name === 'VeroneseError' && error instanceof index.VeroneseError, error?.stack ?? String(error));
+    return checked(error);
+  }
+  return { result: result?.milliseconds ? timeless(result) : result };
+}
+
+export function checked({ code, message }) {
+  assert.ok(CODES.includes(code) && code !== 'internal', `${code}: ${message}`);
+  assert.match(message, /^[^\n]{10,}$/);
+  return { code, message };
+}
+
+/** Everything that an iterator gives. */
+export async function all(outcomes) {
+  const list = [];
+  for await (const { input, ...rest } of outcomes) list.push(rest);
+  return list;
+}
+
+/** What cannot even be awaited or iterated is an error of the source, which is passed on as it is. */
+const awaited = (value) => (value === VALUES.throwing || value === VALUES['revoked proxy'] ? undefined : value);
+const iterated = (value) => (ArrayBuffer.isView(value) ? undefined : value);
+
+/** Labels of a frame that say nothing. */
+const NOTHING = new Uint8Array(256).fill(255);
+
+/** The arguments of a clip, as those of the other calls. */
+export const CLIPS = {
+  frames: [(v) => [iterated(v)], ['empty text', 'empty list']],
+  'a frame': [(v) => [[first, awaited(v)]], []],
+  data: [(v) => [[first, { ...second, data: v }]], []],
+  width: [(v) => [[first, { ...second, width: v }]], []],
+  read: [(v) => [{ length: 2, read: v }], []],
+  length: [(v) => [{ length: v, read: (index) => [first, second][index] }], ['zero', 'one']],
+  'what is read': [(v) => [{ length: 2, read: (index) => (index === 0 ? first : awaited(v)) }], []],
+  options: [(v) => [[first, second], v], OPTIONS],
+  motions: [(v) => [[first, second], { motions: v }], ['undefined', 'one']],
+  quality: [(v) => [[first, second], { quality: v }], ['undefined']],
+  'seed, which does nothing': [(v) => [[first, second], { seed: v }], Object.keys(VALUES)],
+  lookAhead: [(v) => [[first, second], { lookAhead: v }], ['undefined', 'zero', 'one']],
+  signal: [(v) => [[first, second], { signal: v }], ['undefined']],
+  onProgress: [(v) => [[first, second], { onProgress: v }], ['undefined', 'function']],
+  transfer: [(v) => [[structuredClone(first), structuredClone(second)], { transfer: v }], ['undefined', 'true', 'false']],
+  markUnknown: [(v) => [[first, second], { markUnknown: v }], ['undefined', 'true', 'false']],
+  corrections: [(v) => [[first, second], { corrections: v }], ['undefined', 'empty list']],
+  'a correction': [(v) => [[first, second], { corrections: [v] }], []],
+  'its frame': [(v) => [[first, second], { corrections: [{ frame: v, labels: NOTHING }] }], ['zero', 'one']],
+  'its labels': [(v) => [[first, second], { corrections: [{ frame: 0, labels: v }] }], []],
+  'where it spreads': [(v) => [[first, second], { corrections: [{ frame: 0, labels: NOTHING, propagate: v }] }], ['undefined']],
+  masks: [(v) => [[first, second], { masks: v }], ['undefined', 'empty list']],
+  'a mask': [(v) => [[first, second], { masks: [v] }], []],
+  'the frame of a mask': [(v) => [[first, second], { masks: [{ frame: v, labels: NOTHING }] }], ['zero', 'one']],
+  'the labels of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: v }] }], []],
+  'the pixels of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: { ...first, data: v } }] }], []],
+  'the file of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: NOTHING, png: v }] }], ['undefined']],
+  'the object of a mask': [(v) => [[first, second], { masks: [{ frame: 0, id: v, rle: { size: [16, 16], counts: [256] } }] }], ['one']],
+  'the run lengths of a mask': [(v) => [[first, second], { masks: [{ frame: 0, labels: NOTHING, rle: v }] }], ['undefined']],
+  'their size': [(v) => [[first, second], { masks: [{ frame: 0, id: 1, rle: { size: v, counts: [256] } }] }], []],
+  'their counts': [(v) => [[first, second], { masks: [{ frame: 0, id: 1, rle: { size: [16, 16], counts: v } }] }], []],
+  locked: [(v) => [[first, second], { locked: v }], ['undefined', 'empty list']],
+  'a locked object': [(v) => [[first, second], { locked: [v] }], ['one']],
+  onChange: [(v) => [[first, second], { onChange: v }], ['undefined', 'function']],
+  edits: [(v) => [[first, second], { edits: v }], OPTIONS],
+  merge: [(v) => [[first, second], { edits: { merge: v } }], ['undefined', 'empty list']],
+  'what is merged': [(v) => [[first, second], { edits: { merge: [[1, v]] } }], ['one']],
+  names: [(v) => [[first, second], { edits: { names: v } }], OPTIONS],
+  'a name': [(v) => [[first, second], { edits: { names: { 1: v } } }], ['undefined', 'text']],
+  state: [(v) => [[first, second], { state: v }], ['undefined']],
+  changesOnly: [(v) => [[first, second], { changesOnly: v }], ['undefined', 'true', 'false']],
+  onPairs: [(v) => [[first, second], { onPairs: v }], ['undefined', 'function']],
+  knownPairs: [(v) => [[first, second], { knownPairs: v }], ['undefined']],
+  onPreview: [(v) => [[first, second], { onPreview: v }], ['undefined', 'function']],
+  'an option that does not exist': [(v) => [[first, second], { nonsense: v }], ['undefined']],
+};
+
+/** How deep lists and objects may be nested. */
+const DEPTH = 2;
+
+/** A call that is chosen at random, with a value that is chosen at random: one of VALUES, or some of them in lists and objects. */
+export function randomCall(random) {
+  const places = [
+    ...Object.entries(CALLS).map(([place, [name, args]]) => ({ place, name, args })),
+    ...Object.entries(CLIPS).map(([place, [args]]) => ({ place: `segmentClip: ${place}`, name: 'segmentClip', args })),
+  ];
+  const one = (list) => list[Math.floor(random() * list.length)];
+  const chosen = one(places);
+  const words = [];
+  const keys = ['data', 'width', 'height', 'labels', 'motions', 'matrix', 'frame', 'length', 'read', 'quality', 'size', 'counts', '0'];
+  const value = (depth) => {
+    const kind = depth === 0 ? 0 : random();
+    if (kind < 0.6) {
+      // Inside of others these are errors of the source, which are passed on as they are.
+      const name = one(Object.keys(VALUES).filter((value) => depth === DEPTH || !/throwing|proxy|promise/.test(value)));
+      words.push(name);
+      return VALUES[name];
+    }
+    const count = Math.floor(4 * random());
+    words.push(kind < 0.8 ? `[${count}` : `{${count}`);
+    return kind < 0.8
+      ? Array.from({ length: count }, () => value(depth - 1))
+      : Object.fromEntries(Array.from({ length: count }, () => [one(keys), value(depth - 1)]));
+  };
+  const given = value(DEPTH);
+  return { ...chosen, given, words: words.join(' ') };
+}
+
+/** What becomes of a random call with an entry or a Segmenter. */
+export function outcomeOf(entry, { name, args, given }) {
+  return outcome(() => (name === 'segmentClip' ? all(entry.segmentClip(...args(given))) : entry[name](...args(given))));
+}
