@@ -76,7 +76,7 @@ async function minimise(target, kept, found) {
   const least = join(root, 'out', 'fuzz', `${target}-least`);
   rmSync(least, { recursive: true, force: true });
   mkdirSync(least, { recursive: true });
-  await must(`The inputs of ${target} could not be merged.`, 'nice', fuzz('run', target, least, kept, found, '--', '-merge=1', ...LIMITS), { output: 'collect' });
+  await must(`The inputs of ${target} could not be merged.`, 'nice', fuzz('run', target, least, kept, found, '--', '-set_cover_merge=1', '-use_counters=0', ...LIMITS), { output: 'collect' });
   rmSync(kept, { recursive: true });
   cpSync(least, kept, { recursive: true });
 }

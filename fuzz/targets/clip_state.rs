@@ -9,14 +9,14 @@ use veronese_fuzz::{Edit, check_clip, edited, known};
 fuzz_target!(|edits: Vec<Edit>| {
     let known = known();
     let Ok(mut clip) = SegmentedClip::from_bytes(&edited(&known.state, &edits)) else { return };
-    check_clip(&clip, &known.frames);
     let [width, height] = clip.size();
     if width * height > 48 * 48 {
         return;
     }
-    for (index, frame) in known.frames.iter().enumerate() {
-        drop(clip.outline(index, frame, Prompt::Click([12, 12]), 1));
-    }
+    // One of three frames: all take long.
+    let index = edits.len() % known.frames.len();
+    drop(clip.frame(index, &known.frames[index]));
+    drop(clip.outline(index, &known.frames[index], Prompt::Click([12, 12]), 1));
     let mut labels = vec![255; width * height];
     labels.iter_mut().take(width * height / 3).for_each(|label| *label = 7);
     if let Ok(mut correction) = clip.correct(1, &labels, Spread::Both) {
