@@ -1,4 +1,4 @@
-// npm test: all tests and all checks; `npm test -- native page` runs the named parts only.
+// npm test: all tests and all checks; `npm test -- native page` runs the named parts only, and is the way to run those that download much.
 //
 // Parts of one lane run one after another, because they would wait for each other: for cargo's lock on its folder, for ports, for cores. The
 // two lanes run side by side, and what a part writes is shown when it ends. Some page tests measure time, so that cargo takes the cores that
@@ -86,6 +86,17 @@ const PARTS = {
       return tests(playwrightCounts, 'npm', ['test', '--silent', '--workspace', 'www'], env);
     },
   },
+  runtimes: {
+    lane: 'node',
+    title: 'the packed package in Node 20 to 26, Deno, Bun and workerd',
+    // Hundreds of megabytes of runtimes.
+    onRequest: true,
+    run: async () => {
+      await buildModules();
+      await buildPackage();
+      return tests(nodeCounts, 'npm', ['run', 'test:runtimes', '--silent', '--workspace', 'pkg']);
+    },
+  },
   browsers: {
     lane: 'node',
     title: 'the page in the browsers that are installed',
@@ -104,13 +115,14 @@ await command(async (args) => {
     console.error(`There is no part '${unknown[0]}'; there are ${Object.keys(PARTS).join(', ')}.`);
     return 2;
   }
-  const names = args.length > 0 ? args : Object.keys(PARTS);
+  const names = args.length > 0 ? args : Object.keys(PARTS).filter((name) => !PARTS[name].onRequest);
   const setup = await prepare({
     checks: names.includes('check'),
     browser: ['page', 'hosts', 'browsers'].some((name) => names.includes(name)),
     python: ['formats', 'hosts'].some((name) => names.includes(name)),
     ownPython: names.includes('python'),
     hosts: names.includes('hosts'),
+    runtimes: names.includes('runtimes'),
   });
   return summarise(await runParts(names, setup));
 });

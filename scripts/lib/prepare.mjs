@@ -11,17 +11,17 @@ import { checkRust, prepareCompiler, prepareWasmTools } from './rust.mjs';
 
 /**
  * Prepares the compiler, wasm tools and npm packages. `checks` adds the formatter and clippy, `browser` adds Chromium, `hosts` adds the
- * bundlers, runtimes and checkers for the packed package and what the examples need, `python` adds the decoders of annotation tools and
- * CVAT's SDK, and `ownPython` what builds and tests the Python package.
+ * bundlers and checkers for the packed package and what the examples need, `runtimes` adds what else the package runs on, `python` adds the
+ * decoders of annotation tools and CVAT's SDK, and `ownPython` what builds and tests the Python package.
  * Throws `Stop` with a sentence for every missing piece. A missing browser or Python is returned instead, as
  * `{ chromium: { problem } }`, `{ python: { problem } }` or `{ ownPython: { problem } }`, because only their tests need them.
  */
-export async function prepare({ checks = false, browser = false, hosts = false, python = false, ownPython = false } = {}) {
+export async function prepare({ checks = false, browser = false, hosts = false, python = false, ownPython = false, runtimes = false } = {}) {
   checkNode();
   await checkRust();
   const rust = prepareCompiler({ checks }).then(() => prepareWasmTools(compileAhead));
   const javascript = prepareNpmPackages()
-    .then(() => prepareFolders(hosts ? [HOSTS, RUNTIMES, SCALE_OUT, SERVERS] : []))
+    .then(() => prepareFolders([...(hosts ? [HOSTS, SCALE_OUT, SERVERS] : []), ...(runtimes ? [HOSTS, RUNTIMES] : [])]))
     .then(() => (browser ? prepareChromium() : {}));
   const decoders = python ? preparePython(DECODERS) : {};
   const own = ownPython ? preparePython(OWN) : {};

@@ -8,10 +8,10 @@ import { after, before, describe, test } from 'node:test';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 import { segmentPair } from 'veronese';
 import { pair } from '../support/moving.mjs';
-import { labelHash } from './app/label-hash.js';
-import { install, run } from './packed.mjs';
+import { labelHash } from '../hosts/app/label-hash.js';
+import { install, run } from '../hosts/packed.mjs';
 
-const folder = fileURLToPath(new URL('../runtimes/', import.meta.url));
+const folder = fileURLToPath(new URL('.', import.meta.url));
 const at = (...path) => join(folder, 'node_modules', ...path);
 // All are optional, so that one that cannot be installed is named here and keeps no other from running.
 const { optionalDependencies } = JSON.parse(readFileSync(join(folder, 'package.json')));
