@@ -78,7 +78,7 @@ function parse(args) {
   const unknown = only.find((name) => !names.includes(name));
   if (unknown !== undefined) return wrong(`There is no step '${unknown}'.`);
   if (!values['dry-run'] && !values.tag) return wrong('Nothing is published from here: push a tag, and the workflow release.yml publishes.');
-  if (values.tag && !/^v\d+\.\d+\.\d+(-[\w.]+)?$/.test(values.tag)) return wrong(`A tag is called like v0.1.0, not '${values.tag}'.`);
+  if (values.tag && !/^v\d+\.\d+\.\d+$/.test(values.tag)) return wrong(`A tag is called like v0.1.0, not '${values.tag}'.`);
   return { tag: values.tag, only };
 }
 

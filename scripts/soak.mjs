@@ -1,5 +1,5 @@
-// npm run soak [-- PART …]: what takes long, in parts. Each run goes on where the last one stopped, takes at most the minutes given, and says
-// how far it is. Everything is in quality fast at 320 × 240. What is done is in out/soak/state.json, for one build of the module.
+// npm run soak [-- PART …]: what takes long, in parts. Each run goes on where the last one stopped, begins nothing after the minutes given,
+// and says how far it is. Everything is in quality fast at 320 × 240. What is done is in out/soak/state.json, for one build of the package.
 //   tests      the long tests: those that npm test ignores, whole sweeps, many more random cases. Each program runs to its end
 //   pairs      10,000 pairs in Node
 //   page       2,000 pairs in a page of headless Chromium
@@ -24,6 +24,8 @@ import { inProject, projectText, root } from './lib/project.mjs';
 import { Stop, command } from './lib/run.mjs';
 import { RUN_COUNT, tests } from './lib/soak/tests.mjs';
 
+/** What is tested. */
+const BUILT = ['pkg/wasm/veronese_bg.wasm', 'pkg/wasm/codecs/veronese_codecs_bg.wasm', 'pkg/dist/node.js', 'pkg/dist/calls.js', 'pkg/dist/web.js'];
 const STATE = 'out/soak/state.json';
 /** How many, of what, and the generator. Those that need the built package are imported once it is there. */
 const PARTS = {
@@ -102,7 +104,9 @@ function options(args) {
 
 /** What is done: nothing if the module or the seed is another one. */
 function stored(parts, again, seed) {
-  const module = createHash('sha256').update(readFileSync(join(root, 'pkg/wasm/veronese_bg.wasm'))).digest('hex');
+  const sum = createHash('sha256');
+  for (const file of BUILT) sum.update(readFileSync(join(root, file)));
+  const module = sum.digest('hex');
   const old = inProject(STATE) ? JSON.parse(projectText(STATE)) : {};
   if (old.module !== module || old.seed !== seed) return { module, seed, references: {}, done: {} };
   if (again) for (const part of parts) delete old.done[part];

@@ -201,7 +201,9 @@ def download(task, folder, options):
     for frame in meta.frames:
         check_size(frame.width, frame.height, options)
     frames = [frame for frame in range(task.size) if frame not in meta.deleted_frames]
-    folder.mkdir(parents=True, exist_ok=True)
+    # A frame of an earlier run that has been deleted since would be one of the clip.
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
     for frame in frames:
         content = task.get_frame(frame, quality="original").read(BYTES + 1)
         if len(content) > BYTES:
@@ -209,7 +211,8 @@ def download(task, folder, options):
         try:
             with Image.open(io.BytesIO(content)) as image:
                 check_size(*image.size, options)
-                kind = image.format.lower()
+                # Pillow's name of a JPEG file with further pictures in it; the first one is taken.
+                kind = {"MPO": "jpeg"}.get(image.format, image.format.lower())
         except (OSError, Image.DecompressionBombError) as error:
             raise Refusal("unreadable-file", f"frame {frame} is no image: {error}") from error
         # The very bytes: pixels that are compressed once more are others.
@@ -228,7 +231,8 @@ def name_of(frame):
 
 def veronese(options, command, *arguments):
     """Runs the program; what it says goes to the terminal."""
-    name, *first = shlex.split(options.veronese)
+    # Backslashes of Windows are no escapes.
+    name, *first = (word.strip('"') for word in shlex.split(options.veronese, posix=os.name != "nt"))
     program = shutil.which(name)
     if program is None:
         raise Refusal("no-program", f"there is no program '{name}': say by --veronese how veronese is started")
@@ -242,6 +246,9 @@ def veronese(options, command, *arguments):
 def outlines(work, options, frames):
     """The objects of the clip as polygons."""
     veronese(options, "convert", work.clip, "--to", "cvat-video", "--tolerance", options.tolerance, "--out", work.clip)
+    taken = len(json.loads((work.clip / "tracks.json").read_text(encoding="utf-8"))["frames"])
+    if taken != len(frames):
+        raise Refusal("unreadable-file", f"{len(frames) - taken} of {len(frames)} frames are files of a kind that veronese does not read")
     return cvat_tracks.read_xml(work.clip / "cvat-video.xml", frames)
 
 

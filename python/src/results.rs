@@ -1,7 +1,6 @@
 //! Results as the classes of `veronese._types`.
 //!
-//! All types are destructured without `..`, so a new field that is not converted is a compile error. The order of arguments is that of the
-//! fields there.
+//! The order of arguments is that of the fields there.
 
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;

@@ -40,7 +40,7 @@ const standardLibrary = (crates) => ({
 });
 
 /** What wheels are built for. */
-const NATIVE = ['x86_64-unknown-linux-gnu', 'aarch64-apple-darwin', 'x86_64-pc-windows-msvc'];
+const NATIVE = ['x86_64-unknown-linux-gnu', 'aarch64-unknown-linux-gnu', 'x86_64-apple-darwin', 'aarch64-apple-darwin', 'x86_64-pc-windows-msvc'];
 
 /** The letters of the page's name; README.md there says how they were made. */
 const WORDMARK = () =>

@@ -5,6 +5,12 @@ import { inProject, projectText } from './project.mjs';
 const MANIFESTS = ['package.json', 'pkg/package.json', 'www/package.json'];
 /** Those that do not exist are left out. */
 const CRATES = ['Cargo.toml', 'wasm/Cargo.toml', 'python/Cargo.toml'];
+/** What names a version of the package. */
+const NAMED = [
+  ['pkg/README.md', /veronese@(\d[\w.-]*)\//g],
+  ...['hosts', 'svelte', 'vue'].map((name) => [`examples/${name}/package.json`, /"veronese": "\^([^"]+)"/g]),
+  ['fuzz/Cargo.lock', /name = "veronese"\r?\nversion = "([^"]+)"/g],
+];
 
 /** Every file that has the version, and what it says there. */
 export async function versions() {
@@ -21,14 +27,12 @@ export async function versions() {
   for (const path of MANIFESTS) found[path] = JSON.parse(projectText(path)).version;
   const { packages } = JSON.parse(projectText('package-lock.json'));
   for (const path of MANIFESTS) found[`package-lock.json (${path})`] = packages[path.replace(/\/?package\.json$/, '')]?.version;
+  for (const [path, pattern] of NAMED.filter(([name]) => inProject(name))) {
+    for (const [, number] of projectText(path).matchAll(pattern)) found[path] = found[path] === undefined || found[path] === number ? number : 'several';
+  }
   const python = inProject('python/pyproject.toml') ? toml('python/pyproject.toml').project : undefined;
   if (python && !python.dynamic?.includes('version')) found['python/pyproject.toml'] = python.version;
   return found;
-}
-
-/** The version of the crate. */
-export async function version() {
-  return (await versions())['Cargo.toml'];
 }
 
 /** A sentence if they differ, from each other or from `wanted`. */

@@ -12,7 +12,7 @@ const frames = new URL('../wasm/veronese_bg.wasm', import.meta.url);
  * another one.
  */
 function isAfar(): boolean {
-  return /^http.*\/wasm\/veronese_bg.wasm$/.test(frames.href) && frames.origin !== location.origin;
+  return /^http.*\/wasm\/veronese_bg\.wasm$/.test(frames.href) && frames.origin !== globalThis.origin;
 }
 
 /** A worker of the page's own origin, which imports the file and then forgets its address. */
