@@ -21,7 +21,17 @@ const numbers = (list) => hash(new Uint8Array(Float64Array.from(list.flat(Infini
 
 const matrix = (entries) => (entries ? [1, ...entries] : [0]);
 
+/** The names of what objects of each class of Python hold here. */
+const entries = {};
+
+function see(name, [object]) {
+  if (object) entries[name] = Object.keys(object);
+}
+
 function ofPair({ labels, motions, junctions, evidence, confidence }) {
+  see('SegmentedMotion', motions);
+  see('Junction', junctions);
+  see('Candidate', evidence.candidates);
   return {
     labels: hash(labels),
     confidence: confidence ? hash(confidence) : null,
@@ -44,6 +54,8 @@ async function ofClip({ frames, stream, options, masks, corrections }) {
   const labels = [];
   for await (const frame of clip) labels.push(hash(frame.labels));
   const { objects, background, dropped } = clip.tracks();
+  see('Sighting', objects.flatMap((object) => object.frames));
+  see('BackgroundMotion', background);
   const seen = ({ frame, pixels, bbox, confidence, matrix: entries }) => [frame, pixels, bbox, confidence, matrix(entries)];
   const state = await clip.state();
   return {
@@ -58,7 +70,11 @@ async function ofClip({ frames, stream, options, masks, corrections }) {
 }
 
 async function ofPoints({ positions, derivatives, options }) {
-  const { labels, motions, evidence } = await fitMotions({ positions: Float64Array.from(positions), derivatives: Float64Array.from(derivatives) }, options);
+  const { labels, motions, evidence, stages } = await fitMotions({ positions: Float64Array.from(positions), derivatives: Float64Array.from(derivatives) }, options);
+  see('FittedMotion', motions);
+  see('PaperStages', stages ? [stages] : []);
+  see('Refinement', stages ? [stages.refinement] : []);
+  see('RankCandidate', stages?.ranks ?? []);
   return {
     labels: hash(labels),
     numbers: numbers([motions.map(({ matrix, measurements, determined }) => [matrix, measurements, determined]), evidence.singularValues]),
@@ -70,4 +86,4 @@ const results = { pairs: [], clips: [], points: [] };
 for (const { frames, options } of asked.pairs) results.pairs.push(ofPair(await segmentPair(await pixels(frames[0]), await pixels(frames[1]), options)));
 for (const clip of asked.clips) results.clips.push(await ofClip(clip));
 for (const points of asked.points) results.points.push(await ofPoints(points));
-process.stdout.write(JSON.stringify(results));
+process.stdout.write(JSON.stringify({ ...results, entries }));

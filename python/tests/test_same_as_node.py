@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import shutil
 import subprocess
+from dataclasses import fields
 from pathlib import Path
 from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 import pytest
+import veronese
 from numpy.typing import NDArray
 from scenes import Pixels, clip, frame, square_mask
 from veronese import ClipTracks, Correction, Mask, Prompt, Segmentation, fit_points, segment_clip, segment_pair
@@ -197,3 +200,22 @@ def test_measurements(tmp_path: Path) -> None:
         motions = [[one.matrix, one.measurements, one.determined] for one in fit.motions]
         found.append({"labels": sha256(fit.labels.tobytes()), "numbers": numbers([motions, fit.singular_values])})
     assert found == asked.of_node()["points"]
+    entries = asked.of_node()["entries"]
+    assert set(entries) == {"FittedMotion", "PaperStages", "Refinement", "RankCandidate"}
+    assert_known(entries)
+
+
+def assert_known(entries: Dict[str, List[str]]) -> None:
+    """Whatever Node's reports have, Python's classes have."""
+    for name, known in entries.items():
+        names = {re.sub("[A-Z]", lambda letter: "_" + letter.group().lower(), one) for one in known}
+        assert names <= {field.name for field in fields(getattr(veronese, name))}, name
+
+
+def test_nothing_of_a_report_is_left_out(tmp_path: Path) -> None:
+    asked = Asked(tmp_path)
+    asked.pairs = [(SAMPLES / "intel-two-cars" / "first.png", SAMPLES / "intel-two-cars" / "second.png", {"quality": "fast"})]
+    asked.clips = [(clip(4), False, {"quality": "fast"})]
+    entries = asked.of_node()["entries"]
+    assert set(entries) == {"SegmentedMotion", "Junction", "Candidate", "Sighting", "BackgroundMotion"}
+    assert_known(entries)
