@@ -29,6 +29,7 @@ test('strokes of brush and eraser, with the pointer or the keyboard, change a ma
   for (let k = 0; k < 6; k++) await page.keyboard.press('ArrowRight');
   await page.keyboard.press('Space');
   await expect(page.locator('#status')).toHaveText(/^Masks updated/);
+  await done(page);
   const drawn = await labelsOnCanvas(page);
   // 20 steps of 8 pixels (the radius) to the right of the centre, then 6 more.
   for (let x = 384 + 160; x <= 384 + 208; x++) expect(drawn[216 * 768 + x]).toBe(1);
