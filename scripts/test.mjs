@@ -11,10 +11,8 @@ import { cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/c
 import { prepare } from './lib/prepare.mjs';
 import { OWN, installWheel } from './lib/python-packages.mjs';
 import { Stop, command, inLane, say } from './lib/run.mjs';
+import { CRATES } from './lib/rust.mjs';
 import { tests } from './lib/tests.mjs';
-
-// Without the crate of the Python package, which has no tests without an interpreter.
-const CRATES = ['--workspace', '--exclude', 'veronese-python'];
 
 const LANES = { cargo: { niceness: 10 }, node: { niceness: 0 } };
 

@@ -43,7 +43,7 @@ def test_the_notices_name_what_is_linked() -> None:
         assert f"- {name} {version}: " in text, name
     for name in ("wasm-bindgen", "pyo3-macros", "syn", "criterion", "fflate"):
         assert f"- {name} " not in text, f"{name} is not in it"
-    assert not re.search(r"/home/|/root/|\.cargo|registry|crates\.io|pypi", text)
+    assert not re.search(r"/(?:home|root)/|\.cargo|registry|crates\.io|pypi", text)
 
 
 def test_no_folder_of_the_builder_is_in_it() -> None:

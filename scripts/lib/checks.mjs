@@ -7,15 +7,13 @@ import { importsAgree } from './imports.mjs';
 import { licencesAllowed } from './licences.mjs';
 import { publicApiAgrees } from './public-api.mjs';
 import { run, say } from './run.mjs';
+import { CRATES } from './rust.mjs';
 import { versionProblem, versions } from './versions.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
 // Only the benchmarks of masks and clips use the other feature.
 const ALL = ['--features', 'codecs,ablation'];
-// With the crates of generated scenes and of the WebAssembly modules. That of the Python package is no program of its own, and nothing
-// for WebAssembly.
-const CRATES = ['--workspace', '--exclude', 'veronese-python'];
 const ALL_TARGETS = ['--locked', ...CRATES, '--all-targets'];
 const TESTS = ['--locked', ...CRATES, '--lib', '--tests'];
 const MODULES = ['--package', 'veronese-wasm', ...WASM];

@@ -15,6 +15,9 @@ const CARGO_CYCLONEDX = '0.5.9';
 // Removed at the end, so an interrupted installation resumes where it stopped.
 const COMPILE_FOLDER = join(toolsFolder, 'build');
 
+/** Cargo's arguments for all crates but that of the Python package, which is no program of its own and nothing for WebAssembly. */
+export const CRATES = ['--workspace', '--exclude', 'veronese-python'];
+
 /** The version of wasm-bindgen in Cargo.lock; the program that generates the JavaScript must have the same version. */
 export function wasmBindgenVersion() {
   const found = /name = "wasm-bindgen"\r?\nversion = "([^"]+)"/.exec(projectText('Cargo.lock'));
