@@ -533,20 +533,18 @@ describe('clips', () => {
 
   test('of a pool do not wait for workers that others keep busy, start none when it is closed, and give them back', async (t) => {
     const workers = [];
+    // The first worker never answers, so that its call lasts however slow the others are.
     const worker = () => {
-      const one = new Worker(new URL('../dist/worker-node.js', import.meta.url));
+      const one = workers.length ? new Worker(new URL('../dist/worker-node.js', import.meta.url)) : new Worker('setInterval(() => {}, 1000)', { eval: true });
       one.once('exit', () => (one.ended = true));
       workers.push(one);
       return one;
     };
     const pool = new SegmenterPool({ jobs: 4, worker });
     t.after(() => pool.close());
-    const [large, larger] = [0, 1].map((k) => frame(k, { width: 640, height: 480 }));
     const controller = new AbortController();
-    const busy = pool.segmentPair(large, larger, { quality: 'best', signal: controller.signal }).catch(({ code }) => code);
+    const busy = pool.segmentPair(list[0], list[1], { signal: controller.signal }).catch(({ code }) => code);
     assert.deepEqual(await all(pool.segmentClip(readable(), FAST)), whole.frames);
-    const answered = Promise.race([busy, 'still busy']);
-    assert.equal(await answered, 'still busy');
     controller.abort();
     assert.equal(await busy, 'cancelled');
     // The cancelled call's worker has ended as it would have without a clip; of the others, one keeps the clip.
