@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use serde::Serialize;
 use veronese::embedding::rank::{MAX_TRIED, number_of_motions};
 use veronese::paper::paper_fit;
 use veronese::{AffineMotion, FitOptions, MotionCount, fit_motions};
@@ -16,6 +17,8 @@ pub(crate) const METHODS: [&str; 4] = ["paper, factorisation", "paper, nonlinear
 const GROSS: f64 = 0.2;
 
 /// Results for one number of motions and one noise level.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Cell {
     /// Number of motions.
     pub(crate) motions: usize,
@@ -28,6 +31,7 @@ pub(crate) struct Cell {
 }
 
 /// The errors of one method, per cent.
+#[derive(Serialize)]
 pub(crate) struct Errors {
     /// Mean over the trials of (20).
     pub(crate) mean: f64,
