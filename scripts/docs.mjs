@@ -20,7 +20,7 @@ await command(async () => {
   const entries = ENTRIES.filter(inProject).flatMap((file) => ['--entryPoints', file]);
   const settings = ['--options', 'pkg/typedoc.json', '--out', join(OUT, 'package')];
   await must('The reference of the package could not be made.', typedoc, [...entries, ...settings]);
-  const doc = ['doc', '--locked', '--no-deps', '--lib', '--features', 'codecs'];
+  const doc = ['doc', '--locked', '--no-deps', '--lib', '--features', 'codecs,stages'];
   await must('The reference of the crate could not be made.', 'cargo', doc, { env: { CARGO_TARGET_DIR: undefined } });
   const made = join(root, 'target', 'doc');
   if (existsSync(made)) cpSync(made, join(OUT, 'crate'), { recursive: true });

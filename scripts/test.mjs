@@ -5,7 +5,7 @@
 // they leave.
 
 import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
-import { buildModules, buildPackage, buildPage, buildWheel } from './lib/builds.mjs';
+import { buildModules, buildPackage, buildPage, buildStagesModule, buildWheel } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
 import { cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -20,7 +20,7 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs']),
+    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs,stages']),
   },
   wasm: {
     lane: 'cargo',
@@ -82,6 +82,14 @@ const PARTS = {
       if (chromium.problem) throw new Stop(chromium.problem);
       const env = { VERONESE_CHROMIUM: chromium.path };
       return tests(playwrightCounts, 'npm', ['test', '--silent', '--workspace', 'www'], env);
+    },
+  },
+  site: {
+    lane: 'node',
+    title: 'the module of the site',
+    run: async () => {
+      await buildStagesModule();
+      return tests(nodeCounts, 'node', ['--test', 'site/tests/module.test.mjs']);
     },
   },
   runtimes: {
