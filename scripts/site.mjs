@@ -9,7 +9,7 @@ import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
 import { buildModules, buildPackage, buildPage, buildStagesModule } from './lib/builds.mjs';
-import { SITE, prepareNpmPackages } from './lib/npm-packages.mjs';
+import { HOSTS, SITE, prepareNpmPackages } from './lib/npm-packages.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { referenceOfCrate, referenceOfPackage } from './lib/references.mjs';
@@ -26,6 +26,7 @@ await command(async (args) => {
   const { serves, port, onlyPages } = options(args);
   await prepare();
   await prepareNpmPackages(SITE);
+  await prepareNpmPackages(HOSTS);
   await buildModules();
   await buildPackage();
   await buildPage();
@@ -40,7 +41,9 @@ await command(async (args) => {
   }
   const site = join(root, SITE);
   await must('The pages could not be made.', 'npx', ['--no-install', 'eleventy', '--quiet'], { cwd: site });
-  await bundleScripts(site);
+  const esbuild = createRequire(join(site, 'package.json'))('esbuild');
+  await bundleScripts(site, esbuild);
+  await minifyPackage(esbuild);
   copyParts();
   await must('The search could not be made.', 'npx', ['--no-install', 'pagefind', '--silent', '--site', OUT, '--output-subdir', 'pagefind'], { cwd: site });
   say('out/site/index.html');
@@ -51,8 +54,7 @@ await command(async (args) => {
 });
 
 /** The scripts of the pages, each figure in a file of its own. */
-async function bundleScripts(site) {
-  const { build } = createRequire(join(site, 'package.json'))('esbuild');
+async function bundleScripts(site, { build }) {
   const figures = readdirSync(join(site, 'client/figures')).filter((name) => name.endsWith('.mjs') && name !== 'kit.mjs');
   const entries = ['site', 'start', 'method', 'worker', ...figures.map((name) => `figures/${name.replace('.mjs', '')}`)];
   await build({
@@ -69,14 +71,21 @@ async function bundleScripts(site) {
   });
 }
 
+/** The package's scripts as they are, but without comments and spaces. */
+async function minifyPackage({ build }) {
+  const folder = join(root, 'pkg/dist');
+  const entryPoints = readdirSync(folder).filter((name) => name.endsWith('.js') && !/^(cli|inline|node|worker-node)/.test(name));
+  await build({ entryPoints: entryPoints.map((name) => join(folder, name)), outdir: join(OUT, 'package/dist'), minify: true, format: 'esm', target: 'es2022' });
+}
+
 /** The module, the package, samples and pictures. */
 function copyParts() {
   const copy = (from, to) => cpSync(join(root, from), join(OUT, to), { recursive: true });
   copy('site/module', 'module');
-  for (const name of readdirSync(join(root, 'pkg/dist')).filter((name) => name.endsWith('.js'))) copy(`pkg/dist/${name}`, `package/dist/${name}`);
   copy('pkg/wasm/veronese_bg.wasm', 'package/wasm/veronese_bg.wasm');
   copy(SAMPLE, 'samples/passing-cars');
   copy(PAIR, 'samples/intel-two-cars');
+  copy('docs/images/two-cars.png', 'images/two-cars.png');
   copy('www/public/icon.svg', 'images/icon.svg');
   copy('www/src/styles/wordmark/cormorant-garamond.woff2', 'images/wordmark.woff2');
   writeFileSync(join(OUT, '.nojekyll'), '');
