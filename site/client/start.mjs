@@ -15,7 +15,10 @@ async function begin() {
   const { count, frames } = demo.dataset;
   const names = Array.from({ length: Number(count) }, (_, index) => new URL(`${frames}/${String(index).padStart(2, '0')}.webp`, document.baseURI).href);
   const started = performance.now();
-  demo.addEventListener('frame', () => (told.textContent = `${demo.frameCount} of ${names.length} frames`));
+  demo.addEventListener('progress', ({ detail: { stage, frame } }) => {
+    if (frame !== undefined) told.textContent = `${stage === 'labels' ? 'Masks of' : 'Looking at'} frame ${frame + 1} of ${names.length}`;
+  });
+  demo.addEventListener('frame', () => (demo.currentFrame = demo.frameCount - 1));
   demo.addEventListener('tracks', ({ detail }) => {
     const seconds = ((performance.now() - started) / 1000).toFixed(1);
     told.textContent = `${names.length} frames, ${detail.objects.length} things that move, ${seconds} seconds in this tab. Click one; step with ← and →.`;

@@ -14,7 +14,7 @@ const [first, second] = await Promise.all(['first.png', 'second.png'].map(async 
 
 const code = `import { segmentPair } from 'veronese';
 const { motions, labels } = await segmentPair(first, second);
-console.table(motions, ['pixels', 'share', 'group', 'residual']);`;
+console.table(motions, ['pixels', 'group', 'residual']);`;
 
 export default function run() {
   // In the package's own folder, where Node finds `veronese`.
