@@ -18,9 +18,9 @@ import { serve } from './lib/static-server.mjs';
 
 const OUT = join(root, 'out', 'site');
 const HOST = '127.0.0.1';
-/** What the start page takes of the package and of the samples. */
+/** What the pages take of the samples. */
 const SAMPLE = 'www/public/samples/passing-cars';
-const PAIR = 'www/public/samples/intel-two-cars';
+const PAIRS = ['intel-two-cars', 'parallax'];
 
 await command(async (args) => {
   const { serves, port, onlyPages } = options(args);
@@ -65,7 +65,7 @@ async function bundleScripts(site) {
     minify: true,
     target: 'es2022',
     chunkNames: '[name]-[hash]',
-    external: ['../package/*'],
+    external: ['../package/*', '../../package/*'],
   });
 }
 
@@ -76,7 +76,7 @@ function copyParts() {
   for (const name of readdirSync(join(root, 'pkg/dist')).filter((name) => name.endsWith('.js'))) copy(`pkg/dist/${name}`, `package/dist/${name}`);
   copy('pkg/wasm/veronese_bg.wasm', 'package/wasm/veronese_bg.wasm');
   copy(SAMPLE, 'samples/passing-cars');
-  copy(PAIR, 'samples/intel-two-cars');
+  for (const pair of PAIRS) copy(`www/public/samples/${pair}`, `samples/${pair}`);
   copy('www/public/icon.svg', 'images/icon.svg');
   copy('www/src/styles/wordmark/cormorant-garamond.woff2', 'images/wordmark.woff2');
   writeFileSync(join(OUT, '.nojekyll'), '');
