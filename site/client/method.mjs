@@ -15,10 +15,12 @@ const near = new IntersectionObserver(
 figures.forEach((figure) => near.observe(figure));
 
 async function start(figure) {
-  const { default: mount } = await import(`./figures/${figure.dataset.figure}.js`);
+  // As an address, so that the bundler leaves it alone: each figure is a file of its own.
+  const script = new URL(`./figures/${figure.dataset.figure}.js`, import.meta.url).href;
   const stage = figure.querySelector('.stage');
   const waiting = stage.querySelector('.waiting');
   try {
+    const { default: mount } = await import(script);
     await mount({ stage, say: speaker(figure.querySelector('.reading')) });
     waiting.remove();
     figure.dataset.ready = '';
