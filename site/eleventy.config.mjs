@@ -23,6 +23,8 @@ export default function configure(eleventy) {
     const { outputPath, url } = this.page;
     return outputPath?.endsWith('.html') ? withRelativeLinks(content, url) : content;
   });
+  // An article's table of contents follows its headings.
+  eleventy.addTransform('contents', (content) => content.replace(/(<nav class="contents"[^>]*>)(?=<\/nav>)/, (nav) => nav + contents(content)));
   eleventy.addCollection('guide', (pages) => pages.getFilteredByGlob('pages/guide/*.md').sort((one, other) => one.data.order - other.data.order));
   eleventy.addFilter('markdown', (text) => library.render(text));
   eleventy.addFilter('kilobytes', (bytes) => String(Math.round(bytes / 1024)));
@@ -48,6 +50,12 @@ const slugify = (heading) =>
     .toLowerCase()
     .replaceAll(/[^\p{L}\p{N}]+/gu, '-')
     .replaceAll(/^-|-$/g, '');
+
+/** The sections of a page as a list of links. */
+function contents(html) {
+  const sections = html.matchAll(/<h2 id="([^"]+)"[^>]*><a[^>]*>(.*?)<\/a><\/h2>/gs);
+  return `<ol>${Array.from(sections, ([, id, title]) => `<li><a href="#${id}">${title.trim()}</a></li>`).join('')}</ol>`;
+}
 
 /** The same links, from the folder of the page at `url`. */
 function withRelativeLinks(html, url) {
