@@ -11,18 +11,20 @@ import anchors from 'markdown-it-anchor';
 
 export default function configure(eleventy) {
   eleventy.addPlugin(highlighting);
+  let library;
   eleventy.amendLibrary('md', (markdown) => {
+    library = markdown;
     markdown.set({ typographer: false });
     markdown.use(katex.default ?? katex, { output: 'mathml', throwOnError: true, strict: 'error' });
     markdown.use(anchors, { level: [2, 3], slugify, permalink: anchors.permalink.headerLink({ safariReaderFix: true }), tabIndex: false });
   });
-  eleventy.addPassthroughCopy({ styles: 'styles', 'pages/guide/images': 'guide/images', images: 'images' });
+  eleventy.addPassthroughCopy({ styles: 'styles', 'pages/guide/images': 'guide/images' });
   eleventy.addTransform('relative', function relative(content) {
     const { outputPath, url } = this.page;
     return outputPath?.endsWith('.html') ? withRelativeLinks(content, url) : content;
   });
   eleventy.addCollection('guide', (pages) => pages.getFilteredByGlob('pages/guide/*.md').sort((one, other) => one.data.order - other.data.order));
-  eleventy.addFilter('withoutTags', (html) => html.replaceAll(/<[^>]*>/g, ''));
+  eleventy.addFilter('markdown', (text) => library.render(text));
   eleventy.addFilter('kilobytes', (bytes) => String(Math.round(bytes / 1024)));
   // A figure of the explainer: its script fills the stage when it comes into view.
   eleventy.addPairedShortcode('figure', (caption, name, label) =>
@@ -50,7 +52,7 @@ const slugify = (heading) =>
 /** The same links, from the folder of the page at `url`. */
 function withRelativeLinks(html, url) {
   const folder = url.endsWith('/') ? url : `${dirname(url)}/`;
-  return html.replaceAll(/(\s(?:href|src|data-root|poster|frames)=")\/(?!\/)([^"]*)"/g, (_, begin, path) => {
+  return html.replaceAll(/(\s(?:href|src|data-root|data-frames)=")\/(?!\/)([^"]*)"/g, (_, begin, path) => {
     const to = posix.relative(folder, `/${path}`) || '.';
     return `${begin}${to}${path.endsWith('/') || path === '' ? '/' : ''}"`;
   });

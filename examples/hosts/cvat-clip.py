@@ -128,7 +128,7 @@ def annotate(task, work, options):
 
 
 def correct(task, work, options):
-    """Tracks that a person changed → corrections → the clip again → tracks. What nobody touched stays as it is."""
+    """Tracks that a person changed → corrections → the clip again → tracks. Untouched tracks stay as they are."""
     if not work.held:
         raise Refusal("not-annotated", f"'{options.out}' has no clip of this task: use 'annotate' first")
     frames, before, drawn = work.held["frames"], work.objects(), work.drawn()
