@@ -25,7 +25,7 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs']),
+    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs,stages']),
   },
   wasm: {
     lane: 'cargo',
