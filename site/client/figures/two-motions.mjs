@@ -119,7 +119,13 @@ export default async function mount({ stage, say }) {
       void show();
     },
   });
-  const truth = toggle({ label: 'Colour by truth', onInput: (on) => void ((coloured = on), paint()) });
+  const truth = toggle({
+    label: 'Colour by truth',
+    onInput(on) {
+      coloured = on;
+      paint();
+    },
+  });
   stage.append(
     beside(panel('The motions that each pixel allows', plane.element), panel('The pixels as points, and the conic through them', dual.element)),
     html('dl', { class: 'terms', 'aria-label': 'The coefficients of the conic' }, ...terms),
