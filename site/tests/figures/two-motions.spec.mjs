@@ -37,7 +37,7 @@ test('five pixels are enough, and at each of them one factor is zero', async ({ 
   await expect(reading).toContainText('One conic goes through all 5 pixels');
   expect(await coefficients(figure)).toEqual(all);
   await expect(figure.locator('circle.point:visible')).toHaveCount(5);
-  const look = figure.getByRole('slider', { name: 'Look at pixel' });
+  const look = figure.getByRole('slider', { name: 'Look at' });
   for (let pixel = 1; pixel <= 5; pixel++) {
     const [number, first, second] = await numbers(reading, PIXEL);
     expect(number).toBe(pixel);
