@@ -22,7 +22,7 @@ export default async function mount({ stage, say }) {
   canvas.className = 'pixels';
   const picture = plot({ title: 'The pixels that are measured', x: [-0.5, SIZE - 0.5], y: [-0.5, SIZE - 0.5], width: 360, height: 360, flipped: true });
   const plane = plot({ title: 'The plane of motions', x: [-2, 2], y: [-2, 2], width: 360, height: 360, names: ['u', 'v'], flipped: true });
-  const estimate = svg('path', { class: 'arrow two', d: 'M-9 -9L9 9M-9 9L9 -9' });
+  const estimate = svg('path', { class: 'arrow two', d: 'M-14 -14L14 14M-14 14L14 -14' });
   const marks = places.map(() => ({ tick: svg('path', { class: 'gradient' }), line: svg('line', { class: 'line thin' }) }));
   picture.marks.append(...marks.map(({ tick }) => tick));
   plane.marks.append(...marks.map(({ line }) => line), estimate);
@@ -101,7 +101,7 @@ function frames(pattern, [u, v], noise) {
 function blobs() {
   const draw = random(3);
   const waves = Array.from({ length: 14 }, () => [2 * Math.PI * draw(), (2 * Math.PI) / (16 + 16 * draw()), 2 * Math.PI * draw()]);
-  return (x, y) => 128 + 24 * waves.reduce((all, [angle, pace, phase]) => all + Math.sin(pace * (x * Math.cos(angle) + y * Math.sin(angle)) + phase), 0);
+  return (x, y) => 128 + 16 * waves.reduce((all, [angle, pace, phase]) => all + Math.sin(pace * (x * Math.cos(angle) + y * Math.sin(angle)) + phase), 0);
 }
 
 /** Pixels all over a frame: any first few of them are spread evenly (the plastic number's sequence). */

@@ -4,16 +4,16 @@ import { ask, latest } from '../compute.mjs';
 import { arrow, beside, button, choice, controls, covered, greyPixels, handle, html, panel, plot, segment, set, svg, toggle, written } from './kit.mjs';
 
 /** In pixels: half a frame but for the middle, half the sheet, the radius of the window, a light and a dark stripe together. */
-const HALF = 40;
-const SHEET = 28;
-const WINDOW = 17;
+const HALF = 34;
+const SHEET = 26;
+const WINDOW = 18;
 const PERIOD = 18;
 /** The radius at which the gradient is turned. */
-const RING = WINDOW + 5;
+const RING = WINDOW + 4;
 /** The largest motion, in pixels per frame. */
 const MOST = 1.5;
 /** Frames until the sheet turns back, and frames per second. */
-const SWING = 7;
+const SWING = 5;
 const RATE = 5;
 const DEGREE = Math.PI / 180;
 
@@ -43,7 +43,7 @@ export default async function mount({ stage, say }) {
   const plane = plot({ title: 'The plane of motions', x: [-2, 2], y: [-2, 2], width: 360, height: 360, names: ['u', 'v'], flipped: true });
   const line = svg('line', { class: 'line' });
   const [truth, normal] = ['one', 'two'].map((tone) => svg('path', { class: `arrow ${tone}` }));
-  const [truthName, normalName] = [svg('text', { class: 'one' }, 'the sheet’s motion'), svg('text', { class: 'two' }, 'normal flow')];
+  const [truthName, normalName] = [svg('text', { class: 'one' }, 'true motion'), svg('text', { class: 'two' }, 'normal flow')];
   plane.marks.append(line, truth, normal, normalName, truthName);
 
   const show = latest(async () => {
@@ -58,17 +58,14 @@ export default async function mount({ stage, say }) {
     set(line, segment(plane, [ix, iy, it]));
     set(truth, { d: arrow(plane.at(0, 0), plane.at(u, v)) });
     set(normal, { d: arrow(plane.at(0, 0), plane.at(...foot)) });
-    // The names stand on the far side of the line, apart from each other.
-    const far = it > 0 ? -1 : 1;
-    const [gx, gy] = [(far * ix) / Math.sqrt(square), (far * iy) / Math.sqrt(square)];
-    const turn = -gy * (u - foot[0]) + gx * (v - foot[1]) < 0 ? -1 : 1;
-    put(normalName, plane.at(...foot), [gx + turn * gy, gy - turn * gx]);
-    put(truthName, plane.at(u, v), [gx - turn * gy, gy + turn * gx]);
+    const below = v > foot[1];
+    put(truthName, plane.at(u, v), below);
+    put(normalName, plane.at(...foot), !below);
     say(
       `The pixel in the middle gets brighter by ${written(ix, 1)} grey levels per pixel to the right, by ${written(iy, 1)} per pixel down and by ${written(it, 1)} ` +
         `from frame to frame: it allows every motion (u, v) with ${sum([ix, ' u'], [iy, ' v'], [it, ''])} = 0. ` +
         `The sheet’s motion (${written(u)}, ${written(v)}) gives ${written(ix * u + iy * v + it, 1)} there. ` +
-        `Measured is only its part along the gradient, the normal flow (${written(foot[0])}, ${written(foot[1])}), ${written(Math.hypot(...foot))} pixels long.`,
+        `The pixel measures only the part along the gradient, the normal flow (${written(foot[0])}, ${written(foot[1])}), ${written(Math.hypot(...foot))} pixels long.`,
     );
   });
 
@@ -137,11 +134,8 @@ export default async function mount({ stage, say }) {
 /** The path of a circle around the middle of the picture. */
 const circle = (radius) => `M${180 - radius} 180a${radius} ${radius} 0 1 0 ${2 * radius} 0a${radius} ${radius} 0 1 0 ${-2 * radius} 0z`;
 
-/** Puts a text beside a point, in a direction. */
-function put(text, [px, py], [dx, dy]) {
-  const length = Math.hypot(dx, dy);
-  set(text, { x: px + (16 * dx) / length, y: py + (20 * dy) / length + 4, 'text-anchor': dx < 0 ? 'end' : 'start' });
-}
+/** Puts a text above or below a point, within the plot. */
+const put = (text, [px, py], below) => set(text, { x: Math.min(Math.max(px, 45), 315), y: py + (below ? 26 : -16), 'text-anchor': 'middle' });
 
 /** Numbers with their names, as a sum. */
 const sum = (...terms) => terms.map(([value, name], k) => `${k ? (value < 0 ? ' − ' : ' + ') : value < 0 ? '−' : ''}${written(Math.abs(value), 1)}${name}`).join('');

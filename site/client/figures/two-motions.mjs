@@ -35,7 +35,8 @@ export default async function mount({ stage, say }) {
   const conic = svg('path', { class: 'line guide' });
   const lines = pixels.map(() => svg('line'));
   const points = pixels.map(() => svg('circle'));
-  plane.marks.append(...lines);
+  const names = MOTIONS.slice(0, 2).map((tone, body) => svg('text', { class: tone, 'text-anchor': 'middle' }, String(body + 1)));
+  plane.marks.append(...lines, ...names);
   dual.marks.append(between, conic, ...points);
   const numbers = TERMS.map(() => html('dd', { class: 'value' }));
   const terms = TERMS.map(([monomial, meaning], k) => html('div', {}, html('dt', {}, formula(monomial)), numbers[k], html('dd', {}, formula(`= ${meaning}`))));
@@ -57,6 +58,10 @@ export default async function mount({ stage, say }) {
       set(lines[k], segment(plane, y) ?? { x1: 0, y1: 0, x2: 0, y2: 0 });
       const [cx, cy] = dual.at(y[1] / y[0], -y[2] / y[0]);
       set(points[k], { cx, cy });
+    }
+    for (const [body, name] of names.entries()) {
+      const [x, y] = plane.at(...motions[body]);
+      set(name, { x, y: y - 16 });
     }
     paint();
     const isOne = singularValues[4] > ROUNDING * singularValues[0];
