@@ -10,7 +10,7 @@ import { join } from 'node:path';
 import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
 import { buildModules, buildPackage, buildPage, buildWheel } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
-import { cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
+import { added, cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { OWN, installWheel } from './lib/python-packages.mjs';
@@ -181,11 +181,6 @@ async function runPart({ title, run: runTests }, setup) {
     return { passed: 0, failed: 1, skipped: 0, note: error.message };
   });
   return { title, seconds: (Date.now() - start) / 1000, ...outcome };
-}
-
-function added(one, other) {
-  const sum = (kind) => one[kind] + other[kind];
-  return { passed: sum('passed'), failed: sum('failed'), skipped: sum('skipped'), note: one.note ?? other.note };
 }
 
 function summarise(results) {
