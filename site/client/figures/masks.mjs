@@ -25,7 +25,7 @@ export default async function mount({ stage, say }) {
   const chosen = {};
 
   const picture = html('div', { class: 'picture' });
-  const heading = html('h4');
+  const heading = html('h3');
   const thought = html('p');
   const numbers = html('tbody');
   const which = html('div');
