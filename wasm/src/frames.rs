@@ -53,15 +53,6 @@ pub(super) fn report_of_pair(segmentation: &Segmentation, options: &SegmentOptio
     .into_value()
 }
 
-/// [`segment_pair`] for two `ImageData`.
-///
-/// # Errors
-/// As [`segment_pair`].
-#[wasm_bindgen(js_name = segmentImageData)]
-pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsValue) -> Result<JsValue, JsValue> {
-    segment_pair(first, second, options, None)
-}
-
 /// Solves the labels of a segmentation again under a correction (see [`veronese::Correction`]). `matrices` holds six entries per motion,
 /// `groups` one group per motion, `labels` and `evidence` one entry per pixel; `options` has the `quality` of the labels.
 ///
