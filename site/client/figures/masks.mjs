@@ -1,6 +1,6 @@
 // From two frames to masks, stage by stage: what the product's own pipeline notes on its way.
 
-import { asker } from '../compute.mjs';
+import { computer } from '../compute.mjs';
 import { withMasks } from '../masks.mjs';
 import { exceededBy, faint, signed, size } from '../planes.mjs';
 import { arrow, beside, button, canvas, choice, colour, controls, covered, formula, html, pixels, plot, svg, written } from './kit.mjs';
@@ -16,7 +16,7 @@ const SOURCES = { constraint: 'one', window: 'two', hypothesis: 'four' };
 
 const address = (sample, name) => new URL(`../../samples/${sample}/${name}.png`, import.meta.url);
 /** Its own worker: a pair takes seconds. */
-const ask = asker();
+const ask = computer();
 
 export default async function mount({ stage, say }) {
   let pair;
