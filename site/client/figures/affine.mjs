@@ -84,7 +84,7 @@ export default async function mount({ stage, say }) {
   stage.append(
     beside(panel('A square of pixels, and where it goes', plane.element), panel('The six numbers', table)),
     controls(
-      ...PRESETS.map(([name, motion]) => button(name, () => take(motion))),
+      html('div', { class: 'buttons' }, ...PRESETS.map(([name, motion]) => button(name, () => take(motion)))),
       slider({ label: 'Pixels', min: 4, max: 60, step: 1, value: count, onInput: (now) => void ((count = now), show()) }),
       slider({ label: 'Noise', min: 0, max: 5, step: 0.5, value: noise, format: (now) => `${now} %`, onInput: (now) => void ((noise = now), show()) }),
     ),

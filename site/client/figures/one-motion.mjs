@@ -73,7 +73,7 @@ export default async function mount({ stage, say }) {
   });
 
   stage.append(
-    beside(panel('The first frame, and the gradients of some pixels', covered(canvas, picture)), panel('The motions that they allow', plane.element)),
+    beside(panel('Gradients in the first frame', covered(canvas, picture)), panel('The motions that they allow', plane.element)),
     controls(
       choice({
         label: 'Pattern',

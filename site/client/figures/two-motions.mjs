@@ -61,7 +61,7 @@ export default async function mount({ stage, say }) {
     }
     for (const [body, name] of names.entries()) {
       const [x, y] = plane.at(...motions[body]);
-      set(name, { x, y: y - 16 });
+      set(name, { x: x + 16, y: y - 10 });
     }
     paint();
     const isOne = singularValues[4] > ROUNDING * singularValues[0];
@@ -97,11 +97,12 @@ export default async function mount({ stage, say }) {
   }
 
   const look = slider({
-    label: 'Look at pixel',
+    label: 'Look at',
     min: 1,
     max: MOST_PIXELS,
     step: 1,
     value: seen + 1,
+    format: (now) => `pixel ${now}`,
     onInput(now) {
       seen = Math.min(now, count) - 1;
       void show();
@@ -119,9 +120,15 @@ export default async function mount({ stage, say }) {
       void show();
     },
   });
-  const truth = toggle({ label: 'Colour by truth', onInput: (on) => void ((coloured = on), paint()) });
+  const truth = toggle({
+    label: 'Colour by truth',
+    onInput(on) {
+      coloured = on;
+      paint();
+    },
+  });
   stage.append(
-    beside(panel('The motions that each pixel allows', plane.element), panel('The pixels as points, and the conic through them', dual.element)),
+    beside(panel('The motions that each pixel allows', plane.element), panel('The pixels as points of a conic', dual.element)),
     html('dl', { class: 'terms', 'aria-label': 'The coefficients of the conic' }, ...terms),
     controls(use, look, truth),
   );
