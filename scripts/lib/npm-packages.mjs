@@ -10,6 +10,7 @@ export const HOSTS = 'pkg/test/hosts';
 export const RUNTIMES = 'pkg/test/runtimes';
 export const SERVERS = 'examples/hosts';
 export const SCALE_OUT = 'examples/scale-out';
+export const SITE = 'site';
 
 /** Installs the packages of a folder's package-lock.json unless they are already installed. */
 export async function prepareNpmPackages(folder = '.') {

@@ -1,0 +1,62 @@
+// Calls of the module in a worker, so that the page answers while a figure computes.
+
+/** Where the worker and the module are, beside this script. */
+const at = (name) => new URL(name, import.meta.url);
+
+/** The result of the module's call `name`: see module.d.ts. Rejects with the module's error, whose `code` is stable. */
+export const ask = asker();
+
+/** The same with a worker of its own, for calls that take long: others do not wait for them. */
+export function asker() {
+  let worker;
+  let count = 0;
+  const waiting = new Map();
+
+  function started() {
+    const one = new Worker(at('worker.js'), { type: 'module' });
+    one.onmessage = ({ data: { id, result, error } }) => {
+      const { resolve, reject } = waiting.get(id);
+      waiting.delete(id);
+      if (error) reject(Object.assign(new Error(error.message), { code: error.code }));
+      else resolve(result);
+    };
+    one.onerror = (event) => {
+      event.preventDefault();
+      worker = undefined;
+      for (const { reject } of waiting.values()) reject(new Error('The module could not be started.'));
+      waiting.clear();
+    };
+    return one;
+  }
+
+  return (name, ...args) => {
+    worker ??= started();
+    return new Promise((resolve, reject) => {
+      waiting.set(++count, { resolve, reject });
+      worker.postMessage({ id: count, name, args });
+    });
+  };
+}
+
+/**
+ * A function that computes and shows, for input that changes faster than that: while one input is worked on, only the newest of the others
+ * is kept.
+ */
+export function latest(work) {
+  let next;
+  let busy = false;
+  return async function run(...input) {
+    next = input;
+    if (busy) return;
+    busy = true;
+    try {
+      while (next) {
+        const now = next;
+        next = undefined;
+        await work(...now);
+      }
+    } finally {
+      busy = false;
+    }
+  };
+}

@@ -1,0 +1,40 @@
+// Starts each figure when it comes near the screen.
+
+const figures = document.querySelectorAll('figure[data-figure]');
+
+const near = new IntersectionObserver(
+  (entries) => {
+    for (const { isIntersecting, target } of entries) {
+      if (!isIntersecting) continue;
+      near.unobserve(target);
+      void start(target);
+    }
+  },
+  { rootMargin: '400px' },
+);
+figures.forEach((figure) => near.observe(figure));
+
+async function start(figure) {
+  // As an address, so that the bundler leaves it alone: each figure is a file of its own.
+  const script = new URL(`./figures/${figure.dataset.figure}.js`, import.meta.url).href;
+  const stage = figure.querySelector('.stage');
+  const waiting = stage.querySelector('.waiting');
+  try {
+    const { default: mount } = await import(script);
+    await mount({ stage, say: speaker(figure.querySelector('.reading')) });
+    waiting.remove();
+    figure.dataset.ready = '';
+  } catch (thrown) {
+    waiting.textContent = `This figure cannot be computed here: ${thrown.message}`;
+    figure.dataset.failed = '';
+  }
+}
+
+/** Says in words what a figure shows, once it has come to rest. */
+function speaker(reading) {
+  let timer;
+  return (text) => {
+    clearTimeout(timer);
+    timer = setTimeout(() => (reading.textContent = text), reading.textContent ? 400 : 0);
+  };
+}

@@ -1,0 +1,13 @@
+// The module in a worker: answers what compute.mjs asks, in order.
+
+import { load } from './module.mjs';
+
+const module = load(new URL('../module/veronese_stages_bg.wasm', import.meta.url));
+
+self.onmessage = async ({ data: { id, name, args } }) => {
+  try {
+    self.postMessage({ id, result: (await module)[name](...args) });
+  } catch (thrown) {
+    self.postMessage({ id, error: { code: thrown?.code, message: String(thrown?.message ?? thrown) } });
+  }
+};
