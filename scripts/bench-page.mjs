@@ -9,7 +9,6 @@
 //   --write-docs   writes the figures to docs/figures, and docs/performance.md from them
 
 import { mkdirSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -18,6 +17,7 @@ import { parseArgs } from 'node:util';
 import { browserMemory } from './lib/browser-memory.mjs';
 import { buildAll } from './lib/builds.mjs';
 import { firstVisits, tasksSince, watchTasks } from './lib/first-visit.mjs';
+import { launchChromium } from './lib/launch-chromium.mjs';
 import { writeLongClip } from './lib/long-clip.mjs';
 import { present } from './lib/documented.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -42,8 +42,7 @@ await command(async (args) => {
   mkdirSync(OUT, { recursive: true });
   const server = await serve(join(root, 'www/dist'), { host: HOST });
   const address = `http://${HOST}:${server.address().port}/`;
-  const { chromium: engine } = createRequire(join(root, 'www/package.json'))('@playwright/test');
-  const browser = await engine.launch({ executablePath: chromium.path, args: ['--no-sandbox'] });
+  const browser = await launchChromium(chromium.path);
   try {
     console.log('Opening the page as a first visitor …');
     const first = await firstVisits(browser, address);

@@ -1,7 +1,7 @@
 // npm run release: everything that a release does before it publishes. Publishing is left to .github/workflows/release.yml, which runs this
 // for a tag and then hands the files in out/release to the registries: nobody needs a token.
 
-import { rmSync } from 'node:fs';
+import { readFileSync, rmSync } from 'node:fs';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
@@ -19,6 +19,7 @@ import { futureLinks, publicationLines } from './lib/release/publication.mjs';
 import { writeSboms } from './lib/release/sbom.mjs';
 import { makeWheel } from './lib/release/wheel.mjs';
 import { Stop, command, run } from './lib/run.mjs';
+import { OUT as SITE, buildSite, missingNotices } from './lib/site.mjs';
 import { versionProblem, versions } from './lib/versions.mjs';
 
 const OUT = join(root, 'out', 'release');
@@ -40,6 +41,7 @@ const STEPS = {
   archives: { title: 'the archives of npm and Cargo', run: packArchives },
   types: { title: 'publint and Are The Types Wrong?', run: checkPackage },
   wheel: { title: 'the Python wheel', run: addWheel },
+  site: { title: 'the site, and its notices', run: makeSite },
   sbom: { title: 'lists of what is shipped (CycloneDX)', run: listComponents },
 };
 
@@ -176,6 +178,12 @@ async function addWheel(release) {
   refuse(missingInArchive(built.wheel, built.files, WITH_NOTICES));
   release.files.push({ path: built.wheel, place: 'PyPI (and the wheels of the other systems)' });
   return [`${built.files.length} files:`, ...built.files.map((file) => `  ${file}`)];
+}
+
+async function makeSite() {
+  await buildSite();
+  refuse(missingNotices(readFileSync(join(SITE, 'licences/index.html'), 'utf8')).map((name) => `The site's page of licences lacks ${name}.`));
+  return ['out/site, with all licences and notices'];
 }
 
 async function listComponents(release) {

@@ -4,14 +4,19 @@
 // two lanes run side by side, and what a part writes is shown when it ends. Some page tests measure time, so that cargo takes the cores that
 // they leave.
 
+import { readdirSync } from 'node:fs';
+import { join } from 'node:path';
+
 import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
 import { buildModules, buildPackage, buildPage, buildWheel } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
-import { cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
+import { added, cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
+import { root } from './lib/project.mjs';
 import { OWN, installWheel } from './lib/python-packages.mjs';
 import { Stop, command, inLane, say } from './lib/run.mjs';
 import { CRATES } from './lib/rust.mjs';
+import { buildSite } from './lib/site.mjs';
 import { tests } from './lib/tests.mjs';
 
 const LANES = { cargo: { niceness: 10 }, node: { niceness: 0 } };
@@ -20,7 +25,7 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs']),
+    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs,stages']),
   },
   wasm: {
     lane: 'cargo',
@@ -39,6 +44,17 @@ const PARTS = {
       await installWheel(OWN, wheel);
       // What is installed is tested, not the sources beside the tests.
       return tests(pytestCounts, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', 'python'], { VERONESE_WHEEL: wheel });
+    },
+  },
+  guide: {
+    // After the Python package, which it uses as it is installed then, and one at a time with cargo.
+    lane: 'cargo',
+    title: "the code of the site's guide",
+    run: async ({ chromium }) => {
+      await buildModules();
+      await buildPackage();
+      if (chromium.problem) say(chromium.problem);
+      return tests(nodeCounts, process.execPath, ['--test', 'site/tests/guide.test.mjs'], chromium.path ? { VERONESE_CHROMIUM: chromium.path } : {});
     },
   },
   package: {
@@ -84,6 +100,19 @@ const PARTS = {
       return tests(playwrightCounts, 'npm', ['test', '--silent', '--workspace', 'www'], env);
     },
   },
+  site: {
+    lane: 'node',
+    title: 'the site in Chromium',
+    run: async ({ chromium }) => {
+      if (chromium.problem) throw new Stop(chromium.problem);
+      await buildSite();
+      const env = { VERONESE_CHROMIUM: chromium.path };
+      const scripts = readdirSync(join(root, 'site/tests')).filter((name) => name.endsWith('.test.mjs') && name !== 'guide.test.mjs');
+      const inNode = await tests(nodeCounts, process.execPath, ['--test', '--test-reporter=tap', ...scripts.map((name) => `site/tests/${name}`)], env);
+      const inBrowser = await tests(playwrightCounts, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.config.mjs'], env);
+      return added(inNode, inBrowser);
+    },
+  },
   runtimes: {
     lane: 'node',
     title: 'the packed package in Node 20 to 26, Deno, Bun and workerd',
@@ -116,7 +145,7 @@ await command(async (args) => {
   const names = args.length > 0 ? args : Object.keys(PARTS).filter((name) => !PARTS[name].onRequest);
   const setup = await prepare({
     checks: names.includes('check'),
-    browser: ['page', 'hosts', 'browsers'].some((name) => names.includes(name)),
+    browser: ['page', 'hosts', 'site', 'browsers', 'guide'].some((name) => names.includes(name)),
     python: ['formats', 'hosts'].some((name) => names.includes(name)),
     ownPython: names.includes('python'),
     hosts: names.includes('hosts'),

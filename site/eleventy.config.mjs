@@ -11,18 +11,23 @@ import anchors from 'markdown-it-anchor';
 
 export default function configure(eleventy) {
   eleventy.addPlugin(highlighting);
+  let library;
   eleventy.amendLibrary('md', (markdown) => {
+    library = markdown;
     markdown.set({ typographer: false });
     markdown.use(katex.default ?? katex, { output: 'mathml', throwOnError: true, strict: 'error' });
     markdown.use(anchors, { level: [2, 3], slugify, permalink: anchors.permalink.headerLink({ safariReaderFix: true }), tabIndex: false });
   });
-  eleventy.addPassthroughCopy({ styles: 'styles', 'pages/guide/images': 'guide/images', images: 'images' });
+  eleventy.addPassthroughCopy({ styles: 'styles', 'pages/guide/images': 'guide/images' });
   eleventy.addTransform('relative', function relative(content) {
     const { outputPath, url } = this.page;
     return outputPath?.endsWith('.html') ? withRelativeLinks(content, url) : content;
   });
+  eleventy.addTransform('letters', (content) => content.replaceAll(/<(m[in]) mathvariant="(bold|script)">(\w+)<\/\1>/g, (_, tag, style, text) => `<${tag}>${styled(text, style)}</${tag}>`));
+  // An article's table of contents follows its headings.
+  eleventy.addTransform('contents', (content) => content.replace(/(<nav class="contents"[^>]*>)(?=<\/nav>)/, (nav) => nav + contents(content)));
   eleventy.addCollection('guide', (pages) => pages.getFilteredByGlob('pages/guide/*.md').sort((one, other) => one.data.order - other.data.order));
-  eleventy.addFilter('withoutTags', (html) => html.replaceAll(/<[^>]*>/g, ''));
+  eleventy.addFilter('markdown', (text) => library.render(text));
   eleventy.addFilter('kilobytes', (bytes) => String(Math.round(bytes / 1024)));
   // A figure of the explainer: its script fills the stage when it comes into view.
   eleventy.addPairedShortcode('figure', (caption, name, label) =>
@@ -47,10 +52,32 @@ const slugify = (heading) =>
     .replaceAll(/[^\p{L}\p{N}]+/gu, '-')
     .replaceAll(/^-|-$/g, '');
 
+/** Bold and script letters as characters of their own: browsers ignore the style of a MathML element. */
+function styled(text, style) {
+  const [capitals, small, digits] = style === 'bold' ? [0x1d400, 0x1d41a, 0x1d7ce] : [0x1d49c, 0x1d4b6];
+  // These letters of the script were in Unicode before the others.
+  const old = style === 'script' ? { B: 'ℬ', E: 'ℰ', F: 'ℱ', H: 'ℋ', I: 'ℐ', L: 'ℒ', M: 'ℳ', R: 'ℛ', e: 'ℯ', g: 'ℊ', o: 'ℴ' } : {};
+  const first = [
+    ['A', 'Z', capitals],
+    ['a', 'z', small],
+    ['0', '9', digits],
+  ];
+  return Array.from(text, (letter) => {
+    const range = first.find(([from, to, start]) => start && letter >= from && letter <= to);
+    return old[letter] ?? (range ? String.fromCodePoint(range[2] + letter.codePointAt(0) - range[0].codePointAt(0)) : letter);
+  }).join('');
+}
+
+/** The sections of a page as a list of links. */
+function contents(html) {
+  const sections = html.matchAll(/<h2 id="([^"]+)"[^>]*><a[^>]*>(.*?)<\/a><\/h2>/gs);
+  return `<ol>${Array.from(sections, ([, id, title]) => `<li><a href="#${id}">${title.trim()}</a></li>`).join('')}</ol>`;
+}
+
 /** The same links, from the folder of the page at `url`. */
 function withRelativeLinks(html, url) {
   const folder = url.endsWith('/') ? url : `${dirname(url)}/`;
-  return html.replaceAll(/(\s(?:href|src|data-root|poster|frames)=")\/(?!\/)([^"]*)"/g, (_, begin, path) => {
+  return html.replaceAll(/(\s(?:href|src|data-root|data-frames)=")\/(?!\/)([^"]*)"/g, (_, begin, path) => {
     const to = posix.relative(folder, `/${path}`) || '.';
     return `${begin}${to}${path.endsWith('/') || path === '' ? '/' : ''}"`;
   });

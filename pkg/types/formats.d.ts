@@ -44,7 +44,7 @@ export interface LabelFrame {
 /** The frames of a clip in their order. Each is encoded before the next is taken, so that a long clip need not be in memory. */
 export type LabelFrames = Iterable<LabelFrame> | AsyncIterable<LabelFrame>;
 
-/** What frames become: a document, or a promise of it if they are an async iterable. */
+/** The document of frames, or a promise of it if they are an async iterable. */
 export type Encoded<Frames extends LabelFrames, Document> = Frames extends AsyncIterable<LabelFrame> ? Promise<Document> : Document;
 
 /** Optional information about a clip. */

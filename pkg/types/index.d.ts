@@ -204,7 +204,7 @@ export interface ClipProgress {
   /** Number of frames, if the source has a `length`. */
   of: number | undefined;
   /**
-   * What is done with it. A stream has the stage `pairs` alone. A whole clip has `pairs` for all frames, `corrections` for those that
+   * The work that begins. A stream has the stage `pairs` alone. A whole clip has `pairs` for all frames, `corrections` for those that
    * corrections reach, and `labels` for all frames as they are returned.
    */
   stage: 'pairs' | 'corrections' | 'labels';
@@ -213,15 +213,15 @@ export interface ClipProgress {
 /** Where what is said of a frame spreads: to the frames before and after it, to one side alone, or nowhere. */
 export type ClipPropagation = 'both' | 'forward' | 'backward' | 'none';
 
-/** What a person says of one frame of a clip. */
+/** Labels of one frame of a clip that a person is certain of. */
 export interface ClipCorrection {
   /** Index of the frame, from 0. Each frame has one correction at most. */
   frame: number;
   /** Default: `'both'`. */
   propagate?: ClipPropagation | undefined;
   /**
-   * What is certain of each pixel, row by row: 0 for the background, the number of an object, a number that no object has for a new object,
-   * or 255 where nothing is said.
+   * One label per pixel, row by row: 0 for the background, the number of an object, a number that no object has for a new object, or 255
+   * where nothing is certain.
    */
   labels: Uint8Array;
 }
@@ -278,7 +278,7 @@ export type ClipMask = {
     }
 );
 
-/** What becomes of whole objects. Numbers that no object has change nothing; a list that begins with one merges nothing. */
+/** Changes of whole objects. Numbers that no object has change nothing; a list that begins with one merges nothing. */
 export interface ClipEdits {
   /** Lists of objects that are one; the first number is kept. */
   merge?: readonly (readonly number[])[] | undefined;
@@ -309,12 +309,12 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
    */
   masks?: readonly ClipMask[] | undefined;
   /**
-   * What a person says of some frames, with the numbers of an earlier run. It holds there to the pixel, and objects of which it speaks are
-   * followed from there through the clip. All that is said counts together, in any order. A correction of a frame that has a mask goes
-   * before it where it says anything.
+   * Corrections of some frames, with the numbers of an earlier run. They hold there to the pixel, and the objects that they name are followed
+   * from there through the clip. All count together, in any order. A correction of a frame that has a mask goes before it where it says
+   * anything.
    */
   corrections?: readonly (ClipCorrection | ClipPrompt)[] | undefined;
-  /** What becomes of whole objects, after the corrections. */
+  /** Changes of whole objects, after the corrections. */
   edits?: ClipEdits | undefined;
   /**
    * Numbers of objects that do not change when another one is corrected, as those that a mask or a correction speaks of. Where this or a
@@ -322,7 +322,7 @@ export interface ClipOptions extends Omit<SegmentOptions, 'confidence' | 'onProg
    */
   locked?: readonly number[] | undefined;
   /**
-   * What {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
+   * The bytes that {@link Clip.state} gave for the same frames. No pair is solved: frames are read for their labels and for corrections alone, and
    * `motions`, `quality` and `lookAhead` are those of the state. A correction replaces an earlier one of its frame (one that says
    * nothing takes it back); corrections refer to the numbers before any edit, and edits stay. Bytes that are damaged or of another version
    * of this package are an `invalid-option`, as is a frame that has other pixels than the one that was segmented, when it is read.
@@ -389,15 +389,15 @@ export interface ClipTrack {
   id: number;
   /** As {@link ClipEdits} says. */
   name?: string;
-  /** Index of the first frame that shows it, */
+  /** Index of the first frame that shows it. */
   first: number;
-  /** and of the last. */
+  /** Index of the last frame that shows it. */
   last: number;
   /** One entry for each frame that shows it. */
   frames: ({ frame: number } & Omit<ClipObject, 'id'>)[];
 }
 
-/** What {@link Clip.tracks} returns. */
+/** The objects and the background of a clip, from {@link Clip.tracks}. */
 export interface ClipTracks {
   /** By number, which is the order of appearance. */
   objects: ClipTrack[];
@@ -415,8 +415,8 @@ export interface Clip extends AsyncGenerator<ClipFrame, void, undefined> {
   /** The objects of the frames returned so far: complete after the last frame, whose objects have no matrix. */
   tracks(): ClipTracks;
   /**
-   * What is known of a whole clip, corrections and edits included, for the option `state`: some kilobytes per frame, for the same version
-   * of this package. Undefined before the first frame has been returned, and for a stream.
+   * A whole clip as bytes, corrections and edits included, for the option `state`: some kilobytes per frame, for the same version of this
+   * package. Undefined before the first frame has been returned, and for a stream.
    */
   state(): Promise<Uint8Array | undefined>;
 }
@@ -427,7 +427,7 @@ export type WasmSource = URL | string | Response | ArrayBuffer | ArrayBufferView
 /** Red, green, blue and optional alpha, 0 to 255. */
 export type Colour = readonly [number, number, number] | readonly [number, number, number, number];
 
-/** What is needed of the 2d context of a canvas, which may be an offscreen one. */
+/** The part of a canvas's 2d context that is needed; the canvas may be an offscreen one. */
 export interface PaintContext {
   putImageData(image: never, x: number, y: number): void;
 }
@@ -506,7 +506,8 @@ export function segmentPair(first: Pixels, second: Pixels, options?: SegmentOpti
  *
  * A stream returns a frame when the frames it waits for have come (`lookAhead`), the rest at the end. A whole clip, with
  * `{ length, read(index) }`, solves all pairs before it returns the first frame, and takes corrections. Frames are taken from the source
- * only when the reader waits for one, and one more while the last is worked on, so that decoding and segmenting overlap. If the source throws or a frame is unusable, the frames before it come first, then the error.
+ * only when the reader waits for one, and one more while the last is worked on, so that decoding and segmenting overlap. If the source
+ * throws or a frame is unusable, the frames before it come first, then the error.
  *
  * The call occupies its thread while it works on a frame; `signal` is checked between frames. Another direct call that fails inside the
  * module or is cancelled there in the meantime takes the clip with it, which then rejects with code `internal`; a {@link Segmenter} keeps
@@ -553,7 +554,8 @@ export function groupLabels(segmentation: Pick<Segmentation, 'labels' | 'motions
 export function davisPalette(): [number, number, number][];
 
 /**
- * Two frames. Other properties of the object come back with its outcome. The frames are copied (or transferred, with `transfer`) before the next input is requested, so a source may reuse one set of buffers for all pairs.
+ * Two frames. Other properties of the object come back with its outcome. The frames are copied (or transferred, with `transfer`) before the
+ * next input is requested, so a source may reuse one set of buffers for all pairs.
  */
 export interface PairInput {
   first: Pixels;
@@ -657,8 +659,8 @@ export function segmentPairs<Input extends PairInput>(
   options?: PairsOptions & PoolOptions,
 ): AsyncGenerator<PairOutcome<Input>, void, undefined>;
 
-// What is named here of the platform. Where its own types are loaded, this adds nothing to them. Where they are not (`lib` without DOM, no
-// types of Node), it lets a program compile.
+// Names of the platform that stand above. Where its own types are loaded, this adds nothing to them. Where they are not (`lib` without DOM,
+// no types of Node), it lets a program compile.
 declare global {
   interface AbortSignal {}
   interface Response {}

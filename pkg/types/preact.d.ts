@@ -6,7 +6,7 @@ import type { VeroneseSegmenterAttributes, VeroneseSegmenterListeners, VeroneseS
 
 export * from './element.js';
 
-/** What Preact knows of an ordinary element: versions differ in where they have it by name. */
+/** Preact's own attributes of an element: versions differ in where they have them by name. */
 type Ordinary = Omit<JSX.IntrinsicElements['div'], 'ref'> & ClassAttributes<VeroneseSegmenterElement>;
 
 declare module 'preact' {

@@ -3,18 +3,43 @@
 /** Where the worker and the module are, beside this script. */
 const at = (name) => new URL(name, import.meta.url);
 
-let worker;
-let count = 0;
-const waiting = new Map();
+/**
+ * Asks a worker of its own: what computes for long must not keep others waiting. The function returns the result of the module's call
+ * `name`, see module.d.ts, or rejects with the module's error, whose `code` is stable.
+ */
+export function computer() {
+  let worker;
+  let count = 0;
+  const waiting = new Map();
 
-/** The result of the module's call `name`: see module.d.ts. Rejects with the module's error, whose `code` is stable. */
-export function ask(name, ...args) {
-  worker ??= started();
-  return new Promise((resolve, reject) => {
-    waiting.set(++count, { resolve, reject });
-    worker.postMessage({ id: count, name, args });
-  });
+  function started() {
+    const one = new Worker(at('worker.js'), { type: 'module' });
+    one.onmessage = ({ data: { id, result, error } }) => {
+      const { resolve, reject } = waiting.get(id);
+      waiting.delete(id);
+      if (error) reject(Object.assign(new Error(error.message), { code: error.code }));
+      else resolve(result);
+    };
+    one.onerror = (event) => {
+      event.preventDefault();
+      worker = undefined;
+      for (const { reject } of waiting.values()) reject(new Error('The module could not be started.'));
+      waiting.clear();
+    };
+    return one;
+  }
+
+  return function ask(name, ...args) {
+    worker ??= started();
+    return new Promise((resolve, reject) => {
+      waiting.set(++count, { resolve, reject });
+      worker.postMessage({ id: count, name, args });
+    });
+  };
 }
+
+/** Asks the worker that the figures share. */
+export const ask = computer();
 
 /**
  * A function that computes and shows, for input that changes faster than that: while one input is worked on, only the newest of the others
@@ -37,21 +62,4 @@ export function latest(work) {
       busy = false;
     }
   };
-}
-
-function started() {
-  const one = new Worker(at('worker.js'), { type: 'module' });
-  one.onmessage = ({ data: { id, result, error } }) => {
-    const { resolve, reject } = waiting.get(id);
-    waiting.delete(id);
-    if (error) reject(Object.assign(new Error(error.message), { code: error.code }));
-    else resolve(result);
-  };
-  one.onerror = (event) => {
-    event.preventDefault();
-    worker = undefined;
-    for (const { reject } of waiting.values()) reject(new Error('The module could not be started.'));
-    waiting.clear();
-  };
-  return one;
 }

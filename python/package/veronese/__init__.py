@@ -5,7 +5,7 @@ How many motions there are, what each motion is, and which pixels follow it. The
 A frame is an array of ``uint8`` of shape ``(height, width, 3)``, ``(height, width, 4)`` or ``(height, width)`` (RGB, RGBA or grey), or the
 path of a PNG, JPEG, WebP, BMP or PNM file. Sides are 16 to 4096 pixels. Arrays are copied when a call takes them.
 
-Calls release the interpreter's lock: other threads go on, and Ctrl-C ends a call at once. What is wrong with a frame, an option or a file
+Calls release the interpreter's lock: other threads go on, and Ctrl-C ends a call at once. A mistake in a frame, an option or a file
 is a :class:`VeroneseError` with a stable ``code``, the same as on the command line.
 """
 
@@ -77,11 +77,11 @@ Frame = Union[NDArray[np.uint8], str, "os.PathLike[str]"]
 """An array of pixels, or the path of an image file."""
 
 Progress = Callable[[str, int, int], object]
-"""Called when a stage begins, with its name, its index and the number of stages. What it raises ends the call."""
+"""Called when a stage begins, with its name, its index and the number of stages. An exception that it raises ends the call."""
 
 ClipProgress = Callable[[str, int, Optional[int]], object]
 """Called when work on a frame begins, with the stage (``"pairs"``, ``"corrections"`` or ``"labels"``), the frame's index and the number of
-frames, ``None`` where it is not known. What it raises ends the clip, or the correction."""
+frames, ``None`` where it is not known. An exception that it raises ends the clip, or the correction."""
 
 
 def segment_pair(
@@ -153,8 +153,8 @@ def segment_clip(
     :param mark_unknown: gives label 255 to pixels whose evidence does not tell an object from the background.
     :param look_ahead: the number of frames that each frame waits for, 0 to 8, or ``"all"``: as many as matter, of a whole clip. Default: 8
         for a stream, ``"all"`` for a whole clip. A number makes a stream of a sequence, unless one of the options below is given.
-    :param masks: masks of objects in some frames, with numbers of your own, which the objects keep. What was found under one of their
-        numbers gets the lowest free one.
+    :param masks: masks of objects in some frames, with numbers of your own, which the objects keep. An object that was found
+        under one of their numbers gets the lowest free one.
     :param corrections: what is certain in some frames, with the numbers of an earlier run. A correction of a frame that has a mask goes
         before it where it says anything. Prompts come after all other corrections.
     :param locked: numbers of objects that do not change when another one is corrected, as those that a mask or a correction speaks of.

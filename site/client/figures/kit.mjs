@@ -37,7 +37,7 @@ export function plot({ title, x, y, width = 360, height = 300, names, flipped = 
   if (names) {
     const [ox, oy] = at(Math.min(Math.max(0, x[0]), x[1]), Math.min(Math.max(0, y[0]), y[1]));
     axes.append(svg('line', { x1: 0, x2: width, y1: oy, y2: oy }), svg('line', { x1: ox, x2: ox, y1: 0, y2: height }));
-    axes.append(svg('text', { x: width - 6, y: oy - 6, 'text-anchor': 'end' }, names[0]), svg('text', { x: ox + 6, y: 14 }, names[1]));
+    axes.append(svg('text', { x: width - 6, y: oy - 6, 'text-anchor': 'end' }, names[0]), svg('text', { x: ox + 6, y: flipped ? height - 6 : 14 }, names[1]));
   }
   return { element: picture, marks, handles, at, from, width, height, x, y };
 }
@@ -56,32 +56,52 @@ export function segment({ at, x, y }, [a, b, c]) {
 
 const distance = ([ax, ay], [bx, by]) => Math.hypot(ax - bx, ay - by);
 
+/** The path of an arrow, in pixels of a plot. Nothing where it is too short to have a direction. */
+export function arrow([x1, y1], [x2, y2], head = 8) {
+  const length = Math.hypot(x2 - x1, y2 - y1);
+  if (length < 1) return '';
+  const [dx, dy] = [((x2 - x1) / length) * Math.min(head, length), ((y2 - y1) / length) * Math.min(head, length)];
+  const barb = (side) => `${x2 - dx - side * 0.5 * dy} ${y2 - dy + side * 0.5 * dx}`;
+  return `M${x1} ${y1}L${x2} ${y2}M${barb(1)}L${x2} ${y2}L${barb(-1)}`;
+}
+
 /**
  * A point to drag, or to move with the arrow keys (with Shift ten times as far). `describe` says where it is; `onMove` gets its new place
- * and returns nothing, or a place that it prefers.
+ * and returns nothing, or a place that it prefers. A point that is bound to a curve has `along`: `place(t)` and the inverse `nearest(place)`,
+ * the range `min` to `max`, and `closed` where the curve's ends are one; the keys then move t by `step`.
  */
-export function handle(area, { label, at: start, step, colour = 'ink', describe = ([px, py]) => `${written(px)}, ${written(py)}`, onMove }) {
+export function handle(area, { label, at: start, step, colour = 'ink', describe = ([px, py]) => `${written(px)}, ${written(py)}`, onMove, along }) {
   let place = start;
+  const [low, high] = along ? [along.min, along.max] : area.x;
   const dot = svg(
     'g',
-    { class: 'handle', tabindex: 0, role: 'slider', 'aria-label': label, 'aria-valuemin': area.x[0], 'aria-valuemax': area.x[1] },
+    { class: 'handle', tabindex: 0, role: 'slider', 'aria-label': label, 'aria-valuemin': low, 'aria-valuemax': high },
     svg('circle', { r: 22, class: 'reach' }),
     svg('circle', { r: 9, class: `dot ${colour}` }),
   );
   const show = () => {
     const [sx, sy] = area.at(...place);
-    set(dot, { transform: `translate(${sx} ${sy})`, 'aria-valuenow': String(+place[0].toFixed(3)), 'aria-valuetext': describe(place) });
+    const now = along ? along.nearest(place) : place[0];
+    set(dot, { transform: `translate(${sx} ${sy})`, 'aria-valuenow': String(+now.toFixed(3)), 'aria-valuetext': describe(place) });
+  };
+  const slide = (t) => {
+    const turns = along.closed ? Math.floor((t - low) / (high - low)) : 0;
+    place = along.place(Math.min(Math.max(t - turns * (high - low), low), high));
+    place = onMove(place) ?? place;
+    show();
   };
   const move = ([px, py]) => {
+    if (along) return slide(along.nearest([px, py]));
     const kept = [Math.min(Math.max(px, area.x[0]), area.x[1]), Math.min(Math.max(py, area.y[0]), area.y[1])];
     place = onMove(kept) ?? kept;
-    show();
+    return show();
   };
   dot.addEventListener('keydown', (event) => {
     const far = (event.shiftKey ? 10 : 1) * step;
     const way = { ArrowLeft: [-far, 0], ArrowRight: [far, 0], ArrowUp: [0, far], ArrowDown: [0, -far] }[event.key];
     if (!way) return;
     event.preventDefault();
+    if (along) return slide(along.nearest(place) + (way[0] || way[1]));
     const up = area.at(0, 1)[1] < area.at(0, 0)[1] ? 1 : -1;
     move([place[0] + way[0], place[1] + up * way[1]]);
   });
@@ -135,6 +155,14 @@ export function choice({ label, options, value, onInput }) {
   return html('fieldset', { class: 'choice' }, html('legend', {}, label), ...buttons);
 }
 
+/** One thing that is on or off. */
+export function toggle({ label, value = false, onInput }) {
+  const input = html('input', { type: 'checkbox', role: 'switch' });
+  input.checked = value;
+  input.addEventListener('change', () => onInput(input.checked));
+  return html('label', { class: 'toggle' }, input, html('span', {}, label));
+}
+
 export function button(text, onClick) {
   const one = html('button', { type: 'button' }, text);
   one.addEventListener('click', onClick);
@@ -153,12 +181,24 @@ export function beside(...parts) {
 
 /** A part with a heading. */
 export function panel(heading, ...parts) {
-  return html('div', { class: 'panel' }, html('h4', {}, heading), ...parts);
+  return html('div', { class: 'panel' }, html('h3', {}, heading), ...parts);
 }
 
 /** A canvas for pictures, with a name for those who do not see it. */
 export function canvas({ width, height, label }) {
   return html('canvas', { width, height, role: 'img', 'aria-label': label });
+}
+
+/** A picture with a plot over it. */
+export function covered(picture, { element }) {
+  return html('div', { class: 'covered' }, picture, element);
+}
+
+/** Grey levels 0 to 255 as a picture that the module takes. */
+export function greyPixels(width, height, level) {
+  const data = new Uint8ClampedArray(4 * width * height).fill(255);
+  for (let p = 0; p < width * height; p++) data.fill(level(p % width, Math.floor(p / width)), 4 * p, 4 * p + 3);
+  return { width, height, data };
 }
 
 /** The pixels of an image file, as the module takes them. */
@@ -176,6 +216,25 @@ export async function pixels(url) {
 /** A number as the text writes it: at most `digits` decimals, with a true minus. */
 export function written(value, digits = 2) {
   return String(+value.toFixed(digits)).replace('-', '−');
+}
+
+const MATHML = 'http://www.w3.org/1998/Math/MathML';
+
+/** A formula of letters, numbers and signs apart by spaces, each with at most one `_` below and one `^` above: `formula('I_x u + b^2')`. */
+export function formula(text) {
+  const node = (tag, ...children) => {
+    const element = document.createElementNS(MATHML, tag);
+    element.append(...children);
+    return element;
+  };
+  const leaf = (part) => node(/^[\d.]+$/.test(part) ? 'mn' : /^\p{L}+$/u.test(part) ? 'mi' : 'mo', part);
+  const term = (word) => {
+    const [, base, below, above] = word.match(/^(.+?)(?:_(.+?))?(?:\^(.+))?$/u);
+    if (below && above) return node('msubsup', leaf(base), leaf(below), leaf(above));
+    if (below) return node('msub', leaf(base), leaf(below));
+    return above ? node('msup', leaf(base), leaf(above)) : leaf(base);
+  };
+  return node('math', ...text.split(' ').map(term));
 }
 
 /** Random numbers from a seed, 0 to 1: the same figure for every reader. */
