@@ -132,7 +132,7 @@ export const STAGES = [
 
 const percent = (share) => `${written(100 * share, 1)} %`;
 const named = (label) => (label ? `A ${label + 1}` : 'the background, A 1,');
-const entriesOf = (entries) => entries.map((value, k) => written(value, k % 3 === 2 ? 2 : 4));
+const entriesOf = (entries) => entries.map((value, k) => written(value, k % 3 === 2 ? 2 : 3));
 const matrix = (entries) => `(${entriesOf(entries).join(', ')})`;
 /** The two rows of a motion that are not given. */
 const rows = (entries) => html('span', {}, entriesOf(entries).slice(0, 3).join(', '), html('br'), entriesOf(entries).slice(3).join(', '));
