@@ -17,7 +17,7 @@ export default async function mount({ stage, say }) {
   const chosen = {};
 
   const picture = html('div', { class: 'picture' });
-  const heading = html('h4');
+  const heading = html('p', { class: 'title' });
   const thought = html('p');
   const numbers = html('tbody');
   const which = html('div');
@@ -31,7 +31,7 @@ export default async function mount({ stage, say }) {
 
   stage.append(
     steps,
-    beside(html('div', { class: 'panel' }, picture, which), html('div', { class: 'panel' }, heading, thought, html('div', { class: 'scroll' }, html('table', { class: 'numbers' }, numbers)))),
+    beside(html('div', { class: 'panel' }, picture, which), html('div', { class: 'panel' }, heading, thought, html('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Numbers of the stage' }, html('table', { class: 'numbers' }, numbers)))),
     controls(back, on, source, html('label', { class: 'own' }, html('span', {}, 'or two of your own: '), files)),
     news,
   );
