@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::*;
 
 use crate::frames::{frames, report_of_pair, segment_options};
 use crate::plain::{Record, list, numbers};
-use crate::points::{matrix, refinement, rows, seed};
+use crate::points::{matrix, report_of_refinement, rows, seed};
 use crate::{Failure, invalid, motions};
 use veronese::embedding::rank::RankCandidate;
 use veronese::stages::pair::{
@@ -119,7 +119,7 @@ fn fit_stages(stages: &FitStages) -> JsValue {
         .list("factorisation", &fit.factorisation, matrix)
         .list("differentiation", differentiation, matrix)
         .list("refined", &fit.refined, matrix)
-        .set("refinement", &refinement(&fit.refinement))
+        .set("refinement", &report_of_refinement(&fit.refinement).into_value())
         .bytes("labels", &labels)
         .into_value()
 }

@@ -17,7 +17,7 @@ export default async function mount({ stage, say }) {
   const chosen = {};
 
   const picture = html('div', { class: 'picture' });
-  const heading = html('p', { class: 'title' });
+  const heading = html('h3');
   const thought = html('p');
   const numbers = html('tbody');
   const which = html('div');
