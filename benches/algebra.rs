@@ -1,7 +1,7 @@
 //! The stages of the algebra with protocol B1, 600 measurements and 2 % noise, and the linear step at the largest size.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
-#[path = "../tests/support/protocol.rs"]
+#[path = "../src/stages/protocol.rs"]
 mod protocol;
 
 use std::hint::black_box;

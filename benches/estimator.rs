@@ -1,7 +1,7 @@
 //! The estimator with a given and with an unknown number of motions: protocol B1, 600 measurements, 5 % noise, eight problems in turn.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
-#[path = "../tests/support/protocol.rs"]
+#[path = "../src/stages/protocol.rs"]
 mod protocol;
 
 use std::hint::black_box;

@@ -2,7 +2,6 @@
 // with few actions. J is that of the file. Prints a table and writes out/annotator/page.json. Options are in USAGE.
 
 import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { cpus } from 'node:os';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -12,6 +11,7 @@ import { annotate } from './lib/annotator/expert.mjs';
 import { mean, overlap } from './lib/annotator/overlap.mjs';
 import { annotatedPage } from './lib/annotator/page.mjs';
 import { buildAll } from './lib/builds.mjs';
+import { launchChromium } from './lib/launch-chromium.mjs';
 import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
@@ -38,7 +38,7 @@ await command(async (args) => {
   const { decodeImage } = await import('../pkg/dist/codecs.js');
   const server = await serve(join(root, 'www/dist'), { host: HOST });
   const address = `http://${HOST}:${server.address().port}/`;
-  const browser = await createRequire(join(root, 'www/package.json'))('@playwright/test').chromium.launch({ executablePath: chromium.path, args: ['--no-sandbox'] });
+  const browser = await launchChromium(chromium.path);
   const rows = [];
   try {
     for (const clip of options.only) {

@@ -7,7 +7,6 @@
 //   --write-docs               writes the tables to docs/performance.md as well
 
 import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
@@ -15,6 +14,7 @@ import { gzipSync } from 'node:zlib';
 
 import { partsOf } from './lib/browser-tables.mjs';
 import { buildModules, buildPackage } from './lib/builds.mjs';
+import { launchChromium } from './lib/launch-chromium.mjs';
 import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root, toolsFolder } from './lib/project.mjs';
@@ -56,7 +56,7 @@ await command(async (args) => {
   await writeFrames(sizes);
   const server = await serve(root, { host: HOST, headers: HEADERS });
   const address = `http://${HOST}:${server.address().port}/benches/browser/page.html`;
-  const browser = await playwright().launch({ executablePath: chromium.path });
+  const browser = await launchChromium(chromium.path);
   try {
     const middle = sizes[Math.min(1, sizes.length - 1)];
     const report = {
@@ -119,10 +119,6 @@ async function writeFrames(sizes) {
   mkdirSync(FRAMES, { recursive: true });
   console.log('Generating the frames (building the native program first if it has changed) …');
   await must('The frames could not be generated.', 'cargo', [...NATIVE, 'scenes', FRAMES, ...sizes]);
-}
-
-function playwright() {
-  return createRequire(join(root, 'www/package.json'))('@playwright/test').chromium;
 }
 
 /** Download size in bytes (gzip -9): the module, and the JavaScript that the browser entry imports. */

@@ -4,12 +4,12 @@
 //   --write-docs   writes the table to docs/performance.md as well
 
 import { mkdirSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
+import { launchChromium } from './lib/launch-chromium.mjs';
 import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
@@ -37,7 +37,6 @@ await command(async (args) => {
   console.log('Generating the frames (building the native program first if it has changed) …');
   await must('The frames could not be generated.', 'cargo', ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--', 'scenes', FRAMES, ...SIZES]);
   const server = await serve(root, { host: HOST, headers: {} });
-  const browsers = createRequire(join(root, 'www/package.json'))('@playwright/test').chromium;
   const address = `http://${HOST}:${server.address().port}/benches/first-call.html`;
   let version = '';
   const places = {
@@ -46,7 +45,7 @@ await command(async (args) => {
       return JSON.parse((await must('The run failed.', process.execPath, program, { output: 'collect' })).stdout);
     },
     Chromium: async (task) => {
-      const browser = await browsers.launch({ executablePath: chromium.path });
+      const browser = await launchChromium(chromium.path);
       try {
         version = browser.version();
         const page = await browser.newPage();

@@ -9,7 +9,6 @@
 //   --write-docs   writes the table to docs/performance.md as well
 
 import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -18,6 +17,7 @@ import { parseArgs } from 'node:util';
 import { browserMemory } from './lib/browser-memory.mjs';
 import { buildAll } from './lib/builds.mjs';
 import { firstVisits, tasksSince, watchTasks } from './lib/first-visit.mjs';
+import { launchChromium } from './lib/launch-chromium.mjs';
 import { writeLongClip } from './lib/long-clip.mjs';
 import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
@@ -46,8 +46,7 @@ await command(async (args) => {
   mkdirSync(OUT, { recursive: true });
   const server = await serve(join(root, 'www/dist'), { host: HOST });
   const address = `http://${HOST}:${server.address().port}/`;
-  const { chromium: engine } = createRequire(join(root, 'www/package.json'))('@playwright/test');
-  const browser = await engine.launch({ executablePath: chromium.path, args: ['--no-sandbox'] });
+  const browser = await launchChromium(chromium.path);
   try {
     console.log('Opening the page as a first visitor …');
     const first = await firstVisits(browser, address);

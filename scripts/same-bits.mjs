@@ -6,12 +6,12 @@
 // What is not there is said and left out: browsers, a suitable Python.
 
 import { mkdirSync, readFileSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
 import { findBrowsers } from './lib/browsers.mjs';
 import { buildModules, buildPackage, buildPlainModule, buildWheel } from './lib/builds.mjs';
+import { launchChromium } from './lib/launch-chromium.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { OWN, installWheel } from './lib/python-packages.mjs';
@@ -132,8 +132,7 @@ async function ofBrowsers(chromium, wanted) {
 
 async function ofChromium(executablePath, page, folder) {
   console.log('Chromium …');
-  const browsers = createRequire(join(root, 'www/package.json'))('@playwright/test').chromium;
-  const browser = await browsers.launch({ executablePath, args: ['--no-sandbox'] });
+  const browser = await launchChromium(executablePath);
   try {
     const opened = await browser.newPage();
     await opened.goto(page);

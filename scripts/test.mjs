@@ -10,7 +10,7 @@ import { join } from 'node:path';
 import { findBrowsers, testInBrowsers } from './lib/browsers.mjs';
 import { buildModules, buildPackage, buildPage, buildWheel } from './lib/builds.mjs';
 import { runChecks } from './lib/checks.mjs';
-import { cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
+import { added, cargoCounts, nodeCounts, playwrightCounts, pytestCounts } from './lib/counts.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { OWN, installWheel } from './lib/python-packages.mjs';
@@ -25,7 +25,7 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs']),
+    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs,stages']),
   },
   wasm: {
     lane: 'cargo',
@@ -44,6 +44,17 @@ const PARTS = {
       await installWheel(OWN, wheel);
       // What is installed is tested, not the sources beside the tests.
       return tests(pytestCounts, OWN.python, ['-B', '-m', 'pytest', '-p', 'no:cacheprovider', 'python'], { VERONESE_WHEEL: wheel });
+    },
+  },
+  guide: {
+    // After the Python package, which it uses as it is installed then, and one at a time with cargo.
+    lane: 'cargo',
+    title: "the code of the site's guide",
+    run: async ({ chromium }) => {
+      await buildModules();
+      await buildPackage();
+      if (chromium.problem) say(chromium.problem);
+      return tests(nodeCounts, process.execPath, ['--test', 'site/tests/guide.test.mjs'], chromium.path ? { VERONESE_CHROMIUM: chromium.path } : {});
     },
   },
   package: {
@@ -96,7 +107,7 @@ const PARTS = {
       if (chromium.problem) throw new Stop(chromium.problem);
       await buildSite();
       const env = { VERONESE_CHROMIUM: chromium.path };
-      const scripts = readdirSync(join(root, 'site/tests')).filter((name) => name.endsWith('.test.mjs'));
+      const scripts = readdirSync(join(root, 'site/tests')).filter((name) => name.endsWith('.test.mjs') && name !== 'guide.test.mjs');
       const inNode = await tests(nodeCounts, process.execPath, ['--test', '--test-reporter=tap', ...scripts.map((name) => `site/tests/${name}`)], env);
       const inBrowser = await tests(playwrightCounts, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.config.mjs'], env);
       return added(inNode, inBrowser);
@@ -134,7 +145,7 @@ await command(async (args) => {
   const names = args.length > 0 ? args : Object.keys(PARTS).filter((name) => !PARTS[name].onRequest);
   const setup = await prepare({
     checks: names.includes('check'),
-    browser: ['page', 'hosts', 'site', 'browsers'].some((name) => names.includes(name)),
+    browser: ['page', 'hosts', 'site', 'browsers', 'guide'].some((name) => names.includes(name)),
     python: ['formats', 'hosts'].some((name) => names.includes(name)),
     ownPython: names.includes('python'),
     hosts: names.includes('hosts'),
@@ -181,11 +192,6 @@ async function runPart({ title, run: runTests }, setup) {
     return { passed: 0, failed: 1, skipped: 0, note: error.message };
   });
   return { title, seconds: (Date.now() - start) / 1000, ...outcome };
-}
-
-function added(one, other) {
-  const sum = (kind) => one[kind] + other[kind];
-  return { passed: sum('passed'), failed: sum('failed'), skipped: sum('skipped'), note: one.note ?? other.note };
 }
 
 function summarise(results) {

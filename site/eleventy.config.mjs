@@ -23,6 +23,7 @@ export default function configure(eleventy) {
     const { outputPath, url } = this.page;
     return outputPath?.endsWith('.html') ? withRelativeLinks(content, url) : content;
   });
+  eleventy.addTransform('letters', (content) => content.replaceAll(/<(m[in]) mathvariant="(bold|script)">(\w+)<\/\1>/g, (_, tag, style, text) => `<${tag}>${styled(text, style)}</${tag}>`));
   // An article's table of contents follows its headings.
   eleventy.addTransform('contents', (content) => content.replace(/(<nav class="contents"[^>]*>)(?=<\/nav>)/, (nav) => nav + contents(content)));
   eleventy.addCollection('guide', (pages) => pages.getFilteredByGlob('pages/guide/*.md').sort((one, other) => one.data.order - other.data.order));
@@ -50,6 +51,22 @@ const slugify = (heading) =>
     .toLowerCase()
     .replaceAll(/[^\p{L}\p{N}]+/gu, '-')
     .replaceAll(/^-|-$/g, '');
+
+/** Bold and script letters as characters of their own: browsers ignore the style of a MathML element. */
+function styled(text, style) {
+  const [capitals, small, digits] = style === 'bold' ? [0x1d400, 0x1d41a, 0x1d7ce] : [0x1d49c, 0x1d4b6];
+  // These letters of the script were in Unicode before the others.
+  const old = style === 'script' ? { B: 'ℬ', E: 'ℰ', F: 'ℱ', H: 'ℋ', I: 'ℐ', L: 'ℒ', M: 'ℳ', R: 'ℛ', e: 'ℯ', g: 'ℊ', o: 'ℴ' } : {};
+  const first = [
+    ['A', 'Z', capitals],
+    ['a', 'z', small],
+    ['0', '9', digits],
+  ];
+  return Array.from(text, (letter) => {
+    const range = first.find(([from, to, start]) => start && letter >= from && letter <= to);
+    return old[letter] ?? (range ? String.fromCodePoint(range[2] + letter.codePointAt(0) - range[0].codePointAt(0)) : letter);
+  }).join('');
+}
 
 /** The sections of a page as a list of links. */
 function contents(html) {

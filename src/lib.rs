@@ -108,16 +108,16 @@
 //! # Stability
 //!
 //! From 1.0 on the crate follows semantic versioning. Options are made with `default()` and `with_…`, and results may get further
-//! fields, so neither can be written as literals. Two parts may change in any version: what is hidden from this documentation, and the
+//! fields, so neither can be written as literals. Three parts may change in any version: what is hidden from this documentation; the
 //! modules [`embedding`], [`factorisation`], [`linear`], [`paper`] and [`refinement`], which are the method in parts, for study, and have
-//! types of nalgebra in their signatures.
+//! types of nalgebra in their signatures; and the module `stages` of the feature of that name, which shows what lies between the steps.
 //!
 //! # Reproducibility
 //!
 //! The same input gives the same bits in native code and in WebAssembly. "Reproducible bits" in ARCHITECTURE.md explains how.
 
-// Unit tests share generators with the integration tests, which refer to the crate by name.
-#[cfg(test)]
+// Generated problems are shared with integration tests, benchmarks and experiments, which refer to the crate by name.
+#[cfg(any(test, feature = "stages"))]
 extern crate self as veronese;
 
 mod answer;
@@ -147,7 +147,11 @@ pub mod paper;
 mod points;
 mod progress;
 mod random;
+#[cfg(feature = "stages")]
+mod recording;
 pub mod refinement;
+#[cfg(feature = "stages")]
+pub mod stages;
 mod view;
 
 pub use answer::{Candidate, FitEvidence, FittedMotion, MotionFit, PaperStages, UNLABELLED};

@@ -4,6 +4,8 @@ mod background;
 mod evidence;
 mod hypothesis;
 pub(crate) mod labels;
+#[cfg(feature = "stages")]
+mod recorded;
 pub(crate) mod report;
 pub(crate) mod settings;
 pub(crate) mod solution;
@@ -59,6 +61,24 @@ pub fn segment_pair_with(
     segment_with(first, second, options, Settings::new(options, size(first), model), &mut |_| {})
 }
 
+/// [`segment_pair`], with what its stages find noted in `recording`.
+///
+/// # Errors
+/// As [`segment_pair`].
+#[cfg(feature = "stages")]
+pub(crate) fn segment_pair_recorded(
+    first: &Frame,
+    second: &Frame,
+    options: &SegmentOptions,
+    recording: &mut crate::recording::Recording,
+) -> Result<Segmentation> {
+    let settings = Settings::new(options, size(first), &Model::DEFAULT);
+    let mut ignored = |_| {};
+    segment_in([first, second], options, settings, |rounds| {
+        Stages::in_rounds(STAGES, rounds, &mut ignored).recorded(recording)
+    })
+}
+
 fn segment_with(
     first: &Frame,
     second: &Frame,
@@ -66,10 +86,21 @@ fn segment_with(
     settings: Settings,
     progress: Progress<'_>,
 ) -> Result<Segmentation> {
+    segment_in([first, second], options, settings, |rounds| Stages::in_rounds(STAGES, rounds, progress))
+}
+
+/// Segments two frames in stages that `stages` makes for a number of rounds.
+#[inline(always)]
+fn segment_in<'a>(
+    [first, second]: [&Frame; 2],
+    options: &SegmentOptions,
+    settings: Settings,
+    stages: impl FnOnce(usize) -> Stages<'a>,
+) -> Result<Segmentation> {
     options.motions.validate()?;
     check_sizes(first, second)?;
     let detail = settings.of_detail(options, size(first));
-    let mut stages = Stages::in_rounds(STAGES, 1 + usize::from(detail.is_some()), progress);
+    let mut stages = stages(1 + usize::from(detail.is_some()));
     stages.begin_round(0);
     let pair = Pair::of_frames([first, second], &settings);
     let mut solved = background::solve(pair, &[], &settings, &mut stages);
@@ -80,6 +111,8 @@ fn segment_with(
     }
     let Solved { pair, mut labelled } = solved;
     labels::return_shadows(&pair, &mut labelled, &settings);
+    #[cfg(feature = "stages")]
+    stages.record(|recording| recording.working = recorded::labelled(&pair, &labelled));
     stages.begin("masks");
     Ok(report::report(&pair, labelled, &settings, [first, second], options))
 }

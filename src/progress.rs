@@ -39,6 +39,9 @@ pub(crate) struct Stages<'a> {
     rounds: usize,
     /// Rounds that are over.
     over: usize,
+    /// Takes what the stages find, if somebody wants it.
+    #[cfg(feature = "stages")]
+    recording: Option<&'a mut crate::recording::Recording>,
 }
 
 impl<'a> Stages<'a> {
@@ -48,7 +51,28 @@ impl<'a> Stages<'a> {
 
     /// Stages of which all but the last are gone through in several rounds.
     pub(crate) fn in_rounds(names: &'static [&'static str], rounds: usize, progress: Progress<'a>) -> Self {
-        Stages { names, progress, rounds, over: 0 }
+        Stages {
+            names,
+            progress,
+            rounds,
+            over: 0,
+            #[cfg(feature = "stages")]
+            recording: None,
+        }
+    }
+
+    /// The same, with what the stages find noted in `recording`.
+    #[cfg(feature = "stages")]
+    pub(crate) fn recorded(self, recording: &'a mut crate::recording::Recording) -> Self {
+        Stages { recording: Some(recording), ..self }
+    }
+
+    /// Notes something, if somebody wants it.
+    #[cfg(feature = "stages")]
+    pub(crate) fn record(&mut self, note: impl FnOnce(&mut crate::recording::Recording)) {
+        if let Some(recording) = &mut self.recording {
+            note(recording);
+        }
     }
 
     /// Reports that the first stage of another round begins.

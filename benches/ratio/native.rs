@@ -3,7 +3,7 @@
 //! frames and clips, and `native stages DIR 640x480 …` prints the time of each stage on them.
 
 #[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
-#[path = "../../tests/support/protocol.rs"]
+#[path = "../../src/stages/protocol.rs"]
 mod protocol;
 
 use std::error::Error;

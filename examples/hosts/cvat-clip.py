@@ -51,25 +51,46 @@ class Work:
             raise Refusal("wrong-folder", f"'{folder}' is of task {self.held['task']}, not {task}")
 
     def objects(self):
-        return {int(number): {int(frame): polygons for frame, polygons in said.items()} for number, said in self.held["objects"].items()}
+        return by_frame(self.held["objects"])
 
     def drawn(self):
         return {int(number): set(frames) for number, frames in self.held["drawn"].items()}
 
-    def hold(self, task, frames, label, objects, drawn):
-        """Written as a whole or not at all. `numbers` are all that objects ever had: a new object gets another."""
-        content = {
-            "task": task,
-            "frames": frames,
-            "label": label,
-            "objects": objects,
-            "drawn": {number: sorted(where) for number, where in drawn.items()},
-            "numbers": sorted({*objects, *(self.held["numbers"] if self.held else [])}),
-        }
+    def sending(self):
+        """What an upload is to bring to CVAT; None where none has begun, or the last one has ended."""
+        plan = self.held and self.held.get("sending")
+        if plan is None:
+            return None
+        objects, drawn, tracks = ({int(number): value for number, value in plan[name].items()} for name in ("objects", "drawn", "tracks"))
+        return by_frame(objects), {number: set(where) for number, where in drawn.items()}, tracks
+
+    def begin(self, task, frames, label, objects, drawn, tracks):
+        """Notes what is about to be sent, and the ids of the tracks that are there, so that another run can end what breaks off."""
+        held = self.held or {"objects": {}, "drawn": {}, "numbers": []}
+        sending = {"objects": objects, "drawn": sorted_values(drawn), "tracks": tracks}
+        self.write({**held, "task": task, "frames": frames, "label": label, "sending": sending})
+
+    def hold(self, objects, drawn):
+        """Notes what CVAT holds. `numbers` are all that objects ever had: a new object gets another."""
+        numbers = sorted({*objects, *self.held["numbers"]})
+        kept = {name: self.held[name] for name in ("task", "frames", "label")}
+        self.write({**kept, "objects": objects, "drawn": sorted_values(drawn), "numbers": numbers})
+
+    def write(self, content):
+        """As a whole or not at all."""
         draft = self.file.with_suffix(".new")
         draft.write_text(json.dumps(content), encoding="utf-8")
         draft.replace(self.file)
         self.held = json.loads(json.dumps(content))
+
+
+def by_frame(objects):
+    """With the numbers that JSON made words."""
+    return {int(number): {int(frame): polygons for frame, polygons in said.items()} for number, said in objects.items()}
+
+
+def sorted_values(sets):
+    return {key: sorted(values) for key, values in sets.items()}
 
 
 def main():
@@ -113,24 +134,24 @@ def arguments():
 
 def annotate(task, work, options):
     """Frames of the task → clip → tracks."""
-    if work.held:
+    if work.held and not work.sending():
         raise Refusal("annotated-already", f"the task has its tracks already: use 'correct', or another folder than '{options.out}'")
-    label = label_of(task, options.label)
-    if any(shape.type.value == cvat_tracks.POLYGON for track in task.get_annotations().tracks for shape in track.shapes):
-        raise Refusal("task-not-empty", "the task has tracks of polygons already, which could not be told from those of this program")
-    frames = download(task, work.frames, options)
-    veronese(options, "clip", work.frames, "--out", work.clip, "--quality", options.quality)
-    objects = outlines(work, options, frames)
-    tracks = [cvat_tracks.track_of(number, said, frames, label=label) for number, said in objects.items()]
-    send(task, AnnotationUpdateAction.CREATE, tracks)
-    work.hold(task.id, frames, label, read_back(task, frames, objects), {})
-    return {"task": task.id, "frames": len(frames), "objects": len(objects)}
+    if not work.held:
+        label = label_of(task, options.label)
+        if any(shape.type.value == cvat_tracks.POLYGON for track in task.get_annotations().tracks for shape in track.shapes):
+            raise Refusal("task-not-empty", "the task has tracks of polygons already, which could not be told from those of this program")
+        frames = download(task, work.frames, options)
+        veronese(options, "clip", work.frames, "--out", work.clip, "--quality", options.quality)
+        work.begin(task.id, frames, label, outlines(work, options, frames), {}, {})
+    upload(task, work)
+    return {"task": task.id, "frames": len(work.held["frames"]), "objects": len(work.held["objects"])}
 
 
 def correct(task, work, options):
     """Tracks that a person changed → corrections → the clip again → tracks. Untouched tracks stay as they are."""
     if not work.held:
         raise Refusal("not-annotated", f"'{options.out}' has no clip of this task: use 'annotate' first")
+    ended = upload(task, work) if work.sending() else 0
     frames, before, drawn = work.held["frames"], work.objects(), work.drawn()
     edits = edits_in(work.said)
     tracks = cvat_tracks.by_number(task.get_annotations().tracks, work.held["numbers"])
@@ -138,7 +159,7 @@ def correct(task, work, options):
     changed = cvat_tracks.changes(before, now, frames)
     deleted = [number for number in before if number not in now]
     if not changed and not deleted:
-        return {"task": task.id, "changed": 0, "deleted": 0, "tracks": 0}
+        return {"task": task.id, "changed": 0, "deleted": 0, "tracks": ended}
 
     say(work, options, before, now, changed)
     touched = {*drawn, *changed} - {*deleted}
@@ -151,25 +172,50 @@ def correct(task, work, options):
     veronese(options, "clip", work.frames, "--out", work.clip, "--quality", options.quality, "--corrections", work.said)
 
     found = as_drawn(outlines(work, options, frames), now, drawn)
-    updated, created = [], []
-    for number, said in found.items():
-        members = tracks.get(number, [])
-        held = now.get(number, {})
-        whole = len(members) == 1 and members[0].group == number
-        if whole and all(frame in held and cvat_tracks.same(held[frame], said[frame]) for frame in frames):
-            continue
-        label = members[0].label_id if members else work.held["label"]
-        track = cvat_tracks.track_of(number, said, frames, label=label, drawn=drawn.get(number, ()), old=members)
-        (updated if members else created).append(track)
-    # An object can be lost by what was said of others, or be of several tracks.
-    lost = [track for number, members in tracks.items() for track in (members if number not in found else members[1:])]
+    drawn = {number: where for number, where in drawn.items() if number in found}
+    ids = {number: [track.id for track in members] for number, members in tracks.items()}
+    work.begin(task.id, frames, work.held["label"], found, drawn, ids)
+    sent = upload(task, work)
+    return {"task": task.id, "changed": len(changed), "deleted": len(deleted), "tracks": ended + sent}
+
+
+def upload(task, work):
+    """
+    Sends what is to be sent, as far as CVAT does not have it yet, so that a run that broke off can be ended by another. What a person has
+    changed since it was noted is left as it is: to the next 'correct' it is a change like others. Returns how many tracks were sent.
+
+    CVAT gives a track another id each time that it is saved: one whose id was noted is as it was then.
+    """
+    objects, drawn, noted = work.sending()
+    frames = work.held["frames"]
+    noted_ids = {track for ids in noted.values() for track in ids}
+    there = cvat_tracks.of_polygons(task.get_annotations().tracks)
+    updated, created, lost, others = [], [], [], set()
+    for number in sorted({*objects, *noted}):
+        said, ids = objects.get(number), noted.get(number, [])
+        old = [track for track in there if track.id in ids]
+        new = [track for track in there if track.group == number and track.id not in noted_ids]
+        if said and len(new) == 1 and cvat_tracks.says(new, said, frames):
+            lost += old
+        elif new or (said and len(old) < len(ids)):
+            others.add(number)
+        elif not said:
+            # An object can be lost by what was said of others.
+            lost += old
+        else:
+            if not (len(old) == 1 and old[0].group == number and cvat_tracks.says(old, said, frames)):
+                label = old[0].label_id if old else work.held["label"]
+                track = cvat_tracks.track_of(number, said, frames, label=label, drawn=drawn.get(number, ()), old=old)
+                (updated if old else created).append(track)
+            # It may have been of several tracks.
+            lost += old[1:]
     send(task, AnnotationUpdateAction.UPDATE, updated)
     send(task, AnnotationUpdateAction.CREATE, created)
     if lost:
         task.remove_annotations(ids=[track.id for track in lost])
-    drawn = {number: where for number, where in drawn.items() if number in found}
-    work.hold(task.id, frames, work.held["label"], read_back(task, frames, found), drawn)
-    return {"task": task.id, "changed": len(changed), "deleted": len(deleted), "tracks": len(updated) + len(created)}
+    held = read_back(task, frames, {*objects} - others)
+    work.hold({number: held.get(number, said) for number, said in objects.items()}, drawn)
+    return len(updated) + len(created)
 
 
 def as_drawn(found, now, drawn):
@@ -304,10 +350,10 @@ def send(task, action, tracks):
         task.update_annotations(models.PatchedLabeledDataRequest(tracks=tracks), action=action)
 
 
-def read_back(task, frames, objects):
-    """What CVAT holds now, as it gives it: that is what a person will change."""
+def read_back(task, frames, numbers):
+    """What CVAT holds now of these objects, as it gives it: that is what a person will change."""
     tracks = cvat_tracks.by_number(task.get_annotations().tracks, {})
-    return {number: cvat_tracks.united(tracks[number], frames) for number in objects}
+    return {number: cvat_tracks.united(tracks[number], frames) for number in numbers if number in tracks}
 
 
 if __name__ == "__main__":

@@ -42,12 +42,17 @@ def united(tracks, frames):
     return whole
 
 
+def of_polygons(tracks):
+    """Those of objects, the first ones first."""
+    polygons = [track for track in tracks if all(shape.type.value == POLYGON for shape in track.shapes)]
+    return sorted(polygons, key=lambda track: (track.frame, track.id))
+
+
 def by_number(tracks, taken):
     """The tracks of polygons by the number of their object. Those of a person, whose group is no number, get numbers that are not `taken`."""
     groups = {}
-    for track in sorted(tracks, key=lambda track: (track.frame, track.id)):
-        if all(shape.type.value == POLYGON for shape in track.shapes):
-            groups.setdefault(track.group or f"track {track.id}", []).append(track)
+    for track in of_polygons(tracks):
+        groups.setdefault(track.group or f"track {track.id}", []).append(track)
     found = {group: members for group, members in groups.items() if group in NUMBERS}
     free = iter(number for number in NUMBERS if number not in found and number not in taken)
     for group, members in groups.items():
@@ -61,6 +66,12 @@ def same(one, other):
     return len(one) == len(other) and all(
         len(a) == len(b) and all(abs(x - y) <= ROUNDING for x, y in zip(a, b)) for a, b in zip(one, other)
     )
+
+
+def says(tracks, said, frames):
+    """Whether tracks say just this of an object."""
+    now = united(tracks, frames)
+    return all(frame in now and same(now[frame], said[frame]) for frame in frames)
 
 
 def changes(before, now, frames):

@@ -3,11 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-use veronese::embedding::rank::{MAX_TRIED, number_of_motions};
-use veronese::paper::paper_fit;
-use veronese::{AffineMotion, FitOptions, MotionCount, fit_motions};
-
-use crate::protocol::{Problem, Protocol};
+use veronese::stages::{Figure1Trial, TrialError, figure_1_trial};
 
 /// The methods compared, in the order of [`Cell::methods`].
 pub(crate) const METHODS: [&str; 4] = ["paper, factorisation", "paper, nonlinear", "ours", "oracle"];
@@ -37,70 +33,46 @@ pub(crate) struct Errors {
     pub(crate) gross: f64,
 }
 
-struct Trial {
-    /// Mean and largest relative error of the motions, for each method.
-    errors: [(f64, f64); METHODS.len()],
-    count_right: [bool; 2],
-}
-
 /// All cells of the figure.
-pub(crate) fn measure(trials: usize, seed: u64) -> Vec<Cell> {
+pub(crate) fn measure(trials: usize, seed: u64) -> veronese::Result<Vec<Cell>> {
     let mut cells = Vec::new();
     for motions in [2, 3, 4] {
         for noise in 0..=5 {
             let start = Instant::now();
             // Every trial has its own seed, so results do not depend on the threads.
             let first_seed = (seed << 32) + ((motions * 10 + noise) as u64) * 1_000_000;
-            let results = in_parallel(trials, |k| trial(motions, 0.01 * noise as f64, first_seed + k as u64));
+            let trial = |k| figure_1_trial(motions, 0.01 * noise as f64, first_seed + k as u64);
+            let results: Vec<Figure1Trial> = in_parallel(trials, trial).into_iter().collect::<veronese::Result<_>>()?;
             let seconds = start.elapsed().as_secs_f64();
             eprintln!("Figure 1: {motions} motions, {noise} % noise: {trials} trials in {seconds:.1} s");
             cells.push(summary(motions, noise, &results));
         }
     }
-    cells
+    Ok(cells)
 }
 
-fn trial(motions: usize, noise: f64, seed: u64) -> Trial {
-    let problem = Protocol::new(motions, noise).problem(seed);
-    let data = &problem.measurements;
-    let paper = paper_fit(data, MotionCount::Given(motions), &mut |_| {}).ok();
-    let given = FitOptions::default().with_motions(MotionCount::Given(motions));
-    let ours = fit_motions(data, &given, &mut |_| {}).ok();
-    let rule = number_of_motions(&data.normalised().0, MAX_TRIED).ok();
-    let count = fit_motions(data, &FitOptions::default(), &mut |_| {}).ok();
-    let ours = ours.map(|fit| fit.motions.iter().map(|motion| motion.matrix).collect());
-    Trial {
-        errors: [
-            errors(&problem, paper.as_ref().map(|fit| fit.factorisation.clone())),
-            errors(&problem, paper.map(|fit| fit.refined)),
-            errors(&problem, ours),
-            errors(&problem, Some(problem.oracle())),
-        ],
-        count_right: [rule.is_some_and(|rule| rule.motions == motions), count.is_some_and(|fit| fit.count == motions)],
-    }
+/// The errors of the methods, in the order of [`METHODS`].
+fn errors(trial: &Figure1Trial) -> [TrialError; METHODS.len()] {
+    [trial.factorisation, trial.refined, trial.best, trial.oracle]
 }
 
-fn errors(problem: &Problem, found: Option<Vec<AffineMotion>>) -> (f64, f64) {
-    problem.errors(&found.unwrap_or_default())
-}
-
-fn summary(motions: usize, noise: usize, trials: &[Trial]) -> Cell {
-    let share = |right: &dyn Fn(&Trial) -> bool| {
+fn summary(motions: usize, noise: usize, trials: &[Figure1Trial]) -> Cell {
+    let share = |right: &dyn Fn(&Figure1Trial) -> bool| {
         100.0 * trials.iter().filter(|trial| right(trial)).count() as f64 / trials.len() as f64
     };
     Cell {
         motions,
         noise,
         methods: std::array::from_fn(|m| {
-            let mut means: Vec<f64> = trials.iter().map(|trial| 100.0 * trial.errors[m].0).collect();
+            let mut means: Vec<f64> = trials.iter().map(|trial| errors(trial)[m].per_cent()).collect();
             means.sort_by(f64::total_cmp);
             Errors {
                 mean: means.iter().sum::<f64>() / means.len() as f64,
                 median: 0.5 * (means[(means.len() - 1) / 2] + means[means.len() / 2]),
-                gross: share(&|trial| trial.errors[m].1 > GROSS),
+                gross: share(&|trial| errors(trial)[m].largest > GROSS),
             }
         }),
-        count_right: std::array::from_fn(|k| share(&|trial| trial.count_right[k])),
+        count_right: [share(&|trial| trial.rule_right), share(&|trial| trial.best_right)],
     }
 }
 

@@ -8,10 +8,10 @@ use veronese::embedding::rank::{KAPPA, numerical_rank};
 use veronese::embedding::{EmbeddedData, MultibodyMotion};
 use veronese::factorisation::differentiation::{POINTS, motions_from_points};
 use veronese::factorisation::five_steps;
+use veronese::stages::protocol::{Problem, Protocol, Relation, SPECIAL};
 use veronese::{AffineMotion, FitOptions, MotionCount, MotionFit, Random, fit_motions};
 
 use crate::Table;
-use crate::protocol::{Problem, Protocol, Relation, SPECIAL};
 use crate::synthetic::{self, random_motions, worst_error};
 
 /// A motion with a larger relative error (eq. 20) counts as not found.

@@ -2,9 +2,6 @@
 
 #[path = "../program.rs"]
 mod program;
-#[allow(dead_code, unreachable_pub, clippy::expect_used, reason = "shared with the tests, which use more of it")]
-#[path = "../../tests/support/protocol.rs"]
-mod protocol;
 #[path = "../../tests/synthetic/mod.rs"]
 mod synthetic;
 
@@ -81,7 +78,7 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     for (name, file) in pictures::pictures(options.seed)? {
         fs::write(out.join(name), file).map_err(cannot)?;
     }
-    let cells = figure_1::measure(trials, options.seed);
+    let cells = figure_1::measure(trials, options.seed)?;
     fs::write(out.join("figure-1.csv"), tables::csv(&cells)).map_err(cannot)?;
     fs::write(out.join("figure-1.md"), tables::markdown(&cells, trials, options.seed)).map_err(cannot)?;
     fs::write(out.join("figure-1.svg"), plot::svg(&cells)?).map_err(cannot)?;

@@ -6,8 +6,9 @@ import { describe, test } from 'node:test';
 import { deflateSync, gzipSync } from 'node:zlib';
 import { zipSync } from 'fflate';
 import * as formats from 'veronese/formats';
+import { random } from '../../scripts/lib/random.mjs';
 import { drawnClip } from './support/clip.mjs';
-import { drawn, labelImages, random } from './support/masks.mjs';
+import { drawn, labelImages } from './support/masks.mjs';
 
 const { readAnnotations } = formats;
 const encoder = new TextEncoder();

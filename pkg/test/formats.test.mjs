@@ -6,7 +6,8 @@ import { decode } from 'fast-png';
 import { unzipSync } from 'fflate';
 import { davisPalette, VeroneseError } from 'veronese';
 import * as formats from 'veronese/formats';
-import { drawn, labelImages, present, random } from './support/masks.mjs';
+import { random } from '../../scripts/lib/random.mjs';
+import { drawn, labelImages, present } from './support/masks.mjs';
 import { cases } from './support/soak.mjs';
 
 /** The encoders of many frames. */

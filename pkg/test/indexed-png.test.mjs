@@ -6,8 +6,9 @@ import { deflateSync } from 'node:zlib';
 import { encodeIndexedPng } from 'veronese/codecs';
 import { encodeDavis } from 'veronese/formats';
 import { decodeIndices } from '../build/formats/indexed-png.js';
+import { random } from '../../scripts/lib/random.mjs';
 import { png } from './support/frames.mjs';
-import { labelImages, random } from './support/masks.mjs';
+import { labelImages } from './support/masks.mjs';
 
 /** What a byte is predicted to be, by the number of the filter, as the PNG specification has it. */
 const PREDICTED = [

@@ -7,8 +7,8 @@ import { setTimeout } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { segmentPairs, VeroneseError } from 'veronese';
 import { inOrder } from '../build/calls/ordered.js';
+import { random } from '../../scripts/lib/random.mjs';
 import { pair } from './support/frames.mjs';
-import { random } from './support/masks.mjs';
 import { failure } from './support/shapes.mjs';
 import { soaking } from './support/soak.mjs';
 
@@ -24,7 +24,8 @@ let spinning = false;
  */
 function run(script) {
   const place = (path) => JSON.stringify(String(new URL(path, import.meta.url)));
-  const head = `import { segmentPairs } from ${place('../dist/node.js')}; import { pair } from ${place('./support/frames.mjs')};
+  const head = `import { segmentPairs } from ${place('../dist/node.js')}; import { random } from '../../scripts/lib/random.mjs';
+import { pair } from ${place('./support/frames.mjs')};
     const [first, second] = pair(); const good = { first, second };`;
   const options = { encoding: 'utf8', timeout: 20_000, cwd: fileURLToPath(new URL('.', import.meta.url)) };
   const { stdout, stderr, status, signal } = spawnSync(process.execPath, ['--input-type=module', '-e', `${head}\n${script}`], options);

@@ -46,6 +46,12 @@ def test_the_notices_name_what_is_linked() -> None:
     assert not re.search(r"/(?:home|root)/|\.cargo|registry|crates\.io|pypi", text)
 
 
+def test_what_is_published_is_built_with_the_maturin_of_the_tests() -> None:
+    (version,) = re.findall(r"^maturin==(\S+)$", (ROOT / "python/tests/requirements.txt").read_text(encoding="utf-8"), re.MULTILINE)
+    assert f'requires = ["maturin=={version}"]' in (ROOT / "python/pyproject.toml").read_text(encoding="utf-8")
+    assert f"maturin-version: v{version}\n" in (ROOT / ".github/workflows/release.yml").read_text(encoding="utf-8")
+
+
 def test_no_folder_of_the_builder_is_in_it() -> None:
     with zipfile.ZipFile(WHEEL) as archive:
         content = b"".join(archive.read(name) for name in archive.namelist())

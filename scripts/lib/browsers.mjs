@@ -3,11 +3,12 @@
 import { existsSync, readdirSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { playwrightCounts } from './counts.mjs';
+import { added, playwrightCounts } from './counts.mjs';
 import { installDebianPackages } from './debian.mjs';
 import { which } from './project.mjs';
 import { Stop, say } from './run.mjs';
 import { prepareGeckodriver } from './rust.mjs';
+import { buildSite } from './site.mjs';
 import { tests } from './tests.mjs';
 
 /** Each looks for its programs anew and returns what is missing, or how the browser is driven. */
@@ -80,11 +81,14 @@ function miniBrowser() {
   return folders.map((folder) => join(folder, 'webkit2gtk-4.1', 'MiniBrowser')).find(existsSync);
 }
 
-/** Drives the built page in each of the browsers; those that have a problem are skipped, and it is said. */
+/** Drives the built page and the explainer in each of the browsers; those that have a problem are skipped, and it is said. */
 export async function testInBrowsers(browsers) {
   const problems = browsers.flatMap(({ problem }) => problem ?? []);
   for (const problem of problems) say(problem);
   if (problems.length === browsers.length) return { passed: 0, failed: 0, skipped: problems.length };
   const env = { VERONESE_BROWSERS: JSON.stringify(browsers) };
-  return tests(playwrightCounts, 'npm', ['run', '--silent', 'test:browsers', '--workspace', 'www'], env);
+  await buildSite();
+  const page = await tests(playwrightCounts, 'npm', ['run', '--silent', 'test:browsers', '--workspace', 'www'], env);
+  const explainer = await tests(playwrightCounts, 'npx', ['--no-install', 'playwright', 'test', '--config', 'site/tests/playwright.browsers.config.mjs'], env);
+  return added(page, explainer);
 }

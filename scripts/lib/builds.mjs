@@ -27,8 +27,16 @@ export async function buildAll() {
   await buildPage();
 }
 
+/** What lies between the steps of the method, for the site alone; no part of the package. */
+const STAGES = { name: 'veronese_stages', folder: 'site/module', title: 'the module of the site', features: ['frames', 'points', 'stages'] };
+
 /** Compiles Rust to WebAssembly, one module after another. */
-export const buildModules = once(async () => {
+export const buildModules = once(() => buildEach(MODULES));
+
+/** Compiles the module of the site. Only what shows the site or tests it needs it. */
+export const buildStagesModule = once(() => buildEach([STAGES]));
+
+async function buildEach(modules) {
   const versions = await Promise.all(
     [['rustc', '-vV'], ['wasm-pack', '--version'], ['wasm-bindgen', '--version'], ['wasm-opt', '--version']].map(
       async ([program, flag]) => (await run(program, [flag], { output: 'collect' })).text,
@@ -38,13 +46,13 @@ export const buildModules = once(async () => {
   if (!which('wasm-opt')?.startsWith(join(root, 'node_modules'))) {
     throw new Stop('wasm-opt of the npm package binaryen is missing: delete node_modules and run the command again.');
   }
-  for (const { name, folder, title, features } of MODULES) {
+  for (const { name, folder, title, features } of modules) {
     const outputs = [`${folder}/${name}.js`, `${folder}/${name}.d.ts`, `${folder}/${name}_bg.wasm`];
     await step(`${title} (one to three minutes when everything is new)`, folder, outputs, RUST_SOURCES, versions, () =>
       wasmPack(name, folder, features),
     );
   }
-});
+}
 
 /** Compiles what the modules depend on, while the tools that make them are being installed. Without it they take longer, and nothing else. */
 export async function compileAhead() {

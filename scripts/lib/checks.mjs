@@ -12,8 +12,8 @@ import { versionProblem, versions } from './versions.mjs';
 
 const WASM = ['--target', 'wasm32-unknown-unknown'];
 const CODECS = ['--features', 'codecs'];
-// Only the benchmarks of masks and clips use the other feature.
-const ALL = ['--features', 'codecs,ablation'];
+const DOCUMENTED = ['--features', 'codecs,stages'];
+const ALL = ['--features', 'codecs,stages,ablation'];
 const ALL_TARGETS = ['--locked', ...CRATES, '--all-targets'];
 const TESTS = ['--locked', ...CRATES, '--lib', '--tests'];
 const MODULES = ['--package', 'veronese-wasm', ...WASM];
@@ -27,7 +27,7 @@ const CHECKS = [
   // They compile with a nightly toolchain only.
   ['formatting of the fuzz targets', 'cargo', ['fmt', '--manifest-path', 'fuzz/Cargo.toml', '--check']],
   ['clippy', 'cargo', ['clippy', ...ALL_TARGETS, ...DENY]],
-  ['clippy with codecs and ablation', 'cargo', ['clippy', ...ALL_TARGETS, ...ALL, ...DENY]],
+  ['clippy with all features', 'cargo', ['clippy', ...ALL_TARGETS, ...ALL, ...DENY]],
   // It needs no Python.
   ['clippy for the Python package', 'cargo', ['clippy', '--locked', '--package', 'veronese-python', ...DENY]],
   // Benchmarks and examples are native programs.
@@ -35,8 +35,9 @@ const CHECKS = [
   ['clippy for the core module', 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only('frames'), ...DENY]],
   ['clippy for the module of measurements', 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only('points'), ...DENY]],
   ['clippy for wasm with codecs', 'cargo', ['clippy', ...TESTS, ...WASM, ...CODECS, ...DENY]],
-  ['documentation', 'cargo', [...DOC, ...CRATES, ...CODECS], DENY_IN_DOCS],
-  ['documentation for wasm', 'cargo', [...DOC, ...MODULES, ...CODECS], DENY_IN_DOCS],
+  ['clippy for the module of the site', 'cargo', ['clippy', '--locked', '--lib', ...MODULES, ...only('frames,points,stages'), ...DENY]],
+  ['documentation', 'cargo', [...DOC, ...CRATES, ...DOCUMENTED], DENY_IN_DOCS],
+  ['documentation for wasm', 'cargo', [...DOC, ...MODULES, ...DOCUMENTED], DENY_IN_DOCS],
   ['types of the package', 'npm', ['run', '--silent', 'check', '--workspace', 'pkg']],
   ['types of the page', 'tsc', ['--noEmit', '--project', 'www']],
   // After the builds: it asks the types of the package too.

@@ -42,3 +42,9 @@ function sum(output, pattern, kinds, read) {
   }
   return counts;
 }
+
+/** The counts of two runs of one part. */
+export function added(one, other) {
+  const both = (kind) => one[kind] + other[kind];
+  return { passed: both('passed'), failed: both('failed'), skipped: both('skipped'), note: one.note ?? other.note };
+}

@@ -9,7 +9,7 @@ import { inProject, projectText, root } from './project.mjs';
 export const identity = () => JSON.parse(projectText('identity.json'));
 
 /** What repeats an address, beside the manifests: every text for people at these places. */
-const TEXTS = ['.', '.github', '.github/ISSUE_TEMPLATE', 'docs', 'pkg', 'python', 'www', 'examples'];
+const TEXTS = ['.', '.github', '.github/ISSUE_TEMPLATE', 'docs', 'pkg', 'python', 'www', 'examples', 'site/pages', 'site/pages/guide', 'site/layouts/method'];
 const KINDS = /\.(md|ya?ml|html|toml|json)$/;
 const GENERATED = new Set(['package-lock.json', 'identity.json']);
 

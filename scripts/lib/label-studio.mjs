@@ -3,11 +3,11 @@
 import { spawn } from 'node:child_process';
 import { createWriteStream, existsSync, mkdirSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
-import { createRequire } from 'node:module';
 import { basename, dirname, extname, join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 
-import { root, toolsFolder, which } from './project.mjs';
+import { launchChromium } from './launch-chromium.mjs';
+import { toolsFolder, which } from './project.mjs';
 import { Stop, longStep, run } from './run.mjs';
 
 const VERSION = '1.23.2';
@@ -156,8 +156,7 @@ export async function decodedByStudio(rle) {
 
 /** Signs in through the page and takes a screenshot of the task with its masks or boxes; returns the text and the rectangles that it shows. */
 export async function picture(studio, { project, task }, chromiumPath, file) {
-  const { chromium } = createRequire(join(root, 'www', 'package.json'))('@playwright/test');
-  const browser = await chromium.launch({ executablePath: chromiumPath, args: ['--no-sandbox', '--disable-background-networking'] });
+  const browser = await launchChromium(chromiumPath);
   try {
     const page = await browser.newPage({ viewport: { width: 1600, height: 900 } });
     await page.goto(`${studio.address}/user/login/`);

@@ -21,7 +21,7 @@ export async function referenceOfPackage(folder) {
 export async function referenceOfCrate(folder) {
   const made = join(root, 'target', 'doc');
   rmSync(made, { recursive: true, force: true });
-  const args = ['doc', '--quiet', '--locked', '--no-deps', '--lib', '--features', 'codecs'];
+  const args = ['doc', '--quiet', '--locked', '--no-deps', '--lib', '--features', 'codecs,stages'];
   await must('The reference of the crate could not be made.', 'cargo', args, { env: { CARGO_TARGET_DIR: undefined } });
   rmSync(folder, { recursive: true, force: true });
   cpSync(made, folder, { recursive: true });

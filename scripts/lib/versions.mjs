@@ -8,6 +8,7 @@ const CRATES = ['Cargo.toml', 'wasm/Cargo.toml', 'python/Cargo.toml'];
 /** What names a version of the package. */
 const NAMED = [
   ['pkg/README.md', /veronese@(\d[\w.-]*)\//g],
+  ...['element', 'embedding'].map((name) => [`site/pages/guide/${name}.md`, /veronese@(\d[\w.-]*)\//g]),
   ...['hosts', 'svelte', 'vue'].map((name) => [`examples/${name}/package.json`, /"veronese": "\^([^"]+)"/g]),
   ['fuzz/Cargo.lock', /name = "veronese"\r?\nversion = "([^"]+)"/g],
 ];

@@ -7,6 +7,7 @@ const PORT = Number(process.env.VERONESE_TEST_PORT ?? 4857);
 export default defineConfig({
   testDir: '.',
   testMatch: '**/*.spec.mjs',
+  testIgnore: 'browsers/**',
   outputDir: fileURLToPath(new URL('../../out/site-test-results', import.meta.url)),
   fullyParallel: true,
   workers: 2,

@@ -29,6 +29,13 @@ pub struct RankCandidate {
     pub ratio: f64,
 }
 
+impl RankCandidate {
+    /// The rank that satisfies the rule (12), one less than the number of columns.
+    pub fn wanted(&self) -> usize {
+        self.columns.saturating_sub(1)
+    }
+}
+
 /// The result of [`number_of_motions`].
 #[non_exhaustive]
 #[derive(Clone, Debug)]

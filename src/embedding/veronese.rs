@@ -59,7 +59,7 @@ pub fn jacobian(degree: usize, v: [f64; 3]) -> DMatrix<f64> {
 
 /// ν_n of many vectors, column-major: `result[monomial * vectors.len() + j]` belongs to vector j. Works for any degree, and gives the
 /// same bits as [`embed`].
-pub(super) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
+pub(crate) fn embed_columns(degree: usize, vectors: &[[f64; 3]]) -> Vec<f64> {
     let rows = vectors.len();
     // Powers 0…n of each variable, as columns.
     let powers = [0, 1, 2].map(|k| {

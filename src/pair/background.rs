@@ -6,6 +6,8 @@
 
 use super::hypothesis::{known, refine, with_dominant};
 use super::labels::{Labelled, label};
+#[cfg(feature = "stages")]
+use super::recorded;
 use super::settings::Settings;
 use super::{Objects, Pair};
 use crate::estimation::selection::ScoredMotion;
@@ -32,6 +34,8 @@ impl Solved {
         let found = refine(&pair, known(&pair, &motions, runner_up), settings);
         stages.begin("labels");
         let labelled = label(&pair, found, settings);
+        #[cfg(feature = "stages")]
+        stages.record(|recording| recording.detail = Some(recorded::labelled(&pair, &labelled)));
         Solved { pair, labelled }
     }
 }
@@ -58,6 +62,8 @@ pub(super) fn solve(mut pair: Pair, likely: &[AffineMotion], settings: &Settings
     // Lengths can be compared only if they assume the same noise.
     let noise = moving.pair.finest().noise.min(at_rest.pair.finest().noise);
     let [rest, motion] = [&at_rest, &moving].map(|solved| solved.labelled.length(solved.pair.finest(), noise));
+    #[cfg(feature = "stages")]
+    stages.record(|recording| recording.chosen = usize::from(rest < motion));
     if rest < motion { at_rest } else { moving }
 }
 
@@ -72,8 +78,12 @@ fn under(
     let found = with_dominant(&pair, background, likely, settings, stages);
     stages.begin("refinement");
     let found = refine(&pair, found, settings);
+    #[cfg(feature = "stages")]
+    stages.record(|recording| recorded::refined(recording, &pair, &found));
     stages.begin("labels");
     let labelled = label(&pair, found, settings);
+    #[cfg(feature = "stages")]
+    stages.record(|recording| recorded::solved(recording, &pair, &labelled));
     Solved { pair, labelled }
 }
 

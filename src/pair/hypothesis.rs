@@ -1,6 +1,8 @@
 //! The motions of a pair: they are proposed and selected beside the dominant one, then refined level by level.
 
 use super::Pair;
+#[cfg(feature = "stages")]
+use super::recorded;
 use super::settings::Settings;
 use crate::estimation::alignment::{Alignment, Support, align, ridge_of_label, softened};
 use crate::estimation::dominant::DominantSearch;
@@ -120,6 +122,8 @@ pub(super) fn with_dominant(
     let level = &pair.levels[pair.base];
     stages.begin("measurements");
     let flow = local_flow(&pair.levels, &dominant, pair.base);
+    #[cfg(feature = "stages")]
+    stages.record(|recording| recorded::seen(recording, pair, dominant, &flow, settings));
     stages.begin("algebra");
     let mut proposals = from_algebra(level, &dominant, &flow, settings.degrees, settings.measurements);
     proposals.extend(from_tiles(level, &dominant, &flow, settings.tiles));
@@ -127,7 +131,11 @@ pub(super) fn with_dominant(
     stages.begin("selection");
     let level = &pair.levels[pair.selection];
     let mut selected = vec![ScoredMotion::new(level, dominant)];
+    #[cfg(feature = "stages")]
+    stages.record(|recording| recorded::proposed(recording, level, &selected, &proposals, settings.deflation(level)));
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(level));
+    #[cfg(feature = "stages")]
+    stages.record(|recording| recorded::selected(recording, pair, &selected));
     settings.refit(level, &mut selected, settings.model.rounds);
     Found { selected, runner_up }
 }

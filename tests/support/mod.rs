@@ -8,4 +8,5 @@
 )]
 
 pub mod moving;
+#[path = "../../src/stages/protocol.rs"]
 pub mod protocol;

@@ -32,28 +32,25 @@ pub fn segment_pair(
     let (first, second) = frames(first, second)?;
     let segmentation =
         veronese::segment_pair(&first, &second, &options, &mut listener(on_stage)).map_err(Failure::from)?;
+    Ok(report_of_pair(&segmentation, &options))
+}
+
+/// The report of a pair, with its labels.
+#[inline(always)]
+pub(super) fn report_of_pair(segmentation: &Segmentation, options: &SegmentOptions) -> JsValue {
     let settings = Record::new()
         .set("motions", &motions_asked(options.motions))
         .text("quality", options.quality.name())
         .set("markUnknown", &options.mark_unknown.into())
         .text("software", SOFTWARE);
-    let report = add_segmentation(Record::new().number("version", REPORT_VERSION), &segmentation)
+    let report = add_segmentation(Record::new().number("version", REPORT_VERSION), segmentation)
         .set("settings", &settings.into_value())
         .bytes("labels", &segmentation.labels);
-    Ok(match &segmentation.confidence {
+    match &segmentation.confidence {
         Some(confidence) => report.bytes("confidence", confidence),
         None => report,
     }
-    .into_value())
-}
-
-/// [`segment_pair`] for two `ImageData`.
-///
-/// # Errors
-/// As [`segment_pair`].
-#[wasm_bindgen(js_name = segmentImageData)]
-pub fn segment_image_data(first: &ImageData, second: &ImageData, options: &JsValue) -> Result<JsValue, JsValue> {
-    segment_pair(first, second, options, None)
+    .into_value()
 }
 
 /// Solves the labels of a segmentation again under a correction (see [`veronese::Correction`]). `matrices` holds six entries per motion,
@@ -154,7 +151,7 @@ fn image_from_labels(
     ImageData::new_with_js_u8_clamped_array_and_sh(&Uint8ClampedArray::from(&rgba[..]), width, height)
 }
 
-fn frames(first: &JsValue, second: &JsValue) -> Result<(Frame, Frame), Failure> {
+pub(super) fn frames(first: &JsValue, second: &JsValue) -> Result<(Frame, Frame), Failure> {
     Ok((frame_from_pixels("the first frame", first)?, frame_from_pixels("the second frame", second)?))
 }
 
@@ -186,7 +183,7 @@ pub(super) fn frame_from_pixels(which: &str, pixels: &JsValue) -> Result<Frame, 
     Ok(Frame::from_rgba(width, height, data.to_vec())?)
 }
 
-fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
+pub(super) fn segment_options(value: &JsValue) -> Result<SegmentOptions, Failure> {
     let mut options = SegmentOptions::default();
     for (name, value) in entries(value)? {
         match name.as_str() {

@@ -26,6 +26,8 @@ mod frames;
 mod plain;
 #[cfg(feature = "points")]
 mod points;
+#[cfg(feature = "stages")]
+mod stages;
 
 #[cfg(feature = "frames")]
 pub use clip::{
@@ -35,9 +37,14 @@ pub use clip::{
 #[cfg(feature = "codecs")]
 pub use files::{decode_image, encode_colour_png, encode_grey_png, encode_indexed_png};
 #[cfg(feature = "frames")]
-pub use frames::{paint_labels, paint_labels_offscreen, relabel, segment_image_data, segment_pair};
+pub use frames::{paint_labels, paint_labels_offscreen, relabel, segment_pair};
 #[cfg(feature = "points")]
 pub use points::fit_motions;
+#[cfg(feature = "stages")]
+pub use stages::{
+    derivatives_of, figure_1_trial, motion_measurements, multibody_flow, paper_stages, segment_pair_stages,
+    veronese_map,
+};
 
 /// Version of the report format.
 const REPORT_VERSION: f64 = 1.0;

@@ -42,7 +42,7 @@ pub fn fit_motions(
 }
 
 /// Rows of `N` numbers from a flat array.
-fn rows<const N: usize>(name: &str, values: &[f64]) -> Result<Vec<[f64; N]>, Failure> {
+pub(super) fn rows<const N: usize>(name: &str, values: &[f64]) -> Result<Vec<[f64; N]>, Failure> {
     let (rows, rest) = values.as_chunks::<N>();
     if !rest.is_empty() {
         return Err(Failure::input(format!(
@@ -66,7 +66,7 @@ fn fit_options(value: &JsValue) -> Result<FitOptions, Failure> {
     Ok(options)
 }
 
-fn seed(value: &JsValue) -> Result<u64, Failure> {
+pub(super) fn seed(value: &JsValue) -> Result<u64, Failure> {
     match value.as_f64() {
         Some(seed) if (0.0..=MAX_SAFE_INTEGER).contains(&seed) && seed == seed.floor() => Ok(seed as u64),
         _ => Err(invalid("seed", "a whole number from 0 to 9007199254740991", value)),
@@ -101,12 +101,7 @@ fn fitted_motion(motion: &FittedMotion) -> JsValue {
 
 fn paper_stages(stages: &PaperStages) -> JsValue {
     let PaperStages { ranks, rank_rule_fired, factorisation, refined, refinement, .. } = stages;
-    let Report { termination, iterations, initial_cost, final_cost, .. } = refinement;
-    let refinement = Record::new()
-        .text("termination", termination.name())
-        .count("iterations", *iterations)
-        .number("initialCost", *initial_cost)
-        .number("finalCost", *final_cost);
+    let refinement = report_of_refinement(refinement);
     Record::new()
         .list("ranks", ranks, rank_candidate)
         .set("rankRuleFired", &rank_rule_fired.map_or(JsValue::NULL, JsValue::from))
@@ -114,6 +109,16 @@ fn paper_stages(stages: &PaperStages) -> JsValue {
         .list("refined", refined, matrix)
         .set("refinement", &refinement.into_value())
         .into_value()
+}
+
+#[inline(always)]
+pub(super) fn report_of_refinement(report: &Report) -> Record {
+    let Report { termination, iterations, initial_cost, final_cost, .. } = report;
+    Record::new()
+        .text("termination", termination.name())
+        .count("iterations", *iterations)
+        .number("initialCost", *initial_cost)
+        .number("finalCost", *final_cost)
 }
 
 fn rank_candidate(tried: &RankCandidate) -> JsValue {
@@ -126,6 +131,6 @@ fn rank_candidate(tried: &RankCandidate) -> JsValue {
         .into_value()
 }
 
-fn matrix(motion: &AffineMotion) -> JsValue {
+pub(super) fn matrix(motion: &AffineMotion) -> JsValue {
     numbers(&motion.matrix)
 }

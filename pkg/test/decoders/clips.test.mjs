@@ -5,8 +5,8 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, describe, test } from 'node:test';
+import { random } from '../../../scripts/lib/random.mjs';
 import { clipFolder, drawnClip } from '../support/clip.mjs';
-import { random } from '../support/masks.mjs';
 import { veronese } from '../support/program.mjs';
 import { decoded, skip } from '../support/python.mjs';
 

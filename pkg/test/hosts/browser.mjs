@@ -1,13 +1,11 @@
 // A browser, and a server for it.
 
 import { createHash } from 'node:crypto';
-import { chromium } from '@playwright/test';
+import { launchChromium } from '../../../scripts/lib/launch-chromium.mjs';
 import { serve as serveFolder } from '../../../scripts/lib/static-server.mjs';
 
 export function launch() {
-  const executablePath = process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium';
-  const args = ['--no-sandbox', '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run', '--no-pings'];
-  return chromium.launch({ executablePath, args });
+  return launchChromium(process.env.VERONESE_CHROMIUM ?? '/usr/bin/chromium');
 }
 
 /** Serves a folder on loopback with the headers; returns the address and what was asked for in vain. */

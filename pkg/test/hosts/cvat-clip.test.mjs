@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { createHash } from 'node:crypto';
-import { mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
+import { cpSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import { describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { decode } from 'fast-png';
@@ -102,6 +102,8 @@ function masksOf(labels) {
   return masks;
 }
 
+/** CVAT gives others each time. */
+const withoutIds = (track) => ({ ...track, id: undefined, shapes: track.shapes.map((shape) => ({ ...shape, id: undefined })) });
 const shapeIn = (track, frame) => track.shapes.find((shape) => shape.frame === frame);
 const groupOf = (tracks, group) => tracks.find((track) => track.group === group);
 /** The squares are these objects. */
@@ -189,6 +191,64 @@ describe('a clip in CVAT', { skip, timeout: 300_000 }, () => {
     masks = await ask('GET', '/test/masks');
     assert.deepEqual([masks[RIGHT], masks[LEFT][5]], [undefined, undefined], 'what was said before still holds');
     assert.deepEqual(masks, masksOf(labels()));
+  });
+
+  test('an upload that breaks off is ended by another run, and nothing is said twice', async (t) => {
+    const { run, ask, save, tracks, out } = await cvat(t);
+    const annotate = ['annotate', '42', '--label', 'thing', '--tolerance', '0'];
+    const breaks = (...which) => ask('POST', '/test/settings', { breaks: which.length > 0 ? which : null });
+    const brokenOff = async (args, ...which) => {
+      await breaks(...which);
+      await refused(run(args), 'cvat-unreachable');
+      await breaks();
+    };
+    await brokenOff(annotate, 1, false);
+    assert.deepEqual(await tracks(), []);
+    await brokenOff(annotate, 1, true);
+    assert.equal((await tracks()).length, 2, 'CVAT has them, and nobody was told');
+    assert.deepEqual(await done(run(annotate)), { task: 42, frames: LENGTH, objects: 2 });
+    assert.deepEqual((await ask('GET', '/test/log')).length, 1);
+
+    // A part of the left square, and another one of it in a track of its own; the right square is not in frame 5.
+    const held = await tracks();
+    const [left, right] = [groupOf(held, LEFT), groupOf(held, RIGHT)];
+    shapeIn(left, 3).points = PART;
+    shapeIn(right, 5).outside = true;
+    await save('update', [left, right]);
+    const shape = { type: 'polygon', frame: 6, outside: false, occluded: false, z_order: 0, rotation: 0, points: square(8, 8, 12), attributes: [] };
+    await save('create', [{ frame: 6, label_id: 7, group: LEFT, source: 'manual', shapes: [shape], attributes: [] }]);
+    const [given, asked] = [await tracks(), (await ask('GET', '/test/log')).length];
+    const correct = (folder) => ['correct', '42', '--tolerance', '0', '--out', folder];
+    const begin = async (name) => {
+      await ask('POST', '/test/tracks', given);
+      cpSync(out, `${out}-${name}`, { recursive: true });
+      return correct(`${out}-${name}`);
+    };
+    const outcome = async () => ({
+      tracks: (await tracks()).sort((one, other) => one.group - other.group).map(withoutIds),
+      masks: await ask('GET', '/test/masks'),
+    });
+    await done(run(await begin('straight')));
+    const straight = await outcome();
+    assert.deepEqual((await ask('GET', '/test/log')).slice(asked).map(({ action }) => action), ['update', 'delete'], 'there is a moment between two');
+    for (const [k, which] of [[2, false], [2, true]].entries()) {
+      const args = await begin(k);
+      await brokenOff(args, ...which);
+      const { changed, deleted } = await done(run(args));
+      assert.deepEqual([changed, deleted], [0, 0], `${which}: nobody has changed anything since`);
+      assert.deepEqual(await outcome(), straight, `${which}`);
+      assert.deepEqual(masksOf(labelsIn(`${out}-${k}/clip/labels`)), masksOf(labelsIn(`${out}-straight/clip/labels`)), `${which}`);
+    }
+
+    // What a person does before the other run is not undone by it.
+    const args = await begin('person');
+    await brokenOff(args, 1, true);
+    const mine = groupOf(await tracks(), RIGHT);
+    shapeIn(mine, 1).points = square(116, 22, 36);
+    await save('update', [mine]);
+    assert.equal((await done(run(args))).changed, 1);
+    assert.deepEqual(shapeIn(groupOf(await tracks(), RIGHT), 1).points, square(116, 22, 36));
+    assert.deepEqual(await done(run(args)), { task: 42, changed: 0, deleted: 0, tracks: 0 });
   });
 
   test('with a password, and without the frames that were deleted', async (t) => {

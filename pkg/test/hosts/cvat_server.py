@@ -4,6 +4,7 @@ cvat_server.py FRAMES prints its port. Requests are checked with the models of t
 cannot open is refused. As in CVAT, what is updated is deleted and created again, with other ids.
 
 Beside it, for tests: GET /test/masks gives the pixels of all tracks, as COCO's own code fills polygons, and GET /test/log what was asked.
+POST /test/settings changes SETTINGS, POST /test/tracks puts tracks in the place of all.
 """
 
 import hashlib
@@ -27,13 +28,18 @@ USER, PASSWORD = "annotator", "only-for-tests"
 LABELS = [(7, "thing", "polygon"), (8, "frame", "rectangle"), (9, "other", "any")]
 FILES = sorted(Path(sys.argv[1]).iterdir())
 SIZE = Image.open(FILES[0]).size
-SETTINGS = {"deleted_frames": [], "segment_size": len(FILES), "size": len(FILES)}
+# `breaks`: [K, WHETHER IT IS DONE] of a change of tracks, counted from now, after which nothing is answered any more until it is set anew.
+SETTINGS = {"deleted_frames": [], "segment_size": len(FILES), "size": len(FILES), "breaks": None}
 WHEN = "2026-01-01T00:00:00Z"
 USER_MODEL = {"url": "http://localhost/api/users/1", "id": 1, "username": USER, "first_name": "", "last_name": ""}
 
 ids = itertools.count(1)
 tracks = {}
 log = []
+
+
+class Broken(Exception):
+    """The connection breaks off."""
 
 
 class Refused(Exception):
@@ -120,6 +126,25 @@ def patch(action, data):
     return {**data, "version": 0, "tags": [], "shapes": []}
 
 
+def put(wanted):
+    tracks.clear()
+    tracks.update({number: {**track, "id": number} for track in wanted for number in [next(ids)]})
+    return {}
+
+
+def breaking(change):
+    """Makes a change, unless the connection breaks off before it."""
+    if SETTINGS["breaks"] is None:
+        return change()
+    left, is_done = SETTINGS["breaks"]
+    SETTINGS["breaks"] = [left - 1, is_done]
+    if left > 1:
+        return change()
+    if left == 1 and is_done:
+        change()
+    raise Broken
+
+
 def masks():
     """{group: {frame: [number of pixels, hash of one byte for each pixel]}}, of frames with a visible key frame."""
     found = {}
@@ -146,6 +171,8 @@ class Handler(BaseHTTPRequestHandler):
             self.send(200, content)
         except Refused as refused:
             self.send(refused.status, {"detail": str(refused)})
+        except Broken:
+            self.close_connection = True
 
     do_GET = do_PATCH = do_POST = do_PUT = do_DELETE = answer
 
@@ -162,6 +189,8 @@ class Handler(BaseHTTPRequestHandler):
         if route == "POST /test/settings":
             SETTINGS.update(json.loads(body))
             return {}
+        if route == "POST /test/tracks":
+            return put(json.loads(body))
         in_session = "sessionid=s" in self.headers.get("Cookie", "") and self.headers.get("X-CSRFTOKEN" if self.command != "GET" else "Cookie")
         if self.headers.get("Authorization") != f"Bearer {TOKEN}" and not in_session:
             raise Refused(401, "Authentication credentials were not provided.")
@@ -183,7 +212,7 @@ class Handler(BaseHTTPRequestHandler):
         if route == "GET/annotations":
             return annotations()
         if route == "PATCH/annotations":
-            return patch(query.get("action"), json.loads(body))
+            return breaking(lambda: patch(query.get("action"), json.loads(body)))
         raise Refused(404, f"Not found: {route}")
 
     def send(self, status, content):

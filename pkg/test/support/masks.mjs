@@ -1,15 +1,6 @@
 // Label images to encode: the cases that break encoders, then random ones. Seeded: the same every time.
 
-/** Numbers from 0 to 1 (mulberry32). */
-export function random(seed) {
-  let state = seed >>> 0;
-  return () => {
-    state = (state + 0x6d2b79f5) >>> 0;
-    let value = Math.imul(state ^ (state >>> 15), state | 1);
-    value ^= value + Math.imul(value ^ (value >>> 7), value | 61);
-    return ((value ^ (value >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
+import { random } from '../../../scripts/lib/random.mjs';
 
 /** A label image of rows of text: `.` is 255, digits are labels. */
 export function drawn(...rows) {

@@ -1,5 +1,7 @@
 // A simulation of clips in one tab or process, and on a farm. Nothing is random but when workers are killed, by a generator with a fixed seed.
 
+import { random } from '../random.mjs';
+
 /** Calls what is due in the order of its time: a binary heap. */
 function simulation() {
   const heap = [];
@@ -94,8 +96,8 @@ export function farm({ cost, rate, clips, frames, workers, block, start = 0, kil
   const blocks = pairs > block ? Math.ceil(pairs / block) : 0;
   const [left, urgent, again, idle] = [new Uint16Array(clips).fill(blocks), [], [], []];
   let [fresh, queue, store, lost, busy, ended] = [0, 0, 0, 0, 0, 0];
-  const random = generator(1);
-  const lifetime = () => (kills > 0 ? (-Math.log(1 - random()) * 3600) / kills : Infinity);
+  const next = random(1);
+  const lifetime = () => (kills > 0 ? (-Math.log(1 - next()) * 3600) / kills : Infinity);
   const dies = Array.from({ length: workers }, lifetime);
   const perPair = Math.max(blocks === 0 ? cost.pair : cost.pair + cost.track, cost.decode);
 
@@ -151,15 +153,4 @@ export function farm({ cost, rate, clips, frames, workers, block, start = 0, kil
   clock.run();
   if (ended !== clips) throw new Error(`${ended} of ${clips} clips`);
   return { seconds: clock.now, busy: busy + workers * start, lost };
-}
-
-/** Numbers from 0 to 1 (mulberry32). */
-function generator(seed) {
-  let state = seed;
-  return () => {
-    state = (state + 0x6d2b79f5) | 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
 }

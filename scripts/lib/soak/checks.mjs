@@ -9,17 +9,6 @@ const SETTLING = 8;
 /** From then on it may, for the collector decides when it collects. */
 const LEEWAY = { share: 0.25, bytes: 64 * MIB };
 
-/** Numbers from 0 to 1, the same for the same seed (mulberry32). */
-export function randomOf(seed) {
-  let state = seed >>> 0;
-  return () => {
-    state = (state + 0x6d2b79f5) >>> 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 2 ** 32;
-  };
-}
-
 /** A hash of the labels and motions of a pair. */
 export function hashOf({ labels, motions }) {
   return createHash('sha256').update(labels).update(JSON.stringify(motions)).digest('hex');

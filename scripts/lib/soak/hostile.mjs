@@ -5,7 +5,8 @@ import { inspect, isDeepStrictEqual } from 'node:util';
 import { Segmenter, segmentPair } from '../../../pkg/dist/node.js';
 import * as direct from '../../../pkg/dist/node.js';
 import { outcomeOf, randomCall } from '../../../pkg/test/support/hostile.mjs';
-import { flatMemory, hashOf, randomOf, sameAsBefore } from './checks.mjs';
+import { random } from '../random.mjs';
+import { flatMemory, hashOf, sameAsBefore } from './checks.mjs';
 import { OPTIONS, REFERENCE, pairOf } from './frames.mjs';
 
 const BATCH = 100;
@@ -17,7 +18,7 @@ export async function* hostile({ from, total, references, seed }) {
   let refused = 0;
   try {
     for (let done = from; done < total; ) {
-      const call = randomCall(randomOf(seed * 1_000_003 + done));
+      const call = randomCall(random(seed * 1_000_003 + done));
       const where = `call ${done} of seed ${seed}: ${call.place}: ${call.words}`;
       try {
         const here = await outcomeOf(direct, call);

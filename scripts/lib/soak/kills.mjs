@@ -4,7 +4,8 @@ import assert from 'node:assert/strict';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { Worker } from 'node:worker_threads';
 import { SegmenterPool, segmentPair } from '../../../pkg/dist/node.js';
-import { flatMemory, hashOf, randomOf, sameAsBefore } from './checks.mjs';
+import { random } from '../random.mjs';
+import { flatMemory, hashOf, sameAsBefore } from './checks.mjs';
 import { OPTIONS, REFERENCE, pairOf } from './frames.mjs';
 
 /** Pairs between which one worker is killed. */
@@ -30,12 +31,12 @@ export async function* kills({ from, total, references, jobs, seed }) {
   let rejected = 0;
   try {
     for (let done = from; done < total; done += 1) {
-      const random = randomOf(seed + done);
+      const next = random(seed + done);
       const calls = Array.from({ length: BATCH }, (_, k) => pool.segmentPair(...frames(k), OPTIONS));
       const outcomes = Promise.allSettled(calls);
-      await sleep(LATEST * random());
+      await sleep(LATEST * next());
       const list = [...alive];
-      const killed = list[Math.floor(random() * list.length)];
+      const killed = list[Math.floor(next() * list.length)];
       if (killed) await killed.terminate();
       const failed = [];
       for (const [k, { value, reason }] of (await outcomes).entries()) {

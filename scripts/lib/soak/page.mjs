@@ -1,10 +1,8 @@
 // Pairs in a page of headless Chromium, through a pool that stays. The reference result is that of Node.
 
-import { createRequire } from 'node:module';
-import { join } from 'node:path';
-
 import { segmentPair } from '../../../pkg/dist/node.js';
 import { browserMemory } from '../browser-memory.mjs';
+import { launchChromium } from '../launch-chromium.mjs';
 import { root } from '../project.mjs';
 import { Stop } from '../run.mjs';
 import { serve } from '../static-server.mjs';
@@ -20,8 +18,7 @@ export async function* page({ from, total, references, jobs, chromium }) {
   const { first, second } = pairOf(REFERENCE);
   sameAsBefore(references, 'pairs', hashOf(await segmentPair(first, second, OPTIONS)));
   const server = await serve(root, { host: HOST, headers: {} });
-  const browsers = createRequire(join(root, 'www/package.json'))('@playwright/test').chromium;
-  const browser = await browsers.launch({ executablePath: chromium.path, args: ['--no-sandbox'] });
+  const browser = await launchChromium(chromium.path);
   const memory = flatMemory();
   try {
     const session = await browser.newBrowserCDPSession();

@@ -181,7 +181,7 @@ export function beside(...parts) {
 
 /** A part with a heading. */
 export function panel(heading, ...parts) {
-  return html('div', { class: 'panel' }, html('h4', {}, heading), ...parts);
+  return html('div', { class: 'panel' }, html('h3', {}, heading), ...parts);
 }
 
 /** A canvas for pictures, with a name for those who do not see it. */

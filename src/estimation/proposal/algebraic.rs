@@ -25,6 +25,21 @@ const ENTRIES: usize = 6;
 struct Unexplained {
     measurements: Measurements,
     weights: Vec<f64>,
+    /// Their pixels.
+    #[cfg(feature = "stages")]
+    places: Vec<[usize; 2]>,
+}
+
+/// What [`from_algebra`] fits polynomials to, unless it is too little.
+#[cfg(feature = "stages")]
+pub(crate) fn recorded(
+    level: &Level,
+    dominant: &AffineMotion,
+    flow: &LocalFlow,
+    most: usize,
+) -> Option<crate::recording::Measured> {
+    let Unexplained { measurements, weights, places } = unexplained(level, dominant, flow, most)?;
+    Some(crate::recording::Measured { measurements, weights, places, unit: level.model.algebra_unit })
 }
 
 /// Motions found by polynomials of degree 1 to `degrees` on at most `most` unexplained pixels.
@@ -103,6 +118,8 @@ fn unexplained(level: &Level, dominant: &AffineMotion, flow: &LocalFlow, most: u
     Some(Unexplained {
         measurements: measurements.ok()?,
         weights: chosen.clone().map(|k| f64::from(weights[k])).collect(),
+        #[cfg(feature = "stages")]
+        places: points().map(|(x, y)| [x, y]).collect(),
     })
 }
 

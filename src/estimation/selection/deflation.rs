@@ -79,6 +79,23 @@ fn rough_gain(current: &Plane, cost: &Plane, window: f32, model: &Model) -> f64 
     gain_of(&gaussian(&difference, window / BLOCK as f32), model.margin) * (BLOCK * BLOCK) as f64
 }
 
+/// What each proposal gains beside `selected` before it is refined, as the first round of [`add_motions`] ranks them.
+#[cfg(feature = "stages")]
+pub(crate) fn rough_gains(
+    level: &Level,
+    selected: &[ScoredMotion],
+    proposals: &[AffineMotion],
+    how: Deflation,
+) -> Vec<f64> {
+    let (thinning, thinned) = (level.thinning(), level.thinned());
+    let current = blocks(&smallest_cost(selected), BLOCK);
+    let gain = |&motion: &AffineMotion| {
+        let cost = blocks(&ScoredMotion::new(&thinned, motion).cost, BLOCK / thinning);
+        rough_gain(&current, &cost, how.window, level.model)
+    };
+    proposals.iter().map(gain).collect()
+}
+
 /// Adds proposed motions to `selected` as long as each gains more than its price. Returns the best motion that was rejected; there is
 /// none if nothing was proposed.
 ///

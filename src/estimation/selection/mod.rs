@@ -5,6 +5,8 @@ mod deflation;
 mod fine;
 mod refit;
 
+#[cfg(feature = "stages")]
+pub(crate) use deflation::rough_gains;
 pub(crate) use deflation::{Deflation, add_motions, prune};
 pub(crate) use fine::fine_proposals;
 pub(crate) use refit::refit;

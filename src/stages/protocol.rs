@@ -3,7 +3,8 @@
 //! Positions are uniform in [−1, 1]², the six entries of each motion uniform in [−1, 1]. Labels alternate. `y` is uniform on the unit
 //! circle orthogonal to `A x`, plus noise uniform in [−p, p] on every component. The `y` of an outlier is uniform on the unit sphere.
 
-use veronese::{AffineMotion, Measurements, Random};
+// By the name of the crate: tests, benchmarks and experiments include this file.
+use veronese::{AffineMotion, Measurements, Random, Result};
 
 /// Parameters of a problem.
 #[derive(Clone, Debug)]
@@ -69,8 +70,11 @@ pub const SPECIAL: [Relation; 11] = [
 ];
 
 /// A problem and its solution.
+#[derive(Clone, Debug)]
 pub struct Problem {
+    /// The measurements.
     pub measurements: Measurements,
+    /// The true motions.
     pub motions: Vec<AffineMotion>,
     /// The motion of every measurement, `None` for an outlier.
     pub labels: Vec<Option<usize>>,
@@ -82,37 +86,27 @@ impl Protocol {
         Protocol { motions, count: 600, noise, outliers: 0.0, first_share: None, relation: Relation::General }
     }
 
+    /// The problem of a seed.
+    ///
+    /// # Panics
+    /// Without motions, with [`Relation::Near`] and a single one, and for noise that is not finite.
+    #[allow(clippy::expect_used, reason = "with finite noise, measurements of the motions that are drawn are finite")]
     pub fn problem(&self, seed: u64) -> Problem {
         let random = &mut Random::from_seed(seed);
         let motions = self.draw_motions(random);
         let first = self.first_share.map(|share| (share * self.count as f64) as usize);
-        let (mut positions, mut derivatives, mut labels) = (Vec::new(), Vec::new(), Vec::new());
-        for j in 0..self.count {
-            let label = match first {
-                Some(first) if self.motions > 1 => {
-                    if j < first {
-                        0
-                    } else {
-                        1 + j % (self.motions - 1)
-                    }
+        let label = |j: usize| match first {
+            Some(first) if self.motions > 1 => {
+                if j < first {
+                    0
+                } else {
+                    1 + j % (self.motions - 1)
                 }
-                _ => j % self.motions,
-            };
-            let (x, y) = (random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
-            let [u, v] = motions[label].flow(x, y);
-            let mut direction: [f64; 3] = std::array::from_fn(|_| random.normal());
-            let outlier = random.unit() < self.outliers;
-            if !outlier {
-                let along = (direction[0] * u + direction[1] * v + direction[2]) / (u * u + v * v + 1.0);
-                direction = [direction[0] - along * u, direction[1] - along * v, direction[2] - along];
             }
-            let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
-            positions.push([x, y]);
-            derivatives.push(direction.map(|d| d / length + random.uniform(-self.noise, self.noise)));
-            labels.push((!outlier).then_some(label));
-        }
-        let measurements = Measurements::new(positions, derivatives).expect("finite numbers");
-        Problem { measurements, motions, labels }
+            _ => j % self.motions,
+        };
+        let labels: Vec<usize> = (0..self.count).map(label).collect();
+        Problem::measured(motions, &labels, self.outliers, self.noise, random).expect("finite numbers")
     }
 
     fn draw_motions(&self, random: &mut Random) -> Vec<AffineMotion> {
@@ -150,6 +144,36 @@ impl Protocol {
 }
 
 impl Problem {
+    /// Measurements of given motions: measurement j is one of motion `labels[j]`, or an outlier.
+    ///
+    /// # Errors
+    /// [`NotFinite`](veronese::Error::NotFinite) for motions or noise so large that derivatives are not finite numbers.
+    pub fn measured(
+        motions: Vec<AffineMotion>,
+        labels: &[usize],
+        outliers: f64,
+        noise: f64,
+        random: &mut Random,
+    ) -> Result<Problem> {
+        let (mut positions, mut derivatives, mut true_labels) = (Vec::new(), Vec::new(), Vec::new());
+        for &label in labels {
+            let (x, y) = (random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0));
+            let [u, v] = motions[label].flow(x, y);
+            let mut direction: [f64; 3] = std::array::from_fn(|_| random.normal());
+            let outlier = random.unit() < outliers;
+            if !outlier {
+                let along = (direction[0] * u + direction[1] * v + direction[2]) / (u * u + v * v + 1.0);
+                direction = [direction[0] - along * u, direction[1] - along * v, direction[2] - along];
+            }
+            let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+            positions.push([x, y]);
+            derivatives.push(direction.map(|d| d / length + random.uniform(-noise, noise)));
+            true_labels.push((!outlier).then_some(label));
+        }
+        let measurements = Measurements::new(positions, derivatives)?;
+        Ok(Problem { measurements, motions, labels: true_labels })
+    }
+
     /// The maximum likelihood estimate of each motion from its own measurements.
     pub fn oracle(&self) -> Vec<AffineMotion> {
         (0..self.motions.len())

@@ -1,0 +1,223 @@
+//! The image pipeline with what its stages find.
+//!
+//! Where it leaves the paper, and why:
+//!
+//! * **Derivatives** are taken where a rough local flow lands, not at the pixel itself: those of the paper are linear for motions of a
+//!   fraction of a pixel only.
+//! * **The dominant motion** is found first, on the intensities, and its pixels count little in the constraint. The paper leaves out pixels
+//!   that do not move, to the same end: n motions more evenly shared are better conditioned.
+//! * **The constraint** proposes translations beside the dominant motion, from polynomials of several low degrees in the derivatives and the
+//!   position, by differentiation. The paper factors one polynomial of the degree that its rank rule finds; on real frames no rank is exact,
+//!   and the factorisation of O(n⁴) unknowns is sensitive to noise.
+//! * **Windows** propose motions of things that are too small for the polynomial.
+//! * **Selection** decides the number of motions: each must gain more than it costs to describe. This takes the place of the rank rule.
+//! * **Refinement** compares intensities instead of derivatives (the paper: eq. 19), coarse to fine.
+//! * **Labels** minimise an energy in which neighbours agree; the paper gives each pixel the motion of its smallest residual, which is noisy,
+//!   as one pixel has one equation for two components.
+
+use crate::error::Result;
+use crate::frame::{Derivatives, Frame, Plane};
+use crate::measurements::Measurements;
+use crate::motion::AffineMotion;
+use crate::options::SegmentOptions;
+use crate::pair::{Segmentation, segment_pair_recorded};
+use crate::recording::{Hypothesis, Labels, Proposed, Recording, Source, Supported};
+
+/// The result of [`segment_pair_stages`].
+#[non_exhaustive]
+#[derive(Clone, Debug)]
+pub struct PairStages {
+    /// The hypotheses about the background that were solved, one or two.
+    pub hypotheses: Vec<Background>,
+    /// The index of the one that describes the frames in fewer nats.
+    pub chosen: usize,
+    /// Large frames with quality [`Best`](crate::Quality::Best): the labels carried on at a finer working size.
+    pub detail: Option<Labelling>,
+    /// The labels at the final working size, after shadows are given back to the background.
+    pub working: Labelling,
+    /// Labels of the result by groups.
+    pub groups: Vec<Vec<u8>>,
+    /// What [`segment_pair`](crate::segment_pair) returns.
+    pub result: Segmentation,
+}
+
+/// A grid of pixels: its pixel (x, y) lies at `scale` (x, y) of the full frame.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// Width in its own pixels.
+    pub width: usize,
+    /// Height in its own pixels.
+    pub height: usize,
+    /// Pixels of the full frame for one of its own.
+    pub scale: f64,
+}
+
+/// A hypothesis about the background, solved to the end. Motions are in pixels of the full frame.
+#[non_exhaustive]
+#[derive(Clone, Debug)]
+pub struct Background {
+    /// The motion of the background: the one that explains most pixels, or rest.
+    pub dominant: AffineMotion,
+    /// The level on which derivatives and measurements are taken.
+    pub base: Grid,
+    /// Standard deviation of the intensity difference along a correct motion in flat areas, grey levels.
+    pub noise: f64,
+    /// The second frame along the dominant motion minus the first, grey levels, on `base`.
+    pub residual: Plane,
+    /// Derivatives on `base`, grey levels per pixel of `base`, where the local flow lands, recentred: `I_x u + I_y v + I_t = 0` for the flow
+    /// (u, v) relative to the dominant motion, in pixels of `base`.
+    pub derivatives: Derivatives,
+    /// The local flow (u, v) relative to the dominant motion, pixels of the full frame, on `base`.
+    pub local_flow: [Plane; 2],
+    /// The measurements of the multibody constraint; none where they are too few.
+    pub measured: Option<MeasuredPixels>,
+    /// The candidates, in the order in which they were proposed.
+    pub candidates: Vec<CandidateMotion>,
+    /// What a motion has to gain to be selected.
+    pub price: f64,
+    /// The motions after greedy selection; the first is the dominant one.
+    pub selected: Vec<SelectedMotion>,
+    /// The selected motion that explains each pixel best, before any pixel asks its neighbours.
+    pub selection: Labelling,
+    /// The motions after refinement on the intensities.
+    pub refined: Vec<SelectedMotion>,
+    /// The refined motion that explains each pixel best, before any pixel asks its neighbours.
+    pub refinement: Labelling,
+    /// The labels of the draft level.
+    pub draft: Labelling,
+    /// The labels of the working size.
+    pub labelling: Labelling,
+}
+
+/// Measurements on pixels that the dominant motion does not explain.
+#[non_exhaustive]
+#[derive(Clone, Debug)]
+pub struct MeasuredPixels {
+    /// The pixels, in pixels of the full frame.
+    pub places: Vec<[f64; 2]>,
+    /// As the constraint has them: positions normalised by the half width, derivatives of about unit length.
+    pub measurements: Measurements,
+    /// How badly the dominant motion explains each, 0…1.
+    pub weights: Vec<f64>,
+    /// Pixels of the full frame for a unit of the flow of the measurements, which is relative to the dominant motion.
+    pub unit: f64,
+}
+
+/// Where a candidate comes from.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CandidateSource {
+    /// The multibody constraint of this degree.
+    Constraint(usize),
+    /// The local flow of a window.
+    Window,
+    /// The other hypothesis about the background.
+    Hypothesis,
+}
+
+/// A candidate motion.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug)]
+pub struct CandidateMotion {
+    /// The motion.
+    pub matrix: AffineMotion,
+    /// Where it comes from.
+    pub source: CandidateSource,
+    /// What it would save beside the dominant motion alone before it is refined, in the unit of [`Background::price`].
+    pub gain: f64,
+    /// Share of the pixels, 0…1, that it explains better than the dominant motion does.
+    pub support: f64,
+}
+
+/// A motion that was selected.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug)]
+pub struct SelectedMotion {
+    /// The motion.
+    pub matrix: AffineMotion,
+    /// Share of the pixels, 0…1, that it explains best.
+    pub support: f64,
+}
+
+/// Labels with their motions. The first motion is the background's; numbers are not yet those of the report.
+#[non_exhaustive]
+#[derive(Clone, Debug)]
+pub struct Labelling {
+    /// The pixels of the labels.
+    pub grid: Grid,
+    /// The motions, pixels of the full frame.
+    pub motions: Vec<AffineMotion>,
+    /// The label of every pixel of `grid`, row by row.
+    pub labels: Vec<u8>,
+}
+
+/// [`segment_pair`](crate::segment_pair) with what its stages found. It runs the same pipeline, which notes what it has.
+///
+/// # Errors
+/// As [`segment_pair`](crate::segment_pair).
+pub fn segment_pair_stages(first: &Frame, second: &Frame, options: &SegmentOptions) -> Result<PairStages> {
+    let mut recording = Recording::default();
+    let result = segment_pair_recorded(first, second, options, &mut recording)?;
+    let groups = 1 + result.motions.iter().map(|motion| motion.group).max().unwrap_or(0);
+    let of_group = |group| result.motions.iter().filter(move |motion| motion.group == group).map(|motion| motion.label);
+    Ok(PairStages {
+        hypotheses: recording.hypotheses.into_iter().map(background).collect(),
+        chosen: recording.chosen,
+        detail: recording.detail.map(labelling),
+        working: labelling(recording.working),
+        groups: (0..groups).map(|group| of_group(group).collect()).collect(),
+        result,
+    })
+}
+
+fn background(hypothesis: Hypothesis) -> Background {
+    let Hypothesis { dominant, reduction, seen, measured, proposals, price, .. } = hypothesis;
+    let Hypothesis { selected, selection, refined, refinement, draft, labels, .. } = hypothesis;
+    let scale = seen.pixel * reduction;
+    let supported = |all: Vec<Supported>| -> Vec<SelectedMotion> {
+        let full = |one: Supported| SelectedMotion { matrix: one.motion.scaled(reduction), support: one.support };
+        all.into_iter().map(full).collect()
+    };
+    let candidate = |proposed: Proposed| CandidateMotion {
+        matrix: proposed.motion.scaled(reduction),
+        source: match proposed.source {
+            Source::Constraint(degree) => CandidateSource::Constraint(degree),
+            Source::Window => CandidateSource::Window,
+            Source::Known => CandidateSource::Hypothesis,
+        },
+        gain: proposed.gain,
+        support: proposed.support,
+    };
+    let [x, y, t] = seen.derivatives;
+    let mut local_flow = seen.flow;
+    local_flow.iter_mut().flat_map(|plane| plane.values_mut()).for_each(|flow| *flow *= scale as f32);
+    Background {
+        dominant: dominant.scaled(reduction),
+        base: Grid { width: seen.residual.width(), height: seen.residual.height(), scale },
+        noise: f64::from(seen.noise),
+        residual: seen.residual,
+        derivatives: Derivatives { x, y, t },
+        local_flow,
+        measured: measured.map(|measured| MeasuredPixels {
+            places: measured.places.iter().map(|place| place.map(|side| side as f64 * scale)).collect(),
+            measurements: measured.measurements,
+            weights: measured.weights,
+            unit: measured.unit * scale,
+        }),
+        candidates: proposals.into_iter().map(candidate).collect(),
+        price,
+        selected: supported(selected),
+        selection: labelling(selection),
+        refined: supported(refined),
+        refinement: labelling(refinement),
+        draft: labelling(draft),
+        labelling: labelling(labels),
+    }
+}
+
+fn labelling(labels: Labels) -> Labelling {
+    let Labels { size: [width, height], scale, reduction, motions, labels } = labels;
+    let motions = motions.iter().map(|motion| motion.scaled(reduction)).collect();
+    Labelling { grid: Grid { width, height, scale }, motions, labels }
+}
