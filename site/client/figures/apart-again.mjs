@@ -1,7 +1,7 @@
 // The multibody motion of two motions taken apart in two ways: by roots of its columns and rows, and by its derivatives at a pixel.
 
 import { ask, latest } from '../compute.mjs';
-import { MOTIONS, arrow, beside, controls, handle, html, panel, plot, segment, set, slider, svg, written } from './kit.mjs';
+import { MOTIONS, arrow, handle, html, panel, plot, set, slider, svg, written } from './kit.mjs';
 
 const COUNT = 600;
 const SEED = 1;
@@ -10,9 +10,11 @@ const SHARES = new Float64Array([1, 1]);
 const LINEAR = [-0.2, -0.6, -0.35, -0.55];
 /** From the third column of the first motion to that of the second, at distance 1. */
 const APART = [-0.85, -0.9];
+/** Pixels of the magnifier per unit. */
+const MAGNIFIED = 1400;
 
 export default async function mount({ stage, say }) {
-  const state = { distance: 1, noise: 0.003, pixel: [0.5, 0.4], angle: (52 * Math.PI) / 180 };
+  const state = { distance: 1, noise: 0.003, pixel: [0.6, 0.6], angle: (52 * Math.PI) / 180 };
   // Third columns are flows at the origin, which the method moves to the centre of the measurements.
   let centre = [0, 0];
 
@@ -31,7 +33,7 @@ export default async function mount({ stage, say }) {
       ask('motionsAtPixel', positions, derivatives, 2, ...state.pixel, state.angle),
     ]);
     const isPaired = columns.show(stages, truth, centre);
-    pairs.textContent = isPaired ? 'Each row is with its own motion.' : 'Rows of different motions are together.';
+    pairs.textContent = isPaired ? 'Each row is with its own motion.' : 'Rows of two motions are together.';
     pairs.classList.toggle('wrong', !isPaired);
     image.show(truth, state);
     curve.show(here, truth, state);
@@ -44,16 +46,18 @@ export default async function mount({ stage, say }) {
     Object.assign(state, values);
     void show();
   };
-  const apart = slider({ label: 'Columns apart', min: 0, max: 1, step: 0.01, value: 1, format: (value) => written(value), onInput: (distance) => change({ distance }) });
+  const apart = slider({ label: 'Distance', min: 0, max: 1, step: 0.01, value: 1, format: (value) => written(value), onInput: (distance) => change({ distance }) });
   const direction = slider({ label: 'Gradient', min: 0, max: 180, step: 1, value: 52, format: (value) => `${value}°`, onInput: (value) => change({ angle: (value * Math.PI) / 180 }) });
+  const noise = slider({ label: 'Noise', min: 0, max: 1, step: 0.1, value: 0.3, format: (value) => `${value} %`, onInput: (value) => change({ noise: value / 100 }) });
   stage.append(
-    beside(
+    html(
+      'div',
+      { class: 'beside thirds' },
       panel('By roots', columns.element, apart, pairs),
-      panel('By derivatives: choose a pixel', image.element),
+      panel('By derivatives: choose a pixel', image.element, noise),
       panel('The polynomial at that pixel', curve.element, direction),
     ),
     html('ul', { class: 'results' }, ...results.map(({ element }) => element)),
-    controls(slider({ label: 'Noise', min: 0, max: 1, step: 0.1, value: 0.3, format: (value) => `${value} %`, onInput: (value) => change({ noise: value / 100 }) })),
   );
   const { positions, derivatives } = await ask('motionMeasurements', new Float64Array([...FIRST, ...second(1, centre)]), SHARES, COUNT, 0, SEED);
   ({ centre } = (await ask('paperStages', positions, derivatives, 2)).normalisation);
@@ -80,36 +84,43 @@ function errorOf(truth, found) {
   return 50 * (relative[0] + relative[1]);
 }
 
-/** The third columns as rings; each pair of rows that step 5 makes as a cross. The colours say to which true motion each part belongs. */
+/**
+ * The third columns as rings; each pair of rows that step 5 makes as a cross. The colours say to which true motion each part belongs. Where
+ * all is close together, a magnifier shows it.
+ */
 function columnsPlot() {
-  const area = plot({ title: 'Third columns and the third entries of rows', x: [-0.75, 0.75], y: [-0.75, 0.75], width: 300, height: 300, flipped: true, names: ['a₁₃', 'a₂₃'] });
+  const area = plot({ title: 'Third columns, and the third entries of rows', x: [-0.75, 0.75], y: [-0.75, 0.75], width: 300, height: 300, flipped: true, names: ['a₁₃', 'a₂₃'] });
   const parts = svg('g');
-  area.marks.append(parts);
+  const closer = svg('svg', { x: 8, y: 150, width: 126, height: 126, viewBox: '-63 -63 126 126' });
+  area.marks.append(parts, closer);
   return {
     element: area.element,
     show({ thirdColumns, factorisation }, truth, centre) {
       const rows = [0, 3].map((first) => {
         const entries = (a) => a.slice(first, first + 3);
         const isSwapped = swapped(factorisation.map(entries), truth.map(entries));
-        return factorisation.map((_, i) => (isSwapped ? 1 - i : i));
+        return factorisation.map((_, i) => MOTIONS[isSwapped ? 1 - i : i]);
       });
-      const columnsSwapped = swapped(thirdColumns, truth.map((a) => flow(a, centre)));
-      const crosses = factorisation.flatMap((a, i) => {
-        const [u, v] = flow(a, centre);
-        const [x, y] = area.at(u, v);
-        const names = [MOTIONS[rows[0][i]], MOTIONS[rows[1][i]]];
-        return [
-          svg('line', { ...segment(area, [1, 0, -u]), class: `line thin ${names[0]}` }),
-          svg('line', { ...segment(area, [0, 1, -v]), class: `line thin ${names[1]}` }),
-          svg('line', { x1: x, x2: x, y1: y - 13, y2: y + 13, class: `line bold ${names[0]}` }),
-          svg('line', { x1: x - 13, x2: x + 13, y1: y, y2: y, class: `line bold ${names[1]}` }),
-        ];
-      });
-      const rings = thirdColumns.map((column, i) => {
-        const [cx, cy] = area.at(...column);
-        return svg('circle', { cx, cy, r: 8, class: `line bold ${MOTIONS[columnsSwapped ? 1 - i : i]}` });
-      });
-      parts.replaceChildren(...crosses.filter((part) => part.hasAttribute('x1')), ...rings);
+      const isSwapped = swapped(thirdColumns, truth.map((a) => flow(a, centre)));
+      const columns = thirdColumns.map((_, i) => MOTIONS[isSwapped ? 1 - i : i]);
+      const drawn = (at) =>
+        factorisation.flatMap((a, i) => {
+          const [x, y] = at(...flow(a, centre));
+          const [cx, cy] = at(...thirdColumns[i]);
+          return [
+            svg('line', { x1: x, x2: x, y1: -300, y2: 600, class: `line thin ${rows[0][i]}` }),
+            svg('line', { x1: -300, x2: 600, y1: y, y2: y, class: `line thin ${rows[1][i]}` }),
+            svg('line', { x1: x, x2: x, y1: y - 14, y2: y + 14, class: `line bold ${rows[0][i]}` }),
+            svg('line', { x1: x - 14, x2: x + 14, y1: y, y2: y, class: `line bold ${rows[1][i]}` }),
+            svg('circle', { cx, cy, r: 8, class: `line bold ${columns[i]}` }),
+          ];
+        });
+      parts.replaceChildren(...drawn(area.at));
+      const middle = [0, 1].map((k) => (thirdColumns[0][k] + thirdColumns[1][k]) / 2);
+      const isClose = distance(...thirdColumns) < 0.08;
+      closer.toggleAttribute('hidden', !isClose);
+      const magnified = (u, v) => [u - middle[0], v - middle[1]].map((value) => MAGNIFIED * value);
+      if (isClose) closer.replaceChildren(svg('rect', { x: -63, y: -63, width: 126, height: 126, class: 'lens' }), ...drawn(magnified));
       return rows[0].every((owner, i) => owner === rows[1][i]);
     },
   };
@@ -146,7 +157,7 @@ function imagePlot(state, change) {
 
 /** The polynomial in I_t at the pixel, for a gradient of length 1 in the chosen direction. */
 function curvePlot() {
-  const area = plot({ title: 'The polynomial in the temporal derivative', x: [-1.6, 1.6], y: [-0.6, 1.4], width: 300, height: 300, names: ['Iₜ', 'p'] });
+  const area = plot({ title: 'The polynomial in the temporal derivative', x: [-1.6, 1.6], y: [-1.15, 1.35], width: 300, height: 300, names: ['Iₜ', 'p'] });
   const line = svg('polyline', { class: 'line' });
   const tangents = svg('g');
   const dots = svg('g');

@@ -130,9 +130,10 @@ const degreesOf = ([x, y]) => (Math.atan2(y, x) * 180) / Math.PI;
 const onCircle = (degrees) => [1.1 * Math.cos(radians(degrees)), 1.1 * Math.sin(radians(degrees))];
 const normal = (degrees) => [Math.sin(radians(degrees)), -Math.cos(radians(degrees)), 0];
 
-function sentence({ count, noise }, maps, first) {
+function sentence({ count, noise, angles }, maps, first) {
   const ranks = maps.map(({ rank, columns }, k) => `degree ${k + 1}: ${rank} of ${columns}`).join('; ');
-  const given = `${count} ${count === 1 ? 'line' : 'lines'}, noise ${written(noise * 100)} %.`;
+  const at = angles.slice(0, count).map((angle) => `${written(((angle % 180) + 180) % 180, 0)}°`);
+  const given = `${count} ${count === 1 ? 'line' : 'lines'} at ${at.join(', ')}, noise ${written(noise * 100)} %.`;
   if (first < 0) return `${given} Ranks by ${ranks}. No matrix loses a rank: with this noise no degree fits.`;
   const degree = first + 1;
   const answer = `The first that is not full is that of degree ${degree}`;

@@ -72,7 +72,7 @@ export default async function mount({ stage, say }) {
       slider({
         label: 'Threshold κ',
         min: -4,
-        max: -1.5,
+        max: -1,
         step: 0.05,
         value: Math.log10(KAPPA),
         format: (value) => small(10 ** value),
