@@ -1,6 +1,6 @@
 // The stages of a pair: their pictures, and what is said of them.
 
-import { formula, html, svg, written } from './figures/kit.mjs';
+import { html, svg, written } from './figures/kit.mjs';
 import { classOf } from './masks.mjs';
 import { FULL_COLOUR, SOURCES, exceededBy, flowAt, flows, framed, labelled, localFlow, masked, measured, plane, size } from './pair-pictures.mjs';
 
@@ -14,9 +14,9 @@ export const STAGES = [
   {
     name: 'Derivatives',
     views: ({ plain: { horizontal, vertical, temporal, ...grid } }) => [
-      ['t', formula('I_t'), plane(grid, temporal)],
-      ['x', formula('I_x'), plane(grid, horizontal)],
-      ['y', formula('I_y'), plane(grid, vertical)],
+      ['t', symbol('I', 't'), plane(grid, temporal)],
+      ['x', symbol('I', 'x'), plane(grid, horizontal)],
+      ['y', symbol('I', 'y'), plane(grid, vertical)],
       ['first', 'first frame', framed(0)],
       ['second', 'second frame', framed(1)],
     ],
@@ -25,7 +25,7 @@ export const STAGES = [
       const ratio = written(t / Math.hypot(x, y), 1);
       return {
         text: `Orange is positive, blue negative. On average, the brightness changes ${ratio} times as much from frame to frame as from pixel to pixel. Where that is more than about 1, things jump over their own edges, and brightness constancy does not hold for derivatives.`,
-        table: [['Frames', `${plain.width} × ${plain.height} pixels`], [formula('I_x'), `${written(x)} grey levels per pixel`], [formula('I_y'), `${written(y)} grey levels per pixel`], [formula('I_t'), `${written(t)} grey levels per frame`]],
+        table: [['Frames', `${plain.width} × ${plain.height} pixels`], [symbol('I', 'x'), `${written(x)} grey levels per pixel`], [symbol('I', 'y'), `${written(y)} grey levels per pixel`], [symbol('I', 't'), `${written(t)} grey levels per frame`]],
         reading: `Root mean squares: I x ${written(x)}, I y ${written(y)} grey levels per pixel, I t ${written(t)} grey levels per frame, ${ratio} times the gradient.`,
       };
     },
@@ -41,7 +41,7 @@ export const STAGES = [
       const tried = hypotheses.length > 1 ? 'Rest and the most common motion are both solved to the end; what describes the frames in fewer nats is kept.' : 'Only one hypothesis was worth solving.';
       return {
         text: `The second frame along the dominant motion minus the first. ${tried}`,
-        table: [['Background', atRest ? 'at rest' : 'moves'], [formula('A_1'), rows(dominant)], ['Noise', `${written(noise)} grey levels`], ['Residual', `${left} grey levels`]],
+        table: [['Background', atRest ? 'at rest' : 'moves'], [symbol('A', 1), rows(dominant)], ['Noise', `${written(noise)} grey levels`], ['Residual', `${left} grey levels`]],
         reading: `The background ${atRest ? 'is at rest' : `has the motion ${matrix(dominant)}`}. Noise ${written(noise)}, residual ${left} grey levels. ${tried}`,
       };
     },
@@ -130,14 +130,16 @@ export const STAGES = [
   },
 ];
 
+/** A letter with an index, in words that can be read aloud. */
+const symbol = (letter, index) => html('span', {}, html('i', {}, letter), html('sub', {}, String(index)));
 const percent = (share) => `${written(100 * share, 1)} %`;
 const named = (label) => (label ? `A ${label + 1}` : 'the background, A 1,');
-const entriesOf = (entries) => entries.map((value, k) => written(value, k % 3 === 2 ? 2 : 4));
+const entriesOf = (entries) => entries.map((value, k) => written(value, k % 3 === 2 ? 2 : 3));
 const matrix = (entries) => `(${entriesOf(entries).join(', ')})`;
 /** The two rows of a motion that are not given. */
 const rows = (entries) => html('span', {}, entriesOf(entries).slice(0, 3).join(', '), html('br'), entriesOf(entries).slice(3).join(', '));
 /** A motion with the colour of its pixels. */
-const key = (label) => html('span', {}, svg('svg', { class: `swatch ${label ? classOf(label) : ''}`, viewBox: '0 0 10 10', 'aria-hidden': 'true' }, svg('rect', { width: 10, height: 10 })), ' ', formula(`A_${label + 1}`));
+const key = (label) => html('span', {}, svg('svg', { class: `swatch ${label ? classOf(label) : ''}`, viewBox: '0 0 10 10', 'aria-hidden': 'true' }, svg('rect', { width: 10, height: 10 })), ' ', symbol('A', label + 1));
 const motions = (all) => all.map((one, k) => [key(k), percent(one.support), rows(one.matrix)]);
 const supports = (all) => `${all.map(({ support }, k) => `A ${k + 1} explains ${percent(support)} best`).join(', ')}.`;
 const flowText = ([u, v]) => `(${written(u, 1)}, ${written(v, 1)})`;

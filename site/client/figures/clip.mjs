@@ -72,7 +72,7 @@ export default async function mount({ stage, say }) {
       html('div', { class: 'panel' }, ...strips.map(({ element }) => element), news),
     ),
     controls(tools, example, back, stop),
-    html('details', {}, html('summary', {}, 'All frames as a table'), html('div', { class: 'scroll' }, html('table', { class: 'numbers' }, html('thead', {}, row('th', ['Frame', 'Objects of the clip, pixels', 'Pairs alone, pixels', 'Agreement', 'Changed by strokes'])), table))),
+    html('details', {}, html('summary', {}, 'All frames as a table'), html('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'All frames' }, html('table', { class: 'numbers' }, html('thead', {}, row('th', ['Frame', 'Objects of the clip, pixels', 'Pairs alone, pixels', 'Agreement', 'Changed by strokes'])), table))),
   );
   stage.firstElementChild.classList.add('clip-parts');
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => show());

@@ -2,7 +2,7 @@
 
 import { computer } from '../compute.mjs';
 import { STAGES } from '../pair-stages.mjs';
-import { beside, button, choice, controls, html, pixels } from './kit.mjs';
+import { beside, button, choice, controls, html, pixels, pixelsOf } from './kit.mjs';
 
 const SAMPLES = { cars: 'intel-two-cars', parallax: 'parallax' };
 
@@ -31,7 +31,7 @@ export default async function mount({ stage, say }) {
 
   stage.append(
     steps,
-    beside(html('div', { class: 'panel' }, picture, which), html('div', { class: 'panel' }, heading, thought, html('div', { class: 'scroll' }, html('table', { class: 'numbers' }, numbers)))),
+    beside(html('div', { class: 'panel' }, picture, which), html('div', { class: 'panel' }, heading, thought, html('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'Numbers of the stage' }, html('table', { class: 'numbers' }, numbers)))),
     controls(back, on, source, html('label', { class: 'own' }, html('span', {}, 'or two of your own: '), files)),
     news,
   );
@@ -49,10 +49,9 @@ export default async function mount({ stage, say }) {
   }
   async function own(list) {
     if (list.length !== 2) return void (news.textContent = `Two pictures are needed, not ${list.length}. Choose both at once.`);
-    const urls = list.sort((one, other) => one.name.localeCompare(other.name, 'en', { numeric: true })).map((file) => URL.createObjectURL(file));
-    source.querySelectorAll('input').forEach((input) => (input.checked = false));
-    await take(urls.map(pixels));
-    urls.forEach((url) => URL.revokeObjectURL(url));
+    const sorted = list.toSorted((one, other) => one.name.localeCompare(other.name, 'en', { numeric: true }));
+    for (const input of source.querySelectorAll('input')) input.checked = false;
+    await take(sorted.map(pixelsOf));
   }
   let newest;
   async function take(loading) {

@@ -170,7 +170,7 @@ function tabulated() {
   const body = html('tbody');
   const names = ['Noise', 'Factorised', 'Refined', 'Ours', 'Limit', 'Number right, paper', 'Number right, ours'];
   const head = html('tr', {}, ...names.map((name) => html('th', { scope: 'col' }, name)));
-  const table = html('table', { class: 'numbers' }, html('thead', {}, head), body);
+  const table = html('table', { class: 'numbers trials' }, html('thead', {}, head), body);
   const element = html('div', { class: 'scroll', tabindex: 0, role: 'region', 'aria-label': 'Errors in numbers' }, table);
   return {
     element,

@@ -72,7 +72,7 @@ export default async function mount({ stage, say }) {
 /** One degree: the matrix of its monomials, its singular values, its rank. */
 function row(degree) {
   const bars = spectrum({ width: 96, height: 46 });
-  const strip = svg('svg', { class: 'strip', preserveAspectRatio: 'none', 'aria-hidden': 'true' });
+  const strip = svg('svg', { class: 'monomials', preserveAspectRatio: 'none', 'aria-hidden': 'true' });
   const rank = html('span', { class: 'rank' });
   const name = html('span', { class: 'name' }, html('b', {}, `n = ${degree}`), ` ${monomials(degree)}`);
   const element = html('li', {}, html('div', { class: 'head' }, name, rank), strip, bars.element);
