@@ -193,8 +193,12 @@ export interface Background {
   price: number;
   /** After greedy selection; the first is the dominant motion. */
   selected: SelectedMotion[];
+  /** The selected motion that explains each pixel best, before any pixel asks its neighbours. */
+  selection: Labelling;
   /** After refinement on the intensities. */
   refined: SelectedMotion[];
+  /** The refined motion that explains each pixel best, likewise. */
+  refinement: Labelling;
   /** The labels of the draft level. */
   draft: Labelling;
   /** The labels of the working size. */

@@ -1,10 +1,13 @@
 //! Means over cases.
 
+use serde::Serialize;
+
 use crate::cases::Case;
 use crate::outcome::Outcome;
 
 /// Means of the figures of some outcomes; NaN where no case has a figure.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Summary {
     pub(crate) cases: usize,
     pub(crate) miou: f64,

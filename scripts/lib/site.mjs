@@ -61,7 +61,7 @@ async function bundleScripts(site, { build }) {
     minify: true,
     target: 'es2022',
     chunkNames: '[name]-[hash]',
-    external: ['../package/*'],
+    external: ['../package/*', '../../package/*', 'node:*'],
   });
 }
 

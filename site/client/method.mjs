@@ -14,6 +14,12 @@ const near = new IntersectionObserver(
 );
 figures.forEach((figure) => near.observe(figure));
 
+// A formula that is wider than the page scrolls, so the keyboard must reach it.
+const wide = new ResizeObserver((entries) => {
+  for (const { target } of entries) target.tabIndex = target.scrollWidth > target.clientWidth ? 0 : -1;
+});
+document.querySelectorAll('math[display="block"]').forEach((formula) => wide.observe(formula));
+
 async function start(figure) {
   // As an address, so that the bundler leaves it alone: each figure is a file of its own.
   const script = new URL(`./figures/${figure.dataset.figure}.js`, import.meta.url).href;

@@ -17,7 +17,7 @@ export function strip({ heading, count, onPick }) {
     onPick(Math.min(count - 1, Math.floor((count * (event.clientX - box.left)) / box.width)));
   });
   return {
-    element: html('div', { class: 'strip-row' }, html('h4', {}, heading), picture),
+    element: html('div', { class: 'strip-row' }, html('h3', {}, heading), picture),
     /** Parts on top of each other, shares of the height, and a line. */
     bar(frame, parts, line) {
       let top = HEIGHT;

@@ -2,7 +2,7 @@
 
 import { load } from './module.mjs';
 
-const module = load(new URL('../module/veronese_stages_bg.wasm', import.meta.url));
+const module = load(new URL('../module/veronese_stages.js', import.meta.url));
 
 self.onmessage = async ({ data: { id, name, args } }) => {
   try {

@@ -113,6 +113,10 @@ test('the stages of a pair end in what segmentPair gives', () => {
     assert.ok(taken.candidates.every(({ source, degree }) => (source === 'constraint') === degree > 0));
     assert.deepEqual(taken.selected[0].matrix, taken.dominant);
     assert.equal(taken.draft.labels.length, taken.draft.width * taken.draft.height);
+    for (const [motions, { labels, width, height }] of [[taken.selected, taken.selection], [taken.refined, taken.refinement]]) {
+      assert.equal(labels.length, width * height);
+      assert.ok(labels.every((label) => label < motions.length));
+    }
     assert.equal(stages.working.labels.length, 96 * 72);
     assert.equal(stages.detail, null);
     assert.deepEqual(stages.groups.flat().sort(), [0, 1]);

@@ -306,6 +306,15 @@ fn pair_stages_agree_with_each_other() {
     assert!(taken.candidates.iter().any(|one| matches!(one.source, pair::CandidateSource::Constraint(_))));
     assert!(taken.candidates.iter().any(|one| one.source == pair::CandidateSource::Window));
     assert_eq!(taken.selected[0].matrix, taken.dominant);
+    // The pixels of a motion are those that it explains best.
+    let selection = &taken.selection;
+    for (k, one) in taken.selected.iter().enumerate() {
+        assert_eq!(selection.motions[k], one.matrix);
+        let own = selection.labels.iter().filter(|&&label| usize::from(label) == k).count();
+        assert!((own as f64 / selection.labels.len() as f64 - one.support).abs() < 1e-9);
+    }
+    assert_eq!(taken.refinement.motions.len(), taken.refined.len());
+    assert_eq!(taken.refinement.labels.len(), taken.refinement.grid.width * taken.refinement.grid.height);
     assert!((taken.refined.iter().map(|one| one.support).sum::<f64>() - 1.0).abs() < 1e-9);
     let most = usize::from(*taken.draft.labels.iter().max().unwrap());
     assert!(most < taken.draft.motions.len());

@@ -100,24 +100,25 @@ fn fitted_motion(motion: &FittedMotion) -> JsValue {
 }
 
 fn paper_stages(stages: &PaperStages) -> JsValue {
-    let PaperStages { ranks, rank_rule_fired, factorisation, refined, refinement: report, .. } = stages;
+    let PaperStages { ranks, rank_rule_fired, factorisation, refined, refinement, .. } = stages;
+    let refinement = report_of_refinement(refinement);
     Record::new()
         .list("ranks", ranks, rank_candidate)
         .set("rankRuleFired", &rank_rule_fired.map_or(JsValue::NULL, JsValue::from))
         .list("factorisation", factorisation, matrix)
         .list("refined", refined, matrix)
-        .set("refinement", &refinement(report))
+        .set("refinement", &refinement.into_value())
         .into_value()
 }
 
-pub(super) fn refinement(report: &Report) -> JsValue {
+#[inline(always)]
+pub(super) fn report_of_refinement(report: &Report) -> Record {
     let Report { termination, iterations, initial_cost, final_cost, .. } = report;
     Record::new()
         .text("termination", termination.name())
         .count("iterations", *iterations)
         .number("initialCost", *initial_cost)
         .number("finalCost", *final_cost)
-        .into_value()
 }
 
 fn rank_candidate(tried: &RankCandidate) -> JsValue {

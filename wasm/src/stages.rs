@@ -5,7 +5,7 @@ use wasm_bindgen::prelude::*;
 
 use crate::frames::{frames, report_of_pair, segment_options};
 use crate::plain::{Record, list, numbers};
-use crate::points::{matrix, refinement, rows, seed};
+use crate::points::{matrix, report_of_refinement, rows, seed};
 use crate::{Failure, invalid, motions};
 use veronese::embedding::rank::RankCandidate;
 use veronese::stages::pair::{
@@ -119,7 +119,7 @@ fn fit_stages(stages: &FitStages) -> JsValue {
         .list("factorisation", &fit.factorisation, matrix)
         .list("differentiation", differentiation, matrix)
         .list("refined", &fit.refined, matrix)
-        .set("refinement", &refinement(&fit.refinement))
+        .set("refinement", &report_of_refinement(&fit.refinement).into_value())
         .bytes("labels", &labels)
         .into_value()
 }
@@ -202,7 +202,8 @@ pub fn segment_pair_stages(first: &JsValue, second: &JsValue, options: &JsValue)
 
 fn background(background: &Background) -> JsValue {
     let Background { dominant, base, noise, residual, derivatives, local_flow, measured, .. } = background;
-    let Background { candidates, price, selected, refined, draft, labelling: of_working_size, .. } = background;
+    let Background { candidates, price, selected, selection, refined, refinement, .. } = background;
+    let Background { draft, labelling: of_working_size, .. } = background;
     let [u, v] = local_flow;
     let planes = Record::new()
         .set("horizontal", &plane(&derivatives.x))
@@ -220,7 +221,9 @@ fn background(background: &Background) -> JsValue {
         .list("candidates", candidates, candidate)
         .number("price", *price)
         .list("selected", selected, selected_motion)
+        .set("selection", &labelling(selection))
         .list("refined", refined, selected_motion)
+        .set("refinement", &labelling(refinement))
         .set("draft", &labelling(draft))
         .set("labelling", &labelling(of_working_size))
         .into_value()

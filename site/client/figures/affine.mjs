@@ -1,7 +1,7 @@
 // An affine motion: what it does to a square, and its six numbers as the pixels tell them.
 
 import { ask, latest } from '../compute.mjs';
-import { arrow, beside, button, controls, formula, handle, html, panel, plot, set, slider, svg, written } from './kit.mjs';
+import { arrow, beside, button, controls, handle, html, panel, plot, set, slider, svg, written } from './kit.mjs';
 
 /** Lines of the grid in each direction. */
 const LINES = 9;
@@ -18,7 +18,7 @@ const PRESETS = [
   ['Grow', [0.35, 0, 0, 0, 0.35, 0]],
   ['Shear', [0, 0.45, 0, 0, 0, 0]],
 ];
-const ENTRIES = ['a_11', 'a_12', 'a_13', 'a_21', 'a_22', 'a_23'];
+const ENTRIES = ['11', '12', '13', '21', '22', '23'];
 
 export default async function mount({ stage, say }) {
   let truth = [0.12, -0.3, 0.1, 0.25, -0.05, 0.05];
@@ -38,7 +38,7 @@ export default async function mount({ stage, say }) {
     'table',
     { class: 'numbers' },
     html('thead', {}, html('tr', {}, heading('Entry'), heading('The motion'), heading('From the pixels'))),
-    html('tbody', {}, ...ENTRIES.map((entry, k) => html('tr', {}, html('th', { scope: 'row' }, formula(entry)), ...cells[k]))),
+    html('tbody', {}, ...ENTRIES.map((entry, k) => html('tr', {}, html('th', { scope: 'row' }, html('i', {}, 'a'), html('sub', {}, entry)), ...cells[k]))),
   );
 
   const show = latest(async () => {

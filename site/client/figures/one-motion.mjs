@@ -85,7 +85,7 @@ export default async function mount({ stage, say }) {
         onInput: (now) => void ((pattern = now), show()),
       }),
       slider({ label: 'Pixels', min: 2, max: MOST_PIXELS, step: 1, value: count, onInput: (now) => void ((count = now), show()) }),
-      slider({ label: 'Noise', min: 0, max: 12, step: 1, value: noise, format: (now) => `±${now}`, onInput: (now) => void ((noise = now), show()) }),
+      slider({ label: 'Noise', min: 0, max: 8, step: 1, value: noise, format: (now) => `±${now}`, onInput: (now) => void ((noise = now), show()) }),
     ),
   );
   await show();

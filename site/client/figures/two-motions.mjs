@@ -127,6 +127,13 @@ export default async function mount({ stage, say }) {
       paint();
     },
   });
+  const number = look.querySelector('input');
+  points.forEach((point, k) =>
+    point.addEventListener('click', () => {
+      number.value = k + 1;
+      number.dispatchEvent(new Event('input'));
+    }),
+  );
   stage.append(
     beside(panel('The motions that each pixel allows', plane.element), panel('The pixels as points of a conic', dual.element)),
     html('dl', { class: 'terms', 'aria-label': 'The coefficients of the conic' }, ...terms),

@@ -44,6 +44,9 @@ test('five pixels are enough, and at each of them one factor is zero', async ({ 
     expect([first, second].filter((factor) => factor === 0)).toHaveLength(1);
     if (pixel < 5) await changes(reading, () => look.press('ArrowRight'));
   }
+  await changes(reading, () => figure.locator('circle.point').nth(1).click());
+  expect((await numbers(reading, PIXEL))[0]).toBe(2);
+  await expect(look).toHaveValue('2');
   expect(problems).toEqual([]);
 });
 
