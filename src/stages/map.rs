@@ -59,7 +59,8 @@ pub fn veronese_map(points: &[f64], variables: usize, degree: usize) -> Result<V
         let reason = format!("must be 1 to {MOST} in number, not {rows}");
         return Err(Error::InvalidOption { name: "points", reason });
     }
-    if let Some(index) = points.iter().position(|value| !(value.abs() <= LARGEST)) {
+    let usable = |value: &f64| value.is_finite() && value.abs() <= LARGEST;
+    if let Some(index) = points.iter().position(|value| !usable(value)) {
         return Err(Error::NotFinite { what: "point", index: index / variables });
     }
     let homogeneous: Vec<[f64; 3]> = points
