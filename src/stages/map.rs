@@ -123,7 +123,7 @@ fn null_vector(triangle: &Triangle, largest: f64) -> Vec<f64> {
 }
 
 /// The normals of the real lines on which the form `c[0] xⁿ + c[1] xⁿ⁻¹y + … + c[n] yⁿ` vanishes, and the number of its other factors.
-fn lines(c: &[f64]) -> (Vec<[f64; 2]>, usize) {
+pub(super) fn lines(c: &[f64]) -> (Vec<[f64; 2]>, usize) {
     // With y = 1, a root x = r gives the factor x − r y, and a root at infinity the factor y.
     let ascending: Vec<f64> = c.iter().rev().copied().collect();
     let found = roots(&ascending);
