@@ -1,8 +1,7 @@
 // npm run bench:annotator -- --page: an expert annotates real clips in the page, in headless Chromium, from their frames to a file for CVAT,
-// with few actions. J is that of the file. Prints a table and writes out/annotator/page.json. Options are in USAGE.
+// with few actions. J is that of the file. Prints a table. Options are in USAGE.
 
-import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 'node:fs';
-import { cpus } from 'node:os';
+import { existsSync, readFileSync, readdirSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { parseArgs } from 'node:util';
 
@@ -11,8 +10,8 @@ import { annotate } from './lib/annotator/expert.mjs';
 import { mean, overlap } from './lib/annotator/overlap.mjs';
 import { annotatedPage } from './lib/annotator/page.mjs';
 import { buildAll } from './lib/builds.mjs';
+import { present } from './lib/documented.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
-import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command } from './lib/run.mjs';
@@ -23,9 +22,9 @@ const USAGE = `npm run bench:annotator -- --page [OPTIONS]: an expert annotates 
   --data DIR       folder of the clips; default ../shared/data/clips
   --only A,B       these clips; default soccerball,car-turn,motorbike
   --actions N      most actions for a clip; default 20
-  --write-docs     also write the table to docs/annotating.md`;
+  --write-docs     also write the figures to docs/figures, and docs/annotating.md from them`;
 const HOST = '127.0.0.1';
-const OUT = join(root, 'out/annotator');
+const DATA = { chosenOn: 'motorbike, the rules of the expert', heldOut: 'the other clips, of the rules' };
 const VIEW = { width: 1440, height: 900 };
 
 await command(async (args) => {
@@ -48,12 +47,8 @@ await command(async (args) => {
       console.log(JSON.stringify(rows.at(-1)));
       await page.context().close();
     }
-    const head = `${cpus()[0].model}, ${cpus().length} cores, Chromium ${browser.version()}, ${new Date().toISOString().slice(0, 10)}.`;
-    mkdirSync(OUT, { recursive: true });
-    writeFileSync(join(OUT, 'page.json'), `${JSON.stringify({ head, rows }, undefined, 2)}\n`);
-    const text = tableOf(head, rows);
-    console.log(`\n${text}`);
-    if (options.writeDocs) writeMarked('docs/annotating.md', { page: text });
+    const figures = rows.map(({ log: _, ...figures }) => figures);
+    present('annotator-page', { command: 'npm run bench:annotator -- --page', data: DATA, chromium: browser.version() }, { rows: figures }, options.writeDocs);
   } finally {
     await browser.close();
     server.close();
@@ -92,9 +87,4 @@ async function annotated(page, folder, most, decodeImage) {
   const nothing = new Uint8Array(size.width * size.height);
   const j = mean(truths.map((truth, index) => overlap(masks?.[index] ?? nothing, truth)));
   return { frames: truths.length, found, actions: page.actions(), seconds: page.seconds(), j, log: page.log };
-}
-
-function tableOf(head, rows) {
-  const lines = rows.map(({ clip, frames, found, actions, seconds, j }) => `| ${clip} | ${frames} | ${found.toFixed(3)} | ${actions} | ${seconds.toFixed(0)} | ${j.toFixed(3)} |`);
-  return [head, '', '| clip | frames | found | actions | seconds | J |', '|---|---|---|---|---|---|', ...lines].join('\n');
 }

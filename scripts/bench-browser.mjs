@@ -1,28 +1,26 @@
 // npm run bench:browser: compares the package in headless Chromium with OpenCV.js, jsfeat and the same source compiled to native
-// code, in alternating calls on the same frames. Writes out/bench/browser.json and prints tables. Options:
+// code, in alternating calls on the same frames. Prints tables. Options:
 //   --rounds N                 calls of each kind (30)
 //   --sizes 320x240,640x480,…  sizes of the frames (320x240,640x480,1280x720,1920x1080)
 //   --scaling                  also measure time and memory against pixels and motions (several minutes)
 //   --alone                    without the alternatives; nothing is installed
-//   --write-docs               writes the tables to docs/performance.md as well
+//   --write-docs               writes the figures to docs/figures, and docs/performance.md from them
 
-import { mkdirSync, readFileSync, renameSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 import { gzipSync } from 'node:zlib';
 
-import { partsOf } from './lib/browser-tables.mjs';
 import { buildModules, buildPackage } from './lib/builds.mjs';
+import { present } from './lib/documented.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
-import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root, toolsFolder } from './lib/project.mjs';
 import { Stop, command, longStep, must } from './lib/run.mjs';
 import { serve } from './lib/static-server.mjs';
 import { exponent, median } from './lib/statistics.mjs';
 
-const PAGE = 'docs/performance.md';
 const FRAMES = join(root, 'out/bench/frames');
 const NATIVE = ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--'];
 const PEERS = { '@techstark/opencv-js': '5.0.0-release.1', jsfeat: '0.0.8' };
@@ -60,18 +58,13 @@ await command(async (args) => {
   try {
     const middle = sizes[Math.min(1, sizes.length - 1)];
     const report = {
-      date: new Date().toISOString().slice(0, 10),
-      machine: { processor: cpus()[0].model, cores: cpus().length, chromium: browser.version() },
       rounds,
       ...downloads(alone),
       ...(await measured(browser, address, { rounds, sizes, cases })),
       workers: await overWorkers(browser, address, middle),
       ...(scaling && { scaling: await scaled(browser, address, middle) }),
     };
-    write(report);
-    const parts = partsOf(report);
-    console.log(`\n${Object.values(parts).join('\n\n')}`);
-    if (writeDocs) writeMarked(PAGE, parts);
+    present('browser', { command: 'npm run bench:browser -- --scaling', chromium: browser.version() }, report, writeDocs);
   } finally {
     await browser.close();
     server.close();
@@ -93,7 +86,7 @@ function options(args) {
   const sizes = (values.sizes ?? '320x240,640x480,1280x720,1920x1080').split(',');
   if (!Number.isInteger(rounds) || rounds < 1) throw new Stop('--rounds must be a whole number from 1.');
   if (!sizes.every((size) => /^\d+x\d+$/.test(size))) throw new Stop('--sizes must look like 320x240,640x480.');
-  if (values.alone && values['write-docs']) throw new Stop('--write-docs writes the comparison: leave --alone out.');
+  if (values['write-docs'] && (values.alone || !values.scaling)) throw new Stop('--write-docs writes the comparison and the scaling: give --scaling, not --alone.');
   return { rounds, sizes, scaling: values.scaling, alone: values.alone, writeDocs: values['write-docs'] };
 }
 
@@ -333,11 +326,4 @@ function stageMedians(calls) {
 
 function nativeMedians(calls) {
   return { median: median(calls.map(({ total }) => total)), stages: stageMedians(calls) };
-}
-
-function write(report) {
-  const path = join(root, 'out/bench/browser.json');
-  mkdirSync(join(root, 'out/bench'), { recursive: true });
-  writeFileSync(`${path}.new`, `${JSON.stringify(report, undefined, 2)}\n`);
-  renameSync(`${path}.new`, path);
 }

@@ -1,24 +1,35 @@
 // npm run bench:clips: scores labels that persist through time, of generated and real clips; `-- --help` lists the options.
 // First the clips are written, then OpenCV's methods run on them, and finally the program measures all.
 
-import { rmSync } from 'node:fs';
+import { readFileSync, rmSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
+import { present, showPictures, withoutDocs } from './lib/documented.mjs';
 import { findOpenCv, runOnAll } from './lib/opencv.mjs';
 import { root } from './lib/project.mjs';
 import { checkRust } from './lib/rust.mjs';
 import { command, run } from './lib/run.mjs';
 
 const CARGO = ['run', '--quiet', '--release', '--locked', '--features', 'codecs,ablation', '--example', 'clips', '--'];
+const PARTIAL = ['--quick', '--only', '--methods'];
+const DATA = { chosenOn: 'all real clips; the generated ones were looked at', heldOut: 'nothing' };
 
 await command(async (args) => {
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
   await checkRust();
+  const { writeDocs, rest } = withoutDocs(args, PARTIAL);
   const place = args.indexOf('--out');
   const out = resolve(root, place < 0 ? 'out/clips' : args[place + 1]);
+  if (rest.includes('--ablation')) {
+    const { code } = await run('cargo', [...CARGO, 'ablation', ...rest.filter((name) => name !== '--ablation')]);
+    if (code !== 0) return code;
+    const measured = JSON.parse(readFileSync(join(out, 'ablation.json'), 'utf8'));
+    present('clips-ablation', { command: 'npm run bench:clips -- --ablation', data: DATA }, measured, writeDocs);
+    return 0;
+  }
   for (const folder of ['labels', 'generated']) rmSync(join(out, folder), { recursive: true, force: true });
   console.error('Building the program if it has changed (some minutes when everything is new) …');
-  const frames = await run('cargo', [...CARGO, 'frames', ...args], { output: 'collect' });
+  const frames = await run('cargo', [...CARGO, 'frames', ...rest], { output: 'collect' });
   if (frames.code !== 0) {
     process.stderr.write(frames.text);
     return frames.code;
@@ -29,5 +40,10 @@ await command(async (args) => {
     const program = join(root, 'experiments', 'clips', 'peers.py');
     await runOnAll(python, program, clips, (_, folder) => [folder, join(out, 'labels')]);
   }
-  return (await run('cargo', [...CARGO, 'measure', ...args])).code;
+  const { code } = await run('cargo', [...CARGO, 'measure', ...rest]);
+  if (code !== 0) return code;
+  const measured = JSON.parse(readFileSync(join(out, 'clips.json'), 'utf8'));
+  if (writeDocs) showPictures(out, 'clips-', [...measured.best, ...measured.worst].map(({ clip }) => `${clip}.png`));
+  present('clips', { command: 'npm run bench:clips', data: DATA }, measured, writeDocs);
+  return 0;
 });

@@ -1,23 +1,21 @@
 // npm run bench:first: the first call in a worker against later ones, without a warm-up, with one that began some time before there
 // were frames, and after a whole one; in Node and in headless Chromium. Each run has a process of its own. Options:
 //   --runs N       runs of each kind (9)
-//   --write-docs   writes the table to docs/performance.md as well
+//   --write-docs   writes the figures to docs/figures, and docs/performance.md from them
 
 import { mkdirSync, rmSync } from 'node:fs';
-import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { parseArgs } from 'node:util';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
+import { present } from './lib/documented.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
-import { writeMarked } from './lib/marked.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command, must } from './lib/run.mjs';
 import { serve } from './lib/static-server.mjs';
 import { median } from './lib/statistics.mjs';
 
-const PAGE = 'docs/performance.md';
 const FRAMES = join(root, 'out/bench/first');
 const SIZES = ['320x240', '640x480'];
 /** Milliseconds between the begin of the warm-up and the call; null for none, 'whole' for all that it takes. */
@@ -64,9 +62,8 @@ await command(async (args) => {
         for (const size of SIZES) for (const ahead of AHEAD) ((found[`${place} ${size}`] ??= {})[ahead] ??= []).push(await measure({ size, ahead, calls: CALLS }));
       }
     }
-    const text = [origin(version, runs), table(found)].join('\n\n');
-    console.log(`\n${text}`);
-    if (writeDocs) writeMarked(PAGE, { first: text });
+    const origin = { command: 'npm run bench:first', node: process.versions.node, chromium: version };
+    present('first', origin, { quality: 'fast', runs, rows: rowsOf(found) }, writeDocs);
   } finally {
     server.close();
     server.closeAllConnections();
@@ -86,18 +83,12 @@ function options(args) {
   return { runs, writeDocs: values['write-docs'] };
 }
 
-function origin(version, runs) {
-  const date = new Date().toISOString().slice(0, 10);
-  const [{ model }] = cpus();
-  return `${model}, ${cpus().length} cores, Node ${process.versions.node}, Chromium ${version}, ${date}: medians of ${runs} runs; milliseconds, and beside them how many times as long as a later call.`;
-}
-
-function table(found) {
-  const head = ['', 'later calls', 'no warm-up', ...AHEAD.slice(1, -1).map((ahead) => `begun ${ahead} ms before`), 'whole'];
-  const rows = Object.entries(found).map(([name, byAhead]) => {
+/** Medians in milliseconds: of later calls, and of the first one by how long before it the warm-up began. */
+function rowsOf(found) {
+  return Object.entries(found).map(([name, byAhead]) => {
+    const [place, size] = name.split(' ');
     const later = median(Object.values(byAhead).flat().flatMap((times) => times.slice(EARLY)));
-    const firsts = AHEAD.map((ahead) => median(byAhead[ahead].map(([first]) => first)));
-    return [name.replace('x', ' × ').replace(' ', ', '), later.toFixed(0), ...firsts.map((first) => `${first.toFixed(0)} (${(first / later).toFixed(1)} ×)`)];
+    const first = AHEAD.map((ahead) => ({ ahead, milliseconds: median(byAhead[ahead].map(([first]) => first)) }));
+    return { place, size, later, first };
   });
-  return [head, head.map(() => '---'), ...rows].map((cells) => `| ${cells.join(' | ')} |`).join('\n');
 }

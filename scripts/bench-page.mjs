@@ -1,14 +1,14 @@
 // npm run bench:page: opens the page as a first visitor does and measures the time until masks are there. Then it opens a long generated video,
 // segments all of it and steps through it, in headless Chromium, and samples the memory of all processes of the browser (Linux only). Then it
 // paints in frames of a clip of 854 × 480 pixels and measures the time until the corrected frame is drawn. Tasks that block the page are
-// counted throughout. Writes out/bench/page.json and prints a table. Options:
+// counted throughout. Prints tables. Options:
 //   --frames N     length of the video (2000)
 //   --size WxH     size of its frames (1920x1080)
 //   --quality Q    fast or best (fast)
 //   --workers N    workers for the video, as on a machine with one processor more (the page's choice here)
-//   --write-docs   writes the table to docs/performance.md as well
+//   --write-docs   writes the figures to docs/figures, and docs/performance.md from them
 
-import { mkdirSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdirSync, rmSync } from 'node:fs';
 import { cpus } from 'node:os';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -19,7 +19,7 @@ import { buildAll } from './lib/builds.mjs';
 import { firstVisits, tasksSince, watchTasks } from './lib/first-visit.mjs';
 import { launchChromium } from './lib/launch-chromium.mjs';
 import { writeLongClip } from './lib/long-clip.mjs';
-import { writeMarked } from './lib/marked.mjs';
+import { present } from './lib/documented.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { Stop, command } from './lib/run.mjs';
@@ -30,12 +30,8 @@ const OUT = join(root, 'out/bench');
 const VIDEO = join(OUT, 'long-clip.webm');
 /** Between samples of the memory, milliseconds. */
 const INTERVAL = 1000;
-/** Rows of the table while the clip is segmented. */
-const ROWS = 10;
 /** The clip that is corrected: in each of these frames a stroke is drawn. */
 const CORRECTED = { size: [854, 480], frames: 50, at: [5, 10, 15, 20, 25, 30, 35, 40, 45] };
-/** From the end of a stroke to the corrected frame, milliseconds. */
-const BAR = 150;
 
 await command(async (args) => {
   const { frames, size, quality, workers, writeDocs } = options(args);
@@ -58,11 +54,8 @@ await command(async (args) => {
     await writeLongClip(maker, VIDEO, CORRECTED.frames, CORRECTED.size);
     await maker.close();
     const corrected = await correctedFrames(browser, address, quality);
-    const report = { date: new Date().toISOString().slice(0, 10), processor: cpus()[0].model, cores: cpus().length, chromium: browser.version(), frames, size, quality, workers, first, ...measured, corrected };
-    writeFileSync(join(OUT, 'page.json'), `${JSON.stringify(report, undefined, 2)}\n`);
-    const text = tableOf(report);
-    console.log(`\n${text}`);
-    if (writeDocs) writeMarked('docs/performance.md', { page: text });
+    const report = { frames, size, quality, workers, first, ...measured, corrected };
+    present('page', { command: 'npm run bench:page', chromium: browser.version() }, report, writeDocs);
   } finally {
     await browser.close();
     server.close();
@@ -197,22 +190,4 @@ async function strokeTimes() {
 
 async function reached(page, selector, phase) {
   await page.waitForFunction(([selector, phase]) => document.querySelector(selector).dataset.phase === phase, [selector, phase]);
-}
-
-function tableOf({ date, processor, cores, chromium, frames, size, quality, workers, seconds, status, opened, samples, done, stepped, tasks, first, corrected }) {
-  const head = `${processor}, ${cores} cores, Chromium ${chromium}, ${date}: ${frames} frames of ${size.join(' × ')} pixels, quality *${quality}*, ${workers} workers, in ${seconds.toFixed(0)} seconds, ${(frames / seconds).toFixed(1)} frames a second. “${status}”`;
-  const at = Array.from({ length: ROWS }, (_, k) => samples[Math.floor(((k + 1) / ROWS) * (samples.length - 1))]);
-  const rows = [['opened', opened], ...at.map(({ seconds, bytes }) => [`after ${seconds.toFixed(0)} s`, bytes]), ['segmented', done], ['after steps to 32 other frames', stepped]];
-  const memory = [head, '', '| | memory of the browser, MiB |', '| --- | --- |', ...rows.map(([name, bytes]) => `| ${name} | ${mib(bytes)} |`)];
-  const intro = `A stroke in ${corrected.times.length} frames of a clip of ${CORRECTED.frames} frames of ${CORRECTED.size.join(' × ')} pixels; the corrected frame is to be drawn within ${BAR} ms:`;
-  const times = [['stroke', 'stroke'], ['corrected frame', 'frame'], ['all frames', 'clip']].map(([name, key]) => [name, corrected[key].median, corrected[key].worst]);
-  const lines = times.map(([name, ...values]) => `| ${name} | ${values.map((value) => value.toFixed(0)).join(' | ')} |`);
-  const visit = `A first visit, with nothing kept: the module is there after ${first.module.toFixed(0)} ms, the first masks are drawn after ${first.masks.toFixed(0)} ms, and the clip of 51 frames is found after ${(first.found / 1000).toFixed(1)} s (medians). The longest task that blocks the page takes ${first.longest.toFixed(0)} ms.`;
-  const blocked = Object.entries({ ...tasks, painting: corrected.painting }).map(([name, { count, longest }]) => `| ${name} | ${count} | ${longest.toFixed(0)} |`);
-  const blocking = ['Tasks that block the page for more than 50 ms:', '', '| while | number | longest, ms |', '| --- | --- | --- |', ...blocked];
-  return [visit, '', ...memory, '', ...blocking, '', intro, '', '| drawn | median, ms | worst, ms |', '| --- | --- | --- |', ...lines].join('\n');
-}
-
-function mib(bytes) {
-  return (bytes / 2 ** 20).toFixed(0);
 }

@@ -1,29 +1,24 @@
-// npm run bench:ratio: prints a table that compares WebAssembly with native code on the same problems.
+// npm run bench:ratio: compares WebAssembly with native code on the same problems. --write-docs writes the figures to docs/figures, and
+// docs/performance.md from them.
 // Native and WebAssembly runs alternate, so that other load on the machine slows both; medians are compared.
 
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { cpus, tmpdir } from 'node:os';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
+import { present } from './lib/documented.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { command, must } from './lib/run.mjs';
-import { median, quantile } from './lib/statistics.mjs';
+import { quantile } from './lib/statistics.mjs';
 
 const ROUNDS = 7;
 const PROBLEMS = 8;
 const SIZE = { width: 320, height: 240 };
 const CARGO = ['run', '--quiet', '--release', '--locked', '--example', 'ratio', '--'];
-const TITLES = {
-  'points 2': '`fitMotions`, n = 2, 600 measurements, 5 % noise',
-  'points 3': '`fitMotions`, n = 3',
-  'points 4': '`fitMotions`, n = 4',
-  'pair fast': '`segmentPair`, 320 × 240, fast',
-  'pair best': '`segmentPair`, 320 × 240, best',
-};
 
-await command(async () => {
+await command(async (args) => {
   await prepare();
   await buildModules();
   await buildPackage();
@@ -38,7 +33,8 @@ await command(async () => {
       gather(times, 'native', JSON.parse(await native('times', folder)));
       gather(times, 'wasm', await wasm());
     }
-    print(times);
+    const rows = Object.entries(times).map(([call, { native, wasm }]) => ({ call, native: quartiles(native), wasm: quartiles(wasm) }));
+    present('ratio', { command: 'npm run bench:ratio', node: process.versions.node }, { rounds: ROUNDS, rows }, args.includes('--write-docs'));
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }
@@ -89,16 +85,6 @@ function gather(times, target, found) {
   }
 }
 
-function print(times) {
-  console.log(`${cpus()[0].model}, Node ${process.versions.node}, ${ROUNDS} alternating rounds, milliseconds: median [quartiles]\n`);
-  console.log('| call | native | WebAssembly in Node | ratio |\n|---|---|---|---|');
-  for (const [name, { native, wasm }] of Object.entries(times)) {
-    const ratio = (median(wasm) / median(native)).toFixed(2);
-    console.log(`| ${TITLES[name]} | ${spread(native)} | ${spread(wasm)} | ${ratio} |`);
-  }
-}
-
-function spread(values) {
-  const [low, middle, high] = [0.25, 0.5, 0.75].map((share) => quantile(values, share).toFixed(1));
-  return `${middle} [${low}, ${high}]`;
+function quartiles(values) {
+  return [0.25, 0.5, 0.75].map((share) => quantile(values, share));
 }

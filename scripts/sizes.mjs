@@ -1,16 +1,16 @@
-// npm run sizes: writes the package's download sizes to docs/sizes.md.
+// npm run sizes: measures the package's download sizes. --write-docs writes them to docs/figures, and docs/sizes.md from them.
 
-import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { readFileSync, statSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import { brotliCompressSync, gzipSync } from 'node:zlib';
 
 import { buildModules, buildPackage } from './lib/builds.mjs';
+import { present } from './lib/documented.mjs';
 import { prepare } from './lib/prepare.mjs';
 import { root } from './lib/project.mjs';
 import { command, must } from './lib/run.mjs';
 
 const PKG = join(root, 'pkg');
-const FILE = 'docs/sizes.md';
 const ROWS = [
   ['core module, for browser and Node', ['wasm/veronese_bg.wasm']],
   ['measurements module, loaded by `fitMotions`', ['wasm/points/veronese_points_bg.wasm']],
@@ -24,34 +24,23 @@ const ROWS = [
   ['module with image codecs, for Node only', ['wasm/codecs/veronese_codecs_bg.wasm']],
 ];
 
-await command(async () => {
+await command(async (args) => {
   await prepare();
   await buildModules();
   await buildPackage();
-  const rows = ROWS.filter(([, files]) => files.every(exists)).map(([title, files]) => {
+  const entries = ROWS.filter(([, files]) => files.every(exists)).map(([entry, files]) => {
     const bytes = [...new Set(files.flatMap((file) => withImports(file)))].map((file) => readFileSync(join(PKG, file)));
     const sum = (measure) => bytes.reduce((total, content) => total + measure(content), 0);
-    const sizes = [sum(({ length }) => length), sum((content) => gzipSync(content, { level: 9 }).length), sum((content) => brotliCompressSync(content).length)];
-    return `| ${[title, bytes.length, ...sizes.map(kilobytes)].join(' | ')} |`;
+    const [raw, gzip, brotli] = [({ length }) => length, (content) => gzipSync(content, { level: 9 }).length, (content) => brotliCompressSync(content).length].map(sum);
+    return { entry, files: bytes.length, raw, gzip, brotli };
   });
   const { stdout } = await must('The package could not be packed.', 'npm', ['pack', '--dry-run', '--json', '--ignore-scripts'], {
     cwd: PKG,
     output: 'collect',
   });
   const [{ size, unpackedSize, entryCount }] = JSON.parse(stdout);
-  const text = [
-    '# Sizes',
-    '',
-    'Sizes in kilobytes (1024 bytes) of each entry and all files it imports, as published: unminified. Written by `npm run sizes`.',
-    '',
-    '| | files | raw | gzip | brotli |',
-    '|---|---:|---:|---:|---:|',
-    ...rows,
-    `| \`npm install veronese\` | ${entryCount} | ${kilobytes(unpackedSize)} | ${kilobytes(size)} | |`,
-    '',
-  ].join('\n');
-  writeFileSync(join(root, FILE), text);
-  console.log(`${text}\nWritten to ${FILE}.`);
+  entries.push({ entry: '`npm install veronese`', files: entryCount, raw: unpackedSize, gzip: size });
+  present('sizes', { command: 'npm run sizes', node: process.versions.node }, { entries }, args.includes('--write-docs'));
 });
 
 function exists(file) {
@@ -68,8 +57,4 @@ function withImports(file, seen = new Set()) {
     withImports(relative(PKG, join(PKG, dirname(file), place)), seen);
   }
   return [...seen];
-}
-
-function kilobytes(bytes) {
-  return (bytes / 1024).toFixed(1);
 }

@@ -28,6 +28,9 @@ export default function configure(eleventy) {
   eleventy.addTransform('contents', (content) => content.replace(/(<nav class="contents"[^>]*>)(?=<\/nav>)/, (nav) => nav + contents(content)));
   eleventy.addCollection('guide', (pages) => pages.getFilteredByGlob('pages/guide/*.md').sort((one, other) => one.data.order - other.data.order));
   eleventy.addFilter('markdown', (text) => library.render(text));
+  eleventy.addFilter('decimals', (value) => value.toFixed(2));
+  eleventy.addFilter('meanOf', (rows, name) => rows.reduce((sum, row) => sum + row[name], 0) / rows.length);
+  eleventy.addFilter('row', (rows, name, value) => rows.find((row) => row[name] === value));
   eleventy.addFilter('kilobytes', (bytes) => String(Math.round(bytes / 1024)));
   // A figure of the explainer: its script fills the stage when it comes into view.
   eleventy.addPairedShortcode('figure', (caption, name, label) =>

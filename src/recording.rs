@@ -36,8 +36,12 @@ pub(crate) struct Hypothesis {
     pub(crate) price: f64,
     /// After greedy selection.
     pub(crate) selected: Vec<Supported>,
+    /// The motion that is cheapest at each pixel, after selection.
+    pub(crate) selection: Labels,
     /// After refinement on the intensities.
     pub(crate) refined: Vec<Supported>,
+    /// The motion that is cheapest at each pixel, after refinement.
+    pub(crate) refinement: Labels,
     /// The draft labels.
     pub(crate) draft: Labels,
     /// The labels of the working size.

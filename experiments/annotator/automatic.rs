@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use veronese::clip::vary;
 
 use crate::cases::Case;
@@ -18,7 +18,7 @@ use crate::{Failure, Options, dump};
 const TITLES: [&str; 6] = ["auto", "click", "tracks", "F tracks", "assigned", "switches"];
 
 /// The figures of a clip.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct Row {
     clip: String,
     /// The part that is left out, nothing at first, and the figures without it.

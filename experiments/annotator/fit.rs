@@ -1,7 +1,5 @@
 //! Fits the constants of the propagation on half of the clips and reports them on the other half, and the other way round.
 
-use std::fs;
-
 use veronese::ClipModel;
 use veronese::clip::vary;
 
@@ -88,6 +86,5 @@ pub(crate) fn run(cases: &[Case], options: &Options) -> Result<(), Failure> {
     }
     text += &format!("\n{}\n{}\n\n{scores}", "|---".repeat(4) + "|", rows.join("\n"));
     print!("\n{text}");
-    fs::write(options.out.join("fit.md"), text)?;
     Ok(())
 }

@@ -11,7 +11,6 @@ mod fit;
 mod measure;
 mod objects;
 mod overlap;
-mod page;
 mod pairs;
 #[path = "../panels.rs"]
 mod panels;
@@ -26,15 +25,13 @@ mod robot;
 #[path = "../clips/scores.rs"]
 #[allow(dead_code, reason = "the clip benchmark uses the rest")]
 mod scores;
-#[path = "../sealed.rs"]
-mod sealed;
 mod session;
 #[path = "../clips/strips.rs"]
 mod strips;
 
 use std::error::Error;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use cases::Case;
 use parallel::{in_parallel, on_threads};
@@ -45,11 +42,10 @@ const HELP: &str = "\
 Measures what an annotator gets for what he says of a clip, in steps:
 
   frames         prints a line per real clip: its name, a tab, its folder
-  measure        real clips with masks of one object: a line of figures for each, then means; writes measure.jsonl
+  measure        real clips with masks of one object: a line of figures for each; writes measure.jsonl
   objects        generated clips with several objects: the same; writes objects.jsonl
-  automatic      real clips when nothing is said, also without parts of the clip segmenter; writes automatic.jsonl
+  automatic      real clips when nothing is said, also without parts of the clip segmenter, then means; writes automatic.jsonl
   pairs          pairs of frames of the real clips with strokes: the same; writes pairs.jsonl
-  page           writes annotating.md from these figures
   fit            fits the constants of the propagation on half of the real clips, reports them on the other half, and vice versa
 
   --data DIR         folder of the real clips; default ../shared/data/clips
@@ -62,7 +58,7 @@ Measures what an annotator gets for what he says of a clip, in steps:
   --set NAME=VALUE   another value of a constant of `ClipModel` in src/model.rs, as often as needed
   --without A,B      parts that automatic leaves out by turns: both-directions, carrying, colours, second-round, grouping
   --generated        automatic measures the generated clips of npm run bench:clips
-  --write-docs       also write docs/annotating.md
+  --write-docs       also write the figures to docs/figures, and docs/annotating.md from them
 
 npm run bench:annotator -- --page has an expert annotate clips in the page; -- --page --help lists its options
 ";
@@ -81,7 +77,6 @@ pub(crate) struct Options {
     pub(crate) dump: Option<PathBuf>,
     pub(crate) without: Vec<String>,
     generated: bool,
-    write_docs: bool,
     pub(crate) model: ClipModel,
 }
 
@@ -102,7 +97,6 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         dump: None,
         without: Vec::new(),
         generated: false,
-        write_docs: false,
         model: ClipModel::DEFAULT,
     };
     while let Some(name) = arguments.next() {
@@ -110,7 +104,7 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         let number = |text: String| text.parse().map_err(|_| format!("'{text}' is no number."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" | "automatic" | "objects" | "pairs" | "page" | "fit" => options.step = name,
+            "frames" | "measure" | "automatic" | "objects" | "pairs" | "fit" => options.step = name,
             "--data" => options.data = value()?.into(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--quality" => {
@@ -129,77 +123,39 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
                 options.without.iter().try_for_each(|name| automatic::part(name).map(|_| ()))?;
             }
             "--generated" => options.generated = true,
-            "--write-docs" => options.write_docs = true,
             "--dump" => options.dump = Some(value()?.into()),
             _ => return Err(format!("There is no option '{name}'.")),
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames, measure, automatic, objects, pairs, page or fit.".into()),
+        true => Err("Say which step: frames, measure, automatic, objects, pairs or fit.".into()),
         false => Ok(Some(options)),
     }
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    if options.write_docs {
-        if !options.only.is_empty() {
-            return Err("docs/annotating.md has all clips: --only and --write-docs exclude each other.".into());
-        }
-        let kept = fs::read_to_string(docs());
-        if kept.is_ok_and(|page| sealed::opened(&page).is_none()) {
-            return Err(sealed::changed("docs/annotating.md", "experiments/annotator").into());
-        }
-    }
     fs::create_dir_all(&options.out)?;
-    let table = match options.step.as_str() {
+    match options.step.as_str() {
         "frames" => {
             for case in options.real()? {
                 println!("{}\t{}", case.name, case.folder(&options.out)?.display());
             }
-            return Ok(());
+            Ok(())
         }
-        "page" => return write_page(options),
-        "fit" => return fit::run(&options.real()?, options),
+        "fit" => fit::run(&options.real()?, options),
         "automatic" => {
             let cases = if options.generated { options.chosen(cases::generated()) } else { options.real()? };
-            automatic::table(&options.on_all(&cases, |case| automatic::measure(case, options))?)
+            let rows = options.on_all(&cases, |case| automatic::measure(case, options))?;
+            print!("\n{}", automatic::table(&rows));
+            Ok(())
         }
         "objects" => {
             let cases = options.chosen(objects::cases());
-            objects::table(&options.on_all(&cases, |case| objects::measure(case, options))?, false)
+            options.on_all(&cases, |case| objects::measure(case, options)).map(drop)
         }
-        "pairs" => pairs::table(&options.on_all(&options.real()?, |case| pairs::measure(case, options))?),
-        _ => measure::table(&options.on_all(&options.real()?, |case| measure::measure(case, options))?, false),
-    };
-    print!("\n{table}");
-    Ok(())
-}
-
-fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/annotating.md")
-}
-
-fn write_page(options: &Options) -> Result<(), Failure> {
-    let (real, generated) = (rows::<measure::Row>(options, "measure")?, rows::<objects::Row>(options, "objects")?);
-    let strokes = rows::<pairs::Row>(options, "pairs")?;
-    let fit = fs::read_to_string(options.out.join("fit.md")).ok();
-    let before = fs::read_to_string(docs()).unwrap_or_default();
-    let text = sealed::sealed(&page::text(&real, &generated, &strokes, fit.as_deref(), &before));
-    fs::write(options.out.join("annotating.md"), &text)?;
-    if options.write_docs {
-        if real.is_empty() || generated.len() < objects::cases().len() {
-            return Err("docs/annotating.md has all clips: measure them before.".into());
-        }
-        fs::write(docs(), &text)?;
+        "pairs" => options.on_all(&options.real()?, |case| pairs::measure(case, options)).map(drop),
+        _ => options.on_all(&options.real()?, |case| measure::measure(case, options)).map(drop),
     }
-    Ok(())
-}
-
-/// The figures that a step has left.
-fn rows<T: serde::de::DeserializeOwned>(options: &Options, step: &str) -> Result<Vec<T>, Failure> {
-    let file = options.out.join(format!("{step}.jsonl"));
-    let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
-    Ok(text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?)
 }
 
 impl Options {

@@ -1,9 +1,8 @@
 //! What an annotator gets for what he does, on clips with masks of one object.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use veronese::clip::Prompt;
 
 use crate::cases::{Case, Data};
@@ -22,39 +21,43 @@ const NEW: u8 = 250;
 const FITS: f64 = 0.05;
 
 /// The figures of a clip. J is the mean IoU over all frames unless said.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Row {
-    pub(crate) clip: String,
-    pub(crate) quality: String,
-    pub(crate) frames: usize,
+    clip: String,
+    /// Whether constants of clips were first set on it.
+    old: bool,
+    quality: String,
+    frames: usize,
     /// J of everything but the background label, nothing said.
-    pub(crate) auto: f64,
+    auto: f64,
     /// J of the one label that fits best, as one click gives it.
-    pub(crate) click: f64,
+    click: f64,
     /// J of the object in the frames between the first and the last, its true mask of frame 0 given.
-    pub(crate) mask: f64,
+    mask: f64,
     /// J of the object when a box around its true mask of frame 0 points to it, or the deepest pixel of that.
-    pub(crate) boxed: Pointed,
-    pub(crate) touched: Pointed,
+    boxed: Pointed,
+    touched: Pointed,
     /// J of the object's label after one click and 0, 1, … rounds of strokes in the worst frame.
-    pub(crate) rounds: Vec<f64>,
+    rounds: Vec<f64>,
     /// Time of each round, and of a frame that a correction changed.
-    pub(crate) round_seconds: Vec<f64>,
-    pub(crate) frame_milliseconds: f64,
+    round_seconds: Vec<f64>,
+    frame_milliseconds: f64,
     /// `mask` of OpenCV's flow and GrabCut.
-    pub(crate) baseline: Option<f64>,
+    baseline: Option<f64>,
     /// `boxed.at_once` of OpenCV's GrabCut.
-    pub(crate) baseline_boxed: Option<f64>,
+    baseline_boxed: Option<f64>,
 }
 
 /// What comes of pointing to an object in frame 0.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Pointed {
     /// J there.
-    pub(crate) at_once: f64,
+    at_once: f64,
     /// J in the frames between the first and the last.
-    pub(crate) through: f64,
-    pub(crate) milliseconds: f64,
+    through: f64,
+    milliseconds: f64,
 }
 
 /// All figures of a clip.
@@ -91,6 +94,7 @@ fn figures_of(case: &Case, data: &Data, automatic: &Session<'_>, options: &Optio
     let baseline_boxed = baseline_boxed(case, data, options, &truths)?;
     let (clip, quality, frame_milliseconds) = (case.name.clone(), options.quality_name().into(), effort.per_frame());
     Ok(Row {
+        old: is_old(&clip),
         clip,
         quality,
         frames: truths.len(),
@@ -213,7 +217,6 @@ fn baseline(case: &Case, data: &Data, options: &Options, truths: &[Vec<bool>]) -
     Ok(found.map(|labels| between(&masks(&labels, 1), truths)))
 }
 
-/// Whether constants of clips were first set on a clip.
 pub(crate) fn is_old(clip: &str) -> bool {
     OLD.contains(&clip)
 }
@@ -227,50 +230,4 @@ pub(crate) fn groups_of<R>(rows: &[R], name: impl Fn(&R) -> &str) -> Vec<(&'stat
         ("new", rows.iter().filter(|row| !old(row)).collect()),
     ];
     groups.into_iter().filter(|(_, rows)| !rows.is_empty()).collect()
-}
-
-/// The figures of a group or of a clip, by title.
-fn figures(rows: &[&Row]) -> Vec<(String, f64)> {
-    let of =
-        |figure: &dyn Fn(&Row) -> Option<f64>| mean(&rows.iter().filter_map(|row| figure(row)).collect::<Vec<_>>());
-    let rounds = rows.iter().map(|row| row.rounds.len()).min().unwrap_or(0);
-    let mut figures = vec![
-        ("auto".to_owned(), of(&|row| Some(row.auto))),
-        ("mask".to_owned(), of(&|row| Some(row.mask))),
-        ("OpenCV".to_owned(), of(&|row| row.baseline)),
-        ("box".to_owned(), of(&|row| Some(row.boxed.at_once))),
-        ("GrabCut".to_owned(), of(&|row| row.baseline_boxed)),
-        ("box, clip".to_owned(), of(&|row| Some(row.boxed.through))),
-        ("touch".to_owned(), of(&|row| Some(row.touched.at_once))),
-        ("touch, clip".to_owned(), of(&|row| Some(row.touched.through))),
-        ("click".to_owned(), of(&|row| Some(row.click))),
-    ];
-    figures.extend((1..rounds).map(|k| (format!("round {k}"), of(&|row| Some(row.rounds[k])))));
-    figures.push(("s a round".to_owned(), of(&|row| Some(mean(&row.round_seconds)))));
-    figures.push(("ms a frame".to_owned(), of(&|row| Some(row.frame_milliseconds))));
-    figures.push(("ms a box".to_owned(), of(&|row| Some(row.boxed.milliseconds))));
-    figures.push(("ms a touch".to_owned(), of(&|row| Some(row.touched.milliseconds))));
-    figures
-}
-
-/// The means of groups, or the figures of single clips, as a table of Markdown.
-pub(crate) fn table(rows: &[Row], clips: bool) -> String {
-    let titles: Vec<String> = figures(&rows.iter().collect::<Vec<_>>()).into_iter().map(|(title, _)| title).collect();
-    let mut text = format!("| clips | {} |\n|{}\n", titles.join(" | "), "---|".repeat(titles.len() + 1));
-    let mut line = |name: &str, rows: &[&Row]| {
-        let cell = |(title, value): (String, f64)| match title.as_str() {
-            _ if !value.is_finite() => "–".into(),
-            "ms a frame" | "ms a box" | "ms a touch" => format!("{value:.0}"),
-            "s a round" => format!("{value:.1}"),
-            _ => format!("{value:.3}"),
-        };
-        let cells: Vec<String> = figures(rows).into_iter().map(cell).collect();
-        let _ = writeln!(text, "| {name} | {} |", cells.join(" | "));
-    };
-    if clips {
-        rows.iter().for_each(|row| line(&row.clip, &[row]));
-        return text;
-    }
-    groups_of(rows, |row| &row.clip).iter().for_each(|(name, rows)| line(&format!("{name} ({})", rows.len()), rows));
-    text
 }

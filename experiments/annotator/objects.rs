@@ -1,9 +1,7 @@
 //! Several objects in one clip: generated clips whose truth is exact.
 
-use std::fmt::Write;
-
 use scenes::{ClipSceneOptions, Event};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::cases::Case;
 use crate::overlap::{each, masks, mean, of_label, worst};
@@ -28,24 +26,26 @@ const KINDS: [Kind; 5] = [
 const GIVEN: u8 = 100;
 
 /// The figures of a clip.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Row {
-    pub(crate) clip: String,
-    pub(crate) quality: String,
-    pub(crate) objects: Vec<Object>,
+    clip: String,
+    quality: String,
+    objects: Vec<Object>,
     /// Time of a frame that the masks changed.
-    pub(crate) frame_milliseconds: f64,
+    frame_milliseconds: f64,
 }
 
 /// The figures of an object whose mask was given.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Object {
     /// Mean IoU over the frames after the first in which it is in sight …
-    pub(crate) assigned: f64,
+    assigned: f64,
     /// … and after strokes in the worst of them.
-    pub(crate) stroked: f64,
+    stroked: f64,
     /// Pixels of the other given objects, all frames, that these strokes changed.
-    pub(crate) others_changed: usize,
+    others_changed: usize,
 }
 
 /// All clips.
@@ -110,34 +110,4 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
     }
     let quality = options.quality_name().into();
     Ok(Row { clip: case.name.clone(), quality, objects, frame_milliseconds })
-}
-
-/// The figures as a table of Markdown: by kind and in all, or of single clips.
-pub(crate) fn table(rows: &[Row], clips: bool) -> String {
-    let mut text = String::from(
-        "| clips | objects | assigned | after strokes | pixels of others changed | ms a frame |\n|---|---|---|---|---|---|\n",
-    );
-    let mut line = |name: &str, rows: &[&Row]| {
-        let all: Vec<&Object> = rows.iter().flat_map(|row| &row.objects).collect();
-        let of = |figure: fn(&Object) -> f64| {
-            let values: Vec<f64> = all.iter().map(|object| figure(object)).filter(|value| value.is_finite()).collect();
-            mean(&values)
-        };
-        let changed: usize = all.iter().map(|object| object.others_changed).sum();
-        let [assigned, stroked] = [of(|object| object.assigned), of(|object| object.stroked)];
-        let time = mean(&rows.iter().map(|row| row.frame_milliseconds).collect::<Vec<_>>());
-        let _ = writeln!(text, "| {name} | {} | {assigned:.3} | {stroked:.3} | {changed} | {time:.0} |", all.len());
-    };
-    if clips {
-        rows.iter().for_each(|row| line(&row.clip, &[row]));
-        return text;
-    }
-    let kinds = KINDS.map(|(kind, ..)| (kind, kind));
-    for (name, start) in kinds.into_iter().chain([("all", "")]) {
-        let own: Vec<&Row> = rows.iter().filter(|row| row.clip.starts_with(start)).collect();
-        if !own.is_empty() {
-            line(&format!("{name} ({})", own.len()), &own);
-        }
-    }
-    text
 }

@@ -1,9 +1,8 @@
 //! Strokes on pairs of frames: a robot corrects the object in the first frame.
 
-use std::fmt::Write;
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use veronese::{AffineMotion, Correction, Frame, SegmentOptions, Segmentation, relabel, segment_pair};
 
 use crate::cases::Case;
@@ -16,9 +15,12 @@ use crate::{Failure, Options};
 const FIRST: [usize; 4] = [0, 8, 16, 24];
 
 /// The figures of a clip.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Row {
     clip: String,
+    /// Whether constants of clips were first set on it.
+    old: bool,
     /// Of each pair: J of the motions that are the object's, as found and after each round of strokes.
     pairs: Vec<Vec<f64>>,
     /// Time of a correction.
@@ -51,7 +53,7 @@ pub(crate) fn measure(case: &Case, options: &Options) -> Result<Row, Failure> {
         }
         pairs.push(figures);
     }
-    Ok(Row { clip: case.name.clone(), pairs, milliseconds: mean(&times) })
+    Ok(Row { clip: case.name.clone(), old: is_old(&case.name), pairs, milliseconds: mean(&times) })
 }
 
 /// The motions that a person would call the object: those with more than half of their pixels inside or, if there are none, the one with
@@ -94,25 +96,4 @@ impl Corrector<'_> {
         let [first, second] = self.frames;
         Ok(self.mask(&relabel(first, second, &correction, self.options, &mut |_| {})?.labels))
     }
-}
-
-/// The means of groups as a table of Markdown.
-pub(crate) fn table(rows: &[Row]) -> String {
-    let rounds = rows.iter().flat_map(|row| &row.pairs).map(Vec::len).min().unwrap_or(1);
-    let titles: String = (1..rounds).map(|k| format!(" round {k} |")).collect();
-    let mut text = format!("| pairs | found |{titles} ms |\n|---|---|{}---|\n", "---|".repeat(rounds - 1));
-    let old = |row: &&Row| is_old(&row.clip);
-    let groups: [(&str, Vec<&Row>); 3] = [
-        ("all", rows.iter().collect()),
-        ("of old clips", rows.iter().filter(old).collect()),
-        ("of new clips", rows.iter().filter(|row| !old(row)).collect()),
-    ];
-    for (name, rows) in groups.iter().filter(|(_, rows)| !rows.is_empty()) {
-        let pairs: Vec<&Vec<f64>> = rows.iter().flat_map(|row| &row.pairs).collect();
-        let of_round = |k: usize| mean(&pairs.iter().map(|figures| figures[k]).collect::<Vec<_>>());
-        let cells: String = (0..rounds).map(|k| format!(" {:.3} |", of_round(k))).collect();
-        let times: Vec<f64> = rows.iter().map(|row| row.milliseconds).filter(|time| time.is_finite()).collect();
-        let _ = writeln!(text, "| {name} ({}) |{cells} {:.0} |", pairs.len(), mean(&times));
-    }
-    text
 }

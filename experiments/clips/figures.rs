@@ -1,87 +1,155 @@
-//! The figures by name, their means, and files of them for programs.
+//! The figures as JSON: means over clips for the documentation, and those of every clip and method.
 
-use std::fmt::Write;
+use std::collections::BTreeMap;
 
-use serde_json::{Map, Value, json};
+use scenes::Event;
+use serde::Serialize;
 
+use crate::cases::word;
 use crate::measure::{Measured, Outcome};
 use crate::methods::Method;
 
-/// A figure of an outcome; none where the clip has no such figure.
-pub(crate) type Figure = fn(&Outcome) -> Option<f64>;
+/// How many of the best and of the worst clips are shown as strips.
+const SHOWN: usize = 2;
 
-/// All figures, named as score_clips names them.
-pub(crate) const FIGURES: [(&str, Figure); 14] = [
-    ("j_auto", |o| Some(o.scores.j_auto)),
-    ("j_track", |o| Some(o.scores.j_track)),
-    ("j_tracks", |o| Some(o.scores.j_tracks)),
-    ("j_oracle", |o| Some(o.scores.j_oracle)),
-    ("f_auto", |o| o.scores.f_auto),
-    ("f_tracks", |o| o.scores.f_tracks),
+/// A figure of an outcome; none where the clip has no such figure.
+type Figure = fn(&Outcome) -> Option<f64>;
+
+const FIGURES: [(&str, Figure); 13] = [
+    ("auto", |o| Some(o.scores.j_auto)),
+    ("oneClick", |o| Some(o.scores.j_track)),
+    ("tracks", |o| Some(o.scores.j_tracks)),
+    ("oracle", |o| Some(o.scores.j_oracle)),
+    ("fAuto", |o| o.scores.f_auto),
+    ("fTracks", |o| o.scores.f_tracks),
     ("assigned", |o| o.scores.identities.map(|i| i.assigned)),
     ("switches", |o| o.scores.identities.map(|i| i.switches)),
     ("lost", |o| o.scores.identities.map(|i| i.lost)),
     ("idf1", |o| o.scores.identities.map(|i| i.idf1)),
-    ("n_labels", |o| Some(o.scores.label_count as f64)),
-    ("n_objects", |o| Some(o.scores.object_count as f64)),
-    ("n_right", |o| Some(f64::from(u8::from(o.scores.label_count == o.scores.object_count + 1)))),
+    ("labels", |o| Some(o.scores.label_count as f64)),
+    ("numberRight", |o| Some(f64::from(u8::from(o.scores.label_count == o.scores.object_count + 1)))),
     ("milliseconds", |o| o.milliseconds),
 ];
 
-/// The mean of a figure over the clips that have it; NaN over none.
-pub(crate) fn mean<'a>(outcomes: impl Iterator<Item = &'a Outcome>, figure: Figure) -> f64 {
-    let values: Vec<f64> = outcomes.filter_map(figure).collect();
-    values.iter().sum::<f64>() / values.len() as f64
+/// The figures that exist, by name.
+type Named = BTreeMap<&'static str, f64>;
+
+#[derive(Serialize)]
+pub(crate) struct Figures<'a> {
+    generated: Vec<Row>,
+    events: Vec<OfEvent>,
+    real: Vec<Row>,
+    best: Vec<Shown<'a>>,
+    worst: Vec<Shown<'a>>,
 }
 
-/// Comma separated values with a header line; a figure that does not exist is empty.
-pub(crate) fn csv(measured: &[Measured]) -> String {
-    let names = FIGURES.map(|(name, _)| name).join(",");
-    let mut text = format!("clip,generated,width,height,frames,method,{names}\n");
-    for one in measured {
-        for outcome in &one.outcomes {
-            let ([width, height], generated) = (one.size, one.case.is_generated());
-            let _ =
-                write!(text, "{},{generated},{width},{height},{},{}", one.case.name, one.frames, outcome.method.name());
-            for (_, figure) in FIGURES {
-                let _ = match figure(outcome) {
-                    Some(value) => write!(text, ",{value}"),
-                    None => write!(text, ","),
-                };
-            }
-            text.push('\n');
-        }
+/// The mean figures of a method on some clips.
+#[derive(Serialize)]
+struct Row {
+    method: &'static str,
+    clips: usize,
+    #[serde(flatten)]
+    figures: Named,
+}
+
+#[derive(Serialize)]
+struct OfEvent {
+    event: &'static str,
+    rows: Vec<Row>,
+}
+
+/// The clip segmenter as it is or without one of its parts.
+#[derive(Serialize)]
+pub(crate) struct Ablation {
+    variant: &'static str,
+    generated: Option<Row>,
+    real: Option<Row>,
+}
+
+/// A clip whose strip is shown, with the mean IoU of its objects.
+#[derive(Serialize)]
+struct Shown<'a> {
+    clip: &'a str,
+    assigned: f64,
+}
+
+/// The figures of a method on a clip.
+#[derive(Serialize)]
+struct OfClip<'a> {
+    clip: &'a str,
+    generated: bool,
+    size: [usize; 2],
+    frames: usize,
+    method: &'static str,
+    #[serde(flatten)]
+    figures: Named,
+}
+
+/// Every clip and method, a line of JSON for each.
+pub(crate) fn lines(measured: &[Measured]) -> serde_json::Result<String> {
+    let of = |one: &Measured, outcome: &Outcome| {
+        let (clip, size, frames) = (&*one.case.name, one.size, one.frames);
+        let (generated, method) = (one.case.is_generated(), outcome.method.name());
+        let figures = FIGURES.iter().filter_map(|(name, figure)| Some((*name, figure(outcome)?))).collect();
+        serde_json::to_string(&OfClip { clip, generated, size, frames, method, figures })
+    };
+    let lines = measured.iter().flat_map(|one| one.outcomes.iter().map(move |outcome| of(one, outcome)));
+    Ok(lines.collect::<Result<Vec<_>, _>>()?.join("\n"))
+}
+
+impl<'a> Figures<'a> {
+    pub(crate) fn of(measured: &'a [Measured]) -> Figures<'a> {
+        let (generated, real): (Vec<&Measured>, Vec<&Measured>) =
+            measured.iter().partition(|one| one.case.is_generated());
+        let [best, worst] = shown(&generated);
+        Figures { generated: rows(&generated), events: events(&generated), real: rows(&real), best, worst }
     }
-    text
 }
 
-/// Everything that was measured: clip by clip, and the means over generated and real clips.
-pub(crate) fn all(measured: &[Measured]) -> Value {
-    let of = |outcome: &Outcome| -> Value {
-        let values = FIGURES.iter().filter_map(|(name, figure)| Some(((*name).to_owned(), json!(figure(outcome)?))));
-        Value::Object(values.collect())
+/// The mean figures of a method, if it is there.
+fn row(clips: &[&Measured], method: Method) -> Option<Row> {
+    let outcomes: Vec<&Outcome> = clips.iter().filter_map(|one| one.of(method)).collect();
+    let mean = |figure: &Figure| {
+        let values: Vec<f64> = outcomes.iter().filter_map(|outcome| figure(outcome)).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
-    let clip = |one: &Measured| {
-        let methods: Map<String, Value> = one.outcomes.iter().map(|o| (o.method.name().to_owned(), of(o))).collect();
-        json!({
-            "clip": one.case.name, "generated": one.case.is_generated(), "size": one.size, "frames": one.frames,
-            "methods": methods,
-        })
+    let figures = FIGURES.iter().filter_map(|(name, figure)| Some((*name, mean(figure)?))).collect();
+    (!outcomes.is_empty()).then(|| Row { method: method.title(), clips: outcomes.len(), figures })
+}
+
+fn rows(clips: &[&Measured]) -> Vec<Row> {
+    Method::ALL.into_iter().filter_map(|method| row(clips, method)).collect()
+}
+
+fn events(clips: &[&Measured]) -> Vec<OfEvent> {
+    let of = |event: Event| {
+        let own: Vec<&Measured> = clips.iter().copied().filter(|one| one.case.has(event)).collect();
+        let methods = [Method::Clip, Method::Pairs, Method::Flow];
+        OfEvent { event: word(event), rows: methods.into_iter().filter_map(|method| row(&own, method)).collect() }
     };
-    let means = |generated: bool| -> Value {
-        let mut methods = Map::new();
-        for method in Method::ALL.into_iter().chain(Method::ablations()) {
-            let own =
-                || measured.iter().filter(|one| one.case.is_generated() == generated).filter_map(|one| one.of(method));
-            if own().next().is_some() {
-                let values = FIGURES.iter().map(|(name, figure)| ((*name).to_owned(), json!(mean(own(), *figure))));
-                methods.insert(method.name().to_owned(), Value::Object(values.collect()));
-            }
-        }
-        Value::Object(methods)
+    Event::ALL.into_iter().map(of).filter(|event| !event.rows.is_empty()).collect()
+}
+
+/// The clip segmenter as it is, then without each of its parts.
+pub(crate) fn ablation(measured: &[Measured]) -> Vec<Ablation> {
+    let (generated, real): (Vec<&Measured>, Vec<&Measured>) = measured.iter().partition(|one| one.case.is_generated());
+    let of = |method: Method| Ablation {
+        variant: method.title(),
+        generated: row(&generated, method),
+        real: row(&real, method),
     };
-    json!({
-        "clips": measured.iter().map(clip).collect::<Vec<Value>>(),
-        "means": { "generated": means(true), "real": means(false) },
-    })
+    [Method::Clip].into_iter().chain(Method::ablations()).map(of).collect()
+}
+
+/// The best clips, and the worst in reverse; no clip is in both.
+fn shown<'a>(clips: &[&'a Measured]) -> [Vec<Shown<'a>>; 2] {
+    let assigned = |one: &Measured| one.own()?.scores.identities.map(|identities| identities.assigned);
+    let of = |one: &&'a Measured| Shown { clip: &one.case.name, assigned: assigned(one).unwrap_or(0.0) };
+    let mut best: Vec<Shown<'_>> = clips.iter().map(of).collect();
+    best.sort_by(|a, b| b.assigned.total_cmp(&a.assigned));
+    let many = SHOWN.min(best.len() / 2);
+    let mut worst = best.split_off(best.len() - many);
+    worst.reverse();
+    best.truncate(many);
+    [best, worst]
 }

@@ -8,7 +8,6 @@ mod figures;
 mod linking;
 mod measure;
 mod methods;
-mod page;
 #[path = "../panels.rs"]
 mod panels;
 #[path = "../parallel.rs"]
@@ -18,30 +17,33 @@ mod parts;
 #[path = "../program.rs"]
 mod program;
 mod scores;
-#[path = "../sealed.rs"]
-mod sealed;
 mod strips;
 
 use std::error::Error;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use figures::Figures;
 use methods::Method;
 use parallel::in_parallel;
+use serde_json::json;
 
 const HELP: &str = "\
 Scores labels that persist through time, of generated and real clips, in two steps. OpenCV's methods run between them.
 
   frames       writes the generated clips and prints a line per clip: its name, a tab, its folder
-  measure      measures and writes table.csv, clips.json, clips.md, a strip of every clip, and the labels of every method
+  measure      measures and writes clips.json (means), clips.jsonl, a strip of every clip, and the labels of every method
+
+A step of its own, as npm run bench:clips -- --ablation:
+
+  ablation     measures the clip segmenter without each of its parts on some of the clips; writes ablation.json
 
   --quick            every fourth generated clip, no real ones
   --only A,B         only clips whose name contains one of these
   --methods A,B      only these methods: clip, stream, stream-fast, live, pairs, pairs-fast, flow, mog2, knn
   --out DIR          output folder; default out/clips
   --shared DIR       folder with real clips, if it exists; default ../shared
-  --ablation         also measure the clip segmenter without each of its parts
-  --write-docs       also write docs/clips.md and docs/images/clips-*.png
+  --write-docs       also write the figures to docs/figures, strips to docs/images, and docs/clips.md from them
 ";
 
 struct Options {
@@ -51,8 +53,6 @@ struct Options {
     methods: Vec<String>,
     out: PathBuf,
     shared: PathBuf,
-    ablation: bool,
-    write_docs: bool,
 }
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -70,17 +70,13 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         methods: Vec::new(),
         out: PathBuf::from("out/clips"),
         shared: PathBuf::from("../shared"),
-        ablation: false,
-        write_docs: false,
     };
     while let Some(name) = arguments.next() {
         let mut value = || arguments.next().ok_or(format!("{name} needs a value."));
         match name.as_str() {
             "--help" | "-h" => return Ok(None),
-            "frames" | "measure" => options.step = name,
+            "frames" | "measure" | "ablation" => options.step = name,
             "--quick" => options.quick = true,
-            "--ablation" => options.ablation = true,
-            "--write-docs" => options.write_docs = true,
             "--methods" => options.methods = value()?.split(',').map(str::to_owned).collect(),
             "--only" => options.only = value()?.split(',').map(str::to_owned).collect(),
             "--out" => options.out = PathBuf::from(value()?),
@@ -89,15 +85,12 @@ fn options(mut arguments: impl Iterator<Item = String>) -> Result<Option<Options
         }
     }
     match options.step.is_empty() {
-        true => Err("Say which step: frames or measure.".into()),
+        true => Err("Say which step: frames, measure or ablation.".into()),
         false => Ok(Some(options)),
     }
 }
 
 fn run(options: &Options) -> Result<(), Failure> {
-    if options.write_docs && sealed::opened(&fs::read_to_string(docs().join("clips.md"))?).is_none() {
-        return Err(sealed::changed("docs/clips.md", "experiments/clips").into());
-    }
     let mut cases = cases::all(&options.shared, options.quick)?;
     if !options.only.is_empty() {
         cases.retain(|case| options.only.iter().any(|part| case.name.contains(part)));
@@ -118,51 +111,26 @@ fn run(options: &Options) -> Result<(), Failure> {
     if cases.iter().all(cases::Case::is_generated) && !options.quick && options.only.is_empty() {
         eprintln!("{} has no clips: only the generated ones are measured.", options.shared.display());
     }
-    let mut methods = Method::ALL.to_vec();
-    if options.ablation {
-        methods.extend(Method::ablations());
+    if options.step == "ablation" {
+        cases.retain(|case| case.in_ablation);
+        let methods: Vec<Method> = [Method::Clip].into_iter().chain(Method::ablations()).collect();
+        let rows = figures::ablation(&measure::all(&cases, &methods, out)?);
+        fs::write(out.join("ablation.json"), serde_json::to_string(&json!({ "rows": rows }))?).map_err(cannot)?;
+        return Ok(());
     }
+    let mut methods = Method::ALL.to_vec();
     if !options.methods.is_empty() {
-        if options.write_docs {
-            return Err("docs/clips.md compares all methods: --methods and --write-docs exclude each other.".into());
-        }
         methods.retain(|method| options.methods.iter().any(|name| name == method.name()));
     }
     if methods.is_empty() {
         return Err("There is no such method.".into());
     }
     let measured = measure::all(&cases, &methods, out)?;
-    fs::write(out.join("table.csv"), figures::csv(&measured)).map_err(cannot)?;
-    fs::write(out.join("clips.json"), serde_json::to_string_pretty(&figures::all(&measured))?).map_err(cannot)?;
+    fs::write(out.join("clips.jsonl"), figures::lines(&measured)?).map_err(cannot)?;
+    fs::write(out.join("clips.json"), serde_json::to_string(&Figures::of(&measured))?).map_err(cannot)?;
     for one in &measured {
         fs::write(out.join(format!("{}.png", one.case.name)), &one.strip).map_err(cannot)?;
     }
-    let page = page::Page { measured: &measured };
-    fs::write(out.join("clips.md"), page.text("")).map_err(cannot)?;
-    if options.write_docs {
-        write_docs(&page)?;
-    }
     eprintln!("The results are in {}.", out.display());
-    Ok(())
-}
-
-fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("docs")
-}
-
-/// The page and its pictures; pictures that it no longer shows go away.
-fn write_docs(page: &page::Page<'_>) -> Result<(), Failure> {
-    let docs = docs();
-    let images = docs.join("images");
-    for entry in fs::read_dir(&images)? {
-        let entry = entry?;
-        if entry.file_name().to_string_lossy().starts_with("clips-") {
-            fs::remove_file(entry.path())?;
-        }
-    }
-    for one in page.shown() {
-        fs::write(images.join(format!("clips-{}.png", one.case.name)), &one.strip)?;
-    }
-    fs::write(docs.join("clips.md"), sealed::sealed(&page.text("images/clips-")))?;
     Ok(())
 }

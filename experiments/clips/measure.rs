@@ -60,7 +60,7 @@ fn measure(case: &Case, methods: &[Method], labels: &Path) -> Result<Measured> {
     let first = data.frames.first().ok_or_else(|| format!("{} has no frames", case.name))?;
     let size = [first.width(), first.height()];
     let (mut outcomes, mut picture) = (Vec::new(), None);
-    for &method in methods.iter().filter(|method| case.in_ablation || !method.is_ablation()) {
+    for &method in methods {
         let Some(found) = found(method, &case.name, &data, labels)? else { continue };
         let scores = scores(&data.truths, &found.labels, size[0]);
         if found.milliseconds.is_some() {

@@ -47,10 +47,6 @@ impl Method {
         (0..PARTS.len()).map(Method::Without)
     }
 
-    pub(crate) fn is_ablation(self) -> bool {
-        matches!(self, Method::Without(_))
-    }
-
     pub(crate) fn name(self) -> &'static str {
         match self {
             Method::Clip => "clip",

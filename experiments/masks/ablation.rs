@@ -1,15 +1,17 @@
 //! The ablation: the same cases with one part of the pipeline left out.
 
+use serde::Serialize;
+
+use crate::Failure;
 use crate::cases::{Case, Set};
-use crate::measure::Measured;
-use crate::outcome::Variant;
+use crate::outcome::{Method, Outcome, Variant, of_variant};
+use crate::parallel::in_parallel;
 use crate::summary::Summary;
 
 /// What is left out, and the constants that leave it out, in the order of the table.
-const LEFT_OUT: [(&str, &[(&str, f64)]); 12] = [
-    ("**nothing**", &[]),
+const LEFT_OUT: [(&str, &[(&str, f64)]); 11] = [
+    ("nothing", &[]),
     ("gain and bias", &[("largest_gain", 1.0)]),
-    ("static background hypothesis", &[("rest", 0.0)]),
     ("algebraic candidates", &[("degrees", 0.0)]),
     ("candidates from windows", &[("tiles", 0.0), ("tiles_fast", 0.0)]),
     ("smoothness", &[("smoothness", 0.0), ("smoothness_halved", 0.0)]),
@@ -22,47 +24,46 @@ const LEFT_OUT: [(&str, &[(&str, f64)]); 12] = [
 ];
 
 /// One form of the pipeline: its scores with `best` and with `fast`.
+#[derive(Serialize)]
 pub(crate) struct Worth {
-    pub(crate) title: &'static str,
-    pub(crate) with: [Scored; 2],
+    without: &'static str,
+    best: Scored,
+    fast: Scored,
 }
 
 /// The scores of generated scenes, of scenes with a bare ground, and of the real pairs of the sequences.
+#[derive(Serialize)]
 pub(crate) struct Scored {
-    pub(crate) scenes: Summary,
+    scenes: Summary,
     /// The scenes with a bare ground, which need the static background hypothesis.
-    pub(crate) bare: Summary,
+    bare: Summary,
     /// `None` if there are no real pairs.
-    pub(crate) pairs: Option<Summary>,
+    pairs: Option<Summary>,
 }
 
-/// The variants of the pipeline.
-pub(crate) fn variants() -> Vec<Variant> {
-    LEFT_OUT.iter().map(|(_, values)| Variant::with(values)).collect()
-}
-
-/// Whether the ablation includes a case: generated scenes of one to four objects, those with a bare ground, and the real pairs
-/// of the sequences.
-pub(crate) fn takes_part(case: &Case) -> bool {
-    matches!(case.set, Set::Generated | Set::Colour | Set::Bare | Set::Sequences)
-}
-
-/// The rows of the table; empty if no case is included.
-pub(crate) fn worths(measured: &[Measured]) -> Vec<Worth> {
-    let mut rows = Vec::new();
-    for (k, (title, _)) in LEFT_OUT.into_iter().enumerate() {
+/// Measures the rows of the table on some cases.
+pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Worth>, Failure> {
+    let variants: Vec<Variant> = LEFT_OUT.iter().map(|(_, values)| Variant::with(values)).collect();
+    let measured: Vec<Vec<[Outcome; 2]>> = in_parallel(cases, |case| {
+        let data = case.load().map_err(|error| error.to_string())?;
+        let with_both = |&variant: &Variant| -> veronese::Result<[Outcome; 2]> {
+            Ok([of_variant(variant, Method::Best, &data)?, of_variant(variant, Method::Fast, &data)?])
+        };
+        let outcomes = variants.iter().map(with_both).collect::<Result<_, _>>()?;
+        eprintln!("{}", case.name);
+        Ok(outcomes)
+    })?;
+    let worth = |(k, (without, _)): (usize, &(&'static str, _))| {
         let scored = |quality: usize| {
             let of = |sets: &[Set]| {
-                let own = measured.iter().filter(|one| sets.contains(&one.case.set));
-                Summary::of(own.filter_map(|one| one.variants.get(k).map(|both| (&one.case, &both[quality]))))
+                let own = cases.iter().zip(&measured).filter(|(case, _)| sets.contains(&case.set));
+                Summary::of(own.map(|(case, outcomes)| (case, &outcomes[k][quality])))
             };
             let pairs = Some(of(&[Set::Sequences])).filter(|pairs| pairs.cases > 0);
             Scored { scenes: of(&[Set::Generated, Set::Colour]), bare: of(&[Set::Bare]), pairs }
         };
-        let with = [0, 1].map(scored);
-        if with[0].scenes.cases > 0 || with[0].bare.cases > 0 || with[0].pairs.is_some() {
-            rows.push(Worth { title, with });
-        }
-    }
-    rows
+        let [best, fast] = [0, 1].map(scored);
+        Worth { without, best, fast }
+    };
+    Ok(LEFT_OUT.iter().enumerate().map(worth).collect())
 }

@@ -1,8 +1,6 @@
 //! Whether the pipeline knows what it does not know: how often labels of each confidence are right, and which pixels are marked as
 //! unknown.
 
-use std::fmt::Write;
-
 use serde_json::{Value, json};
 use veronese::{Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair};
 
@@ -13,9 +11,7 @@ use crate::scores::VOID;
 
 /// Lower edges of the ranges of confidence.
 const RANGES: [f64; 8] = [0.0, 0.5, 0.7, 0.8, 0.9, 0.95, 0.98, 0.995];
-/// Index of the first range that counts as sure.
-const SURE: usize = 5;
-const QUALITIES: [(Quality, &str); 2] = [(Quality::Best, "best"), (Quality::Fast, "fast")];
+const QUALITIES: [Quality; 2] = [Quality::Best, Quality::Fast];
 
 /// Pixels in a range of confidence.
 #[derive(Clone, Copy, Debug, Default)]
@@ -46,29 +42,6 @@ impl Ranges {
             own.right += other.right;
             own.confidence += other.confidence;
         }
-    }
-
-    fn pixels(&self) -> usize {
-        self.0.iter().map(|range| range.pixels).sum()
-    }
-
-    /// Expected calibration error: the mean difference between confidence and share of right labels, over the ranges.
-    fn error(&self) -> f64 {
-        self.0.iter().map(|range| (range.confidence - range.right as f64).abs()).sum::<f64>() / self.pixels() as f64
-    }
-
-    /// Share of the pixels with a confidence of .95 or more, and the share of right labels among them.
-    fn sure(&self) -> [f64; 2] {
-        let sum = |figure: fn(&Range) -> usize| self.0[SURE..].iter().map(figure).sum::<usize>() as f64;
-        let pixels = sum(|range| range.pixels);
-        [pixels / self.pixels() as f64, sum(|range| range.right) / pixels]
-    }
-
-    /// Cells of a row of a table: share of the pixels, mean confidence, share of right labels.
-    fn cells(&self, k: usize) -> [String; 3] {
-        let range = &self.0[k];
-        let of = |value: f64| per_cent(value / range.pixels as f64);
-        [per_cent(range.pixels as f64 / self.pixels() as f64), of(range.confidence), of(range.right as f64)]
     }
 
     fn json(&self) -> Value {
@@ -187,7 +160,7 @@ pub(crate) fn measure(cases: &[Case]) -> std::result::Result<Vec<Counted>, Failu
     in_parallel(&chosen, |case| {
         let data = case.load().map_err(|error| error.to_string())?;
         let real = case.set == Set::Sequences;
-        let with = |k: usize| OfPairs::of(&data, QUALITIES[k].0);
+        let with = |k: usize| OfPairs::of(&data, QUALITIES[k]);
         let pair = if real { Some([with(0)?, with(1)?]) } else { None };
         eprintln!("{}", case.name);
         Ok(Counted { case: case.clone(), scene: OfScenes::of(&data)?, pair })
@@ -232,83 +205,3 @@ pub(crate) fn json(counted: &[Counted]) -> Value {
 }
 
 const FOLDS: [&str; 3] = ["all", "first fold", "second fold"];
-
-/// The part of the page.
-pub(crate) fn text(counted: &[Counted]) -> String {
-    let mut text = String::from("`confidence` is the probability that a pixel's label is right.");
-    of_scenes(&mut text, &sum_of_scenes(counted));
-    if counted.iter().any(|one| one.pair.is_some()) {
-        of_pairs(&mut text, &sums_of_pairs(counted));
-    }
-    text
-}
-
-/// The ranges of confidence as the first cells of rows.
-fn row_heads() -> impl Iterator<Item = String> {
-    let to = |k: usize| RANGES.get(k + 1).copied().unwrap_or(1.0);
-    (0..RANGES.len()).map(move |k| format!("| {:.1} to {:.1} %", 100.0 * RANGES[k], 100.0 * to(k)))
-}
-
-fn of_scenes(text: &mut String, counts: &OfScenes) {
-    if counts.ranges.pixels() == 0 {
-        return;
-    }
-    text.push_str(
-        " The first table covers all generated scenes; each label stands for the object that most of its pixels belong to.\n\n\
-         | confidence | share of pixels | mean confidence | right |\n|---|---|---|---|\n",
-    );
-    for (k, head) in row_heads().enumerate().filter(|(k, _)| counts.ranges.0[*k].pixels > 0) {
-        let _ = writeln!(text, "{head} | {} |", counts.ranges.cells(k).join(" | "));
-    }
-    let ([occluded, hit], [visible, wrongly]) = (counts.occluded, counts.visible);
-    let _ = writeln!(
-        text,
-        "\n`markUnknown` marks {} of the pixels that are occluded or outside the frame in the second image, and {} of the \
-         others. Of the latter, {} would have had a wrong label.\n",
-        per_cent(hit as f64 / occluded as f64),
-        per_cent(wrongly as f64 / visible as f64),
-        per_cent(counts.saved as f64 / wrongly as f64)
-    );
-}
-
-fn of_pairs(text: &mut String, sums: &[[OfPairs; QUALITIES.len()]; 3]) {
-    text.push_str(REAL);
-    text.push_str(
-        "\n\n| confidence | said to be an object: share | mean confidence | in the mask \
-         | said to be background: share | mean confidence | outside |\n\
-         |---|---|---|---|---|---|---|\n",
-    );
-    let [object, background] = &sums[0][0].grouped;
-    for (k, head) in row_heads().enumerate() {
-        let _ = writeln!(text, "{head} | {} | {} |", object.cells(k).join(" | "), background.cells(k).join(" | "));
-    }
-    text.push_str(
-        "\nThe expected calibration error is the mean difference between confidence and share of right labels over these ranges, and the \
-         mean of that of objects and that of background. *Sure* are pixels said to be an object with a confidence of 95 % or more. *By hand*, \
-         each label is an object or background as most of its pixels are, as in the table of the generated scenes.\n\n\
-         | pairs | quality | error | sure | of them in the mask | error, by hand | sure, by hand | of them in the mask |\n\
-         |---|---|---|---|---|---|---|---|\n",
-    );
-    for (fold, sums) in FOLDS.iter().zip(sums) {
-        for ((_, quality), counts) in QUALITIES.iter().zip(sums) {
-            let _ = write!(text, "| {fold} | {quality} |");
-            for [object, background] in [&counts.grouped, &counts.by_hand] {
-                let [sure, right] = object.sure().map(per_cent);
-                let _ = write!(text, " {:.3} | {sure} | {right} |", 0.5 * (object.error() + background.error()));
-            }
-            text.push('\n');
-        }
-    }
-}
-
-const REAL: &str = "\
-Two pairs of each training sequence of DAVIS 2016, with *best*. What is said to be an object is everything but the largest group, and right in
-the mask of the sequence's object; background is right outside it. Other things that move have no mask and count as wrong. In real scenes a
-motion may be right without being that of an object, so the confidence of objects also weighs how much of the outline lies on the frame's border, and how well
-motions explain the frames (src/pair/report/doubt.rs). Its weights were fitted to all pairs
-of the first fold of sequences and to every second of the generated scenes above, with both qualities; the pixels of all objects of real pairs
-weigh as much as those of the scenes. The second fold is held out of the fit.";
-
-fn per_cent(share: f64) -> String {
-    if share.is_finite() { format!("{:.1} %", 100.0 * share) } else { "–".into() }
-}

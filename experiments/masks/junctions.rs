@@ -1,7 +1,5 @@
 //! Whether the likelihood of junctions is right: how often two neighbouring motions of a real pair are of one thing.
 
-use std::fmt::Write;
-
 use serde_json::{Value, json};
 use veronese::{AffineMotion, Quality, SegmentOptions, Segmentation, segment_pair};
 
@@ -196,7 +194,7 @@ fn compared(known: &[Known]) -> (Vec<Known>, Vec<(&'static str, Goodness)>) {
     let rows = vec![
         ("groups alone", goodness(&|one| if one.grouped { grouped } else { apart })),
         ("jump alone", goodness(&|one| logistic(constant + weight * one.jump))),
-        ("`likelihood`", goodness(&|one| one.likelihood)),
+        ("likelihood", goodness(&|one| one.likelihood)),
     ];
     (held_out, rows)
 }
@@ -206,47 +204,4 @@ pub(crate) fn json(known: &[Known]) -> Value {
     let (held_out, rows) = compared(known);
     let figures = |(name, good): &(&str, Goodness)| json!({ "by": name, "logLoss": good.log_loss, "auc": good.auc, "error": good.error });
     json!({ "junctions": known.len(), "heldOut": held_out.len(), "by": rows.iter().map(figures).collect::<Vec<_>>() })
-}
-
-/// The part of the page.
-pub(crate) fn text(known: &[Known]) -> String {
-    let (held_out, rows) = compared(known);
-    let mut text = format!(
-        "{WHAT} There are {} junctions in all, {} of them of the second fold.\n\n",
-        known.len(),
-        held_out.len()
-    );
-    text.push_str("| told by | log loss | area under the curve | calibration error |\n|---|---|---|---|\n");
-    for (name, Goodness { log_loss, auc, error }) in &rows {
-        let _ = writeln!(text, "| {name} | {log_loss:.3} | {auc:.3} | {error:.3} |");
-    }
-    text.push_str(
-        "\nThe same junctions by their likelihood, those that are in one group and those that are not:\n\n\
-         | likelihood | in different groups | mean | one thing | in one group | mean | one thing |\n|---|---|---|---|---|---|---|\n",
-    );
-    for (k, from) in RANGES.iter().enumerate() {
-        let to = RANGES.get(k + 1).copied().unwrap_or(1.0);
-        let _ = write!(text, "| {from:.2} to {to:.2} |");
-        for grouped in [false, true] {
-            let inside: Vec<Known> =
-                held_out.iter().filter(|one| one.grouped == grouped && range(one.likelihood) == k).copied().collect();
-            let mean = inside.iter().map(|one| one.likelihood).sum::<f64>() / inside.len() as f64;
-            let _ =
-                write!(text, " {} | {} | {} |", inside.len(), hundredths(mean), hundredths(share(inside.into_iter())));
-        }
-        text.push('\n');
-    }
-    text
-}
-
-const WHAT: &str = "\
-`junctions` says of every two neighbouring motions how likely they are one thing. All pairs of the training sequences of DAVIS 2016, with *best*
-and *fast*: two motions are one thing if both are the sequence's object or both are not, by most of their pixels; those of which 25 to 75 % are
-in the mask are left out. Other things that move have no mask and count as background. The five numbers of the likelihood
-(src/labelling/regions/groups.rs) were fitted to junctions of both folds of sequences and of 22 generated scenes (from seeds 50000, 51000 and 56000);
-the figures are of the second fold, and not held out. Fitted to one fold alone, the groups of the other have a J of .645 and .610. *Groups alone* is the share of the first fold that is one thing, of motions in one group and of others; *jump alone* a fit to the jump of the flow along the
-border as a share of the largest motion.";
-
-fn hundredths(share: f64) -> String {
-    if share.is_finite() { format!("{share:.2}") } else { "–".into() }
 }

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use veronese::{AffineMotion, Quality, SegmentOptions, segment_pair};
 
-use crate::cases::{Case, Data, Set, baseline};
-use crate::outcome::{Method, Outcome, Variant, grouped, of_variant, outcome};
+use crate::cases::{Case, Set, baseline};
+use crate::outcome::{Method, Outcome, grouped, outcome};
 use crate::parallel::in_parallel;
 use crate::pictures;
 
@@ -18,8 +18,6 @@ pub(crate) struct Measured {
     pub(crate) outcomes: Vec<Outcome>,
     /// Frame, best, baseline and truth side by side, as a PNG file.
     pub(crate) picture: Vec<u8>,
-    /// What each form of the pipeline gives with either quality, in the order of the ablation; empty where the case takes no part in it.
-    pub(crate) variants: Vec<[Outcome; 2]>,
 }
 
 impl Measured {
@@ -30,16 +28,10 @@ impl Measured {
 
 type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
-/// All methods on all cases, and the `variants` of the pipeline on those of which `takes_part` is true; what the baseline found is
-/// read from `baselines`.
-pub(crate) fn all(
-    cases: &[Case],
-    baselines: &Path,
-    variants: &[Variant],
-    takes_part: impl Fn(&Case) -> bool + Sync,
-) -> Result<Vec<Measured>> {
+/// All methods on all cases; what the baseline found is read from `baselines`.
+pub(crate) fn all(cases: &[Case], baselines: &Path) -> Result<Vec<Measured>> {
     in_parallel(cases, |case| {
-        let measured = measure(case, baselines, if takes_part(case) { variants } else { &[] })?;
+        let measured = measure(case, baselines)?;
         let main = measured.of(Method::Best).map(|best| match (&best.single, best.flow_error) {
             (Some(single), _) => format!("mean IoU {:.3}", single.miou),
             (None, Some(error)) => format!("flow error {error:.2} px"),
@@ -50,7 +42,7 @@ pub(crate) fn all(
     })
 }
 
-fn measure(case: &Case, baselines: &Path, variants: &[Variant]) -> Result<Measured> {
+fn measure(case: &Case, baselines: &Path) -> Result<Measured> {
     let data = case.load().map_err(|error| error.to_string())?;
     let width = data.first.width();
     let mut outcomes = Vec::new();
@@ -79,11 +71,5 @@ fn measure(case: &Case, baselines: &Path, variants: &[Variant]) -> Result<Measur
         size: [width, data.first.height()],
         outcomes,
         picture: pictures::panels(&data, &shown)?,
-        variants: variants.iter().map(|&variant| with_both(variant, &data)).collect::<Result<_>>()?,
     })
-}
-
-/// What a form of the pipeline gives with `best`, then with `fast`.
-fn with_both(variant: Variant, data: &Data) -> Result<[Outcome; 2]> {
-    Ok([of_variant(variant, Method::Best, data)?, of_variant(variant, Method::Fast, data)?])
 }

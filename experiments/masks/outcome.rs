@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use serde::Serialize;
 use veronese::{
     AffineMotion, Model, Quality, Result, SegmentOptions, Segmentation, UNLABELLED, segment_pair, segment_pair_with,
 };
@@ -10,7 +11,8 @@ use super::cases::Data;
 use super::scores::{Scores, flow_error, scores};
 
 /// The methods compared, in the order of the tables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) enum Method {
     Best,
     Fast,
@@ -30,7 +32,8 @@ impl Method {
 }
 
 /// What a method found in a case, in figures.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Outcome {
     pub(crate) method: Method,
     /// Figures of the single motions.

@@ -3,6 +3,8 @@
 //! Pixels whose true label is [`VOID`] are left out everywhere; a found label [`VOID`] is "no label", which matches nothing. Truth 0
 //! is the background.
 
+use serde::Serialize;
+
 use super::boundary::Grid;
 
 /// "Not known" in the truth, "no label" in what was found.
@@ -13,7 +15,8 @@ const SMALLEST_SHARE: f64 = 0.002;
 const RING: usize = 8;
 
 /// The figures of one labelling. Those of foreground and background exist where the truth has both.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Scores {
     /// Mean over the true labels of the intersection over union with the found label that is assigned to each, one to one, so
     /// that the sum is largest; 0 where there is none.

@@ -1,7 +1,6 @@
 //! The sensitivity: the same cases with one tuned constant made smaller or larger by half.
 
-use std::fmt::Write;
-
+use serde::Serialize;
 use serde_json::{Value, json};
 use veronese::Model;
 
@@ -13,8 +12,8 @@ use crate::scores::Scores;
 
 /// What a constant is multiplied by.
 const FACTORS: [f64; 2] = [0.5, 1.5];
-/// A mean change of more standard errors than this is set in bold type.
-const SIGNIFICANT: f64 = 2.0;
+/// With *best* it would take hours; nearly all constants are those of both qualities.
+const QUALITY: Method = Method::Fast;
 
 /// A figure of a table, on the sets it is computed on.
 struct Column {
@@ -65,7 +64,7 @@ pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Varied>, Failure> {
     let variants: Vec<Variant> = std::iter::once(Variant::Whole).chain(constants).collect();
     in_parallel(cases, |case| {
         let data = case.load().map_err(|error| error.to_string())?;
-        let outcome = |&variant| of_variant(variant, Method::Best, &data);
+        let outcome = |&variant| of_variant(variant, QUALITY, &data);
         let outcomes = variants.iter().map(outcome).collect::<Result<_, _>>()?;
         eprintln!("{}", case.name);
         Ok(Varied { case: case.clone(), outcomes })
@@ -73,7 +72,7 @@ pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Varied>, Failure> {
 }
 
 /// A mean change and its standard error.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Serialize)]
 struct Change {
     mean: f64,
     error: f64,
@@ -98,15 +97,6 @@ impl Change {
         let variance = means.iter().map(|m| (m - mean) * (m - mean)).sum::<f64>() / (n - 1.0);
         Change { mean, error: (variance / n).sqrt() }
     }
-
-    fn cell(self) -> String {
-        match self.mean {
-            mean if mean.is_nan() => "–".into(),
-            0.0 => "0".into(),
-            mean if mean.abs() > SIGNIFICANT * self.error => format!("**{mean:+.3}**"),
-            mean => format!("{mean:+.3}"),
-        }
-    }
 }
 
 /// Index of the outcome of constant `k` with factor `f`.
@@ -116,36 +106,13 @@ fn variant(k: usize, f: usize) -> usize {
 
 /// The changes as values for programs.
 pub(crate) fn json(measured: &[Varied]) -> Value {
-    let rows = Model::NAMES.iter().enumerate().flat_map(|(k, title)| {
+    let count = |column: &Column| measured.iter().filter(|one| column.sets.contains(&one.case.set)).count();
+    let columns = COLUMNS.each_ref().map(|column| json!({ "figure": column.title, "cases": count(column) }));
+    let rows = Model::NAMES.iter().enumerate().flat_map(|(k, name)| {
         FACTORS.iter().enumerate().map(move |(f, factor)| {
-            let figures = COLUMNS.iter().map(|column| {
-                let change = Change::of(measured, column, variant(k, f));
-                (column.title.to_owned(), json!({ "change": change.mean, "standardError": change.error }))
-            });
-            json!({ "constant": title, "factor": factor, "figures": figures.collect::<serde_json::Map<_, _>>() })
+            let changes = COLUMNS.each_ref().map(|column| Change::of(measured, column, variant(k, f)));
+            json!({ "constant": name, "factor": factor, "changes": changes })
         })
     });
-    rows.collect()
-}
-
-/// The table of the page.
-pub(crate) fn table(measured: &[Varied]) -> String {
-    let count = |sets: &[Set]| measured.iter().filter(|one| sets.contains(&one.case.set)).count();
-    let [pairs, scenes, bare] = [&COLUMNS[0], &COLUMNS[3], &COLUMNS[4]].map(|column| count(column.sets));
-    let mut text = format!(
-        "What the scores change by if one constant is multiplied by 0.5 / by 1.5 (best). J, J by hand and F are those of {pairs} of the \
-         real pairs, two of each sequence; mean IoU is that of {scenes} generated scenes and of the {bare} of cars on bare ground. Changes \
-         of more than {SIGNIFICANT} standard errors (over the sequences or scenes) are bold, and 0 means that no score changes.\n\n| constant |"
-    );
-    COLUMNS.iter().for_each(|column| _ = write!(text, " {} |", column.title));
-    let _ = writeln!(text, "\n|---{}|", "|---".repeat(COLUMNS.len()));
-    for (k, title) in Model::NAMES.iter().enumerate() {
-        let _ = write!(text, "| {title} |");
-        for column in &COLUMNS {
-            let [less, more] = [0, 1].map(|f| Change::of(measured, column, variant(k, f)).cell());
-            let _ = write!(text, " {less} / {more} |");
-        }
-        text.push('\n');
-    }
-    text
+    json!({ "quality": QUALITY.name(), "columns": columns, "rows": rows.collect::<Vec<_>>() })
 }

@@ -2,8 +2,6 @@
 //!
 //! A labelling of altered frames is carried back to the pixels of the first frame and compared with that of the frames as they are.
 
-use std::fmt::Write;
-
 use image::ExtendedColorType;
 use image::codecs::jpeg::JpegEncoder;
 use serde_json::{Value, json};
@@ -159,9 +157,8 @@ fn agreement(alteration: Alteration, found: &Segmentation, altered: &Segmentatio
     Agreement { labels: scores(&own, &other, found.width).accuracy, foreground: same as f64 / all as f64 }
 }
 
-/// A pair with its agreement under every alteration.
+/// A pair's agreement under every alteration.
 pub(crate) struct Compared {
-    name: String,
     agreements: Vec<Agreement>,
 }
 
@@ -176,7 +173,7 @@ pub(crate) fn measure(cases: &[Case]) -> Result<Vec<Compared>, Failure> {
         };
         let agreements = ALTERATIONS.iter().map(compared).collect::<Result<_, _>>()?;
         eprintln!("{}", case.name);
-        Ok(Compared { name: case.name.clone(), agreements })
+        Ok(Compared { agreements })
     })
 }
 
@@ -197,36 +194,11 @@ fn quantile(compared: &[Compared], k: usize, share: f64, figure: fn(&Agreement) 
     values[below] + rest * (values[(below + 1).min(last)] - values[below])
 }
 
-/// The agreements as values for programs.
+/// The agreements as values for programs: medians and tenth percentiles.
 pub(crate) fn json(compared: &[Compared]) -> Value {
-    let of_pair = |one: &Compared| {
-        let figures = ALTERATIONS.iter().zip(&one.agreements).map(|((alteration, _), agreement)| {
-            let value = json!({ "labels": agreement.labels, "foreground": agreement.foreground });
-            (format!("{alteration:?}").to_lowercase(), value)
-        });
-        json!({ "case": one.name, "agreement": figures.collect::<serde_json::Map<_, _>>() })
+    let row = |(k, (_, title)): (usize, &(Alteration, &str))| {
+        let of = |figure| [0.5, 0.1].map(|share| quantile(compared, k, share, figure));
+        json!({ "alteration": title, "labels": of(|one| one.labels), "foreground": of(|one| one.foreground) })
     };
-    compared.iter().map(of_pair).collect()
-}
-
-/// The part of the page.
-pub(crate) fn text(compared: &[Compared]) -> String {
-    let mut text = format!(
-        "Share of the pixels that keep their label if the frames of a pair are altered (best): median and 10th percentile of {} real \
-         pairs with masks. Labels are matched one to one. The second columns ask only for foreground or background, which is the largest \
-         group. With the frames exchanged, labels are compared where the first answer's motions carry a pixel to, except where it \
-         leaves the frame or meets another motion. Segmenting draws no random numbers. What changes is above all how objects and \
-         background are divided into motions, less what is foreground.\n\n\
-         | alteration | labels, median | 10th percentile | foreground, median | 10th percentile |\n|---|---|---|---|---|\n",
-        compared.len()
-    );
-    for (k, (_, title)) in ALTERATIONS.iter().enumerate() {
-        let _ = write!(text, "| {title} |");
-        for figure in [|one: &Agreement| one.labels, |one: &Agreement| one.foreground] {
-            let [median, tenth] = [0.5, 0.1].map(|share| 100.0 * quantile(compared, k, share, figure));
-            let _ = write!(text, " {median:.1} % | {tenth:.1} % |");
-        }
-        text.push('\n');
-    }
-    text
+    json!({ "pairs": compared.len(), "rows": ALTERATIONS.iter().enumerate().map(row).collect::<Vec<_>>() })
 }

@@ -1,10 +1,13 @@
 //! Means over cases.
 
+use serde::Serialize;
+
 use crate::cases::Case;
 use crate::outcome::Outcome;
 
 /// Means of the figures of some outcomes; NaN where no case has a figure.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Summary {
     pub(crate) cases: usize,
     pub(crate) miou: f64,
@@ -20,7 +23,6 @@ pub(crate) struct Summary {
     pub(crate) boundary: f64,
     pub(crate) grouped_boundary: f64,
     pub(crate) rand: f64,
-    pub(crate) milliseconds: f64,
 }
 
 impl Summary {
@@ -46,7 +48,6 @@ impl Summary {
             boundary: single(|s| s.boundary),
             grouped_boundary: grouped(|s| s.boundary),
             rand: single(|s| Some(s.rand)),
-            milliseconds: mean(&|_, outcome| Some(outcome.milliseconds)),
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
+use serde::Serialize;
 use veronese::stages::{Figure1Trial, TrialError, figure_1_trial};
 
 /// The methods compared, in the order of [`Cell::methods`].
@@ -12,6 +13,8 @@ pub(crate) const METHODS: [&str; 4] = ["paper, factorisation", "paper, nonlinear
 const GROSS: f64 = 0.2;
 
 /// Results for one number of motions and one noise level.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
 pub(crate) struct Cell {
     /// Number of motions.
     pub(crate) motions: usize,
@@ -24,6 +27,7 @@ pub(crate) struct Cell {
 }
 
 /// The errors of one method, per cent.
+#[derive(Serialize)]
 pub(crate) struct Errors {
     /// Mean over the trials of (20).
     pub(crate) mean: f64,

@@ -9,11 +9,14 @@ mod figure_1;
 mod further;
 mod pictures;
 mod plot;
-mod tables;
 
 use std::error::Error;
 use std::fs;
 use std::path::PathBuf;
+
+use figure_1::{Cell, METHODS};
+use pictures::OfPair;
+use serde::Serialize;
 
 const HELP: &str = "\
 Repeats the paper's experiments with its method and with ours.
@@ -23,6 +26,7 @@ Repeats the paper's experiments with its method and with ours.
                configurations, numbers (of motions found), sizes (times), rank-rule, degrees (the linear step up to n = 10)
   --seed N     seed of the trials and of the generated scene, a whole number below 2^32; default 1
   --out DIR    output folder; default out/paper
+  --write-docs also write the figures to docs/figures, the plot and the pictures to docs/images, and docs/experiments.md from them
 ";
 
 /// A further table, printed for a number of trials and a seed.
@@ -33,6 +37,16 @@ struct Options {
     seed: u64,
     table: Option<Table>,
     out: PathBuf,
+}
+
+/// Everything that was measured. The errors of a cell are in the order of `methods`.
+#[derive(Serialize)]
+struct Figures<'a> {
+    trials: usize,
+    seed: u64,
+    methods: [&'static str; METHODS.len()],
+    cells: &'a [Cell],
+    pairs: &'a [OfPair],
 }
 
 fn main() {
@@ -75,13 +89,14 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let out = &options.out;
     let cannot = |error: std::io::Error| format!("{} cannot be written: {error}", out.display());
     fs::create_dir_all(out).map_err(cannot)?;
-    for (name, file) in pictures::pictures(options.seed)? {
+    let (files, pairs) = pictures::pictures(options.seed)?;
+    for (name, file) in files {
         fs::write(out.join(name), file).map_err(cannot)?;
     }
     let cells = figure_1::measure(trials, options.seed)?;
-    fs::write(out.join("figure-1.csv"), tables::csv(&cells)).map_err(cannot)?;
-    fs::write(out.join("figure-1.md"), tables::markdown(&cells, trials, options.seed)).map_err(cannot)?;
     fs::write(out.join("figure-1.svg"), plot::svg(&cells)?).map_err(cannot)?;
+    let figures = Figures { trials, seed: options.seed, methods: METHODS, cells: &cells, pairs: &pairs };
+    fs::write(out.join("experiments.json"), serde_json::to_string(&figures)?).map_err(cannot)?;
     eprintln!("The results are in {}.", out.display());
     Ok(())
 }

@@ -7,6 +7,7 @@ use std::error::Error;
 use std::fs;
 
 use scenes::leader_follower;
+use serde::Serialize;
 use veronese::codecs::{decode_image, encode_indexed_png};
 use veronese::{Frame, KeptPixels, MotionCount, SegmentOptions, Segmentation, UNLABELLED, literal_pair, segment_pair};
 
@@ -38,17 +39,42 @@ struct Panel(Vec<Look>);
 /// Name and content of a file.
 type File = (&'static str, Vec<u8>);
 
-/// The pictures as PNG files.
-pub(crate) fn pictures(seed: u64) -> Result<[File; 2], Box<dyn Error>> {
+/// Both pipelines on a pair, in figures.
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct OfPair {
+    pair: &'static str,
+    /// Pixels that the paper's pipeline keeps: the strongest, and those above the paper's threshold, if that works.
+    kept: usize,
+    above_threshold: Option<usize>,
+    /// The number of motions by the paper's rule, and by ours, which counts the background.
+    by_rule: usize,
+    by_ours: usize,
+    score: Option<Score>,
+}
+
+/// Agreement with the truth.
+#[derive(Serialize)]
+struct Score {
+    /// Pixels that the paper's pipeline keeps on moving objects and beside them, and the share of the former with the right label.
+    on: usize,
+    beside: usize,
+    right: f64,
+    /// Intersection over union of our masks with these objects.
+    ours: [f64; 2],
+}
+
+/// The pictures as PNG files, and their figures.
+pub(crate) fn pictures(seed: u64) -> Result<([File; 2], [OfPair; 2]), Box<dyn Error>> {
     let (first, second) = (bundled("first")?, bundled("second")?);
-    let cars = panels("two cars", &first, &second, None, None)?;
+    let (cars, of_cars) = panels("two cars", &first, &second, None, None)?;
     let cars = picture(&first, &cars, Layout { columns: 3, enlargement: 1, reduction: 2 })?;
 
     let scene = leader_follower(seed)?;
     let (first, second, before) = (scene.first(), scene.second(), scene.before());
-    let robots = panels("leader and follower", first, second, Some(before), Some(&scene.labels))?;
+    let (robots, of_robots) = panels("leader and follower", first, second, Some(before), Some(&scene.labels))?;
     let robots = picture(first, &robots, Layout { columns: 2, enlargement: 2, reduction: 1 })?;
-    Ok([("two-cars.png", cars), ("leader-follower.png", robots)])
+    Ok(([("paper-two-cars.png", cars), ("leader-follower.png", robots)], [of_cars, of_robots]))
 }
 
 /// A frame of the bundled pair.
@@ -60,34 +86,33 @@ fn bundled(name: &str) -> Result<Frame, Box<dyn Error>> {
 
 /// The panels of a pair. Only the paper's pipeline takes the frame `before`. `truth` has label 0 for the background.
 fn panels(
-    name: &str,
+    pair: &'static str,
     first: &Frame,
     second: &Frame,
     before: Option<&Frame>,
     truth: Option<&[u8]>,
-) -> Result<Vec<Panel>, Box<dyn Error>> {
+) -> Result<(Vec<Panel>, OfPair), Box<dyn Error>> {
     let paper = literal_pair(first, second, before, KEPT, MOVING)?;
     let rule = literal_pair(first, second, before, KEPT, MotionCount::Auto)?;
     let automatic = segment_pair(first, second, &SegmentOptions::default(), &mut |_| {})?;
     let options = SegmentOptions::default().with_motions(WITH_BACKGROUND);
     let ours = segment_pair(first, second, &options, &mut |_| {})?;
     let threshold = literal_pair(first, second, before, KeptPixels::default(), MOVING);
-    eprintln!(
-        "{name}: the paper's pipeline keeps {} pixels ({}), its rule finds {} motions in them; ours by itself {}, \
-         the background among them",
-        paper.kept,
-        threshold.map_or_else(|error| error.code().into(), |found| format!("{} above 0.115", found.kept)),
-        rule.fit.count,
-        automatic.count,
-    );
+    let figures = OfPair {
+        pair,
+        kept: paper.kept,
+        above_threshold: threshold.ok().map(|found| found.kept),
+        by_rule: rule.fit.count,
+        by_ours: automatic.count,
+        score: truth.map(|truth| score(truth, &paper.labels, &ours.labels)),
+    };
     let plain = Panel(vec![Look::Plain; paper.labels.len()]);
     let labels = Panel(paper.labels.iter().map(|&label| look((label != UNLABELLED).then_some(label))).collect());
     let mut panels = vec![plain, labels, moving(&ours)];
     if let Some(truth) = truth {
         panels.push(Panel(truth.iter().map(|label| look(label.checked_sub(1))).collect()));
-        eprintln!("{name}: {}", score(truth, &paper.labels, &ours.labels));
     }
-    Ok(panels)
+    Ok((panels, figures))
 }
 
 fn look(label: Option<u8>) -> Look {
@@ -101,12 +126,14 @@ fn moving(found: &Segmentation) -> Panel {
 
 /// Agreement with the ground truth: the share of right labels among the pixels that the paper's pipeline keeps on moving objects, and the
 /// overlap of our masks with these objects. The objects may be numbered either way.
-fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> String {
+fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> Score {
     let of = |labels: &[u8], label: u8, thing: u8| {
         labels.iter().zip(truth).filter(|&(&l, &t)| l == label && t == thing).count() as f64
     };
-    let kept = paper.iter().zip(truth).filter(|&(&label, &thing)| label != UNLABELLED && thing != 0).count() as f64;
-    let beside = paper.iter().zip(truth).filter(|&(&label, &thing)| label != UNLABELLED && thing == 0).count();
+    let kept = |moving: bool| {
+        paper.iter().zip(truth).filter(|&(&label, &thing)| label != UNLABELLED && (thing != 0) == moving).count()
+    };
+    let (on, beside) = (kept(true), kept(false));
     let right = f64::max(of(paper, 0, 1) + of(paper, 1, 2), of(paper, 0, 2) + of(paper, 1, 1));
     let overlap = |thing: u8| {
         let size = truth.iter().filter(|&&t| t == thing).count() as f64;
@@ -116,13 +143,7 @@ fn score(truth: &[u8], paper: &[u8], ours: &[u8]) -> String {
         };
         (1..=ours.iter().copied().max().unwrap_or(0)).map(of_label).fold(0.0, f64::max)
     };
-    format!(
-        "the paper's pipeline labels {:.1} % of the {kept} pixels it keeps on the robots correctly, and keeps {beside} of the \
-         background; intersection over union of our masks {:.3} and {:.3}",
-        100.0 * right / kept,
-        overlap(1),
-        overlap(2)
-    )
+    Score { on, beside, right: right / on as f64, ours: [overlap(1), overlap(2)] }
 }
 
 /// The layout of a picture.

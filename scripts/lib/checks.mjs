@@ -5,6 +5,7 @@ import { constantsAreFew } from './constants.mjs';
 import { identityProblems } from './identity.mjs';
 import { importsAgree } from './imports.mjs';
 import { licencesAllowed } from './licences.mjs';
+import { pagesAgree } from './pages/index.mjs';
 import { publicApiAgrees } from './public-api.mjs';
 import { run, say } from './run.mjs';
 import { CRATES } from './rust.mjs';
@@ -53,6 +54,7 @@ export async function runChecks() {
     ['names and addresses are those of identity.json', nothing(...(await identityProblems()))],
     ['modules import what the architecture allows', importsAgree()],
     ['few chosen numbers, all of them in src/model.rs', constantsAreFew()],
+    ['the pages are what docs/figures gives', pagesAgree()],
   ];
   // The types of the package come from the built modules, those of the page from the built package.
   await buildModules();

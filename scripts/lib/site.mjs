@@ -61,7 +61,7 @@ async function bundleScripts(site, { build }) {
     minify: true,
     target: 'es2022',
     chunkNames: '[name]-[hash]',
-    external: ['../package/*', 'node:fs/promises'],
+    external: ['../package/*', '../../package/*', 'node:*'],
   });
 }
 
@@ -75,7 +75,7 @@ async function minifyPackage({ build }) {
 /** The module, the package, samples and pictures. */
 function copyParts() {
   const copy = (from, to) => cpSync(join(root, from), join(OUT, to), { recursive: true });
-  for (const name of ['veronese_stages.js', 'veronese_stages_bg.wasm']) copy(`site/module/${name}`, `module/${name}`);
+  copy('site/module', 'module');
   copy('pkg/wasm/veronese_bg.wasm', 'package/wasm/veronese_bg.wasm');
   for (const name of SAMPLES) copy(`www/public/samples/${name}`, `samples/${name}`);
   copy('docs/images/two-cars.png', 'images/two-cars.png');

@@ -3,11 +3,11 @@
 /** Where the worker and the module are, beside this script. */
 const at = (name) => new URL(name, import.meta.url);
 
-/** The result of the module's call `name`: see module.d.ts. Rejects with the module's error, whose `code` is stable. */
-export const ask = asker();
-
-/** The same with a worker of its own, for calls that take long: others do not wait for them. */
-export function asker() {
+/**
+ * Asks a worker of its own: what computes for long must not keep others waiting. The function returns the result of the module's call
+ * `name`, see module.d.ts, or rejects with the module's error, whose `code` is stable.
+ */
+export function computer() {
   let worker;
   let count = 0;
   const waiting = new Map();
@@ -29,7 +29,7 @@ export function asker() {
     return one;
   }
 
-  return (name, ...args) => {
+  return function ask(name, ...args) {
     worker ??= started();
     return new Promise((resolve, reject) => {
       waiting.set(++count, { resolve, reject });
@@ -37,6 +37,9 @@ export function asker() {
     });
   };
 }
+
+/** Asks the worker that the figures share. */
+export const ask = computer();
 
 /**
  * A function that computes and shows, for input that changes faster than that: while one input is worked on, only the newest of the others

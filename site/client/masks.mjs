@@ -3,17 +3,23 @@
 import { MOTIONS, colour } from './figures/kit.mjs';
 
 const FILL = 0.42;
+/** The share of white. */
+const LIGHTER = 0.5;
 const GROUND = 0;
 const UNKNOWN = 255;
 
-/** The name of the colour of an object. */
-export const toneOf = (object) => MOTIONS[(object - 1) % MOTIONS.length];
+/** The colour of an object, as CSS classes. There are four, then the same ones lighter. */
+export function classOf(object) {
+  const name = MOTIONS[(object - 1) % MOTIONS.length];
+  return object > MOTIONS.length ? `${name} lighter` : name;
+}
 
 /** A frame with the masks of its objects laid over it. Label 0 is the ground, which keeps its colours. */
 export function withMasks({ width, height, data }, labels) {
   const picture = new ImageData(new Uint8ClampedArray(data), width, height);
   if (!labels) return picture;
-  const tones = MOTIONS.map((name) => channels(colour(name)));
+  const plain = MOTIONS.map((name) => channels(colour(name)));
+  const tones = [...plain, ...plain.map((tone) => tone.map((value) => value + LIGHTER * (255 - value)))];
   const differs = (p, label, inside, step) => inside && labels[p + step] !== label;
   for (let p = 0; p < labels.length; p++) {
     const label = labels[p];

@@ -79,7 +79,7 @@ fn under(
     stages.begin("refinement");
     let found = refine(&pair, found, settings);
     #[cfg(feature = "stages")]
-    stages.record(|recording| recorded::refined(recording, &found));
+    stages.record(|recording| recorded::refined(recording, &pair, &found));
     stages.begin("labels");
     let labelled = label(&pair, found, settings);
     #[cfg(feature = "stages")]

@@ -135,7 +135,7 @@ pub(super) fn with_dominant(
     stages.record(|recording| recorded::proposed(recording, level, &selected, &proposals, settings.deflation(level)));
     let runner_up = add_motions(level, &mut selected, &proposals, settings.deflation(level));
     #[cfg(feature = "stages")]
-    stages.record(|recording| recorded::selected(recording, &selected));
+    stages.record(|recording| recorded::selected(recording, pair, &selected));
     settings.refit(level, &mut selected, settings.model.rounds);
     Found { selected, runner_up }
 }

@@ -81,15 +81,26 @@ pub(super) fn proposed(
 }
 
 /// Notes the motions after greedy selection.
-pub(super) fn selected(recording: &mut Recording, selected: &[ScoredMotion]) {
+pub(super) fn selected(recording: &mut Recording, pair: &Pair, selected: &[ScoredMotion]) {
     let Some(hypothesis) = recording.hypotheses.last_mut() else { return };
     hypothesis.selected = supported(selected);
+    hypothesis.selection = cheapest_labels(pair, selected);
 }
 
 /// Notes the motions after refinement.
-pub(super) fn refined(recording: &mut Recording, found: &Found) {
+pub(super) fn refined(recording: &mut Recording, pair: &Pair, found: &Found) {
     let Some(hypothesis) = recording.hypotheses.last_mut() else { return };
     hypothesis.refined = supported(&found.selected);
+    hypothesis.refinement = cheapest_labels(pair, &found.selected);
+}
+
+/// The cheapest motion of each pixel, on the selection level: what single pixels say before any asks its neighbours.
+fn cheapest_labels(pair: &Pair, scored: &[ScoredMotion]) -> Labels {
+    let level = &pair.levels[pair.selection];
+    let motions: Vec<AffineMotion> = scored.iter().map(|one| one.motion).collect();
+    // Costs of a refinement may be those of a finer level, some of whose pixels are left out.
+    let scored: Vec<ScoredMotion> = motions.iter().map(|&motion| ScoredMotion::new(level, motion)).collect();
+    labels(pair, level, &motions, &cheapest(&scored))
 }
 
 /// Notes the labels of a hypothesis.
@@ -117,19 +128,18 @@ pub(super) fn labels(pair: &Pair, level: &Level, motions: &[AffineMotion], label
 
 /// The share of the pixels at which each motion is cheapest; ties go to the first.
 fn supported(scored: &[ScoredMotion]) -> Vec<Supported> {
-    let pixels = scored[0].cost.values().len();
+    let cheapest = cheapest(scored);
     let mut counts = vec![0_usize; scored.len()];
-    for p in 0..pixels {
-        let mut cheapest = 0;
-        for k in 1..scored.len() {
-            if scored[k].cost.values()[p] < scored[cheapest].cost.values()[p] {
-                cheapest = k;
-            }
-        }
-        counts[cheapest] += 1;
-    }
-    let share = |count: usize| count as f64 / pixels.max(1) as f64;
+    cheapest.iter().for_each(|&k| counts[usize::from(k)] += 1);
+    let share = |count: usize| count as f64 / cheapest.len().max(1) as f64;
     let supported =
         |(scored, count): (&ScoredMotion, usize)| Supported { motion: scored.motion, support: share(count) };
     scored.iter().zip(counts).map(supported).collect()
+}
+
+/// The index of the motion that is cheapest at each pixel; ties go to the first.
+fn cheapest(scored: &[ScoredMotion]) -> Vec<u8> {
+    let cost = |k: u8, p: usize| scored[usize::from(k)].cost.values()[p];
+    let least = |p| (1..scored.len() as u8).fold(0, |least, k| if cost(k, p) < cost(least, p) { k } else { least });
+    (0..scored[0].cost.values().len()).map(least).collect()
 }

@@ -78,8 +78,12 @@ pub struct Background {
     pub price: f64,
     /// The motions after greedy selection; the first is the dominant one.
     pub selected: Vec<SelectedMotion>,
+    /// The selected motion that explains each pixel best, before any pixel asks its neighbours.
+    pub selection: Labelling,
     /// The motions after refinement on the intensities.
     pub refined: Vec<SelectedMotion>,
+    /// The refined motion that explains each pixel best, before any pixel asks its neighbours.
+    pub refinement: Labelling,
     /// The labels of the draft level.
     pub draft: Labelling,
     /// The labels of the working size.
@@ -168,8 +172,8 @@ pub fn segment_pair_stages(first: &Frame, second: &Frame, options: &SegmentOptio
 }
 
 fn background(hypothesis: Hypothesis) -> Background {
-    let Hypothesis { dominant, reduction, seen, measured, proposals, price, selected, refined, draft, labels } =
-        hypothesis;
+    let Hypothesis { dominant, reduction, seen, measured, proposals, price, .. } = hypothesis;
+    let Hypothesis { selected, selection, refined, refinement, draft, labels, .. } = hypothesis;
     let scale = seen.pixel * reduction;
     let supported = |all: Vec<Supported>| -> Vec<SelectedMotion> {
         let full = |one: Supported| SelectedMotion { matrix: one.motion.scaled(reduction), support: one.support };
@@ -204,7 +208,9 @@ fn background(hypothesis: Hypothesis) -> Background {
         candidates: proposals.into_iter().map(candidate).collect(),
         price,
         selected: supported(selected),
+        selection: labelling(selection),
         refined: supported(refined),
+        refinement: labelling(refinement),
         draft: labelling(draft),
         labelling: labelling(labels),
     }

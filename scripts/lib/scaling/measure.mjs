@@ -3,7 +3,7 @@
 
 import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { cpus, tmpdir } from 'node:os';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
@@ -44,8 +44,7 @@ export async function measured(clip, say) {
     say(`start: ${JSON.stringify(start)}`);
     const runs = await runsMeasured(program, await scaled(clip, join(folder, 'run'), RUN.size, RUN.frames), say);
     const waits = await waitsMeasured(program, frames['854 × 480'].fast, say);
-    const machine = `${cpus()[0].model}, ${cpus().length} cores, Node ${process.versions.node}, ${new Date().toISOString().slice(0, 10)}`;
-    return { machine, frames, queue, start, run: RUN, runs, waits };
+    return { frames, queue, start, run: RUN, runs, waits };
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }

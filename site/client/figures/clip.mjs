@@ -2,7 +2,7 @@
 
 import { SegmenterPool } from '../../package/dist/web.js';
 import { brush, pathOf } from '../brush.mjs';
-import { difference, overlap, stamp, toneOf, withMasks } from '../masks.mjs';
+import { difference, overlap, stamp, classOf, withMasks } from '../masks.mjs';
 import { strip } from '../strip.mjs';
 import { beside, button, canvas, choice, controls, html, pixels, plot, slider, svg, written } from './kit.mjs';
 
@@ -72,7 +72,7 @@ export default async function mount({ stage, say }) {
       html('div', { class: 'panel' }, ...strips.map(({ element }) => element), news),
     ),
     controls(tools, example, back, stop),
-    html('details', {}, html('summary', {}, 'All frames as a table'), html('div', { class: 'scroll' }, html('table', { class: 'numbers' }, html('thead', {}, row('th', ['Frame', 'Objects of the clip, pixels', 'Pairs alone, pixels', 'Agreement', 'Changed by strokes'])), table))),
+    html('details', {}, html('summary', {}, 'All frames as a table'), html('div', { class: 'scroll', tabindex: 0, role: 'group', 'aria-label': 'All frames' }, html('table', { class: 'numbers' }, html('thead', {}, row('th', ['Frame', 'Objects of the clip, pixels', 'Pairs alone, pixels', 'Agreement', 'Changed by strokes'])), table))),
   );
   stage.firstElementChild.classList.add('clip-parts');
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => show());
@@ -102,7 +102,7 @@ export default async function mount({ stage, say }) {
     }
     context.putImageData(withMasks(frames[frame], seen()), 0, 0);
     area.marks.replaceChildren(
-      ...strokes.filter((stroke) => stroke.frame === frame).map(({ points, label }) => svg('polyline', { class: `stroke ${label ? toneOf(label) : ''}`, points: pathOf(area, points), 'stroke-width': 2 * RADIUS })),
+      ...strokes.filter((stroke) => stroke.frame === frame).map(({ points, label }) => svg('polyline', { class: `stroke ${label ? classOf(label) : ''}`, points: pathOf(area, points), 'stroke-width': 2 * RADIUS })),
     );
     pen.show();
     for (const one of strips) one.point(frame);
@@ -123,7 +123,7 @@ export default async function mount({ stage, say }) {
     const most = Math.max(1, ...all.flatMap(({ sizes, alonePixels }) => [sum(sizes.map(({ pixels: size }) => size)), alonePixels ?? 0]));
     const mostChanged = Math.max(1, ...all.map((one) => one.changed));
     all.forEach((one, index) => {
-      areas.bar(index, one.sizes.map(({ id, pixels: size }) => ({ share: size / most, tone: toneOf(id) })), one.alonePixels === undefined ? undefined : one.alonePixels / most);
+      areas.bar(index, one.sizes.map(({ id, pixels: size }) => ({ share: size / most, tone: classOf(id) })), one.alonePixels === undefined ? undefined : one.alonePixels / most);
       agreement.bar(index, [{ share: one.agreement ?? 0 }]);
       changed.bar(index, [{ share: one.changed / mostChanged }]);
     });
@@ -254,7 +254,7 @@ export default async function mount({ stage, say }) {
 const grouped = (value) => value.toLocaleString('en').replaceAll(',', '\u202f');
 const row = (tag, cells) => html('tr', {}, ...cells.map((cell) => html(tag, {}, String(cell))));
 const sum = (values) => values.reduce((total, value) => total + value, 0);
-const percent = (share) => (share === undefined ? '–' : `${written(100 * share, 1)} %`);
+const percent = (share) => (share === undefined ? '–' : `${written(100 * share, 1)}\u00a0%`);
 
 function count(labels, wanted) {
   let found = 0;

@@ -205,7 +205,12 @@ export function greyPixels(width, height, level) {
 export async function pixels(url) {
   const response = await fetch(url);
   if (!response.ok) throw new Error(`${url} could not be loaded.`);
-  const bitmap = await createImageBitmap(await response.blob(), { colorSpaceConversion: 'none' });
+  return pixelsOf(await response.blob());
+}
+
+/** The same of an image file that is here. */
+export async function pixelsOf(file) {
+  const bitmap = await createImageBitmap(file, { colorSpaceConversion: 'none' });
   const { width, height } = bitmap;
   const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
   context.drawImage(bitmap, 0, 0);

@@ -63,16 +63,15 @@ function runRust({ folder, block }) {
   writeFileSync(join(home, 'Cargo.toml'), [...manifest, '', ...profile, '', '[workspace]', ''].join('\n'));
   copyFileSync(join(root, 'Cargo.lock'), join(home, 'Cargo.lock'));
   writeFileSync(join(home, 'src/main.rs'), block.code);
-  const env = { ...environment, CARGO_TARGET_DIR: process.env.CARGO_TARGET_DIR ?? join(root, 'target') };
-  const { status, stdout, stderr, error } = spawnSync('cargo', ['run', '--quiet', '--manifest-path', join(home, 'Cargo.toml')], {
-    cwd: folder,
-    env,
+  const target = process.env.CARGO_TARGET_DIR ?? join(root, 'target');
+  const { status, stderr, error } = spawnSync('cargo', ['build', '--quiet', '--manifest-path', join(home, 'Cargo.toml')], {
+    env: { ...environment, CARGO_TARGET_DIR: target },
     encoding: 'utf8',
-    timeout: 10 * MINUTES,
+    timeout: 15 * MINUTES,
   });
   if (error?.code === 'ENOENT') return { skip: 'there is no cargo' };
-  if (status !== 0) throw new Error(stderr);
-  return stdout + stderr;
+  if (status !== 0) throw new Error(error ? `cargo: ${error.code}` : stderr);
+  return printed(folder, join(target, 'debug', 'guide'), []);
 }
 
 /** Under the strictest settings, with the types that the package installs. */

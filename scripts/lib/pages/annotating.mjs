@@ -1,0 +1,69 @@
+// The tables of docs/annotating.md.
+
+import { amount, fixed, mean, origin, score, table, whole } from './table.mjs';
+
+export const PARTS = {
+  object: ['annotator', (figures) => `${origin(figures)} Quality *${figures.quality}*.\n\n${object(figures)}`],
+  objects: ['annotator', objects],
+  strokes: ['annotator', strokes],
+  page: ['annotator-page', page],
+};
+
+/** Rows of all clips, then of those that constants were first set on and of the others. */
+function groups(rows) {
+  const all = [['all', rows], ['old', rows.filter(({ old }) => old)], ['new', rows.filter(({ old }) => !old)]];
+  return all.filter(([, own]) => own.length > 0);
+}
+
+function object({ real }) {
+  const rounds = Math.min(...real.map(({ rounds }) => rounds.length));
+  const scores = [
+    ['auto', ({ auto }) => auto],
+    ['mask', ({ mask }) => mask],
+    ['OpenCV', ({ baseline }) => baseline],
+    ['box', ({ boxed }) => boxed.atOnce],
+    ['GrabCut', ({ baselineBoxed }) => baselineBoxed],
+    ['box, clip', ({ boxed }) => boxed.through],
+    ['touch', ({ touched }) => touched.atOnce],
+    ['touch, clip', ({ touched }) => touched.through],
+    ['click', ({ click }) => click],
+    ...Array.from({ length: rounds - 1 }, (_, k) => [`round ${k + 1}`, ({ rounds }) => rounds[k + 1]]),
+  ];
+  const times = [
+    ['ms a round', ({ roundSeconds }) => 1000 * mean(roundSeconds)],
+    ['ms a frame', ({ frameMilliseconds }) => frameMilliseconds],
+    ['ms a box', ({ boxed }) => boxed.milliseconds],
+    ['ms a touch', ({ touched }) => touched.milliseconds],
+  ];
+  const rows = groups(real).map(([name, own]) => [
+    `${name} (${own.length})`, ...scores.map(([, of]) => score(mean(own.map(of)))), ...times.map(([, of]) => amount(mean(own.map(of)))),
+  ]);
+  return table(['clips', ...[...scores, ...times].map(([title]) => title)], rows);
+}
+
+function objects({ objects }) {
+  const kindOf = ({ clip }) => clip.replace(/ \d+$/, '');
+  const kinds = [...new Set(objects.map(kindOf))];
+  const rows = [...kinds.map((kind) => [kind, objects.filter((row) => kindOf(row) === kind)]), ['all', objects]].map(([name, own]) => {
+    const all = own.flatMap((row) => row.objects);
+    const changed = all.reduce((sum, { othersChanged }) => sum + othersChanged, 0);
+    const scores = ['assigned', 'stroked'].map((figure) => score(mean(all.map((object) => object[figure]))));
+    return [`${name} (${own.length})`, all.length, ...scores, whole(changed), amount(mean(own.map((row) => row.frameMilliseconds)))];
+  });
+  return table(['clips', 'objects', 'assigned', 'after strokes', 'pixels of others changed', 'ms a frame'], rows);
+}
+
+function strokes({ strokes }) {
+  const rounds = Math.min(...strokes.flatMap(({ pairs }) => pairs.map((figures) => figures.length)));
+  const rows = groups(strokes).map(([name, own]) => {
+    const pairs = own.flatMap((row) => row.pairs);
+    const figures = Array.from({ length: rounds }, (_, k) => score(mean(pairs.map((pair) => pair[k]))));
+    return [`${name} (${pairs.length})`, ...figures, amount(mean(own.map(({ milliseconds }) => milliseconds)))];
+  });
+  return table(['pairs', 'found', ...Array.from({ length: rounds - 1 }, (_, k) => `round ${k + 1}`), 'ms'], rows);
+}
+
+function page({ rows, ...figures }) {
+  const lines = rows.map(({ clip, frames, found, actions, seconds, j }) => [clip, frames, score(found), actions, fixed(seconds, 0), score(j)]);
+  return `${origin(figures)}\n\n${table(['clip', 'frames', 'found', 'actions', 'seconds', 'J'], lines)}`;
+}

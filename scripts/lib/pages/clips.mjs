@@ -1,0 +1,41 @@
+// The tables of docs/clips.md.
+
+import { amount, change, fixed, origin, percent, score, table } from './table.mjs';
+
+export const PARTS = {
+  generated: ['clips', (figures) => [origin(figures), `${figures.generated[0]?.clips} clips:`, means(figures.generated, true)].join('\n\n')],
+  events: ['clips', events],
+  pictures: ['clips', pictures],
+  real: ['clips', ({ real }) => `${real[0]?.clips} clips:\n\n${means(real, false)}`],
+  ablation: ['clips-ablation', ablation],
+};
+
+function means(rows, generated) {
+  const scores = ['auto', 'oneClick', 'tracks', 'oracle', 'fAuto', 'fTracks', 'assigned', 'lost', 'idf1'];
+  const lines = rows.map((row) => [
+    row.method, ...scores.map((name) => score(row[name])), fixed(row.switches, 1), fixed(row.labels, 1), ...(generated ? [percent(row.numberRight)] : []), amount(row.milliseconds),
+  ]);
+  const head = ['method', 'auto', 'one click', 'tracks', 'oracle', 'F auto', 'F tracks', 'assigned', 'lost', 'IDF1', 'switches', 'labels', ...(generated ? ['n right'] : []), 'ms'];
+  return table(head, lines);
+}
+
+function events({ events }) {
+  const methods = events[0]?.rows.map(({ method }) => method) ?? [];
+  const lines = events.map(({ event, rows }) => [event, rows[0].clips, ...rows.flatMap(({ auto, assigned, switches }) => [score(auto), score(assigned), fixed(switches, 1)])]);
+  return table(['event', 'clips', ...methods.flatMap((method) => [`${method}: auto`, 'assigned', 'switches'])], lines);
+}
+
+function pictures({ best, worst }) {
+  const shown = ({ clip, assigned }) => `**${clip}**: assigned ${score(assigned)}\n\n![Frames, labels found and true labels of ${clip}](images/clips-${clip}.png)`;
+  return [['The best clips', best], ['The worst clips', worst]].flatMap(([title, list]) => [`### ${title}`, ...list.map(shown)]).join('\n\n');
+}
+
+/** The figures of the whole, then by how much they change without each part. */
+function ablation({ date, rows: found }) {
+  const [whole, ...parts] = found;
+  const columns = [['generated', 'auto'], ['generated', 'assigned'], ['generated', 'switches'], ['real', 'auto'], ['real', 'oneClick'], ['real', 'tracks'], ['real', 'fTracks'], ['real', 'switches']];
+  const first = ['*the clip segmenter*', ...columns.map(([clips, figure]) => score(whole[clips]?.[figure]))];
+  const rows = parts.map((part) => [part.variant, ...columns.map(([clips, figure]) => change(part[clips]?.[figure], whole[clips]?.[figure]))]);
+  const head = ['', 'generated: auto', 'assigned', 'switches', 'real: auto', 'one click', 'tracks', 'F tracks', 'switches'];
+  return `${whole.generated?.clips ?? 0} generated and ${whole.real?.clips ?? 0} real clips, ${date}:\n\n${table(head, [first, ...rows])}`;
+}

@@ -1,0 +1,118 @@
+// The tables of docs/masks.md.
+
+import { change, fixed, origin, percent, score, table } from './table.mjs';
+
+/** A change of more standard errors than this is set in bold type. */
+const SIGNIFICANT = 2;
+/** From this confidence on a label counts as sure. */
+const SURE = 0.95;
+
+export const PARTS = {
+  scenes: ['masks', (figures) => `${origin(figures)}\n\n${scenes(figures)}`],
+  sequences: ['masks', ({ sequences }) => real(sequences)],
+  pairs: ['masks', ({ pairs }) => real(pairs)],
+  flow: ['masks', flow],
+  ablation: ['masks-ablation', ablation],
+  pictures: ['masks', pictures],
+  sensitivity: ['masks-sensitivity', sensitivity],
+  stability: ['masks-stability', stability],
+  calibration: ['masks-calibration', calibration],
+  junctions: ['masks-junctions', junctions],
+};
+
+function scenes({ scenes }) {
+  const rows = scenes.map(({ of, cases, method, miou, countRight, subPixel, boundary }) => [
+    of, cases, method, score(miou), percent(countRight), score(subPixel), score(boundary),
+  ]);
+  return table(['scenes', 'cases', 'method', 'mean IoU', 'n right', 'sub-pixel', 'F'], rows);
+}
+
+function real(pairs) {
+  const rows = pairs.map(({ of, cases, method, jBackground, jOracle, groupedBoundary, rand }) => [
+    of, cases, method, ...[jBackground, jOracle, groupedBoundary, rand].map(score),
+  ]);
+  return table(['pairs', 'cases', 'method', 'J', 'J by hand', 'F', 'adjusted Rand'], rows);
+}
+
+function flow({ flow }) {
+  return table(['pair', 'best', 'fast', 'baseline'], flow.map(({ pair, best, fast, baseline }) => [pair, ...[best, fast, baseline].map((error) => fixed(error, 2))]));
+}
+
+/** The scores of the whole pipeline, then by how much they change without each part. */
+function ablation({ date, rows: found }) {
+  const columns = [
+    ['mean IoU, best', ({ best }) => best.scenes.miou],
+    ['fast', ({ fast }) => fast.scenes.miou],
+    ['bare ground, best', ({ best }) => best.bare.miou],
+    ['fast', ({ fast }) => fast.bare.miou],
+    ['J, best', ({ best }) => best.pairs?.jBackground],
+    ['fast', ({ fast }) => fast.pairs?.jBackground],
+    ['F, best', ({ best }) => best.pairs?.groupedBoundary],
+    ['fast', ({ fast }) => fast.pairs?.groupedBoundary],
+  ];
+  const [all, ...parts] = found;
+  const rows = parts.map((part) => [part.without, ...columns.map(([, of]) => change(of(part), of(all)))]);
+  const head = ['without', ...columns.map(([title]) => title)];
+  const { scenes, bare, pairs } = all.best;
+  const counts = `${scenes.cases} scenes, ${bare.cases} of bare ground, ${pairs?.cases ?? 0} real pairs, ${date}:`;
+  return `${counts}\n\n${table(head, [[all.without, ...columns.map(([, of]) => score(of(all)))], ...rows])}`;
+}
+
+function pictures({ best, worst }) {
+  const shown = ({ case: name, description, miou }) =>
+    `**${name}** (${description}): mean IoU ${score(miou)}\n\n![First frame, labels found and true labels of ${name}](images/masks-${name}.png)`;
+  return [['The best scenes', best], ['The worst scenes', worst]].flatMap(([title, list]) => [`### ${title}`, ...list.map(shown)]).join('\n\n');
+}
+
+/** Constants that change a score by more than chance. */
+function sensitivity({ date, quality, columns, rows }) {
+  const constants = [...new Set(rows.map(({ constant }) => constant))];
+  const isSignificant = ({ mean, error }) => Math.abs(mean) > SIGNIFICANT * error;
+  const cell = (found) => (isSignificant(found) && change(found.mean) !== '0' ? `**${change(found.mean)}**` : change(found.mean));
+  const lines = constants.flatMap((name) => {
+    const own = rows.filter(({ constant }) => constant === name);
+    if (!own.some(({ changes }) => changes.some((found) => isSignificant(found) && change(found.mean) !== '0'))) return [];
+    return [[`\`${name}\``, ...columns.map((_, k) => own.map(({ changes }) => cell(changes[k])).join(' / '))]];
+  });
+  const counts = columns.map(({ figure, cases }) => `${figure} (${cases})`);
+  return `Quality *${quality}*, ${date}; ${lines.length} of ${constants.length} constants.\n\n${table(['constant', ...counts], lines)}`;
+}
+
+function stability({ date, pairs, rows }) {
+  const lines = rows.map(({ alteration, labels, foreground }) => [alteration, ...[...labels, ...foreground].map((share) => percent(share))]);
+  return `${pairs} pairs, ${date}.\n\n${table(['alteration', 'labels, median', '10th percentile', 'foreground, median', '10th percentile'], lines)}`;
+}
+
+const sum = (ranges, figure) => ranges.reduce((total, range) => total + range[figure], 0);
+
+function calibration({ date, scenes, pairs, unknown }) {
+  const edge = (share) => Number((100 * share).toFixed(1));
+  const heads = scenes.map(({ from }, k) => `${edge(from)} to ${edge(scenes[k + 1]?.from ?? 1)} %`);
+  const cells = (ranges, k) => {
+    const { pixels, confidence, right } = ranges[k];
+    return [pixels / sum(ranges, 'pixels'), confidence / pixels, right / pixels].map((share) => percent(share, 1));
+  };
+  const { object, background } = pairs[0].best.grouped;
+  const ranges = heads.map((head, k) => [head, ...cells(scenes, k), ...cells(object, k), ...cells(background, k)]);
+  const head = ['confidence', 'scenes: share', 'mean', 'right', 'objects: share', 'mean', 'right', 'background: share', 'mean', 'right'];
+  const marked = (of) => percent(unknown[`${of}Marked`] / unknown[of]);
+  const sentence = `\`markUnknown\` marks ${marked('occluded')} of the hidden pixels of the scenes and ${marked('visible')} of the others.`;
+  const folds = pairs.flatMap(({ pairs: name, ...byQuality }) =>
+    Object.entries(byQuality).map(([quality, { grouped: { object, background } }]) => {
+      const sure = object.filter(({ from }) => from >= SURE);
+      const error = (calibrationError(object) + calibrationError(background)) / 2;
+      return [name, quality, score(error), percent(sum(sure, 'pixels') / sum(object, 'pixels')), percent(sum(sure, 'right') / sum(sure, 'pixels'))];
+    }),
+  );
+  return [`${date}.`, table(head, ranges), sentence, table(['pairs', 'quality', 'calibration error', 'sure', 'of them in the mask'], folds)].join('\n\n');
+}
+
+/** The mean difference between confidence and share of right labels. */
+function calibrationError(ranges) {
+  return ranges.reduce((total, { confidence, right }) => total + Math.abs(confidence - right), 0) / sum(ranges, 'pixels');
+}
+
+function junctions({ date, junctions, heldOut, by }) {
+  const rows = by.map(({ by: name, logLoss, auc, error }) => [name, ...[logLoss, auc, error].map(score)]);
+  return `${junctions} junctions, ${heldOut} of the second fold, ${date}.\n\n${table(['told by', 'log loss', 'area under the curve', 'calibration error'], rows)}`;
+}
