@@ -132,7 +132,7 @@ export const STAGES = [
 
 /** A letter with an index, in words that can be read aloud. */
 const symbol = (letter, index) => html('span', {}, html('i', {}, letter), html('sub', {}, String(index)));
-const percent = (share) => `${written(100 * share, 1)} %`;
+const percent = (share) => `${written(100 * share, 1)}\u00a0%`;
 const named = (label) => (label ? `A ${label + 1}` : 'the background, A 1,');
 const entriesOf = (entries) => entries.map((value, k) => written(value, k % 3 === 2 ? 2 : 3));
 const matrix = (entries) => `(${entriesOf(entries).join(', ')})`;

@@ -254,7 +254,7 @@ export default async function mount({ stage, say }) {
 const grouped = (value) => value.toLocaleString('en').replaceAll(',', '\u202f');
 const row = (tag, cells) => html('tr', {}, ...cells.map((cell) => html(tag, {}, String(cell))));
 const sum = (values) => values.reduce((total, value) => total + value, 0);
-const percent = (share) => (share === undefined ? '–' : `${written(100 * share, 1)} %`);
+const percent = (share) => (share === undefined ? '–' : `${written(100 * share, 1)}\u00a0%`);
 
 function count(labels, wanted) {
   let found = 0;

@@ -10,6 +10,7 @@ test.beforeAll(async ({ browser, baseURL }) => {
   page = await browser.newPage({ baseURL });
   await page.goto('method/#clip');
   figure = page.locator('#clip');
+  await figure.scrollIntoViewIfNeeded();
   await expect(figure).toHaveAttribute('data-ready', '', { timeout: 30_000 });
   await settled();
 });

@@ -15,6 +15,7 @@ test.beforeAll(async ({ browser, baseURL }) => {
   page = await browser.newPage({ baseURL });
   await page.goto('method/#masks');
   figure = page.locator('#masks');
+  await figure.scrollIntoViewIfNeeded();
   await expect(figure).toHaveAttribute('data-ready', '', { timeout: 120_000 });
 });
 
