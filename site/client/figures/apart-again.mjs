@@ -55,7 +55,7 @@ export default async function mount({ stage, say }) {
       'div',
       { class: 'beside thirds' },
       panel('By roots', columns.element, apart, pairs),
-      panel('By derivatives: choose a pixel', image.element, noise),
+      panel('By derivatives, at a pixel', image.element, noise),
       panel('The polynomial at that pixel', curve.element, direction),
     ),
     controls(button('Other noise', () => change({ seed: state.seed + 1 }))),

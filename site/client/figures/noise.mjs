@@ -118,7 +118,7 @@ function drawing(width) {
   }
   for (const level of LEVELS) {
     const [x] = area.at(level, 0);
-    grid.append(svg('text', { x, y: 324, 'text-anchor': 'middle' }, level === 5 ? '5 % noise' : String(level)));
+    grid.append(svg('text', { x, y: 324, 'text-anchor': 'middle' }, level === 5 ? '5 %' : String(level)));
   }
   return {
     element: area.element,
