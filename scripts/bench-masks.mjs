@@ -23,13 +23,15 @@ const DATA = {
 await command(async (args) => {
   if (args.includes('--help') || args.includes('-h')) return (await run('cargo', [...CARGO, '--help'])).code;
   await checkRust();
-  const { writeDocs, rest } = withoutDocs(args, PARTIAL);
+  const apart = APART.find((step) => args.includes(`--${step}`));
+  const { writeDocs, rest } = withoutDocs(args, apart ? [] : PARTIAL);
   const out = resolve(root, valueOf(args, '--out') ?? 'out/masks');
   const read = (step) => JSON.parse(readFileSync(join(out, `${step}.json`), 'utf8'));
-  const apart = APART.find((step) => args.includes(`--${step}`));
   if (apart) {
     const { code } = await run('cargo', [...CARGO, apart, ...rest.filter((name) => name !== `--${apart}`)]);
-    if (code === 0) present(`masks-${apart}`, { command: `npm run bench:masks -- --${apart}`, data: DATA }, read(apart), writeDocs);
+    // They take long: a part of the cases is enough, if the figures say which.
+    const only = args.includes('--only') ? ` --only ${valueOf(args, '--only')}` : '';
+    if (code === 0) present(`masks-${apart}`, { command: `npm run bench:masks -- --${apart}${only}`, data: DATA }, read(apart), writeDocs);
     return code;
   }
   const baselines = join(out, 'baseline');

@@ -113,6 +113,25 @@ export interface PaperStages {
   labels: Uint8Array;
 }
 
+/** What {@link Module.motionsAtPixel} returns. */
+export interface PixelStages {
+  /** The multibody polynomial at the pixel for y = (cos θ, sin θ, t), by increasing powers of t. The last one is 1. */
+  coefficients: number[];
+  /** Its roots, [real, imaginary]: the temporal derivatives that the motions predict for a gradient of length 1. */
+  roots: [number, number][];
+  /** What the derivatives of the polynomial at the real parts of the roots give, without motions that are not finite. */
+  motions: Matrix[];
+}
+
+/** One matrix of {@link Module.embeddedSpectra}. */
+export interface Spectrum {
+  motions: number;
+  /** Of the embedded data, columns scaled to unit length, decreasing. */
+  singularValues: number[];
+  /** Their rank by the paper's footnote 4, κ = 0.003. */
+  rank: number;
+}
+
 /** What {@link Module.figure1Trial} returns. */
 export interface Figure1Trial {
   truth: Matrix[];
@@ -253,6 +272,18 @@ export interface Module {
    * @param motions 1 to 10; `'auto'`, the default, applies the rank rule. Needs 6, 24, 64, 139 … measurements for 1, 2, 3, 4 … motions.
    */
   paperStages(positions: Float64Array, derivatives: Float64Array, motions?: 'auto' | number): PaperStages;
+
+  /**
+   * The motions by differentiating the multibody polynomial at one pixel. Needs as many measurements as {@link paperStages}.
+   *
+   * @param motions 1 to 4
+   * @param x the pixel, in the coordinates of the positions
+   * @param angle θ, direction of the image gradient, radians
+   */
+  motionsAtPixel(positions: Float64Array, derivatives: Float64Array, motions: number, x: number, y: number, angle: number): PixelStages;
+
+  /** The singular values behind the rank rule for 1 to `largest` (at most 6) motions, without those for which measurements are too few. */
+  embeddedSpectra(positions: Float64Array, derivatives: Float64Array, largest: number): Spectrum[];
 
   /**
    * One trial of the paper's Figure 1: 600 measurements of random motions.

@@ -8,6 +8,7 @@
 //! * [`multibody_flow`]: several translations from one polynomial in the derivatives (eq. 13 and 14);
 //! * [`grey_derivatives`]: image derivatives in grey levels;
 //! * [`paper_stages`]: the paper's algorithm step by step, with the ambiguity of its fifth step, and differentiation beside it;
+//! * [`motions_at_pixel`]: differentiation at one pixel; [`embedded_spectra`]: the singular values behind the rank rule;
 //! * [`segment_pair_stages`]: the image pipeline with what its stages find, and where and why it leaves the paper ([`pair`]);
 //! * [`motion_measurements`] and [`figure_1_trial`]: generated measurements and one trial of the paper's Figure 1, by [`protocol`].
 //!
@@ -36,7 +37,9 @@ mod grey;
 mod map;
 mod measured;
 pub mod pair;
+mod pixel;
 pub mod protocol;
+mod spectra;
 
 pub use figure_1::{Figure1Trial, TrialError, figure_1_trial};
 pub use fit::{FitStages, paper_stages};
@@ -45,6 +48,8 @@ pub use grey::grey_derivatives;
 pub use map::{VeroneseMap, veronese_map};
 pub use measured::motion_measurements;
 pub use pair::{PairStages, segment_pair_stages};
+pub use pixel::{PixelStages, motions_at_pixel};
+pub use spectra::{Spectrum, embedded_spectra};
 
 use crate::error::{Error, Result};
 

@@ -23,7 +23,6 @@ pub(crate) struct Summary {
     pub(crate) boundary: f64,
     pub(crate) grouped_boundary: f64,
     pub(crate) rand: f64,
-    pub(crate) milliseconds: f64,
 }
 
 impl Summary {
@@ -49,7 +48,6 @@ impl Summary {
             boundary: single(|s| s.boundary),
             grouped_boundary: grouped(|s| s.boundary),
             rand: single(|s| Some(s.rand)),
-            milliseconds: mean(&|_, outcome| Some(outcome.milliseconds)),
         }
     }
 }

@@ -1,6 +1,6 @@
 // Loads the module of the site. Its types are in ../module.d.ts.
 
-const CALLS = ['veroneseMap', 'multibodyFlow', 'derivativesOf', 'paperStages', 'figure1Trial', 'motionMeasurements', 'segmentPairStages', 'segmentPair', 'fitMotions'];
+const CALLS = ['veroneseMap', 'multibodyFlow', 'derivativesOf', 'paperStages', 'motionsAtPixel', 'embeddedSpectra', 'figure1Trial', 'motionMeasurements', 'segmentPairStages', 'segmentPair', 'fitMotions'];
 
 /**
  * The calls of the module whose JavaScript is at `url`; the WebAssembly file lies beside it. Loads the same address once.

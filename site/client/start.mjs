@@ -12,8 +12,8 @@ if (document.readyState === 'complete') void begin();
 else addEventListener('load', () => void begin(), { once: true });
 
 async function begin() {
-  const { count, frames } = demo.dataset;
-  const names = Array.from({ length: Number(count) }, (_, index) => new URL(`${frames}/${String(index).padStart(2, '0')}.webp`, document.baseURI).href);
+  const { first, count, frames } = demo.dataset;
+  const names = Array.from({ length: Number(count) }, (_, index) => new URL(`${frames}/${String(Number(first) + index).padStart(2, '0')}.webp`, document.baseURI).href);
   const started = performance.now();
   demo.addEventListener('progress', ({ detail: { stage, frame } }) => {
     if (frame !== undefined) told.textContent = `${stage === 'labels' ? 'Masks of' : 'Looking at'} frame ${frame + 1} of ${names.length}`;

@@ -86,6 +86,14 @@ test('measurements of given motions are solved by each route', () => {
   assert.deepEqual([rule.count, rule.ruleFired], [2, true]);
   assert.deepEqual(rule.ranks.map(({ motions, rank, wanted }) => [motions, rank > wanted]), [[1, true], [2, false]]);
 
+  const [one, two] = module.embeddedSpectra(positions, derivatives, 2);
+  assert.deepEqual([one.motions, one.rank, one.singularValues.length], [1, 7, 7]);
+  assert.deepEqual([two.motions, two.rank, two.singularValues.length], [2, 24, 25]);
+
+  const pixel = module.motionsAtPixel(positions, derivatives, 2, 0.5, 0.4, 0.9);
+  assert.deepEqual([pixel.coefficients.length, pixel.coefficients[2], pixel.roots.length], [3, 1, 2]);
+  for (const motion of MOTIONS) assert.ok(has(pixel.motions, motion, 1e-7));
+
   const ours = module.fitMotions(positions, derivatives, { motions: 2 });
   for (const motion of MOTIONS) assert.ok(has(ours.motions.map(({ matrix }) => matrix), motion, 1e-5));
 });
@@ -145,6 +153,8 @@ test('what cannot be computed is an error with a code', () => {
   assert.equal(code(() => module.derivativesOf(frame(0), {})), 'invalid-input');
   assert.equal(code(() => module.paperStages(two, Float64Array.of(1, 2, 3))), 'too-few-measurements');
   assert.equal(code(() => module.paperStages(two, Float64Array.of(1, 2, 3), 11)), 'invalid-option');
+  assert.equal(code(() => module.motionsAtPixel(two, Float64Array.of(1, 2, 3), 1, 0, 0, 0)), 'too-few-measurements');
+  assert.equal(code(() => module.embeddedSpectra(two, Float64Array.of(1, 2, 3), 7)), 'invalid-option');
   assert.equal(code(() => module.figure1Trial(5, 0, 1)), 'invalid-option');
   assert.equal(code(() => module.figure1Trial(2, NaN, 1)), 'invalid-option');
   assert.equal(code(() => module.figure1Trial(2, 0, -1)), 'invalid-option');

@@ -74,7 +74,7 @@ test('works below another folder', async ({ page, baseURL }) => {
 test('the start page segments its clip, plays it and stops', async ({ page }) => {
   const { problems } = watch(page);
   await page.goto('');
-  await expect(page.locator('.told')).toContainText(/51 frames, [1-9]\d* things that move/, { timeout: 60_000 });
+  await expect(page.locator('.told')).toContainText(/29 frames, [1-9]\d* things that move/, { timeout: 60_000 });
   const play = page.locator('.play');
   await expect(play).toHaveText('Pause');
   const shown = () => page.evaluate(() => document.querySelector('veronese-segmenter').currentFrame);

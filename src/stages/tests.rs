@@ -324,6 +324,46 @@ fn pair_stages_agree_with_each_other() {
 }
 
 #[test]
+fn differentiation_at_a_pixel_fails_only_where_flows_agree() {
+    // Equal third columns: the flows agree at (0, 0), where the paper's factorisation looks.
+    let truth = [
+        AffineMotion::new([0.0, -0.05, 0.45, -0.25, 0.15, 0.4]),
+        AffineMotion::new([-0.2, -0.6, 0.45, -0.35, -0.55, 0.4]),
+    ];
+    let data = motion_measurements(&truth, &[1.0, 1.0], 600, 0.0, 1).unwrap().measurements;
+    for (position, angle) in [([0.5, 0.4], 0.9), ([-0.3, 0.8], 2.0)] {
+        let found = motions_at_pixel(&data, 2, position, angle).unwrap();
+        assert_eq!((found.coefficients.len(), found.coefficients[2], found.motions.len()), (3, 1.0, 2));
+        for motion in &truth {
+            assert!(is_found(motion, &found.motions, 1e-9));
+            let [u, v] = motion.flow(position[0], position[1]);
+            let predicted = -(libm::cos(angle) * u + libm::sin(angle) * v);
+            assert!(found.roots.iter().any(|root| (root[0] - predicted).abs() < 1e-9 && root[1] == 0.0));
+        }
+    }
+    let centre = motions_at_pixel(&data, 2, [0.0, 0.0], 0.9).unwrap();
+    assert!(!truth.iter().all(|motion| is_found(motion, &centre.motions, 1e-3)));
+}
+
+#[test]
+fn spectra_are_those_of_the_rank_rule_and_go_on_after_it() {
+    let data = Protocol::new(2, 0.0).problem(1).measurements;
+    let spectra = embedded_spectra(&data, 4).unwrap();
+    let ranks = paper_stages(&data, MotionCount::Auto).unwrap().fit.ranks;
+    assert_eq!(ranks.len(), 2);
+    for (rank, spectrum) in ranks.iter().zip(&spectra) {
+        assert_eq!((rank.motions, rank.rank), (spectrum.motions, spectrum.rank));
+        assert_eq!(rank.columns, spectrum.singular_values.len());
+    }
+    let columns: Vec<usize> = spectra.iter().map(|spectrum| spectrum.singular_values.len()).collect();
+    assert_eq!(columns, [7, 25, 65, 140]);
+    assert!(spectra[2].rank < 64 && spectra[3].rank < 139);
+    // 24 measurements are enough for two motions, and not for three.
+    let few = data.subset(&(0..24).collect::<Vec<_>>());
+    assert_eq!(embedded_spectra(&few, 4).unwrap().len(), 2);
+}
+
+#[test]
 fn what_cannot_be_computed_is_an_error_with_a_code() {
     let code = |error: Error| error.code();
     assert_eq!(veronese_map(&[1.0, 2.0], 4, 2).map_err(code).err(), Some("invalid-option"));
@@ -350,6 +390,12 @@ fn what_cannot_be_computed_is_an_error_with_a_code() {
     assert_eq!(motion_measurements(&[huge], &[1.0], 10, 0.0, 1).map_err(code).err(), Some("not-finite"));
     let none = Measurements::new(Vec::new(), Vec::new()).unwrap();
     assert_eq!(paper_stages(&none, MotionCount::Auto).map_err(code).err(), Some("too-few-measurements"));
+    let at = |motions, x| motions_at_pixel(&none, motions, [x, 0.0], 0.0).map_err(code).err();
+    assert_eq!(at(2, 0.0), Some("too-few-measurements"));
+    assert_eq!(at(5, 0.0), Some("invalid-option"));
+    assert_eq!(at(2, f64::NAN), Some("not-finite"));
+    assert_eq!(embedded_spectra(&none, 7).map_err(code).err(), Some("invalid-option"));
+    assert!(embedded_spectra(&none, 2).unwrap().is_empty());
     // All the same, and all zero.
     assert!(veronese_map(&[0.0; 12], 2, 2).is_ok());
     assert!(multibody_flow(&[[0.0; 3]; 12], 2).is_ok());

@@ -11,7 +11,7 @@ use veronese::embedding::rank::RankCandidate;
 use veronese::stages::pair::{
     Background, CandidateMotion, CandidateSource, Grid, Labelling, MeasuredPixels, SelectedMotion,
 };
-use veronese::stages::{FitStages, MultibodyFlow, TrialError, VeroneseMap};
+use veronese::stages::{FitStages, MultibodyFlow, PixelStages, Spectrum, TrialError, VeroneseMap};
 use veronese::{AffineMotion, Measurements, MotionCount, Plane, UNLABELLED};
 
 /// The Veronese map of points: `{ exponents, matrix: Float64Array, rows, columns, singularValues, rank, nullVector }`, and with two
@@ -133,6 +133,48 @@ fn tried(candidate: &RankCandidate) -> JsValue {
         .count("wanted", candidate.wanted())
         .number("ratio", *ratio)
         .into_value()
+}
+
+/// The singular values behind the rank rule: a list of `{ motions, singularValues, rank }`.
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`veronese::Error`], and `invalid-input`.
+#[wasm_bindgen(js_name = embeddedSpectra)]
+pub fn embedded_spectra(positions: &[f64], derivatives: &[f64], largest: &JsValue) -> Result<JsValue, JsValue> {
+    let largest = whole("largest", largest)?;
+    let measurements = Measurements::new(rows("positions", positions)?, rows("derivatives", derivatives)?);
+    let found = measurements.and_then(|data| veronese::stages::embedded_spectra(&data, largest));
+    Ok(list(&found.map_err(Failure::from)?, |Spectrum { motions, singular_values, rank, .. }| {
+        Record::new()
+            .count("motions", *motions)
+            .numbers("singularValues", singular_values)
+            .count("rank", *rank)
+            .into_value()
+    }))
+}
+
+/// The motions by differentiation at one pixel: `{ coefficients, roots, motions }`.
+///
+/// # Errors
+/// A `VeroneseError`: the codes of [`veronese::Error`], and `invalid-input`.
+#[wasm_bindgen(js_name = motionsAtPixel)]
+pub fn motions_at_pixel(
+    positions: &[f64],
+    derivatives: &[f64],
+    motions: &JsValue,
+    x: f64,
+    y: f64,
+    angle: f64,
+) -> Result<JsValue, JsValue> {
+    let count = whole("motions", motions)?;
+    let measurements = Measurements::new(rows("positions", positions)?, rows("derivatives", derivatives)?);
+    let found = measurements.and_then(|data| veronese::stages::motions_at_pixel(&data, count, [x, y], angle));
+    let PixelStages { coefficients, roots, motions, .. } = found.map_err(Failure::from)?;
+    let record = Record::new()
+        .numbers("coefficients", &coefficients)
+        .list("roots", &roots, |root| numbers(root))
+        .list("motions", &motions, matrix);
+    Ok(record.into_value())
 }
 
 /// One trial of the paper's Figure 1: `{ truth, errors: { factorisation, refined, best, oracle }, countRight: { rule, best } }`, errors in

@@ -1,6 +1,6 @@
 // The tables of docs/masks.md.
 
-import { amount, change, fixed, origin, percent, score, table } from './table.mjs';
+import { change, fixed, origin, percent, score, table } from './table.mjs';
 
 /** A change of more standard errors than this is set in bold type. */
 const SIGNIFICANT = 2;
@@ -21,17 +21,17 @@ export const PARTS = {
 };
 
 function scenes({ scenes }) {
-  const rows = scenes.map(({ of, cases, method, miou, countRight, subPixel, boundary, milliseconds }) => [
-    of, cases, method, score(miou), percent(countRight), score(subPixel), score(boundary), amount(milliseconds),
+  const rows = scenes.map(({ of, cases, method, miou, countRight, subPixel, boundary }) => [
+    of, cases, method, score(miou), percent(countRight), score(subPixel), score(boundary),
   ]);
-  return table(['scenes', 'cases', 'method', 'mean IoU', 'n right', 'sub-pixel', 'F', 'ms'], rows);
+  return table(['scenes', 'cases', 'method', 'mean IoU', 'n right', 'sub-pixel', 'F'], rows);
 }
 
 function real(pairs) {
-  const rows = pairs.map(({ of, cases, method, jBackground, jOracle, groupedBoundary, rand, milliseconds }) => [
-    of, cases, method, ...[jBackground, jOracle, groupedBoundary, rand].map(score), amount(milliseconds),
+  const rows = pairs.map(({ of, cases, method, jBackground, jOracle, groupedBoundary, rand }) => [
+    of, cases, method, ...[jBackground, jOracle, groupedBoundary, rand].map(score),
   ]);
-  return table(['pairs', 'cases', 'method', 'J', 'J by hand', 'F', 'adjusted Rand', 'ms'], rows);
+  return table(['pairs', 'cases', 'method', 'J', 'J by hand', 'F', 'adjusted Rand'], rows);
 }
 
 function flow({ flow }) {

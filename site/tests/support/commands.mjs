@@ -19,7 +19,7 @@ const CHECKED = [
   [/^git clone (\S+)$/, ([, address]) => isOneOf(address, [identity.repository])],
   [/^cd ([\w-]+)$/, ([, folder]) => isOneOf(folder, [identity.repository.split('/').at(-1)])],
   [/^npm (start|run [\w:-]+)(?: -- .*)?$/, ([, name]) => isScript(name)],
-  [/^npm ci --prefix ([\w/]+)$/, ([, folder]) => (existsSync(join(root, folder, 'package-lock.json')) ? undefined : `no package-lock.json in ${folder}`)],
+  [/^npm ci --prefix ([\w/-]+)$/, ([, folder]) => (existsSync(join(root, folder, 'package-lock.json')) ? undefined : `no package-lock.json in ${folder}`)],
   [/^pip install -r ([\w/.]+)$/, ([, file]) => isInProject(file)],
   [/^export \w+=\S+$/, () => undefined],
   [/^(?:node|python) (examples\/[\w/.-]+)(?: .*)?$/, ([, file]) => isInProject(file)],
