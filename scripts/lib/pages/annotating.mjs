@@ -16,6 +16,7 @@ function groups(rows) {
 }
 
 function object({ real }) {
+  if (real.length === 0) return '';
   const rounds = Math.min(...real.map(({ rounds }) => rounds.length));
   const scores = [
     ['auto', ({ auto }) => auto],
@@ -54,6 +55,7 @@ function objects({ objects }) {
 }
 
 function strokes({ strokes }) {
+  if (strokes.length === 0) return '';
   const rounds = Math.min(...strokes.flatMap(({ pairs }) => pairs.map((figures) => figures.length)));
   const rows = groups(strokes).map(([name, own]) => {
     const pairs = own.flatMap((row) => row.pairs);

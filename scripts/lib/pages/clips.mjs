@@ -6,7 +6,7 @@ export const PARTS = {
   generated: ['clips', (figures) => [origin(figures), `${figures.generated[0]?.clips} clips:`, means(figures.generated, true)].join('\n\n')],
   events: ['clips', events],
   pictures: ['clips', pictures],
-  real: ['clips', ({ real }) => `${real[0]?.clips} clips:\n\n${means(real, false)}`],
+  real: ['clips', ({ real }) => (real.length > 0 ? `${real[0].clips} clips:\n\n${means(real, false)}` : '')],
   ablation: ['clips-ablation', ablation],
 };
 

@@ -28,8 +28,9 @@ const PAGES = {
 
 /** The tables that are made of some figures, for the terminal. */
 export function tablesOf(name, figures) {
-  const parts = Object.values(PAGES).flatMap((page) => Object.values(page));
-  return parts.filter(([file]) => file === name).map(([, text]) => text(figures)).join('\n\n');
+  const parts = Object.values(PAGES).flatMap((page) => Object.entries(page));
+  const own = parts.filter(([part, [file]]) => file === name && part !== 'pictures');
+  return own.map(([, [, text]]) => text(figures)).filter((text) => text !== '').join('\n\n');
 }
 
 /** Writes all pages and says which of them changed. */

@@ -28,6 +28,7 @@ function scenes({ scenes }) {
 }
 
 function real(pairs) {
+  if (pairs.length === 0) return '';
   const rows = pairs.map(({ of, cases, method, jBackground, jOracle, groupedBoundary, rand }) => [
     of, cases, method, ...[jBackground, jOracle, groupedBoundary, rand].map(score),
   ]);
@@ -35,6 +36,7 @@ function real(pairs) {
 }
 
 function flow({ flow }) {
+  if (flow.length === 0) return '';
   return table(['pair', 'best', 'fast', 'baseline'], flow.map(({ pair, best, fast, baseline }) => [pair, ...[best, fast, baseline].map((error) => fixed(error, 2))]));
 }
 
