@@ -26,7 +26,7 @@ export const STAGES = [
       const [x, y, t] = [plain.horizontal, plain.vertical, plain.temporal].map(size);
       const ratio = written(t / Math.hypot(x, y), 1);
       return {
-        text: `Orange is positive, blue negative. On average, the brightness changes ${ratio} times as much from frame to frame as from pixel to pixel. Where that is more than about 1, things jump over their own edges, and brightness constancy does not hold for derivatives.`,
+        text: `Orange is positive, blue negative. On average, the brightness changes ${ratio} times as much from frame to frame as from pixel to pixel. Where that is more than about 1, things jump over their own edges, and the three no longer belong together.`,
         table: [['Frames', `${plain.width} × ${plain.height} pixels`], [symbol('I', 'x'), `${written(x)} grey levels per pixel`], [symbol('I', 'y'), `${written(y)} grey levels per pixel`], [symbol('I', 't'), `${written(t)} grey levels per frame`]],
         reading: `Root mean squares: I x ${written(x)}, I y ${written(y)} grey levels per pixel, I t ${written(t)} grey levels per frame, ${ratio} times the gradient.`,
       };
