@@ -115,7 +115,7 @@ export const STAGES = [
     what: ({ taken: { draft, labelling } }) => ({
       text: 'The labels of the least sum: first a coarse draft, in which motions are dropped, split and joined, then the working size. Compare with what the pixels say alone.',
       table: [['Draft', `${draft.width} × ${draft.height}`, `${draft.motions.length} motions`], ['Working size', `${labelling.width} × ${labelling.height}`, `${labelling.motions.length} motions`], ...shares(labelling.labels, labelling.motions.length).map((share, k) => [key(k), percent(share)])],
-      reading: `${labelling.motions.length} motions are left. ${shares(labelling.labels, labelling.motions.length).map((share, k) => `${named(k)} has ${percent(share)}`).join(', ')}.`,
+      reading: `${labelling.motions.length} motions are left: ${shares(labelling.labels, labelling.motions.length).map((share, k) => `${named(k)} has ${percent(share)}`).join(', ')}.`,
     }),
   },
   {
