@@ -26,7 +26,7 @@ export const STAGES = [
       const [x, y, t] = [plain.horizontal, plain.vertical, plain.temporal].map(size);
       const ratio = written(t / Math.hypot(x, y), 1);
       return {
-        text: `Orange is positive, blue negative. On average, the brightness changes ${ratio} times as much from frame to frame as from pixel to pixel. Where that is more than about 1, things jump over their own edges, and brightness constancy does not hold for derivatives.`,
+        text: `Orange is positive, blue negative. On average, the brightness changes ${ratio} times as much from frame to frame as from pixel to pixel. Where that is more than about 1, things jump over their own edges, and the three no longer belong together.`,
         table: [['Frames', `${plain.width} × ${plain.height} pixels`], [symbol('I', 'x'), `${written(x)} grey levels per pixel`], [symbol('I', 'y'), `${written(y)} grey levels per pixel`], [symbol('I', 't'), `${written(t)} grey levels per frame`]],
         reading: `Root mean squares: I x ${written(x)}, I y ${written(y)} grey levels per pixel, I t ${written(t)} grey levels per frame, ${ratio} times the gradient.`,
       };
@@ -115,7 +115,7 @@ export const STAGES = [
     what: ({ taken: { draft, labelling } }) => ({
       text: 'The labels of the least sum: first a coarse draft, in which motions are dropped, split and joined, then the working size. Compare with what the pixels say alone.',
       table: [['Draft', `${draft.width} × ${draft.height}`, `${draft.motions.length} motions`], ['Working size', `${labelling.width} × ${labelling.height}`, `${labelling.motions.length} motions`], ...shares(labelling.labels, labelling.motions.length).map((share, k) => [key(k), percent(share)])],
-      reading: `${labelling.motions.length} motions are left. ${shares(labelling.labels, labelling.motions.length).map((share, k) => `${named(k)} has ${percent(share)}`).join(', ')}.`,
+      reading: `${labelling.motions.length} motions are left: ${shares(labelling.labels, labelling.motions.length).map((share, k) => `${named(k)} has ${percent(share)}`).join(', ')}.`,
     }),
   },
   {
