@@ -20,12 +20,16 @@ const PARTS = {
   native: {
     lane: 'cargo',
     title: 'native tests',
-    run: () => tests(cargoCounts, 'cargo', ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs']),
+    run: async () => {
+      const args = ['test', '--locked', ...CRATES, '--no-fail-fast', '--features', 'codecs'];
+      // Examples are compiled by the test that runs them, and checked by clippy: the large ones would take longer than what they show.
+      return both(await tests(cargoCounts, 'cargo', [...args, '--lib', '--tests']), await tests(cargoCounts, 'cargo', [...args, '--doc']));
+    },
   },
   wasm: {
     lane: 'cargo',
     title: 'WebAssembly tests in Node',
-    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES]),
+    run: () => tests(cargoCounts, 'wasm-pack', ['test', '--node', '--mode', 'no-install', '--', '--locked', ...CRATES, '--lib', '--tests']),
   },
   check: { lane: 'cargo', title: 'checks', run: runChecks },
   python: {
@@ -124,6 +128,12 @@ await command(async (args) => {
   });
   return summarise(await runParts(names, setup));
 });
+
+/** The counts of two runs. */
+function both(one, other) {
+  const sum = (kind) => one[kind] + other[kind];
+  return { passed: sum('passed'), failed: sum('failed'), skipped: sum('skipped'), note: one.note ?? other.note };
+}
 
 /** Runs parts in their lanes; the results have the order of `names`. */
 async function runParts(names, setup) {
